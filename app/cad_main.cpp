@@ -1,10 +1,12 @@
 // spoonbill-cad: the child process of spoonbill that converts CAD files. Only this program loads OpenCASCADE.
-// It answers with frames (frame_stream.h) on its standard output:
+// It answers with frames (engine/exchange/frame_stream.h) on its standard output:
 //
-//   spoonbill-cad read step|iges FILE UNIT_M TOLERANCE_M FACE_LIMIT      UNIT_M 0: the unit that FILE
-//   declares spoonbill-cad write step|iges ap214|ap242 mm|cm|m|in                 reads a model's frames from
-//   its input spoonbill-cad solids CHORD_M TRIANGLE_LIMIT                          reads the same, answers
-//   with meshes
+//   spoonbill-cad read step|iges FILE UNIT_M TOLERANCE_M FACE_LIMIT
+//   spoonbill-cad write step|iges ap214|ap242 mm|cm|m|in
+//   spoonbill-cad solids CHORD_M TRIANGLE_LIMIT
+//
+// A UNIT_M of 0 is the unit that FILE declares. `write` and `solids` read the frames of a model from standard
+// input; `write` answers with the content of a file, `solids` with meshes.
 #include <fcntl.h>
 #include <sys/prctl.h>
 #include <unistd.h>

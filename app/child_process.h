@@ -43,11 +43,11 @@ class ChildOutput {
   ChildOutput& operator=(ChildOutput&&) = delete;
   ~ChildOutput();  // kills a child that still runs
 
-  // Reads exactly `bytes` bytes. Returns false if the output ends earlier, the time is over, or `gives_up`,
-  // which is called every 50 ms meanwhile, returns true.
+  // Reads exactly `bytes` bytes. Calls `gives_up` every 50 ms meanwhile. Returns false if the output ends
+  // earlier, the time is over, or `gives_up` returns true.
   bool read(void* to, std::size_t bytes, const std::function<bool()>& gives_up = {});
 
-  // Waits for the child until the time is over, then kills it.
+  // Waits for the child to end, and kills it when the time is over.
   ChildEnd wait();
 
  private:

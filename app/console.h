@@ -25,8 +25,8 @@ struct Console {
 // whose content could otherwise drive the terminal.
 std::string one_line(const std::string& text);
 
-// Blocks SIGINT while it lives, so that Ctrl+C waits until the work reaches a point where it can stop. Create
-// it before other threads start: they inherit the signal mask. SIGTERM still ends the process at once.
+// Blocks SIGINT while it exists, so that Ctrl+C waits until the work reaches a point where it can stop.
+// Create it before other threads start: they inherit the signal mask. SIGTERM still ends the process at once.
 class InterruptWatch {
  public:
   InterruptWatch();
@@ -37,7 +37,7 @@ class InterruptWatch {
   // Returns true once Ctrl+C has been pressed.
   bool requested() const;
 
-  // Discards the pending signal, so that the process lives on to report that it stopped.
+  // Discards the pending signal, so that the process can still report that it stopped the work.
   void answer();
 
  private:
@@ -45,8 +45,8 @@ class InterruptWatch {
   sigset_t before_;
 };
 
-// A progress bar on the console's error stream: one line that is redrawn on a terminal, one line for every
-// tenth elsewhere, nothing when it is hidden.
+// A progress bar on the console's error stream: one line that is redrawn on a terminal, a line for every
+// tenth of the work elsewhere, nothing when it is hidden.
 class ProgressBar {
  public:
   // The bar is visible on a terminal, and elsewhere if it is forced. The console must outlive it.

@@ -66,8 +66,8 @@ struct DeviceReading {
   std::int64_t orientation_e9[4] = {0, 0, 0, 1'000'000'000};  // x, y, z, w
   std::uint32_t buttons = 0;  // button_main, button_hover and the device's own
 
-  // Returns whether each coordinate is within reading_limit_nm and the orientation is a unit quaternion. Only
-  // valid readings may reach the simulation or a recording.
+  // Returns whether every coordinate is within reading_limit_nm and the orientation is a unit quaternion.
+  // Only valid readings may reach the simulation or a recording.
   bool is_valid() const;
   bool has_unit_orientation() const;
 

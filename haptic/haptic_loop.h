@@ -77,8 +77,8 @@ struct LoopFigures {
   std::string notice;          // one line to show to the user once; empty if everything was permitted
 };
 
-// Owns its thread. At most one loop of a process should be real-time, because locked memory affects the whole
-// process.
+// The haptic thread, which this object owns. At most one loop of a process should be real-time, because
+// locked memory affects the whole process.
 class HapticLoop {
  public:
   // Calls `body` on a new thread, with denormal numbers flushed to zero, until stop(). `body` must not throw:
@@ -90,8 +90,8 @@ class HapticLoop {
   HapticLoop& operator=(HapticLoop&&) noexcept;
   ~HapticLoop();  // calls stop()
 
-  // Returns when the last call has ended, at most a period later. Further calls do nothing. Must be called
-  // from the owner's thread, never from within the function.
+  // Stops the calls of `body` and waits until the last one has ended, at most a period. Does nothing if
+  // called again. Must be called from the owner's thread, never from within `body`.
   void stop();
 
   // Returns the current figures. Callable from any thread while the object exists, also after stop().

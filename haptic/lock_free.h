@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/containers.h"
+
 namespace spoonbill {
 
 // Passes the newest value from one thread to another. Neither side ever waits; a value that the reader does
@@ -48,17 +50,15 @@ class TripleBuffer {
  private:
   static constexpr std::uint32_t slot_mask = 3;
   static constexpr std::uint32_t fresh_bit = 4;
-  // Alignment that keeps data written by different threads in different cache lines.
-  static constexpr std::size_t cache_line = 64;
 
-  struct alignas(cache_line) Slot {
+  struct alignas(cache_line_bytes) Slot {
     T value;
   };
 
   std::array<Slot, 3> slots_;
-  alignas(cache_line) std::uint32_t writers_ = 0;
-  alignas(cache_line) std::atomic<std::uint32_t> between_{1};
-  alignas(cache_line) std::uint32_t readers_ = 2;
+  alignas(cache_line_bytes) std::uint32_t writers_ = 0;
+  alignas(cache_line_bytes) std::atomic<std::uint32_t> between_{1};
+  alignas(cache_line_bytes) std::uint32_t readers_ = 2;
 };
 
 // Passes every value from one thread to another, in order and without waiting. A full queue rejects the
@@ -103,17 +103,14 @@ class BoundedQueue {
   }
 
  private:
-  // Alignment that keeps the counters of the two threads in different cache lines.
-  static constexpr std::size_t cache_line = 64;
-
   // The counters never wrap: at a million values a second they last more than half a million years.
   void swap_with_slot(std::size_t count, T& value) noexcept {
     using std::swap;
     swap(slots_[count % slots_.size()], value);
   }
 
-  alignas(cache_line) std::atomic<std::size_t> pushed_{0};
-  alignas(cache_line) std::atomic<std::size_t> popped_{0};
+  alignas(cache_line_bytes) std::atomic<std::size_t> pushed_{0};
+  alignas(cache_line_bytes) std::atomic<std::size_t> popped_{0};
   std::vector<T> slots_;
 };
 

@@ -119,7 +119,7 @@ class RecordingWriter {
   // Writes the last line and waits until the file is on the disk.
   Status finish(std::uint64_t state_hash);
 
-  // Replaces an older file of the same name and closes the recording. Called after finish().
+  // Closes the recording and replaces an older file of its name. Must be called after finish().
   Status commit();
 
  private:

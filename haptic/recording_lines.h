@@ -1,4 +1,4 @@
-// Conversion of the single lines of a recording from and to JSON; recording.h describes the format.
+// Conversion of the individual lines of a recording from and to JSON; recording.h describes the format.
 #pragma once
 
 #include <cstdint>

@@ -41,7 +41,7 @@ struct RecordingWriter::State {
   // Returns an error if the recording has failed or is finished. Called first by every member.
   Status ready() {
     if (failure.ok() && finished)
-      return fail(ErrorCode::internal, "the recording is finished, nothing can follow");
+      return fail(ErrorCode::internal, "the recording is finished; nothing can be added");
     return failure;
   }
 };

@@ -13,8 +13,8 @@ namespace {
 
 constexpr int quiet_ticks_needed = 10;
 
-// Number of dropped ticks that counts as a stall. In that time a hand moves a hand's breadth, and an old
-// force is no longer valid. Shorter gaps are covered by the limit on the change.
+// Number of dropped ticks that counts as a stall. In that time a hand can move by its own breadth, so an old
+// force is no longer valid. The limit on the change covers shorter gaps.
 constexpr std::uint64_t stall_ticks = 25;
 
 // Multiples of the workspace radius and of the maximum speed at which the force has faded to zero.
@@ -135,7 +135,7 @@ constexpr FlagText flag_texts[] = {
     {safety_flag_outside, "Force fades: the hand is outside the device's workspace"},
     {safety_flag_fast, "Force fades: move more slowly"},
     {safety_flag_force_limited, "Force at the device's limit: lower the force scale"},
-    {safety_flag_change_limited, "Force limited: it would jump"},
+    {safety_flag_change_limited, "Force limited: it changes too fast"},
 };
 
 }  // namespace

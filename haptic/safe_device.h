@@ -1,8 +1,8 @@
-// The safety chain between the force that the coupling requests and the hand: no fault of the program may
-// hurt it.
+// The safety chain between the force that the coupling requests and the hand, which no fault of the program
+// may hurt.
 //
-// SafeDevice, both live and in lock-step, is the only code that reads a device and that sets its force. So no
-// force reaches a hand unchecked. make_safe() applies these steps in every tick:
+// SafeDevice is the only code that sets the force of a device, both live and in lock-step, so no force
+// reaches a hand unchecked. make_safe() applies these steps in every tick:
 //   1. A fault gives zero force within that tick: a value that is not finite, a stale simulation, a stall, a
 //      released dead-man button, a device that does not answer.
 //   2. The force stays off until the requested force has been small for some ticks, so that a hand that
@@ -15,7 +15,7 @@
 // step 5.
 //
 // The order and the quiet force follow cGenericTool of CHAI3D; the other limits belong to the device. The
-// chain is no part of the state hash: the material is moved by the coupling (haptic/tick.h).
+// state hash excludes the chain, because it is the coupling (haptic/tick.h) that moves the material.
 #pragma once
 
 #include <cstdint>
@@ -43,7 +43,7 @@ enum SafetyFlag : std::uint32_t {
   safety_flag_fast = 1u << 9,
   safety_flag_outside = 1u << 10,
   safety_flag_change_limited = 1u << 11,
-  // A fault, like those above.
+  // Another fault, which stays set like those above.
   safety_flag_no_device = 1u << 12,
 };
 
@@ -87,7 +87,7 @@ std::string safety_text(std::uint32_t flags);
 // A device behind the safety chain.
 //
 //   once a tick:  read() -> reset the proxy if consume_proxy_reset() -> advance the simulation -> give(force)
-//   or, while there is no simulation to advance:                                        read() -> give_none()
+//   or, without a simulation to advance:  read() -> give_none()
 //
 // A device that does not answer, or answers with an invalid reading, gets no force. Its last valid reading
 // replaces the missing one, as a hand that only points: the tool releases the material and touches nothing.
@@ -106,7 +106,7 @@ class SafeDevice {
   void set_workspace_centre(const Vector3& centre_m) { workspace_centre_m_ = centre_m; }
   void set_workspace_radius(double radius_m) { limits_.workspace_radius_m = radius_m; }
 
-  // Returns the reading for this tick, which is always valid.
+  // Returns a valid reading for this tick: that of the device, or a replacement as described above.
   DeviceReading read();
 
   // Returns whether the proxy must be moved to the device before this tick advances, and clears the request.

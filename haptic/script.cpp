@@ -111,9 +111,10 @@ class StepCompiler {
   }
 
   void extend(FieldReader& reader, std::uint64_t ticks, const HandTarget& to) {
-    if (!started_) reader.refuse("needs a start, put a step with start_mm before it");
+    if (!started_) reader.refuse("needs a start; put a step with start_mm before it");
     const std::uint64_t begin = script_.tick_count();
-    if (begin + ticks > script_tick_limit) reader.refuse("leads beyond 10 minutes, shorten the script");
+    if (begin + ticks > script_tick_limit)
+      reader.refuse("makes the script longer than 10 minutes; shorten it");
     if (ticks > 0) script_.motions.push_back({begin, begin + ticks, current_, to});
     current_ = to;
   }
@@ -183,7 +184,7 @@ Result<Script> script_from_json(const Json& json, const std::string& source,
   }
   reader.finish();
   if (!compiler.failure().ok()) return compiler.failure().error();
-  if (!compiler.has_started()) reader.refuse("steps", "have no start, begin with a step with start_mm");
+  if (!compiler.has_started()) reader.refuse("steps", "have no start; begin with a step with start_mm");
   if (!reader.status().ok()) return reader.status().error();
   return script;
 }

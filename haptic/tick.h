@@ -1,4 +1,4 @@
-// One tick of touch: reads a device reading, advances the simulation and computes the force.
+// One tick of touch: takes a device reading, advances the simulation and computes the force.
 //
 // A pure function of its arguments: it does not allocate, lock, read a clock or throw. The 1 kHz thread and
 // the lock-step replay call the same code and get the same bits.
@@ -16,9 +16,9 @@ namespace spoonbill {
 // force of the spring goes to the hand, damped, filtered and limited. Its opposite, divided by the force
 // scale, presses the tool on the material.
 //
-// The force is late, because it is constant for a tick and filtered. With a delay t, a spring K returns more
-// energy than it received, as if damped by -K t (Colgate and Brown 1994, for t of half a tick). So the hand
-// is damped along the spring by twice that, within the maximum damping of the device.
+// The force is late, because it is filtered and constant for a tick. With a delay t, a spring of stiffness K
+// returns more energy than it received, as if its damping were -K t (Colgate and Brown 1994, for t of half a
+// tick). So the hand is damped along the spring by 2 K t, at most the maximum damping of the device.
 //
 // Plain data, owned with the simulation by the ticking thread.
 struct CouplingState {

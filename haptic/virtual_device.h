@@ -24,7 +24,7 @@ struct Hand {
   double damping_n_s_per_m = 10.954;  // against the motion relative to the target
 };
 
-// Ranges in which a step is stable: tick^2 * stiffness / mass is at most 1.
+// Ranges in which a step is stable: tick_s^2 * stiffness / mass is at most 1.
 inline constexpr Range<double> hand_mass_range_kg{0.01, 10.0};
 inline constexpr Range<double> hand_stiffness_range_n_per_m{1.0, 10'000.0};
 inline constexpr Range<double> hand_damping_range_n_s_per_m{0.0, 1000.0};
@@ -87,8 +87,8 @@ class PlaybackDevice : public Device {
 
   const DeviceSpecification& specification() const override { return specification_; }
 
-  // Returns the next reading; after the last one, the last one repeatedly, or the default reading if there
-  // are none.
+  // Returns the next reading, and the last one again once all have been returned; the default reading if
+  // there are none.
   std::optional<DeviceReading> read() override;
   void set_force(const Vector3& force_n) override;
 

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double filled_fraction = 2.0 / 3.0;
 
-// Depth range relative to the distance. It includes a tool near the eye and the ground far behind, with steps
-// below a micrometre at a hand's distance.
+// Depth range relative to the distance. It includes a tool near the eye and the ground far behind the model,
+// with depth steps below a micrometre at arm's length.
 constexpr double near_ratio = 0.05;
 constexpr double far_ratio = 20.0;
 
@@ -25,7 +25,7 @@ Eigen::Vector2d free_centre(const Viewport& viewport) {
   return {r.x + 0.5 * r.width, r.y + 0.5 * r.height};
 }
 
-// Returns the distance at which every corner is within the filled fraction of the free rectangle.
+// Returns the smallest distance at which every corner is within the filled fraction of the free rectangle.
 double fitting_distance(const Camera& camera, const Box& box, const Viewport& viewport) {
   const Eigen::Matrix3d axes = eye_axes(camera);
   const double focal = focal_px(camera, viewport);

@@ -34,7 +34,7 @@ struct Image {
   friend bool operator==(const Image&, const Image&) = default;
 };
 
-// Flips the picture vertically in place, because GL stores the bottom row first.
+// Flips the picture vertically in place, for pixels from GL, which stores the bottom row first.
 void flip_rows(Image& image);
 
 // Encodes pictures as PNG files, reusing its working memory. Use one encoder a thread. The same picture gives

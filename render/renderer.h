@@ -1,4 +1,4 @@
-// Draws snapshots. One renderer a context; it is used on the thread of the context.
+// Draws snapshots. A context has one renderer, which must be used on the thread of the context.
 //
 //   auto context = OsmesaContext::make(1280, 720);
 //   auto renderer = Renderer::make(*context.value());
@@ -7,8 +7,8 @@
 //   renderer->read_pixels(image);                                   // or renderer->present()
 //
 // The picture depends only on snapshot, settings and interface: the same input gives the same pixels for any
-// number of drawing threads. The exception is ViewSettings::keep_level, which may retain a slightly finer or
-// coarser tessellation from the previous frame.
+// number of drawing threads. Two exceptions retain something from earlier frames: ViewSettings::keep_level
+// may keep a slightly finer or coarser tessellation, and a deforming mesh keeps the edges of its first shape.
 #pragma once
 
 #include <imgui.h>

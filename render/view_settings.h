@@ -20,7 +20,7 @@ struct Overlays {
   bool touched_nodes = true;     // red discs
   bool lattice = false;          // the thinnest lines
   bool cells = false;            // thick lines where the hexahedra of the lattice meet the surface
-  bool control_net = false;      // thin lines with points
+  bool control_net = false;      // thin lines with diamonds
   bool force = true;             // the force on the hand: an arrow with its newtons
   bool contact_normals = false;  // short lines from the contact points
   bool fixing_planes = true;
@@ -72,8 +72,8 @@ class FrameBudget {
   // `frame_s` is the time available for a frame, above 0.
   explicit FrameBudget(double frame_s = 1.0 / 60.0) : frame_s_(frame_s) {}
 
-  // Records the time of a frame drawn at quality(). Consecutive late frames, or more than a third of late
-  // ones, lower the quality; a long time with spare capacity raises it. A single late frame changes nothing,
+  // Records the time of a frame drawn at quality(). Consecutive late frames, or more than one late frame in
+  // three, lower the quality; a long time with spare capacity raises it. A single late frame changes nothing,
   // because another program may have caused it. A quality that fails soon after it was raised is retried
   // after a longer time.
   void add_frame(double took_s);
@@ -83,7 +83,7 @@ class FrameBudget {
   // Lowers settings to quality(); never raises them.
   void apply(ViewSettings& settings) const;
 
-  // Returns one line for the panel that says what is missing; empty at full quality.
+  // Returns one line for the panel that says how the quality is reduced; empty at full quality.
   std::string text() const;
 
  private:

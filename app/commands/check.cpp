@@ -200,7 +200,7 @@ CommandEntry add_check(OptionSet root) {
       "Bodies that are faces of one solid, as parts from CAD are, are joined to that solid if they close. "
       "It\n"
       "has the volume, area, mass, centre and smallest thickness; that is measured on a mesh, and the error\n"
-      "is reported. Solid bodies that overlap are listed with their depth; an overlap alone is no fault.\n"
+      "is reported. Solid bodies that overlap are listed with their depth; an overlap alone is not a fault.\n"
       "A body is sound if it encloses its material, or is a face of a solid that does, and does not\n"
       "intersect itself. The exit code is 0 for any result; see \"sound\" in the JSON.\n"
       "Example: spoonbill check assets/models/spoon-handle.json");

@@ -107,8 +107,8 @@ class CombinedAnswer {
   CollisionAnswer answer_;
 };
 
-// Collides body a of A with body b of B. The distance of bodies that do not touch is needed up to `reach_m`,
-// and may be infinite beyond.
+// Collides body a of A with body b of B. The distance of bodies that do not touch must be exact up to
+// `reach_m` and may be infinite beyond.
 using PairCollision = std::function<Result<CollisionAnswer>(std::size_t a, std::size_t b, double reach_m)>;
 
 // Collides the close pairs of bodies of two models, or finds the nearest pair if none touches. The first
@@ -149,7 +149,7 @@ ContactSide surface_side(const SurfaceContact& contact) {
   return {contact.point_m, SurfaceParameters{contact.u, contact.v, {}}, {}};
 }
 
-// The mesh separates from the body along the surface's normal.
+// Returns a contact of a mesh with a body, which separate along the surface's normal.
 ModelContact make_contact(const ToolShape& tool, const SurfaceContact& at, bool mesh_is_a) {
   ModelContact contact{surface_side(at), mesh_side(tool, at.point_m), -at.normal, at.depth_m, at.tangent_u,
                        at.tangent_v};

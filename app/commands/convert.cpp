@@ -79,9 +79,8 @@ CommandEntry add_convert(OptionSet root) {
   parser.set_footer(
       "Reads documents (.json), STEP (.step, .stp) and IGES (.iges, .igs); writes those and meshes (.stl,\n"
       ".obj, .ply, .3mf). Closed bodies become solids in STEP and IGES, and watertight meshes. Each face of\n"
-      "a CAD file becomes a body. The faces of one solid are written as that solid again if they close, "
-      "also\n"
-      "in a mesh; gaps that are bridged are reported. OUT appears complete or not at all.\n"
+      "a CAD file becomes a body. Faces of one solid that close are written as that solid, in CAD files and\n"
+      "in meshes; gaps that are bridged are reported. OUT appears complete or not at all.\n"
       "Example: spoonbill convert assets/models/spoon-handle.json handle.step --schema ap242");
   parser.add_option("IN", options->request.in, "Document or CAD file to read").require();
   parser.add_option("OUT", options->request.out, "File to write; its ending selects the format").require();

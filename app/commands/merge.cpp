@@ -338,7 +338,7 @@ Result<MergeOutcome> merge_crossing_patches(const MergeParts& parts, const Merge
     merged.deviation_m += next->deviation_m;
     outcome.corners.push_back(next->corner);
     if (options.fillet_m > 0.0) {
-      // Measured before the next merge, while the fillet is at constant v.
+      // The fillet is measured before the next merge, while it is at constant v.
       const std::string which = patches.size() > 2 ? " with patch " + std::to_string(p + 1) : "";
       add_tight_fillet(merged.surface, next->corner, which, options.fillet_m, request.join.continuity,
                        outcome.tight_fillets);

@@ -200,7 +200,7 @@ Result<NewShape> apply_thickness(ExactShape shape, const LengthOption& thickness
   return made;
 }
 
-// `path` is a list of points or the name of a CSV file.
+// Reads the points of a path: a list of points, or the name of a CSV file.
 Result<std::vector<Vector3>> read_path(const std::string& path) {
   if (path.find(';') != std::string::npos) return parse_points(path);
   const auto table = read_point_table(path, {"x", "y", "z"}, false);
@@ -308,7 +308,7 @@ class ShapeJob {
  public:
   explicit ShapeJob(Console& console) : bar_(console, "Making", false) {}
 
-  // The returned object refers to this one.
+  // Returns a Progress that refers to this object.
   Progress progress() {
     return Progress([this](double fraction) {
       constexpr std::chrono::milliseconds bar_delay{500};

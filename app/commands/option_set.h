@@ -7,8 +7,8 @@
 //   info.add_flag("--json", json, "Print one JSON object");
 //   const CommandLine::Parsed parsed = line.parse(arguments);
 //
-// The targets of options, and everything that their functions refer to, must live until parse() has returned.
-// All calls come from one thread.
+// The targets of options, and everything that their functions refer to, must exist until parse() has
+// returned. All calls come from one thread.
 #pragma once
 
 #include <cstdint>
@@ -34,17 +34,17 @@ class CommandOption {
  public:
   explicit CommandOption(CLI::Option* option) : option_(option) {}
 
-  // A command line without this option is wrong use.
+  // Requires this option: a command line without it is wrong use.
   CommandOption require() const;
-  // Replaces the name of the value's type that --help shows.
+  // Sets the name that --help shows for the type of the value.
   CommandOption show_as(const std::string& form) const;
-  // A value outside the range is wrong use.
+  // Limits the value: one outside the range is wrong use.
   CommandOption limit(Range<int> range) const;
   CommandOption limit(Range<double> range) const;
   CommandOption limit(Range<std::uint64_t> range) const;
-  // This option without the other one is wrong use.
+  // Requires the other option: this one without it is wrong use.
   CommandOption need(CommandOption other) const;
-  // This option together with the other one is wrong use.
+  // Forbids the other option: both together are wrong use.
   CommandOption exclude(CommandOption other) const;
 
  private:
@@ -84,7 +84,7 @@ class OptionSet {
   void set_footer(const std::string& text) const;
   // Sets the heading under which --help lists this command; an empty one hides the command.
   void set_group(const std::string& heading) const;
-  // A command line without a subcommand is wrong use.
+  // Requires a subcommand: a command line without one is wrong use.
   void require_command() const;
   // Sets a check that runs after all options have been read, whatever their order. An error is wrong use, and
   // its message is shown as it is.
@@ -98,7 +98,7 @@ class OptionSet {
   CLI::App* parser_;
 };
 
-// Adds an option whose text `parse` turns into a Result and whose value `store` receives. `form` is the type
+// Adds an option. `parse` turns its text into a Result, `store` receives the value, and `form` is the type
 // that --help shows.
 template <class Parse, class Store>
 CommandOption add_parsed_option(OptionSet parser, const std::string& name, const char* form,
@@ -136,7 +136,7 @@ class CommandLine {
   OptionSet options() const;
   // Sets the text that --version prints.
   void set_version(const std::string& text);
-  // `arguments` excludes the program's name.
+  // Parses the arguments, which exclude the program's name.
   Parsed parse(const std::vector<std::string>& arguments);
 
  private:

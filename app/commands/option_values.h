@@ -32,8 +32,8 @@ Result<Pose> parse_pose(std::string_view text);
 // Parses a length within the range, with a unit unless it is 0: "5mm", "0.2in", "2inch".
 Result<double> parse_length(std::string_view text, Range<double> range_m);
 
-// Parses `count` lengths within the range: "60x40x20mm", "6cmx40mmx20mm". The last must have a unit; any
-// other without one has the unit of the next that has.
+// Parses `count` lengths within the range: "60x40x20mm", "6cmx40mmx20mm". The last must have a unit; a length
+// without a unit has that of the next length that has one.
 Result<std::vector<double>> parse_lengths(std::string_view text, std::size_t count, Range<double> range_m);
 
 // Parses an order of continuity, "C0" to "C8", the order that the highest degree allows.
@@ -42,7 +42,7 @@ Result<int> parse_continuity(const std::string& text);
 // Parses "1,3-5": at most 1000 numbers from 1, in the given order, duplicates removed.
 Result<std::vector<int>> parse_number_list(std::string_view text);
 
-// Returns the value of one of the words.
+// Returns the value of the choice whose word equals the text.
 template <class Value>
 Result<Value> parse_choice(std::string_view text,
                            std::initializer_list<std::pair<const char*, Value>> choices) {
@@ -71,7 +71,8 @@ struct PointTable {
 
 // Reads a CSV file of at most 16 MiB and 100,000 rows. The first line names the columns in the given order,
 // each with mm, cm, m or in: "x_mm,y_mm,z_mm". Empty lines, lines that begin with # and a byte order mark are
-// ignored. An error names the line: other columns, too few values, not a number, beyond 100 m.
+// ignored. An error names the line: unexpected columns, a wrong number of values, text that is not a number,
+// a length beyond 100 m.
 Result<PointTable> read_point_table(const std::filesystem::path& file,
                                     const std::vector<std::string>& columns, bool with_section);
 

@@ -20,7 +20,7 @@ namespace {
 constexpr int control_points_limit = 200;
 constexpr Range<double> cap_height_range_m{0.0, 1.0};
 
-// The limits of a change that is not exact.
+// The tolerance of a change that is not exact, and the progress that can stop it.
 struct Allowed {
   double tolerance_m;
   Progress progress;

@@ -1,4 +1,4 @@
-// The changes of a surface that the change command offers, and what becomes of a body whose surface is
+// The changes of a surface that the change command offers, and the adaptation of a body whose surface is
 // replaced.
 #pragma once
 
@@ -23,7 +23,7 @@ struct ChangedSurfaces {
 
 enum class ChangeKind { split, insert, remove, degree, simplify, reverse, exchange, seam, close, cap, open };
 
-// A parsed change. Only the members that its kind uses have a meaning.
+// A parsed change. Members that its kind does not use are ignored.
 struct ChangeRequest {
   ChangeKind kind = ChangeKind::simplify;
   Direction direction = Direction::u;
@@ -47,8 +47,8 @@ Result<ChangedSurfaces> change_surface(const Surface& surface, const std::vector
 // Returns one line per change for --help.
 std::string list_changes();
 
-// Removes regions, loads and supports, which are fractions of a surface that is being replaced. Adds a note
-// if the body had any.
+// Removes regions, loads and supports, whose extents are fractions of the surface that is being replaced.
+// Adds a note if the body had any.
 void drop_surface_features(Body& body, std::vector<std::string>& notes);
 
 // Adapts the shell thickness to a new surface: a body that became closed loses it. Adds a note if the surface

@@ -21,8 +21,8 @@ namespace spoonbill {
 // The window and all that draws in it. One owner: the program's main thread.
 class EditWindow {
  public:
-  // `scale` overrides the display's scale, which some displays do not report. Returns an error without a
-  // display, GL or the font.
+  // Opens a hidden window. `scale` overrides the display's scale, which some displays do not report. Returns
+  // an error if there is no display, no GL or no font.
   static Result<EditWindow> make(int width, int height, std::optional<double> scale);
 
   EditWindow(EditWindow&&) noexcept;

@@ -572,7 +572,7 @@ void Editor::set_tool(const LiveFrame& frame, ToolKind kind, ToolAction tool_act
   send(Command(SetTool{tool}));
 }
 
-// Adds a plane across the longest direction of the model, at the tool; it fixes the shorter part.
+// Adds a plane at the tool, across the longest direction of the model, that fixes the shorter part.
 void Editor::place_plane(const LiveFrame& frame) {
   const Vector3 size = body_bounds_.extent();
   int axis = 0;

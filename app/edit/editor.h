@@ -41,7 +41,7 @@ class Editor {
   // Opens the window. Returns an error without a display and for a model that cannot be read or simulated.
   static Result<std::unique_ptr<Editor>> make(const EditSettings& settings);
 
-  // Runs until the user quits. An error ends the window, but not the recording or the autosaved work.
+  // Runs until the user quits. An error closes the window, but keeps the recording and the autosaved work.
   Status run();
 
   // Returns the figures of the haptic loop, valid after run() too.

@@ -32,8 +32,8 @@ class MessageLine {
   std::deque<Shown> shown_;
 };
 
-// Small plots of the device force, last 2 s, and of the haptic thread's rate, last minute. One owner: the
-// thread that draws.
+// Small plots of the device force over the last 2 s and of the haptic thread's rate over the last minute. One
+// owner: the thread that draws.
 class LivePlots {
  public:
   // Adds the forces since the last frame and the figures of the loop. Called once per frame.

@@ -57,7 +57,7 @@ constexpr std::size_t tool_key_count = [] {
   return count;
 }();
 
-// In the order of their keys. GLFW names digits and letters by their characters.
+// Key bindings of the tools, ordered by key. GLFW's codes of digits and letters are their ASCII characters.
 constexpr auto tool_bindings = [] {
   std::array<KeyBinding, tool_key_count> made{};
   auto next = made.begin();

@@ -91,7 +91,7 @@ Vector3 position(const GridSamples<float>& samples, std::size_t i) {
   return {samples.x[i], samples.y[i], samples.z[i]};
 }
 
-// Cells are nearly square, so half the longest edge is half a cell's diagonal.
+// Returns half the longest edge of the triangles: half a cell's diagonal, because cells are nearly square.
 double ball_radius(const TessellatedSurface& surface) {
   double longest_squared = 0.0;
   const auto& corners = surface.indices();
@@ -106,7 +106,7 @@ double ball_radius(const TessellatedSurface& surface) {
 
 }  // namespace
 
-// Only vertices of triangles are picked; the others are trimmed away.
+// Collects the vertices that triangles use; the others are trimmed away and must not be picked.
 void SurfacePick::update_vertices(Sampled& sampled) {
   if (sampled.topology == sampled.surface.topology_version()) return;
   sampled.topology = sampled.surface.topology_version();
@@ -158,11 +158,11 @@ constexpr double hover_gap_m = 0.001;
 constexpr int frames_to_depth = 15;
 constexpr double depth_per_notch_m = 0.001;
 
-// Depth of a grip. Independent of the strength, because a grip must touch first.
+// Depth of a grip: enough to touch the surface, whatever the strength.
 constexpr double grip_depth_m = 2.0 * hover_gap_m;
 
-// Returns the point where the ray meets the plane through `point_m` that faces the camera; `point_m` if it is
-// parallel.
+// Returns the point where the ray meets the screen plane of `point_m`: the plane through it that faces the
+// camera. Returns `point_m` if the ray is parallel to the plane.
 Vector3 project_to_screen_plane(const Ray& ray, const Camera& camera, const Vector3& point_m) {
   const Vector3 back = eye_axes(camera).col(2);
   const double slope = ray.direction.dot(back);

@@ -1,4 +1,4 @@
-// The mouse: moves the camera, picks the point of the surface under the pointer, and holds the virtual
+// The mouse, which moves the camera, picks the point of the surface under the pointer, and holds the virtual
 // handle.
 #pragma once
 
@@ -16,9 +16,10 @@
 
 namespace spoonbill {
 
-// Mouse navigation of a modelling program. Rhino: right orbits, Shift+right pans, Ctrl+right or the wheel
-// zooms. Blender: middle orbits, Shift+middle pans, Ctrl+middle or the wheel zooms. SculptGL: right, or left
-// beside the model, orbits, middle pans, the wheel zooms.
+// Mouse navigation as in a modelling program. The wheel zooms in all of them, except during a stroke.
+//   Rhino: the right button orbits, with Shift pans, with Ctrl zooms.
+//   Blender: the middle button orbits, with Shift pans, with Ctrl zooms.
+//   SculptGL: the right button orbits, as does the left one beside the model; the middle button pans.
 enum class NavigationPreset { rhino, blender, sculptgl };
 
 inline constexpr std::array<const char*, 3> navigation_names = {"rhino", "blender", "sculptgl"};
@@ -47,22 +48,22 @@ Camera move_camera_by(const Camera& camera, CameraMotion motion, const Eigen::Ve
 // Returns the camera after a zoom. One notch away from the user reduces the distance by a tenth.
 Camera zoom_camera(const Camera& camera, double notches);
 
-// Contact of a tool that moves along a ray with the body.
+// First contact between a body and a tool that moves along a ray.
 struct PickedPoint {
   Vector3 centre_m;  // centre of the tool at first contact
   Vector3 outward;   // unit vector from the body to the tool's centre
 };
 
-// Finds where a tool that moves along a ray first touches a body. It gives the mouse, which has no depth, a
-// point on the surface. One owner: the thread that draws.
+// Finds where a tool that moves along a ray first touches a body. The result is the depth that the mouse
+// lacks. One owner: the thread that draws.
 class SurfacePick {
  public:
   // Samples the current surfaces. Grids are reused until the knots of a surface change. Surfaces that cannot
   // be evaluated are not picked.
   void update(const Snapshot& snapshot);
 
-  // Returns the first point along the ray where a sphere of this radius meets the samples; nothing if it
-  // misses. Each sample is a small ball, so that the tool does not sink between samples.
+  // Returns the first contact of a sphere of this radius that moves along the ray; empty if it misses. Each
+  // sample of a surface counts as a small ball, so that the sphere does not sink between samples.
   std::optional<PickedPoint> first_touch(const Ray& ray, double radius_m) const;
 
  private:
@@ -94,17 +95,17 @@ struct MouseFrame {
   MouseStroke stroke;
 };
 
-// The mouse as the hand that holds the virtual handle. While hovering, the tool is just above the surface
-// under the pointer without touching it; beside the body it is on the plane of the last touch. A press pushes
-// it in by the strength; it then follows the pointer in the screen plane, which the wheel moves. One owner:
-// the thread that draws.
+// The mouse as the hand that holds the virtual handle. While hovering, the tool follows the pointer: 1 mm
+// above the surface, or, beside the body, in the screen plane of its last position at the surface. A press
+// pushes the tool in by the strength within a quarter of a second. A drag then moves it parallel to the
+// screen, and the wheel moves it in depth. One owner: the thread that draws.
 class MouseHand : public InputSource {
  public:
-  // Starts at rest at `start_m`, which also defines the first hover plane.
+  // Starts at rest at `start_m`, which also defines the first screen plane for hovering.
   explicit MouseHand(const Vector3& start_m)
       : depth_point_m_(start_m), hover_m_(start_m), target_m_(start_m) {}
 
-  // Sets the input of is_used() and next_target(). The pick must not be null.
+  // Sets the input that is_used() and next_target() use. The pick must not be null.
   void set_frame(const MouseFrame& frame) { frame_ = frame; }
 
   bool is_used() override { return frame_.is_stroking || !frame_.pointer.moved_px.isZero(); }

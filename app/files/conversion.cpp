@@ -397,7 +397,7 @@ Result<ConversionReport> export_bodies(std::vector<Body> bodies, const std::file
   ConversionRequest request;
   request.out = out;
   if (!is_exported_to(out)) {
-    return file_error(ErrorCode::unsupported, out, "does not have the ending of a format for exports");
+    return file_error(ErrorCode::unsupported, out, "has an ending that names no export format");
   }
   return write_and_report(model_from_bodies(std::move(bodies)), {request}, progress);
 }

@@ -23,7 +23,8 @@ namespace {
 
 // Radius of the tool as a fraction of the body's median extent, like a thumb on a piece of clay.
 constexpr double tool_fraction = 0.15;
-// Force on a ball pressed in by half its radius, about E r^2 / 2 (Hertz 1881).
+// Force that the hand should feel when it presses the ball in by half its radius. Without a force scale this
+// is about E r^2 / 2 (Hertz 1881).
 constexpr double target_force_n = 1.5;
 // Fraction of the body's extent that the plane fixes.
 constexpr double fixed_fraction = 0.1;
@@ -73,7 +74,7 @@ struct SizedStockShape {
   std::optional<double> shell_thickness_m = {};
 };
 
-// `m` are the sizes in metres, in the order of the kind's fields.
+// Returns the stock shape of these sizes, in metres and in the order of the kind's fields.
 SizedStockShape size_stock_shape(std::size_t kind, const std::vector<double>& m) {
   switch (kind) {
     case 0:

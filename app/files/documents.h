@@ -27,8 +27,8 @@ Result<Document> read_document_file(const std::filesystem::path& file);
 // Returns the names of the materials that come with the program, sorted.
 std::vector<std::string> shipped_material_names();
 
-// Reads a material that comes with the program, by its name or a part of it that no other has: "clay" for
-// modelling-clay. The error lists all names.
+// Reads a material that comes with the program, by its name or a part of it that no other name contains:
+// "clay" for modelling-clay. The error lists all names.
 Result<Material> shipped_material(const std::string& name);
 
 // Returns a document with one body around the surface. A plane fixes a tenth of the body: at its foot, or at
@@ -37,12 +37,13 @@ Result<Material> shipped_material(const std::string& name);
 Document starting_document(const std::string& name, Surface surface, const Material& material,
                            std::optional<double> shell_thickness_m = {});
 
-// A stock shape of the window's New shape prompt.
+// A size of a stock shape, such as its radius.
 struct StockShapeField {
   const char* name;
   double default_mm;
 };
 
+// A stock shape of the window's New shape prompt.
 struct StockShapeKind {
   const char* name;  // "Sphere"
   std::vector<StockShapeField> fields;

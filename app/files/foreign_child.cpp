@@ -86,12 +86,12 @@ Error ForeignChild::missing_answer() {
   if (end.signal != 0) {
     const std::string signal = "(signal " + std::to_string(end.signal) + "); ";
     return error(ErrorCode::process_failed,
-                 reads ? "the reader crashed on it " + signal + "the file is damaged, export it anew"
+                 reads ? "the reader crashed on it " + signal + "the file is damaged, export it again"
                        : "the writer crashed " + signal + task_.remedy);
   }
   return error(ErrorCode::process_failed,
                (reads ? "the reader" : "the writer") + (" ended without a " + task_.thing) + " (exit code " +
-                   std::to_string(end.exit_code) + "); " + (reads ? "export it anew" : task_.remedy));
+                   std::to_string(end.exit_code) + "); " + (reads ? "export it again" : task_.remedy));
 }
 
 Error ForeignChild::failure(const FrameHead& head) {

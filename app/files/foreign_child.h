@@ -55,7 +55,7 @@ class ForeignChild {
   // frame_bytes_limit.
   Result<std::string> content(const FrameHead& head);
 
-  // Reads the next bytes of that content.
+  // Reads the next bytes of the content of the frame whose head came last.
   Status read(void* to, std::size_t bytes);
   template <class T>
   Status read(std::vector<T>& items) {
@@ -78,7 +78,7 @@ class ForeignChild {
   double fraction_ = 0.0;  // last reported by the child
 };
 
-// Called in a child: ends it together with its parent, because a file may keep it busy for long.
+// Makes the calling child process end together with its parent, because a file may keep it busy for long.
 void end_with_parent();
 
 }  // namespace spoonbill

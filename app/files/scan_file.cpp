@@ -32,7 +32,7 @@ std::string upper_case_ending(FileFormat format) {
 ForeignTask mesh_task(const std::filesystem::path& file) {
   ForeignTask task{file, "mesh", reduce_mesh};
   task.refusal = [format = upper_case_ending(format_from_name(file))](const std::string& reason) {
-    return "cannot be read as " + format + " (" + ForeignTask::printable(reason) + "); export it anew";
+    return "cannot be read as " + format + " (" + ForeignTask::printable(reason) + "); export it again";
   };
   return task;
 }
@@ -82,7 +82,7 @@ Status drop_invalid_vertices(const std::filesystem::path& file, ScanFile& scan) 
     }
     if (!point.allFinite()) {
       return Error{ErrorCode::out_of_range, file.string() + ": vertex " + std::to_string(p + 1) +
-                                                " is at infinity; export the mesh anew"};
+                                                " is at infinity; export the mesh again"};
     }
     scan.scan.points_m[kept++] = point;
   }
@@ -107,7 +107,7 @@ Result<ScanFile> read_mesh_scan(const std::filesystem::path& file, MeshReading r
     for (const std::uint32_t corner : corners) {
       if (corner >= scan.points_read) {
         return Error{ErrorCode::inconsistent,
-                     file.string() + ": a triangle refers to a vertex that does not exist; export it anew"};
+                     file.string() + ": a triangle refers to a vertex that does not exist; export it again"};
       }
     }
   }

@@ -15,7 +15,7 @@
 
 namespace spoonbill {
 
-// A closed mesh of five million points has twice as many triangles.
+// Maximum number of triangles of a scan: twice point_limit, as in a closed mesh.
 inline constexpr std::size_t scan_triangle_limit = 10'000'000;
 
 struct MeshReading {

@@ -86,7 +86,8 @@ const ImDrawData& FramePainter::lay_out(const Snapshot& snapshot, const ViewSett
 
 namespace {
 
-// Number of painters. Constant, because a painter reuses what it drew before.
+// Number of painters. The same on every machine, because a painter retains the edges of a mesh from its first
+// frame.
 constexpr std::size_t painter_count = 3;
 
 // Jobs per painter: one in progress and one waiting.

@@ -19,12 +19,12 @@
 
 namespace spoonbill {
 
-// Returns the box around all control nets and meshes of a snapshot. Taken before the first touch, it places
-// the camera and the ground.
+// Returns the box around all control nets and meshes of a snapshot. The box of the state before the first
+// touch determines the camera and the ground.
 Box framed_box(const Snapshot& start);
 
-// Returns the settings that show the choice in a frame of this size, with room for the panel. The picture
-// does not depend on earlier frames.
+// Returns the settings that show the choice in a frame of this size, with room for the panel. The
+// tessellation does not depend on earlier frames.
 ViewSettings frame_view(const ViewChoice& choice, const Box& framed, int width_px, int height_px);
 
 // Paints snapshots into images. One owner; used on the thread that made it.
@@ -58,7 +58,7 @@ class FramePainter {
   StageFinder stages_;
 };
 
-// All that a frame shows, as values, so that the session can continue.
+// Everything that a frame shows, copied so that the session can continue.
 struct PaintingJob {
   std::uint64_t frame = 0;
   Snapshot snapshot;

@@ -8,7 +8,8 @@
 namespace spoonbill {
 namespace {
 
-// Exceptions of the standard library, mostly a lack of memory, end here: the thread must survive.
+// Carries out a command. Catches exceptions of the standard library, mostly a lack of memory, because the
+// thread must survive.
 Status run_job(LiveCommand& command, LentSession& lent) {
   try {
     if (auto* queued = std::get_if<QueuedRequest>(&command)) {
@@ -62,10 +63,10 @@ namespace {
 constexpr std::uint64_t ticks_between_frames = 4;
 constexpr int ticks_between_scenes = 400;
 
-// Number of ticks after the last touch in which motion counts as a change to save.
+// Number of ticks after the last touch during which motion counts as a change to save.
 constexpr int after_motion_ticks = 3000;
 
-// Requests that the main thread carries out itself; the haptic thread only records them.
+// Returns true for a request that the main thread carries out itself; the haptic thread only records it.
 bool is_main_thread_request(const Request& request) {
   return std::holds_alternative<ChangeView>(request) || std::holds_alternative<MarkFile>(request);
 }

@@ -35,8 +35,8 @@ namespace spoonbill {
 // A session on loan to the worker, with the results of the job.
 struct LentSession {
   std::unique_ptr<Session> session;
-  bool is_new_session = false;                 // replaced by a new session
-  bool is_other_document = false;              // the new session shows another document
+  bool is_new_session = false;                 // true if a new session has replaced it
+  bool is_other_document = false;              // true if the new session shows another document
   std::unique_ptr<RecordingWriter> recording;  // starts with the session's next tick
 };
 
@@ -90,8 +90,9 @@ class SessionWorker {
   explicit SessionWorker(Notices& notices);
   ~SessionWorker();  // finishes the current job first
 
-  // Called by the haptic thread; they do not wait or allocate. After lend(), no other lend() until
-  // reclaim() has returned true, once per loan. `job` is the command, `is_done` is true if it succeeded.
+  // Both are called by the haptic thread and neither wait nor allocate. reclaim() returns true once per loan,
+  // after the job has ended; lend() must not be called again before that. `job` is the command, `is_done` is
+  // true if it succeeded.
   void lend(LentSession lent, LiveCommand job);
   bool reclaim(LentSession& lent, LiveCommand& job, bool& is_done);
 
@@ -108,7 +109,7 @@ class SessionWorker {
   std::thread thread_;
 };
 
-// Queues and buffers between the main thread and the haptic thread. Made before the thread and outlives it.
+// Queues and buffers between the main thread and the haptic thread. Must exist as long as that thread.
 struct LiveExchange {
   static constexpr std::size_t command_capacity = 256;
   static constexpr std::size_t force_capacity = 4096;
@@ -133,13 +134,13 @@ class HapticSide {
   HapticSide(std::unique_ptr<Session> session, std::unique_ptr<Device> device, LiveExchange& exchange,
              Journal& journal, SessionWorker& worker);
 
-  // Called by the haptic thread, once per period. A failed assertion abandons the tick: the device gets no
-  // force and the next frame has tick_flag_failed. A recording ends, because its replay could not stop at the
-  // same point.
+  // Runs one tick. Called by the haptic thread, once per period. A failed assertion abandons the tick: the
+  // device gets no force and the next frame has tick_flag_failed. A recording ends, because its replay could
+  // not stop at the same point.
   void tick(const LoopTick& tick) noexcept;
 
-  // Called after the thread has stopped: leaves the device without force, ends a recording as
-  // stop_recording() does, and passes the last changes to the journal.
+  // Leaves the device without force, ends a recording as LiveSession::stop_recording() does, and passes the
+  // last changes to the journal. Must be called after the thread has stopped.
   void close();
 
   const Session* session() const { return lent_.session.get(); }

@@ -1,5 +1,5 @@
-// The journal of a live session: writes recordings, documents and autosaves on a thread that
-// may wait for the disk. With it, the notices to the user and the exporter to foreign formats.
+// The journal of a live session, which writes recordings, documents and autosaves on a thread that may wait
+// for the disk; the exporter to foreign formats; and the notices to the user.
 #pragma once
 
 #include <atomic>
@@ -71,8 +71,8 @@ class Exporter {
   std::thread thread_;
 };
 
-// Entries of a recording, in order. Commands that are not recorded are also passed, to be freed outside the
-// haptic thread.
+// Entries of a recording, in order. Commands are passed on even if they are not recorded, so that their
+// memory is freed outside the haptic thread.
 struct RecordingStart {
   std::unique_ptr<RecordingWriter> recording;
 };
@@ -115,7 +115,7 @@ struct SaveRequest {
   std::filesystem::path file;
 };
 
-// Writer of one live session. Its autosave is at most a second older than the simulation.
+// Writes the files of one live session. The autosave is at most a second older than the simulation.
 class Journal {
  public:
   // Number of entries that may wait for the disk before a recording is abandoned, about one per tick.
@@ -128,12 +128,14 @@ class Journal {
   // Writes all pending entries and ends the thread; an unfinished recording remains without its end. Called
   // by the thread that made the journal, after the last push().
   void stop();
-  // After stop(): true if the last recording was written to its end and published.
+  // Returns true if the last recording was written to its end and closed. Valid after stop().
   bool is_last_recording_complete() const { return is_last_complete_; }
 
-  // Called by the haptic thread: does not wait or allocate. Returns false when the queue is full.
+  // Queues an entry. Returns false if the queue is full. Called by the haptic thread; does not wait or
+  // allocate.
   bool push(JournalEntry&& entry) { return entries_.push(std::move(entry)); }
-  // The slot for the next scene, and its publication once it is complete. Called by the haptic thread.
+  // scene() returns the slot for the next scene, which publish_scene() passes on once it is complete. Both
+  // are called by the haptic thread.
   LiveScene& scene() { return scenes_.writing(); }
   void publish_scene() { scenes_.publish(); }
   // Returns true if a recording was abandoned since the last call.
@@ -141,7 +143,7 @@ class Journal {
 
   // Sets the view that is saved with documents. Called by the main thread, as are the functions below.
   void set_view(Json view);
-  // Sets the autosave; nothing disables it. The previous file is removed.
+  // Sets the autosave, or disables it if empty. The previous file is removed.
   void set_autosave(std::optional<Autosave> autosave);
   // Saves the scene that answers this request, or a newer one of the same document. A file with the extension
   // of an export format is exported, which does not count as saving.
@@ -173,7 +175,7 @@ class Journal {
   std::uint64_t autosave_count_ = 0;  // number of set_autosave() calls
   std::uint64_t saved_change_ = 0;    // last change that is already in the file
 
-  std::unique_ptr<RecordingWriter> recording_;  // used by the journal's thread only, as the members below
+  std::unique_ptr<RecordingWriter> recording_;  // used only by the journal's thread, like the members below
   std::uint64_t autosaved_change_ = 0;
   bool autosave_failed_ = false;
   bool is_last_complete_ = false;

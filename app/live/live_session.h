@@ -1,5 +1,5 @@
-// A live session: the tick in real time on its own thread, with a journal and a worker, as the main thread
-// sees it.
+// A live session as the main thread sees it: ticks in real time on a thread of their own, with a journal and
+// a worker.
 #pragma once
 
 #include <filesystem>

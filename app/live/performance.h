@@ -1,5 +1,5 @@
-// A script performed live: its hand and commands in real time on the threads of a live session, with or
-// without drawing. Imitates a user at the window, repeatable enough for tests and measurements.
+// Performs a script live: its hand and commands run in real time on the threads of a live session, with or
+// without drawing. This imitates a user at the window, repeatably enough for tests and measurements.
 #pragma once
 
 #include <filesystem>

@@ -147,8 +147,8 @@ bool draw_presets(const PanelModel& model, Material& material) {
   return changed;
 }
 
-// Effective modulus and its solver: explicit springs, which may carry only a part of the stiffness, or the
-// implicit method, which carries all of it.
+// Returns the effective modulus and its solver: explicit springs, which may carry only a part of the
+// stiffness, or the implicit method, which carries all of it.
 std::string effective_modulus_text(const PanelModel& model) {
   const std::string modulus = modulus_text(model.effective_youngs_modulus_pa);
   if (model.implicit_nodes > 0) return modulus + "  (implicit)";
@@ -171,7 +171,7 @@ void request_material(Material material, PanelAnswer& answer) {
   answer.requests.emplace_back(Command(SetMaterial{std::move(material)}));
 }
 
-// Mass and number of other material regions, in one row so that a small window shows both.
+// Returns the mass and the number of regions of other materials, in one row to suit a small window.
 std::string mass_text(const PanelModel& model) {
   std::string mass = grams_text(model.mass_kg);
   if (model.region_count == 0) return mass;
@@ -196,7 +196,7 @@ void draw_material(const PanelModel& model, const Theme& theme, PanelAnswer& ans
   if (damping_changed) answer.requests.emplace_back(Command(SetSculpting{sculpting}));
 }
 
-// Distance between the control net and its lattice.
+// Returns the distance by which a surface lags behind its lattice.
 std::string residual_text(double residual_m) {
   return rounded_text(1e3 * residual_m, 3, " mm error");
 }
@@ -243,7 +243,7 @@ void draw_view(const PanelModel& model, const Theme& theme, PanelAnswer& answer)
   pair("Fixed nodes", overlays.fixed_nodes, "Touched nodes", overlays.touched_nodes);
   pair("Lattice", overlays.lattice, "Control net", overlays.control_net);
   pair("See through", see_through, "Fixing planes", overlays.fixing_planes);
-  // Three short labels share this row, which saves one.
+  // Three short labels share this row, which saves a row.
   pair("Force", overlays.force, "Cells", overlays.cells);
   ImGui::SameLine();
   ImGui::SetCursorPosX(0.71F * theme.metrics.panel_width_px);

@@ -34,7 +34,7 @@ struct PanelModel {
   int fixed_node_count = 0;
   int node_count = 0;
 
-  double residual_m = 0.0;  // largest distance between a surface and its lattice
+  double residual_m = 0.0;  // largest distance by which a surface lags behind its lattice
   int residual_body = 0;    // index of that surface's body in the scene
 
   Overlays overlays;
@@ -58,13 +58,14 @@ PanelModel make_panel_model(const SessionFacts& facts, const Snapshot& snapshot,
 // where the frame is too small for a legible panel.
 Rectangle panel_rectangle(int width_px, int height_px, double scale, double top_px = 0.0);
 
-// Returns the same for a picture, which cannot be scrolled: empty where the panel does not fit as a whole.
+// Returns the area of the panel in a picture of this size. Empty where the panel does not fit as a whole,
+// because a picture cannot be scrolled.
 Rectangle picture_panel_rectangle(int width_px, int height_px);
 
 // Returns the interface's scale for a frame of this height: 1 at 720 pixels, in steps of a half.
 double panel_scale(int height_px);
 
-// The user's requests of one frame, and the reason why a typed value was rejected; empty if none was.
+// The user's requests of one frame, and the reason why a value was rejected; empty if none was.
 struct PanelAnswer {
   std::vector<Request> requests;
   std::string refusal;

@@ -159,7 +159,7 @@ std::string as_format(const std::string& text) {
 // opens.
 enum Entry : int { entry_closed, entry_opens, entry_open };
 
-// Draws the slider. Ctrl and a click open the text field and leave the value unchanged.
+// Draws the slider. Ctrl+click opens the text field and leaves the value unchanged.
 bool slide(const FieldForm& form, const std::string& name, double& value, const std::string& text,
            int& entry) {
   const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat |

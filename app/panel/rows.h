@@ -1,5 +1,6 @@
-// Rows of the panel: a label in the left column, a value or widget in the right one. Called between
-// InterfaceContext::begin_frame() and end_frame(). Widgets return true if the user changed the value.
+// Rows of the panel: a label in the left column, a value or widget in the right one. The functions must be
+// called between InterfaceContext::begin_frame() and end_frame(). Those of widgets return true if the user
+// changed the value.
 #pragma once
 
 #include <span>
@@ -37,25 +38,24 @@ class RowGroup {
   bool open_;
 };
 
-// Adds a field with a slider. `text` is the slider's text for the current value. Ctrl and a click turn it
-// into a text field, parsed by read_quantity(). On an error the value is unchanged and `refusal` is the
-// message.
+// Adds a slider with this text for the current value. Ctrl+click turns the slider into a text field, which
+// read_quantity() parses. On an error the value is unchanged and `refusal` is the message.
 bool quantity_row(const FieldForm& form, double& value, const std::string& text, std::string& refusal);
 bool slider_row(const FieldForm& form, int& value, const std::string& text);
 
-// Adds a few choices side by side.
+// Adds radio buttons side by side, for a few choices.
 bool choice_row(const char* label, int& chosen, std::span<const char* const> names);
 
-// Adds a list of many choices that opens.
+// Adds a drop-down list, for many choices.
 bool list_row(const char* label, int& chosen, const std::vector<const char*>& names);
 
-// Adds a text.
+// Adds a line of text.
 void fact_row(const char* label, const std::string& text);
 
-// Adds a text with a button. Returns true if the button was pressed.
+// Adds a line of text with a button. Returns true if the button was pressed.
 bool button_row(const char* label, const std::string& text, const char* button);
 
-// Adds a text with a checkbox. Returns true if it was toggled.
+// Adds a line of text with a checkbox. Returns true if it was toggled.
 bool switch_row(const char* label, const std::string& text, const char* name, bool& on);
 
 // Adds a bar that is filled by `fraction`, 0 to 1.

@@ -29,7 +29,8 @@ Json curvature_json(const CurvatureExtreme& place) {
           {"point_m", vector_json(place.position_m)}};
 }
 
-// Returns null if the surface has no curvature of that sign, except by rounding.
+// Returns the radius of curvature in metres; null if the surface has no curvature of that sign, except by
+// rounding.
 Json radius_json(double curvature_per_m) {
   return curvature_per_m > least_curvature_per_m ? Json(1.0 / curvature_per_m) : Json(nullptr);
 }
@@ -54,7 +55,7 @@ void add_thickness(FactSheet& facts, const SurfaceCheck& check, Json& json) {
     return;
   }
   const Thickness& thin = *check.thinnest;
-  // Two sides that meet are apart by rounding error alone.
+  // Sides that meet have a distance from rounding error alone.
   const double thickness_m = thin.thickness_m > 1e-12 ? thin.thickness_m : 0.0;
   facts.add("  Thinnest", short_length_text(thickness_m) + " at " + position_text(thin.position_m), "",
             nullptr);
@@ -146,7 +147,7 @@ std::vector<std::string> closing_problems(const Body& body, const SurfaceCheck& 
   return problems;
 }
 
-// Gaps up to this are rounding error between faces that meet.
+// Largest gap between faces that meet, from rounding error.
 constexpr double least_gap_m = 1e-8;
 
 std::string faces_text(std::size_t count) {
@@ -194,8 +195,8 @@ void add_self_meetings(const SolidCheck& check, Json& json) {
   json["self_intersections_complete"] = check.self_intersections_complete;
 }
 
-// The mesh may miss the surface by its chord error on both sides of a wall, so another wall may be thinner
-// than it seems by twice that.
+// Adds the smallest wall thickness of a solid and its uncertainty: twice the chord error, because the mesh
+// may deviate from the surface on both sides of a wall.
 void add_solid_thickness(FactSheet& facts, const CadSolid& solid, const SolidCheck& check, Json& json) {
   if (!check.thinnest) {
     facts.add("  Thinnest", no_walls, "", nullptr);

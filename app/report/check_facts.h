@@ -13,7 +13,7 @@
 
 namespace spoonbill {
 
-// A face of a closed solid need not be closed itself.
+// How a body is checked: by itself, or as a face of a closed solid, which need not be closed itself.
 enum class CheckedAs { body, face };
 
 // Adds the lines of a body and returns its JSON. `area` is the part of the surface that the trims keep.

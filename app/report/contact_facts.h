@@ -47,10 +47,10 @@ struct CollisionAnswer {
 
 CollisionAnswer make_answer(const PairResult& result, const std::vector<PairContact>& contacts);
 CollisionAnswer make_answer(const MeshPairResult& result);
-// A and B of the answer are two parts of the same surface.
+// Makes the answer for a surface with itself: A and B are two parts of that surface.
 CollisionAnswer make_answer(const SelfResult& result, const std::vector<PairContact>& contacts);
 
-// Adds the depth and the contacts of models that touch, or the distance and the nearest points of others.
+// Adds the depth and the contacts if the models touch; otherwise their distance and nearest points.
 void add_contact_facts(FactSheet& facts, const CollisionAnswer& answer);
 
 // Adds the unit, size, cleaning and parts of a mesh, in the JSON under `field`. `suffix` follows each label,

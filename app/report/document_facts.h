@@ -36,8 +36,8 @@ void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces
 // Adds the unit of a file; `declared` is false if the file does not name one.
 void add_unit_facts(FactSheet& facts, const std::string& unit, bool declared);
 
-// Adds for each body what its cells achieve of the material along x, y and z: Young's modulus as a fraction
-// of the material's, and Poisson's ratio.
+// Adds the elasticity that the cells of each body achieve along x, y and z: Young's modulus as a fraction of
+// the material's, and Poisson's ratio.
 void add_elasticity_facts(FactSheet& facts, const Simulation& simulation);
 
 // Adds the lattice, mass and solver of each body. `snapshot` is that of the initial state of a simulation of

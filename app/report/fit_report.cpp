@@ -98,9 +98,9 @@ std::string cloud_header(std::size_t points, double full_m) {
          "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
 }
 
-// Returns red, green and blue for a fraction from 0 to 1, clamped: a scale from dark blue over green to
-// yellow whose lightness rises evenly, so that it reads in grey and without telling red from green (viridis;
-// Smith and van der Walt 2015).
+// Returns red, green and blue for a fraction, clamped to 0 to 1. The scale runs from dark blue through green
+// to yellow with evenly rising lightness, so that it is legible in grey and without distinguishing red from
+// green (viridis; Smith and van der Walt 2015).
 std::array<std::uint8_t, 3> scale_colour(double fraction) {
   static constexpr std::array<std::array<double, 3>, 9> steps{{{68, 1, 84},
                                                                {71, 45, 123},
@@ -219,9 +219,10 @@ std::vector<std::string> find_fit_shortcomings(const ScanFit& fit, double tolera
   }
   for (const UnfittedIsland& island : fit.unfitted) notes.push_back(unfitted_island_text(island));
   if (fit.open_bridged > 0) {
-    notes.push_back(count_text(fit.open_bridged, "island was", "islands were") +
-                    " open elsewhere than at the gaps and got caps there, because a bridged body is closed; "
-                    "--islands all leaves sheets and tubes open");
+    notes.push_back(
+        count_text(fit.open_bridged, "island was", "islands were") +
+        " open at places other than the gaps; those were capped, because a bridged body is closed; "
+        "--islands all leaves sheets and tubes open");
   }
   return notes;
 }

@@ -1,5 +1,5 @@
-// Quantities, closings, regions and state hashes as the panel and reports show them: about three digits, in
-// the units that a designer uses.
+// Quantities, closings and regions as the panel and reports show them: about three digits, in the units that
+// a designer uses.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ std::string count_text(std::size_t count, const char* one, const char* many);
 // "at most 0.0123 mm", or "none" up to a picometre, which is rounding error.
 std::string deviation_text(double deviation_m);
 
-// Returns for each set TickFlag what it means and what to do about it.
+// Returns a text for each TickFlag that is set: what it means and what to do about it.
 std::vector<std::string> flag_texts(std::uint32_t flags);
 
 const char* name_of(Closedness closedness);        // "solid", "tube", "sheet"

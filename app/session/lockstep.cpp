@@ -81,7 +81,7 @@ Status Lockstep::apply_due_commands() {
   return {};
 }
 
-// The reset is recorded, so that the recording replays without the device.
+// Resets the proxy and records that, so that the recording replays without the device.
 Status Lockstep::reset_proxy() {
   const Command command = ResetProxy{};
   if (Status applied = session_->simulation.apply(command); !applied) return applied;

@@ -199,7 +199,7 @@ bool needs_rebuild(const Session& session, const Request& request) {
   const auto* command = std::get_if<Command>(&request);
   if (command == nullptr) return false;
   const auto* tool = std::get_if<SetTool>(command);
-  // Snapshots change their size with a soft tool.
+  // A solid tool may be soft, which changes the size of snapshots.
   const bool is_solid = session.simulation.scene().tool.kind == ToolKind::solid;
   return (tool != nullptr && (is_solid || tool->tool.kind == ToolKind::solid)) ||
          (changes_shape_meaning(*command) || std::holds_alternative<SetMaterial>(*command));

@@ -19,8 +19,8 @@
 
 namespace spoonbill {
 
-// Requests: everything that a user, a script or a recording can ask of a session between two ticks. Plain
-// values, each with one JSON form:
+// Requests: everything that a user, a script or a recording can request from a session between two ticks.
+// Plain values, each with one JSON form:
 //  the simulation's commands (engine/exchange/document.h)     the view's (app/session/view_choice.h)
 //  {"command": "undo"}    {"command": "redo"}    {"command": "cancel_stroke"}
 //  {"command": "save", "name": "bent"}           the document at that tick

@@ -26,8 +26,8 @@ class StrokeHistory {
   // Must be called after every tick. `touching`: the tool acted on the body in that tick.
   void after_tick(const Simulation& simulation, bool touching);
 
-  // Restore the shape before the last stroke, or after the next one. They do nothing where there is none. An
-  // error of the simulation leaves the history unchanged.
+  // undo() restores the shape before the last stroke, redo() the one after the next stroke. Each does nothing
+  // if there is no such stroke. An error of the simulation leaves the history unchanged.
   Status undo(Simulation& simulation);
   Status redo(Simulation& simulation);
 

@@ -5,7 +5,7 @@
 namespace spoonbill {
 namespace {
 
-// Replaces the field of an error by the field's name in files.
+// Sets the field of an error to the name in files.
 Status with_field(Status status, const FieldForm& form) {
   if (status.ok()) return status;
   return Error{status.error().code, status.error().message, form.name};
@@ -19,7 +19,8 @@ std::string name_in_si(const FieldForm& form) {
   return in_millimetres ? std::string(name.substr(0, name.size() - 2)) + "m" : std::string(name);
 }
 
-// Names are built only for refused values: a tool is set between two ticks, where nothing may allocate.
+// The name is built only for a refused number: a tool, whose fields are numbers, is set between two ticks,
+// where nothing may allocate.
 Status check_value(const std::string& about, const FieldForm& form, double value, Range<double> range) {
   if (range.contains(value)) return {};
   return with_field(check_range(about + name_in_si(form), value, range), form);

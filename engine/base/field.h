@@ -8,8 +8,8 @@
 //       direction_field("normal", &FixingPlane::normal, "Points away from the fixed side"),
 //   });
 //
-// Values are in SI units; files store lengths in millimetres, and the field's name says so. Fields appear in
-// files in the order of the table. Only error messages allocate.
+// Values are in SI units; files store lengths in millimetres, and the field's name says so. Fields appear
+// in files in the order of the table. Checks of numbers allocate only for an error message.
 #pragma once
 
 #include <array>
@@ -43,14 +43,16 @@ enum class FieldUnit {
 // Meaning of a vector: three lengths; a direction, which files may give with any length; or a quantity.
 enum class VectorSense { position, direction, quantity };
 
-// Slider of a number in the panel; its range is within the field's range and fine enough to set by hand.
+// Slider of a number in the panel. Its range is within the field's range and narrow enough to set a value
+// by hand.
 struct FieldSlider {
   const char* label = nullptr;  // null: the panel has no slider for the field
   Range<double> range{0.0, 0.0};
   bool logarithmic = false;
 };
 
-// An alternative name that files may use instead of the field's, for a multiple of its value.
+// An alternative name that files may use instead of the field's. The number under it is `factor` times the
+// field's value.
 struct FieldAlias {
   const char* name = nullptr;
   double factor = 1.0;
@@ -123,7 +125,7 @@ class FieldMember {
     return visitor(choice_);
   }
 
-  // The pointer to a member of this type; null where the field has another type.
+  // Returns the pointer to the member if it has this type, otherwise null.
   template <class Value>
   constexpr Value Object::*pointer_to() const {
     Value Object::*found = nullptr;
@@ -199,7 +201,7 @@ struct NoFields {};
 template <class Object>
 inline constexpr NoFields fields_of;
 
-// Name in files of one of several structs that are alternatives of each other.
+// Name in files of a struct that is an alternative of a variant.
 template <class Object>
 inline constexpr const char* kind_name = nullptr;
 
@@ -304,11 +306,11 @@ consteval const Field<Object>& field_of(Value Object::*member) {
   throw "the table of the struct has no such field";
 }
 
-// Returns the field's name in the program's messages, with a length in metres: "radius_m" for "radius_mm".
+// Returns the name under which messages report the field in SI units, such as "radius_m" for "radius_mm".
 std::string name_in_si(const FieldForm& form);
 
-// Returns an error that names the field, the value and the range; `about` is put before the name: "tool: ".
-// The error's field is the name in files.
+// Returns an error unless the value is within its range. The message has `about`, such as "tool: ", before
+// the field's name, then the value and the range. The error's field is the name in files.
 Status check_value(const std::string& about, const FieldForm& form, double value, Range<double> range);
 Status check_value(const std::string& about, const FieldForm& form, int value, Range<double> range);
 Status check_value(const std::string& about, const FieldForm& form, const Vector3& value);

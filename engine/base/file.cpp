@@ -55,7 +55,7 @@ Result<OpenFile> open_regular(const std::filesystem::path& file) {
   if (::fstat(opened.descriptor(), &status) != 0)
     return system_error(ErrorCode::unreadable, file, "cannot be examined");
   if (S_ISDIR(status.st_mode))
-    return Error{ErrorCode::unreadable, file.string() + ": is a folder, name a file in it"};
+    return Error{ErrorCode::unreadable, file.string() + ": is a folder; name a file in it"};
   if (!S_ISREG(status.st_mode))
     return Error{ErrorCode::unreadable, file.string() + ": is not a regular file"};
   opened.set_bytes(static_cast<std::size_t>(status.st_size));
@@ -170,7 +170,7 @@ Result<OutputFile> OutputFile::create(const std::filesystem::path& file, Mode mo
   OutputFile out;
   out.mode_ = mode;
   out.file_ = out.target_ = file;
-  // A link that cannot be resolved is replaced itself.
+  // The link itself is replaced if it cannot be resolved.
   if (replaces) out.target_ = std::filesystem::canonical(file, ignored);
   if (ignored) out.target_ = file;
   out.written_ = out.target_;
@@ -179,7 +179,7 @@ Result<OutputFile> OutputFile::create(const std::filesystem::path& file, Mode mo
     if (replaces) out.written_ += ".part";
   } else if (replaces || !std::filesystem::exists(status)) {
     out.written_ += ".new-" + std::to_string(::getpid());
-    ::unlink(out.written_.c_str());  // left by a killed process of the same number
+    ::unlink(out.written_.c_str());  // left by a killed process with the same process ID
     flags |= O_EXCL;                 // never follows a link of that name
   }
   out.descriptor_ = ::open(out.written_.c_str(), flags, 0666);

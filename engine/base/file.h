@@ -1,5 +1,5 @@
-// Files: reads whole files or parts of them, and writes files whole or not at all. Errors name the file and
-// the reason that the system gives.
+// Reading of files, whole or in part, and writing of files that appear whole or not at all. Errors name
+// the file and the system's reason.
 #pragma once
 
 #include <cstddef>
@@ -30,16 +30,17 @@ Result<std::ifstream> open_file(const std::filesystem::path& file);
 std::string read_first_bytes(const std::filesystem::path& file, std::size_t count);
 std::string read_last_bytes(const std::filesystem::path& file, std::size_t count);
 
-// Says if commit() waits until the content is on the disk. A sequence of files is committed with `later` and
-// followed by one call of flush_to_disk().
+// Says if commit() waits until the content is on the disk. A sequence of files is committed with `later`,
+// then flushed by one call of flush_to_disk().
 enum class Durability { now, later };
 
 // A file being written. One owner, one thread; never the haptic thread, because writing may block.
 class OutputFile {
  public:
   // Creates a file that appears under its name at commit(), whole; a crash at any moment leaves either the
-  // old content or the new. A replaced file passes on its permissions, and a symbolic link is followed. A
-  // device or pipe is written directly. Writes are buffered, so errors may be reported as late as commit().
+  // old content or the new. The new file has the permissions of the file that it replaces. A symbolic link
+  // is followed; a device or pipe is written directly. Writes are buffered, so errors may be reported as
+  // late as commit().
   static Result<OutputFile> create(const std::filesystem::path& file);
 
   // Creates a file that others may read while it grows: everything that write() has accepted survives a crash
@@ -85,13 +86,14 @@ Status write_file(const std::filesystem::path& file, std::string_view bytes,
                   Durability durability = Durability::now);
 
 // Same as write_file(), but keeps the replaced content as FILE.bak; for files that a user edits. Refuses
-// anything but a regular file.
+// to replace anything but a regular file.
 Status replace_file(const std::filesystem::path& file, std::string_view bytes);
 
-// Flushes a file that another program has finished and renames it to `file`. Both must be in one folder.
+// Flushes a file that another program has finished and renames it to `file`. Both must be in the same
+// folder.
 Status publish_file(const std::filesystem::path& finished, const std::filesystem::path& file);
 
-// Waits until everything written to the file system of that folder is on the disk.
+// Waits until everything written to the file system of the folder is on the disk.
 Status flush_to_disk(const std::filesystem::path& folder);
 
 }  // namespace spoonbill

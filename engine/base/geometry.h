@@ -1,5 +1,5 @@
-// Elementary geometric values: ranges of numbers, vectors, poses and axis-aligned boxes, with the checks of
-// values from outside.
+// Elementary geometric values: ranges of numbers, vectors, poses and axis-aligned boxes, and checks of
+// values that come from outside the program.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,8 +24,8 @@ struct Range {
   constexpr bool contains(Number value) const { return value >= low && value <= high; }
 };
 
-// Returns an out_of_range error such as "field is 12, must be 1 to 9". NaN and infinities are outside every
-// range.
+// Returns an out_of_range error such as "field is 12, must be 1 to 9" unless the range contains the value.
+// NaN is outside every range.
 Status check_range(std::string_view field, double value, Range<double> range);
 Status check_range(std::string_view field, int value, Range<int> range);
 

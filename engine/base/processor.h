@@ -19,8 +19,9 @@ std::vector<InstructionSet> available_instruction_sets();
 // Returns "baseline", "avx2" or "avx512".
 std::string_view name_of(InstructionSet set);
 
-// Flushes denormal numbers to zero on this thread during its lifetime, then restores the previous mode.
-// Denormals are about a hundred times slower than other numbers, and all threads must treat them alike.
+// Flushes denormal numbers to zero on this thread while the object exists; its destructor restores the
+// previous mode. Denormals are about a hundred times slower than other numbers, and all threads must treat
+// them alike.
 class DenormalsFlushed {
  public:
   DenormalsFlushed();

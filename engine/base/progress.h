@@ -1,4 +1,4 @@
-// Progress of work outside the tick: reports the fraction done and learns of cancellation.
+// Progress reports and cancellation of work outside the tick.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@ namespace spoonbill {
 //
 //   for (int k = 0; k < count; ++k) {
 //     if (!progress.report(static_cast<double>(k) / count)) return Progress::stopped();
-//     prepare(k, progress.part(k / count, (k + 0.5) / count));
+//     prepare(k, progress.part(k / double(count), (k + 0.5) / count));
 //   }
 class Progress {
  public:
@@ -25,8 +25,8 @@ class Progress {
   Progress() = default;  // no callback
   explicit Progress(Report report) : report_(std::move(report)) {}
 
-  // Reports a fraction of this part and returns whether the work may continue. If not, the work ends early,
-  // with stopped() as its error if it has no result.
+  // Reports a fraction of this part and returns whether the work may continue. If not, the caller must end
+  // early and return stopped() if it has no result.
   bool report(double fraction) const { return !report_ || report_(start_ + (end_ - start_) * fraction); }
 
   // Returns the progress of a part of the work, whose fractions 0 and 1 are `from` and `to` of this one.
@@ -49,8 +49,8 @@ class Progress {
   double start_ = 0.0, end_ = 1.0;
 };
 
-// Estimate of the fraction done for a loop whose number of rounds is unknown: each round completes a fixed
-// fraction of the remainder.
+// An estimate of the fraction done by a loop whose number of rounds is unknown. Each round counts as a
+// fixed fraction of the remainder.
 class RoundsDone {
  public:
   // `part_of_rest` is the fraction of the remainder that each round completes, strictly between 0 and 1.

@@ -12,7 +12,7 @@
 
 namespace spoonbill {
 
-// Kind of a fault, for callers and tests that react to it. The message is for people.
+// Kind of an error, for callers and tests that react to it; the message is for people.
 enum class ErrorCode {
   missing,            // a required file, field, option or part is absent
   unknown,            // a name, field, kind or option that does not exist
@@ -30,7 +30,7 @@ enum class ErrorCode {
   unsupported,        // valid input of a kind that the program does not handle
   unreadable,         // a file or device that cannot be opened or read
   unwritable,         // a file or device that cannot be written
-  in_use,             // a file or device that another program holds
+  in_use,             // a file or device that another program is using
   cancelled,          // stopped by the user
   unavailable,        // a library, driver, display or permission that this machine lacks
   process_failed,     // a child process that crashed, hung or exceeded its limits
@@ -38,8 +38,8 @@ enum class ErrorCode {
 };
 
 struct Error {
-  // `field` is the JSON field, option or parameter at fault, such as "radius_mm"; empty where no single one
-  // is.
+  // `field` is the JSON field, option or parameter at fault, such as "radius_mm"; empty if there is no
+  // single one.
   Error(ErrorCode error_code, std::string error_message, std::string field_name = {})
       : code(error_code), message(std::move(error_message)), field(std::move(field_name)) {}
 
@@ -51,8 +51,8 @@ struct Error {
   std::string field;
 };
 
-template <class T>
 // A value, or the error that prevented it.
+template <class T>
 class [[nodiscard]] Result {
  public:
   Result(T value) : content_(std::move(value)) {}

@@ -1,4 +1,4 @@
-// Numbers, lengths, points and quotations as messages and reports show them.
+// Text of numbers, lengths, points and quotations in messages and reports.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace spoonbill {
 
-// Returns the shortest decimals that read back as the same number.
+// Returns the shortest decimal text that parses to the same number.
 std::string number_text(double number);
 
 // Returns metres as millimetres with at most `digits` significant digits, such as "2.5 mm"; zero has no sign.

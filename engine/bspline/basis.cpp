@@ -156,7 +156,7 @@ DerivativeBound::DerivativeBound(const KnotVector& knots) {
   };
   for (int basis = 0; basis < last_span; ++basis) {
     const double width = extended[basis + degree + 1] - extended[basis + 1];
-    // A derivative basis function of width zero has no part in the domain.
+    // A basis function of the derivative contributes nothing if its support has no width.
     if (width == 0) continue;
     const double length = knots.domain_end() - knots.domain_start();
     steps_.push_back({control(basis), control(basis + 1), degree * length / width});

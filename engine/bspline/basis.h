@@ -48,9 +48,9 @@ struct ControlLines {
   int across;
 };
 
-// Bound of a surface's first derivative in one direction: the longest control point of the derivative, degree
-// (P[i+1] - P[i]) / (knot[i+degree+1] - knot[i+1]) (Piegl and Tiller 1997, section 3.3). Immutable once made;
-// any thread may read it.
+// Bound of a surface's first derivative in one direction: the length of the longest of the derivative's
+// control vectors, degree (P[i+1] - P[i]) / (knot[i+degree+1] - knot[i+1]) (Piegl and Tiller 1997, section
+// 3.3). Immutable once made; any thread may read it.
 class DerivativeBound {
  public:
   explicit DerivativeBound(const KnotVector& knots);

@@ -188,7 +188,8 @@ Status check_open(const KnotVector& knots, const std::vector<double>& samples) {
 }
 
 // Matches control points to samples in cyclic order, starting with control point 0 and sample `offset`;
-// samples are numbered through the periods. Returns how many were matched.
+// the numbers of samples continue from one period to the next. Returns the number of control points
+// matched.
 int count_matched(const KnotVector& knots, const std::vector<double>& samples, int offset) {
   const double period = knots.domain_end() - knots.domain_start();
   const int count = static_cast<int>(samples.size());
@@ -230,7 +231,7 @@ Status check_schoenberg_whitney(const KnotVector& knots, std::span<const double>
 Result<Eigen::MatrixXd> pseudo_inverse(const KnotVector& knots, std::span<const double> parameters) {
   const int controls = knots.control_point_count();
   const std::string samples = std::to_string(parameters.size()) + " samples";
-  const std::string remedy = "; take at least " + std::to_string(2 * controls) + ", evenly spread";
+  const std::string remedy = "; use at least " + std::to_string(2 * controls) + ", evenly spread";
   if (parameters.size() < static_cast<std::size_t>(controls)) {
     return Error{ErrorCode::too_few,
                  samples + " are too few for " + std::to_string(controls) + " control points" + remedy};

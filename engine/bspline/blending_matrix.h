@@ -31,8 +31,8 @@ struct BlendingMatrix {
   Eigen::MatrixXd dense() const;
 };
 
-// Returns the derivatives of order 0 to 2 of the basis functions at the parameters. A parameter outside the
-// domain is wrapped (periodic) or clamped (open).
+// Returns the blending matrix of the basis functions' derivatives of the given order, 0 to 2, at the
+// parameters. A parameter outside the domain is wrapped (periodic) or clamped (open).
 BlendingMatrix blending_matrix(const KnotVector& knots, std::span<const double> parameters,
                                int derivative_order);
 
@@ -43,8 +43,8 @@ Status check_schoenberg_whitney(const KnotVector& knots, std::span<const double>
 
 // Returns the pseudo-inverse A^+ (columns x rows) by QR; never by inverting A^T A, which squares the
 // condition number. Refuses samples that do not determine the control points: fewer samples than control
-// points, a gap, or a singular periodic sampling. The latter is an even count with as many samples as control
-// points, of even degree sampled at knots or of odd degree sampled at mid-spans.
+// points, a gap, or a singular periodic sampling. The last occurs with as many samples as control points
+// if their number is even and an even degree is sampled at knots, or an odd degree at mid-spans.
 Result<Eigen::MatrixXd> pseudo_inverse(const KnotVector& knots, std::span<const double> parameters);
 
 // Constraints of a fit in one direction.

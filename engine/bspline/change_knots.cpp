@@ -75,8 +75,7 @@ Status check_contains_all(const KnotVector& from, const KnotVector& to) {
                           ? end - start <= length + nearness
                           : start >= from.domain_start() - nearness && end <= from.domain_end() + nearness;
   if (to.is_periodic() ? !(from.is_periodic() && same_domain) : !within) {
-    return Error{ErrorCode::mismatch,
-                 "the knots to change to have another domain; take a part of the surface's own"};
+    return Error{ErrorCode::mismatch, "the new knots have another domain; use a part of the surface's own"};
   }
   const std::vector<KnotMultiplicity> there = knot_multiplicities(to);
   for (const auto& [knot, multiplicity] : knot_multiplicities(from)) {
@@ -170,7 +169,7 @@ Result<Fitted> fitted(const Surface& surface, Direction direction, const KnotVec
   const double nearness = same_knot_fraction * (from.domain_end() - from.domain_start());
   if (std::abs(knots.domain_start() - from.domain_start()) > nearness ||
       std::abs(knots.domain_end() - from.domain_end()) > nearness) {
-    return Error{ErrorCode::mismatch, "the knots to fit have another domain"}.in(direction_name(direction));
+    return Error{ErrorCode::mismatch, "the new knots have another domain"}.in(direction_name(direction));
   }
   std::vector<double> parameters = distinguishing_parameters(from, knots);
   if (knots.is_periodic()) parameters.pop_back();
@@ -206,7 +205,8 @@ Result<KnotVector> without_knots(const KnotVector& knots, std::span<const SpareK
                              : KnotVector::open(knots.degree(), std::move(fewer));
 }
 
-// The pieces around an inner knot as far as its removal has an effect, and the knot's parameter in them.
+// The pieces around an inner knot, as far as its removal has an effect, and the knot's parameter in this
+// part.
 struct Neighbourhood {
   Surface surface;
   double knot;
@@ -235,9 +235,9 @@ Result<Neighbourhood> around_knot(const Surface& surface, Direction direction, i
   return Neighbourhood{std::move(near).value(), end_at(breakpoint)};
 }
 
-// Returns the cost of removing each copy of an inner knot together with the copies before it, cheapest first,
-// as far as the cost is within the tolerance. Each is computed in the knot's neighbourhood alone, which is
-// much faster than in the whole direction.
+// Returns the cost of removing each copy of an inner knot together with the copies before it, cheapest
+// first, as far as the cost is within the tolerance. Each cost is computed in the knot's neighbourhood
+// alone, which is much faster than in the whole direction.
 Result<std::vector<SpareKnot>> spare_knots(const Surface& surface, Direction direction, double tolerance_m,
                                            const Progress& progress) {
   std::vector<SpareKnot> spare;

@@ -1,5 +1,5 @@
-// Surfaces over other knot vectors: exactly over finer ones (more knots, a higher degree, a part of the
-// domain), or approximately over coarser ones, with a bound of the deviation. Pure functions outside the
+// Conversion of surfaces to other knot vectors: exact to finer ones (more knots, a higher degree, a part
+// of the domain), approximate to coarser ones, with a bound of the deviation. Pure functions outside the
 // tick; any thread may call them.
 #pragma once
 
@@ -12,11 +12,11 @@
 
 namespace spoonbill {
 
-// Converts a surface exactly (but for rounding) to knots that contain every knot of the surface within their
-// domain, with multiplicities raised by the difference of the degrees; elevate_degree(), knot_union() and
-// clamped_part() make such knots. An open target may be a part of a periodic direction. Each control point is
-// the blossom of a polynomial piece in its support (Ramshaw 1989). Refuses knots that lack one of the
-// surface's, and names it.
+// Converts a surface exactly, except for rounding, to finer knots. They must contain each of the surface's
+// knots in the domain of `finer`, with its multiplicity raised by the difference of the degrees;
+// elevate_degree(), knot_union() and clamped_part() make such knots. An open target may be a part of a
+// periodic direction. Each control point is the blossom of a polynomial piece in its support (Ramshaw
+// 1989). Refuses knots that lack one of the surface's, and names the missing knot.
 Result<Surface> convert_to_finer_knots(const Surface& surface, Direction direction, const KnotVector& finer);
 
 // An approximation. `deviation_m` bounds the distance between both surfaces: it is the largest distance of
@@ -27,8 +27,8 @@ struct Approximation {
 };
 
 // Fits a surface over any knots of the same domain by least squares; clamped ends are interpolated. A
-// periodic surface may become an open one, and an open one whose edges meet a periodic one. Refuses another
-// domain.
+// periodic surface may become open; an open surface whose edges meet may become periodic. Refuses knots
+// over another domain.
 Result<Approximation> fit_coarser_knots(const Surface& surface, Direction direction,
                                         const KnotVector& coarser);
 
@@ -38,8 +38,8 @@ Result<Approximation> fit_coarser_knots(const Surface& surface, Direction direct
 Result<Approximation> approximated(const Surface& surface, Direction direction, const KnotVector& first,
                                    double tolerance_m, int largest_count, const Progress& progress = {});
 
-// Removes knots, cheapest first, as long as the deviation stays within the tolerance. Ends and degree stay.
-// `progress` can cancel it.
+// Removes knots, cheapest first, as long as the deviation stays within the tolerance. Keeps the degree and
+// the knots at the ends. `progress` can cancel it.
 Result<Approximation> remove_spare_knots(const Surface& surface, Direction direction, double tolerance_m,
                                          const Progress& progress = {});
 
@@ -51,7 +51,7 @@ Surface combine_along(const Surface& surface, Direction direction, const Eigen::
 
 // Removes `copies` copies of the knot at the parameter by least squares; exact where the surface is smooth
 // enough there. Refuses a parameter without a knot, more copies than there are, the ends of an open
-// direction, and all copies at the seam of a closed one.
+// direction, and all copies at the seam of a periodic one.
 Result<Approximation> remove_knot(const Surface& surface, Direction direction, double parameter, int copies);
 
 }  // namespace spoonbill

@@ -168,8 +168,8 @@ void GridEvaluator<Real>::set_up_rows(const GridDirection& u) {
   u_magnitude_ = row_magnitudes(u.first_derivatives, length);
 }
 
-// Stores A_v as dense blocks, so that loads are contiguous however few samples a span has. The last column
-// fills up its block, so that padding is as regular as the row.
+// Stores A_v as dense blocks, so that loads are contiguous however few samples a span has. Copies of the
+// last column pad its block, so that the padding is regular wherever the row is.
 template <class Real>
 void GridEvaluator<Real>::set_up_columns(const GridDirection& v) {
   const double length = v.knots.domain_length();
@@ -253,8 +253,8 @@ auto GridEvaluator<Real>::collapsed_edges(const NetView<Real>& net, Real reach) 
   return edges;
 }
 
-// Returns a bound of |du x dv|^2 above which the kernels' test passes for every sample. The test compares |du
-// x dv|^2 with noise(du)^2 |dv|^2 + noise(dv)^2 |du|^2; the least normal number exceeds anything that
+// Returns a value of |du x dv|^2 above which the kernels' test passes for every sample. The test compares
+// |du x dv|^2 with noise(du)^2 |dv|^2 + noise(dv)^2 |du|^2; the least normal number exceeds anything that
 // underflow may round up.
 template <class Real>
 Real GridEvaluator<Real>::regularity_bound(const NetView<Real>& net, double largest_coordinate) const {
@@ -280,8 +280,8 @@ void GridEvaluator<Real>::blend_control_rows(const NetView<Real>& net) {
   }
 }
 
-// Fills the two limit columns, of which only the normals are used. At a collapsed column du vanishes, and a
-// step h inside it is h duv, so that derivative replaces the values.
+// Fills the two limit columns, of which only the normals are used. At a collapsed column du vanishes; at a
+// distance h inside, it is about h duv. The derivatives by v therefore replace the values.
 template <class Real>
 void GridEvaluator<Real>::set_up_limit_columns(const CollapsedEdges& edges) {
   const int columns = grid_->columns();
@@ -351,7 +351,7 @@ int GridEvaluator<Real>::compute_row(const EvaluateRow<Real>& task, int row, con
   return degenerate;
 }
 
-// Computes the normals of a collapsed row, where dv vanishes and a step h inside it is h duv.
+// Computes the normals of a collapsed row, where dv vanishes; at a distance h inside, it is about h duv.
 template <class Real>
 void GridEvaluator<Real>::compute_limit_row(EvaluateRow<Real> task, int row, int inward,
                                             GridSamples<Real>& samples) {

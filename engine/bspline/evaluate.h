@@ -30,7 +30,7 @@ struct GridSamples {
 //
 // A clamped edge whose control points coincide to a millionth of the net's extent counts as collapsed: its
 // samples get the limit of the normal from inside. Other samples where du x dv is rounding noise get
-// unit_normal(), up to a number that bounds the time of a pass, and zero beyond it.
+// unit_normal(); their number is limited to bound the time of a pass, and the rest get zero.
 template <class Real>
 class GridEvaluator {
  public:
@@ -44,8 +44,7 @@ class GridEvaluator {
   void points(const Real* x, const Real* y, const Real* z, GridSamples<Real>& samples);
 
  private:
-  // Inward direction (+1 or -1) of each grid line on a clamped edge whose control points coincide; 0 for
-  // other edges.
+  // Inward direction, +1 or -1, of each outermost grid line that is on a collapsed edge; 0 for the others.
   struct CollapsedEdges {
     int first_row = 0, last_row = 0, first_column = 0, last_column = 0;
   };

@@ -30,8 +30,8 @@ struct EvaluateBand {
   int blocks;
 };
 
-// One row of A_u and the blended control rows (those of P A_v^T) that it combines. Row k of the band is
-// blended row first + k, wrapped around at `control_rows`.
+// One row of A_u and the blended control rows (those of P A_v^T) that it combines. Entry k of the row
+// applies to blended row first + k, wrapped around at `control_rows`.
 template <class Real>
 struct EvaluateRow {
   const Real* blended;
@@ -57,8 +57,8 @@ struct EvaluateOutput {
   Real* nz;
 };
 
-template <class Real>
 // Function table of one instruction set and one precision.
+template <class Real>
 struct EvaluateKernels {
   // Blends one control row along v into band.blocks blocks.
   void (*blend)(const EvaluateBand<Real>& band, const Real* x, const Real* y, const Real* z, Real* blended);

@@ -45,7 +45,8 @@ GridDirection make_direction(const KnotVector& knots, std::vector<double> parame
   return {knots, std::move(parameters), std::move(values), std::move(first), std::move(second)};
 }
 
-// Interpolates between two ends exactly; start + length may differ from the end by rounding.
+// Interpolates between two ends. Returns exactly `end` for the last value, which the formula may miss by
+// rounding.
 double between(double start, double end, int i, int count) {
   return i >= count ? end : start + (end - start) * i / count;
 }

@@ -37,8 +37,8 @@ struct Grid {
   int columns() const { return static_cast<int>(v.parameters.size()); }
 };
 
-// Makes a grid from strictly increasing parameters in the domain. Refuses fewer than two, non-increasing ones
-// and non-finite ones.
+// Makes a grid from strictly increasing parameters in the domain. Refuses fewer than two parameters, and
+// parameters that do not increase or are not finite.
 Result<Grid> make_grid(const KnotVector& u, const KnotVector& v, std::vector<double> u_parameters,
                        std::vector<double> v_parameters);
 
@@ -61,8 +61,9 @@ struct NestedParameters {
 };
 NestedParameters nested_parameters(const KnotVector& knots, int pieces_per_span, int levels);
 
-// Points at the parameters u[i], v[j], with the index i * v.size() + j. The parameters increase strictly
-// within the domain; at least twice as many as control points keep the fit well conditioned.
+// Points at the parameters u[i], v[j], with the index i * v.size() + j. The parameters must increase
+// strictly within the domain. The fit is well conditioned if there are at least twice as many as control
+// points in each direction.
 struct PointGrid {
   std::vector<double> u, v;
   std::vector<Vector3> points_m;

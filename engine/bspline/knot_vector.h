@@ -82,8 +82,8 @@ class KnotVector {
   std::vector<double> extended_;
 };
 
-// Fraction of the domain within which two knots count as one; documents contain no distinct knots nearer than
-// this.
+// Fraction of the domain within which two knots count as one; documents contain no distinct knots that are
+// closer.
 inline constexpr double same_knot_fraction = 1e-9;
 
 // A distinct knot and its multiplicity.
@@ -91,12 +91,12 @@ struct KnotMultiplicity {
   double knot;
   int multiplicity;
 };
-// Returns the distinct knots in the domain, ends included and open ends counted as clamped; of a period, the
-// start alone stands for both ends.
+// Returns the distinct knots in the domain except its end. The start of an open direction counts as
+// clamped; the start of a period has the multiplicity of the seam.
 std::vector<KnotMultiplicity> knot_multiplicities(const KnotVector& knots);
 
-// Returns the positions of a periodic knot in the period that begins at `start`, both ends included; returns
-// an open knot itself.
+// Returns the two positions of a periodic knot from `start` on, one period apart; returns the knot itself
+// in an open direction.
 std::vector<double> knot_positions_from(const KnotVector& knots, double knot, double start);
 
 // Returns a knot vector of a higher or equal degree that represents every spline over `knots`: each

@@ -10,9 +10,9 @@
 
 namespace spoonbill {
 
-// The polynomials of a knot vector, which must outlive this. Allocates only when constructed; immutable
-// afterwards, so that any thread may read it. Values agree with basis_functions() to rounding, not to the
-// bit.
+// The polynomials of a knot vector, which must outlive the object. Allocates only when constructed;
+// immutable afterwards, so that any thread may read it. Values agree with basis_functions() to rounding,
+// not to the bit.
 class PieceBasis {
  public:
   explicit PieceBasis(const KnotVector& knots);

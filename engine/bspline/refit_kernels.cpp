@@ -4,7 +4,8 @@ namespace spoonbill::SPOONBILL_KERNELS {
 
 namespace {
 
-// Number of factors added to a sum while it stays in a register, for all rows while they stay in the cache.
+// Number of products added to a sum while the sum is in a register. The same rows of b serve all rows of a
+// while they are in the cache.
 constexpr int unrolled = 8;
 
 using Lanes = float __attribute__((vector_size(4 * product_lanes)));

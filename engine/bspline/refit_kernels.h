@@ -4,7 +4,7 @@
 
 namespace spoonbill {
 
-inline constexpr int product_lanes = 16;  // rows of b and out are multiples of this length
+inline constexpr int product_lanes = 16;  // the row lengths of b and out are multiples of this
 
 // Computes out (rows x columns) = a (rows x depth) b (depth x columns). All are row-major without gaps; b and
 // out are at addresses that are multiples of 64 bytes, and out overlaps neither a nor b. Each entry is summed

@@ -35,7 +35,7 @@ void insert_once(Sequence& sequence, double knot) {
   const int span = static_cast<int>(std::upper_bound(knots.begin(), knots.end(), knot) - knots.begin()) - 1;
   std::vector<ControlLine> lines(sequence.lines.begin(), sequence.lines.begin() + span - degree + 1);
   for (int i = span - degree + 1; i <= span; ++i) {
-    // At a multiple knot, the last of these points have no part of the new knot to blend.
+    // The weight is 0 where knots[i] is a copy of the knot; the previous point is then copied.
     const double weight = knots[i] < knot ? (knot - knots[i]) / (knots[i + degree] - knots[i]) : 0.0;
     if (weight == 0.0) {
       lines.push_back(sequence.lines[i - 1]);
@@ -54,8 +54,8 @@ std::vector<double> with_knot(const KnotVector& knots, double knot) {
   return more;
 }
 
-// Inserts the knot into as many periods as the control points of one period affect, and returns that period.
-// Further periods on either side make every insertion one of an inner knot.
+// Inserts the knot into the central period and every period whose insertion affects it, and returns the
+// lines of the central period. Further periods on either side make every insertion one of an inner knot.
 std::vector<ControlLine> insert_into_periodic(const KnotVector& knots, const std::vector<ControlLine>& lines,
                                               double knot) {
   const int degree = knots.degree(), count = knots.control_point_count();
@@ -80,7 +80,7 @@ std::vector<ControlLine> insert_into_periodic(const KnotVector& knots, const std
 int count_multiplicity(const KnotVector& knots, double knot) {
   const auto& all = knots.knots();
   int multiplicity = static_cast<int>(std::count(all.begin(), all.end(), knot));
-  // The seam is both ends of the period, with one of its knots at each end.
+  // The seam is at both ends of the period, which share one of its knots.
   if (knots.is_periodic() && knot == all.front()) {
     multiplicity += static_cast<int>(std::count(all.begin(), all.end(), all.back())) - 1;
   }

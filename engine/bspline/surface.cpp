@@ -157,8 +157,8 @@ constexpr double hole = 1e-6;
 // Distances in domain lengths of neighbours that replace a sample whose first-order limit vanishes too.
 constexpr double steps_inside[] = {0x1p-14, 0x1p-10, 0x1p-6};
 
-// Derivatives with respect to parameters over a domain of length 1, and the bound that they are compared
-// with.
+// Derivatives with respect to parameters over a domain of length 1, and a bound of |du x dv| from the
+// control points in reach.
 struct LimitTangents {
   Vector3 du = Vector3::Zero(), dv = Vector3::Zero();
   Vector3 duu = Vector3::Zero(), duv = Vector3::Zero(), dvv = Vector3::Zero();

@@ -30,7 +30,7 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-// Returns the edges sorted by x, in units of the tolerance: distances up to 1 still touch.
+// Returns the edges sorted by x, in units of the tolerance: edges at most 1 apart touch.
 std::vector<Edge> sorted_edges(const std::vector<std::vector<Eigen::Vector2d>>& polygons,
                                const Eigen::Vector2d& tolerance) {
   std::vector<Edge> edges;
@@ -256,7 +256,7 @@ Result<TrimLoop> make_trim_loop(const KnotVector& along_u, const KnotVector& alo
   if (polygon.size() < 3 || !(fraction > trim_rounding_fraction * trim_rounding_fraction)) {
     return Error{ErrorCode::degenerate, "a trim loop near " +
                                             point_text(position(loop, loop.knots.domain_start())) +
-                                            " encloses nothing; leave it out"};
+                                            " encloses nothing; omit it"};
   }
   if (const auto crossing = find_crossing({polygon}, trim_rounding_fraction * lengths)) {
     return Error{

@@ -21,13 +21,14 @@ namespace {
 using Polygon = std::vector<Eigen::Vector2d>;
 
 constexpr std::size_t column_count_limit = 1024;
-constexpr std::size_t max_mean_listings = 16;  // mean number of columns that list an edge
-// Number of edges of a loop beside which winding numbers are sampled, and the distance from them in domain
-// lengths: less than touching loops may overlap, more than rounding.
+constexpr std::size_t max_mean_listings = 16;  // largest mean number of columns that list an edge
+// Largest number of edges of a loop beside which winding numbers are sampled, and the distance of the
+// samples from the edges in domain lengths: less than touching loops may overlap, more than rounding.
 constexpr std::size_t sampled_edge_count = 32;
 constexpr double sample_offset = 1e-9;
 
-// Moves a parameter at the end of an open domain inside by twice the distance that loops may miss it.
+// Wraps a parameter into a periodic domain, or clamps it inside an open one, away from the ends by twice
+// the distance by which loops may miss them.
 double inside(const KnotVector& knots, double parameter) {
   const double within = knots.into_domain(parameter);
   if (knots.is_periodic()) return within;
@@ -113,7 +114,8 @@ Status TrimmedArea::add_edges(const std::vector<std::vector<Eigen::Vector2d>>& p
   return {};
 }
 
-// Counts the winding numbers beside some of the polygon's edges, on the left for a positive offset.
+// Returns how often each winding number occurs beside sampled edges of the polygon, on the left for a
+// positive offset.
 std::map<int, int> TrimmedArea::windings_beside(const std::vector<Eigen::Vector2d>& polygon,
                                                 double offset) const {
   const Eigen::Vector2d lengths(along_u_.domain_length(), along_v_.domain_length());
@@ -129,8 +131,9 @@ std::map<int, int> TrimmedArea::windings_beside(const std::vector<Eigen::Vector2
   return found;
 }
 
-// Returns the level at which the part left of a loop remains. The winding number left of most edges decides;
-// where loops touch, or a loop touches itself across the seam, rounding may change it.
+// Returns the level at which the part left of a loop remains. The most frequent winding number on the left
+// decides, because rounding may change single samples where loops touch, or a loop touches itself across
+// the seam.
 int TrimmedArea::find_level(const std::vector<Eigen::Vector2d>& polygon) const {
   const bool outer = signed_area(polygon) > 0.0;
   const std::map<int, int> found = windings_beside(polygon, sample_offset);
@@ -151,7 +154,7 @@ Status TrimmedArea::compute_level(const std::vector<std::vector<Eigen::Vector2d>
                        " and trim loop 0 keep different parts; outer loops must run counter-clockwise and "
                        "holes clockwise"};
     }
-    // On the right nothing remains, or another loop's part across a common edge.
+    // On the right nothing remains, or the part inside another loop that shares the edge.
     const auto beyond = windings_beside(polygons[k], -sample_offset);
     if (level_ < 0 || level_ > 1 || (!beyond.contains(-level_) && !beyond.contains(1 - level_))) {
       return Error{ErrorCode::duplicate,
@@ -177,8 +180,8 @@ std::size_t TrimmedArea::find_column(double u) const {
   return static_cast<std::size_t>(std::clamp(add_edges, 0.0, columns - 1.0));
 }
 
-// Returns the winding number: edges below the point that run to the right count up, those to the left count
-// down. An edge includes the u of its lower end and not that of its upper end, so that a corner counts once.
+// Returns the winding number: edges below the point that run to the right count up, those to the left
+// count down. An edge includes its end at the lower u but not the other, so that a corner counts once.
 int TrimmedArea::winding(double u, double v) const {
   int number = 0;
   const std::size_t column = find_column(u);
@@ -219,7 +222,7 @@ constexpr double snap_fraction = 1e-9;  // of the domain
 
 using Edge = TrimmedArea::Edge;
 
-// Returns the parts of an edge between grid lines, in its order.
+// Returns the parts of an edge between grid lines, in the direction of the edge.
 std::vector<Edge> split_at_lines(const Edge& edge, const GridLines& u, const GridLines& v) {
   const auto snapped = [&](const Eigen::Vector2d& point) {
     return Eigen::Vector2d(u.snap(point.x()), v.snap(point.y()));
@@ -392,7 +395,7 @@ class Cutter {
     if (piece.corners.front() == piece.corners.back()) piece.corners.pop_back();
     if (piece.corners.size() < 3) return;
     for (const Eigen::Vector2d& corner : piece.corners) {
-      // Every piece has a corner where two grid lines cross.
+      // A crossing of two grid lines is a corner of every piece that meets it, and needs no entry.
       if (u_.find_line(corner.x()) >= 0 && v_.find_line(corner.y()) >= 0) continue;
       on_u_line_[u_.merge_seam(corner.x())].insert(corner.y());
       if (v_.find_line(corner.y()) >= 0) on_v_line_[v_.merge_seam(corner.y())].insert(corner.x());
@@ -400,8 +403,8 @@ class Cutter {
     pieces_.push_back(std::move(piece));
   }
 
-  // Adds a piece's triangles, including the corners that neighbours have on its sides; a fan around its
-  // centre if there are any.
+  // Adds the triangles of a piece, with the corners that neighbours have on its sides as further vertices.
+  // If there are any, the triangles form a fan around the piece's centre.
   void emit(const Piece& piece) {
     std::vector<std::uint32_t> ring;
     Eigen::Vector2d centre = Eigen::Vector2d::Zero();

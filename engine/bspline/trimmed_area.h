@@ -25,7 +25,7 @@ inline constexpr Range<int> trim_loop_count_range{0, 1000};
 // control points, and stays valid while the surface deforms.
 class TrimmedArea {
  public:
-  // Constructs the whole of any domain.
+  // Constructs the untrimmed area of any domain.
   TrimmedArea() = default;
 
   // Makes the area of loops made by make_trim_loop(). Refuses too many loops or chords, loops that cross or
@@ -36,9 +36,9 @@ class TrimmedArea {
 
   bool is_whole() const { return edges_.empty(); }
 
-  // Returns whether the point remains, by the winding number of the loops. u, v are wrapped or clamped into
-  // the domain, whose ends belong to the adjacent inside. On a loop the result is undefined. Does not
-  // allocate.
+  // Returns whether the point remains, by the winding number of the loops. u, v are wrapped or clamped
+  // into the domain. A point at an end of an open direction is tested 2 trim_rounding_fraction of the
+  // domain inside. On a loop the result is undefined. Does not allocate.
   bool contains(double u, double v) const;
 
   // Returns the remaining fraction of the domain, above 0 and at most 1.
@@ -62,10 +62,10 @@ class TrimmedArea {
 
   KnotVector along_u_, along_v_;
   std::vector<Edge> edges_;
-  int level_ = 0;  // added to the winding number, so that 1 and more remains
+  int level_ = 0;  // added to the winding number, so that points with a sum above 0 remain
   double remaining_fraction_ = 1.0;
-  // Edges by equal columns of u: those that may cross a vertical line in column c are column_edges_ from
-  // column_starts_[c] to column_starts_[c + 1].
+  // Indices of edges by columns of equal width in u. Those that may cross a vertical line in column c are
+  // column_edges_ from column_starts_[c] to column_starts_[c + 1] - 1.
   std::vector<std::size_t> column_starts_, column_edges_;
 };
 
@@ -124,8 +124,8 @@ class TrimmedCells {
   std::vector<TrimmedArea::Edge> edges_;
 };
 
-// A vertex between the grid's samples. Interpolated bilinearly among the corners of its cell it is on the
-// chords of that cell, so that neighbouring triangles meet without a gap.
+// A vertex between the grid's samples. Bilinear interpolation among the corners of its cell keeps a vertex
+// on a side of the cell on the side's chord, so that neighbouring triangles meet without a gap.
 struct CutVertex {
   double u = 0.0, v = 0.0;
   std::array<std::uint32_t, 4> corners{};  // samples of the grid, counter-clockwise from the lowest u and v
@@ -135,7 +135,7 @@ struct CutVertex {
 // Triangles of a trimmed grid.
 struct TrimmedGrid {
   std::vector<CutVertex> vertices;  // numbered after the grid's samples
-  // Counter-clockwise with u to the right and v up. No vertex is inside another triangle's side.
+  // Counter-clockwise with u to the right and v up. No vertex is in the interior of a triangle's side.
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
@@ -144,8 +144,8 @@ struct TrimmedGrid {
 // an open direction.
 TrimmedGrid trim_grid(const GridDirection& u, const GridDirection& v, const TrimmedArea& area);
 
-// Returns the remaining fraction of a surface's area by triangles of eight cells for each polynomial piece,
-// accurate to about the square of a chord.
+// Returns the remaining fraction of a surface's area in space, from triangles of 8 x 8 cells in each
+// polynomial piece. The error shrinks with the square of the cell size.
 double remaining_area_fraction(const Surface& surface, const TrimmedArea& area);
 
 }  // namespace spoonbill

@@ -13,7 +13,7 @@ namespace spoonbill {
 namespace {
 
 constexpr int along_samples = 400;
-// Fraction of the largest perimeter nearby that a rim has.
+// Smallest perimeter of a rim, as a fraction of the largest perimeter nearby.
 constexpr double rim_fraction = 0.85;
 
 std::size_t near_rim(const Profile& profile, bool from_end) {
@@ -29,7 +29,8 @@ std::size_t near_rim(const Profile& profile, bool from_end) {
   return station(s);
 }
 
-// Fraction of the length within which a hollow end is, with everything that protrudes around it.
+// Fraction of the body's length, from the pole, that contains a hollow end with everything that protrudes
+// around it.
 constexpr double end_fraction = 0.4;
 
 std::size_t shoulder(const Profile& profile, bool from_end) {
@@ -52,7 +53,8 @@ std::size_t shoulder(const Profile& profile, bool from_end) {
   return station(s);
 }
 
-// Fraction of half the width at which an axis through the centre crosses a section that is not bent.
+// A section is not bent if the wide axis through its centre crosses its outline twice, both times farther
+// from the centre than this fraction of the distance to the tip on that side.
 constexpr double bent_fraction = 0.9;
 
 // The ring's points farthest along e1 and against it.
@@ -69,8 +71,8 @@ Tips find_tips(const Ring& ring, const Vector3& e1) {
   return tips;
 }
 
-// Returns whether the wide axis through the centre leaves the section before its ends, as in a spoon's bowl,
-// whose centre is beside the section or near one side.
+// Returns whether the wide axis through the centre leaves the section before its tips, as in the bowl of a
+// spoon, where the centre of the ring is outside the section or near one side.
 bool is_bent(const Ring& ring, const Vector3& e1, const Vector3& e2) {
   const Tips tips = find_tips(ring, e1);
   const auto reach = [&](int s) { return e1.dot(ring.points[s] - ring.centre); };
@@ -106,9 +108,9 @@ void measure_bent(const Ring& ring, CrossSection& section) {
   section.thickness = across;
 }
 
-// The ring's arc length as a table to u (unwrapped past the seam), and the arc lengths at which the ring
-// crosses +e1, +e2, -e1, -e2 and +e1. Crossings are found by signs alone: some library functions differ in
-// bits among processors.
+// A table from the ring's arc length to u (unwrapped past the seam), and the arc lengths at which the ring
+// crosses +e1, +e2, -e1, -e2 and +e1. Crossings are found from signs rather than angles, because some
+// library functions return different bits on different processors.
 struct RingArc {
   LinearTable arc_to_u;
   std::array<double, 5> crossing{};
@@ -143,8 +145,8 @@ RingArc ring_arc(const Surface& surface, const Ring& ring, const CrossSection& s
   return result;
 }
 
-// Computes the arc of a bent section: its tips replace the crossings of the wide axis, the midpoints of its
-// sides those of the narrow axis.
+// Computes the arc of a bent section. Its tips replace the crossings of the wide axis, and the midpoints
+// of its sides those of the narrow axis.
 RingArc bent_arc(const Surface& surface, const Ring& ring, const CrossSection& section) {
   const Tips tips = find_tips(ring, section.e1);
   RingArc result;
@@ -162,13 +164,14 @@ RingArc bent_arc(const Surface& surface, const Ring& ring, const CrossSection& s
   return result;
 }
 
-// Relative difference of the spreads along both axes below which the axes are arbitrary.
+// Relative difference between the variances along the two axes below which the axes are arbitrary.
 constexpr double nearly_alike = 1e-3;
-// Fraction of the fourth moment above which a ring has corners, not just the ripple of a round ring.
+// Smallest ratio of |sum of z^4| to the sum of |z|^4 at which a ring has corners rather than the ripple of
+// a round ring; z is a point of the section as a complex number.
 constexpr double min_squareness = 0.02;
 
-// Turns e1 to the midpoint of a side of a square section, in which any axes are principal ones. The argument
-// of the fourth moment, four times the angle, points to the corners. A round section keeps its axis.
+// Turns e1 to the midpoint of a side of a square section, where every axis is a principal one. The
+// argument of the fourth moment is four times the angle of a corner. A round section keeps its axis.
 void turn_to_sides(const Ring& ring, const Vector3& axis, Vector3& e1) {
   const Vector3 e2 = axis.cross(e1);
   std::complex<double> moment = 0.0;
@@ -298,8 +301,9 @@ RingParameters ring_parameters(const Surface& surface, const Ring& ring, const C
   const double along_narrow = nj - 1, along_wide = ni - 1;
   std::array<double, 5> corner{};
   for (int q = 0; q < 4; ++q) {
-    // Half a narrow side is between the crossing of a wide axis and a corner; half a wide side after a narrow
-    // axis.
+    // The corner divides the arc between two crossings in proportion to the cells of the two sides that it
+    // joins. The narrow side comes first after a crossing of the wide axis, the wide side after a crossing
+    // of the narrow axis.
     const double first = q % 2 == 0 ? along_narrow : along_wide;
     corner[q] =
         arc.crossing[q] + (arc.crossing[q + 1] - arc.crossing[q]) * first / (along_narrow + along_wide);

@@ -1,4 +1,5 @@
-// Rings of a closed tube at constant v, and the positions of lattice nodes on them.
+// Rings of a closed tube at constant v, their profile along the tube, and the positions of lattice nodes
+// on them.
 #pragma once
 
 #include <algorithm>
@@ -52,7 +53,7 @@ struct Profile {
 // Samples the profile; the surface must be periodic along u and open along v.
 Profile sample_profile(const Surface& surface);
 
-// The stations where the caps end and the sides begin.
+// Indices of the stations where the caps end and the sides begin.
 struct Rims {
   std::size_t first = 0, last = 0;
 };
@@ -61,9 +62,9 @@ struct Rims {
 // tenth of the length).
 Rims near_rims(const Profile& profile);
 
-// Returns, from each pole, the first station beyond the outermost one at which the length grows faster than
-// the circumference. Where a body is hollow around its pole, its cap then extends over the edge of the hollow
-// to the side.
+// Returns, from each pole, the first station after the outermost one from which the length grows at least
+// as fast as the mean radius, perimeter / 2 pi. The cap of a body that is hollow around its pole thus
+// extends over the edge of the hollow to the side.
 Rims shoulder_rims(const Profile& profile);
 
 // Returns, for each end, the rim that is farther from the pole.
@@ -79,9 +80,9 @@ struct CrossSection {
 // Returns the axes and extents of a ring's section perpendicular to `axis`.
 CrossSection principal_axes(const Ring& ring, const Vector3& axis);
 
-// Extents for choosing cell counts. Counts that suit the section at half length make slender cells elsewhere
-// if an extent varies much along the body, as in a spoon; the extent is then the geometric mean of its least
-// and its greatest.
+// Extents for choosing cell counts. Counts that suit the section at half length make slender cells
+// elsewhere if an extent varies by more than a factor of 2.5 along the body, as in a spoon. The extent is
+// then the geometric mean of its smallest and its largest value.
 struct Extents {
   double width, thickness;
   bool bent = false;  // whether any section between the rims is bent
@@ -91,8 +92,8 @@ struct Extents {
 Extents lattice_extents(const Surface& surface, const Profile& profile, const Rims& rims,
                         const CrossSection& centre_section);
 
-// Parameters u of a ring's four corners and of the nodes between them. Corner 0 is between +e1 and +e2.
-// There are 2 (ni - 1) + 2 (nj - 1), starting at corner (ni - 1, nj - 1), in the direction of u.
+// Parameters u of the 2 (ni - 1) + 2 (nj - 1) nodes around a ring, in the direction of u. The first is
+// that of corner node (ni - 1, nj - 1), which is between +e1 and +e2.
 struct RingParameters {
   std::vector<double> u;
 };

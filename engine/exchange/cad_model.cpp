@@ -10,7 +10,7 @@
 namespace spoonbill {
 namespace {
 
-// Longest name in bytes that leaves room for a number.
+// Length limit of names that may be numbered, in bytes.
 constexpr std::size_t shared_name_bytes_limit = cad_name_bytes_limit - 10;
 
 // Returns the length of the UTF-8 character at `start` in bytes; 0 where there is none.

@@ -1,5 +1,6 @@
-// Reader and writer of documents, materials and commands. A document is a scene and how it is viewed, as JSON
-// that a person can read, lengths in mm. "Optional" fields may be missing; the value after it is the default.
+// Reader and writer of documents, materials and commands. A document is a scene and how it is viewed, as
+// human-readable JSON with lengths in mm. Fields marked "optional" may be missing; the value after the mark
+// is the default.
 //
 //   {"spoonbill_document": 2,
 //    "name": "spoon handle",
@@ -30,8 +31,8 @@
 //      "shell_thickness_mm": 2,                                optional, a solid; see shell_lattice.h
 //      "solid": "bracket"},                                    optional; bodies that share the name are faces
 //                                                              of one solid of a CAD model
-//    "other_bodies": [{"name": ...}, ...],                       optional; each as "body", at most 999, of
-//                                                              which few are sculpted together
+//    "other_bodies": [{"name": ...}, ...],                       optional; each as "body", at most 999; a
+//                                                              simulation has at most 8 bodies
 //    "fixing_planes": [{"point_mm": [20, 0, 0], "normal": [1, 0, 0]}],    optional
 //    "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "iterations": 6,
 //      "solid": {"shape": "box", "half_extents_mm": [4, 3, 10]},  of kind solid; see below
@@ -43,23 +44,23 @@
 //    "symmetry": {"on": true, "point_mm": [0, 0, 0], "normal": [0, 0, 1]},          optional
 //    "view": {...}}                                              optional
 //
-// A region is a part of its body (body_region.h): {"along": [0.9, 1], "around": [0.25, 0.75], "depth_mm": [0,
-// 2]}, each field optional; a single depth is the smallest, without a largest. An oscillation has
-// "frequency_hz" instead of "duration_s"; loads.h defines both motions. Where regions of material overlap,
-// later ones win.
+// A region is a part of its body (BodyRegion in material.h): {"along": [0.9, 1], "around": [0.25, 0.75],
+// "depth_mm": [0, 2]}, each field optional; a single depth is the smallest, and the largest is unlimited. An
+// oscillation has "frequency_hz" instead of "duration_s"; loads.h defines both motions. Where regions of
+// material overlap, later ones win.
 //
 // Shapes of a solid tool: sphere (radius_mm), ellipsoid (semi_axes_mm), cylinder and capsule (radius_mm,
 // half_length_mm), box (half_extents_mm), cone (base_radius_mm, height_mm), torus (ring_radius_mm,
 // tube_radius_mm), half_space, superquadric (semi_axes_mm, exponent_along, exponent_around), mesh
 // (vertices_mm, triangles as three indices into the vertices each), and surface, with the fields of a body's
 // surface except trims. A soft tool is a surface or a closed mesh; its "nodes" count along x, y and z, as in
-// solid_lattice.h. implicit_shapes.h and triangle_mesh.h define the shapes.
+// LatticeRequest (body.h). implicit_shapes.h and triangle_mesh.h define the shapes.
 //
 // Version 1, which had neither trims nor solids, is read too; assets/schemas/document.schema.json describes
-// both versions. Control points are in the world frame, a tool's shape in the frame of the hand. Ranges are
-// in scene.h and material.h; knots are within a million of zero and either equal or at least a billionth of
-// the domain apart. A length is a number of millimetres, or a decimal in quotes where no double of
-// millimetres reads back to the same bits of metres (length_to_json()). Normals are scaled to unit length.
+// both versions. Control points are in the world frame, a tool's shape in the frame of the hand. The headers
+// of engine/scene define the ranges; knots are from -1e6 to 1e6, and unequal ones are at least 1e-9 of the
+// domain apart. A length is a number of millimetres, or a decimal in quotes where no double of millimetres
+// reads back to the same bits of metres (length_to_json()). Normals are scaled to unit length.
 #pragma once
 
 #include <filesystem>
@@ -107,17 +108,17 @@ Result<Material> read_material(const std::filesystem::path& file);
 
 // Convert a command of the simulation. Every field is required unless noted; the fields of tool, material and
 // sculpting are those of documents:
-//   {"command": "place_plane", "point_mm": [x, y, z], "normal": [x, y, z]}      {"command": "remove_planes"}
-//   {"command": "set_tool", "kind", "action", "radius_mm", "iterations" and, for a solid, "solid", "soft"}
+//   {"command": "place_plane", "point_mm": [x, y, z], "normal": [x, y, z]}
+//   {"command": "remove_planes"}
+//   {"command": "set_tool", "kind", "action", "radius_mm", "iterations", and for a solid "solid", "soft"}
 //   {"command": "keep_shape"}
-//   {"command": "set_material", "name", "source", "youngs_modulus_pa", ...} and optionally "body": 1, the
-//   index
-//     in the list of all bodies, default: 0
-//   {"command": "set_sculpting", "damping_per_s", "gravity_m_per_s2", "force_scale", and optionally
-//   "settles"}
-//   {"command": "set_symmetry", "on", "point_mm", "normal"}     {"command": "reset_proxy"}
+//   {"command": "set_material", "name", "source", "youngs_modulus_pa", ..., and optionally "body": 1}
+//   {"command": "set_sculpting", "damping_per_s", "gravity_m_per_s2", "force_scale", optionally "settles"}
+//   {"command": "set_symmetry", "on", "point_mm", "normal"}
+//   {"command": "reset_proxy"}
 //   {"command": "lift_tool"}
-//   {"command": "refine_knots"} and optionally "body"
+//   {"command": "refine_knots", and optionally "body"}
+// "body" is the index in the list of all bodies, default: 0.
 Result<Command> command_from_json(const Json& json, const std::string& source);
 Json command_to_json(const Command& command);
 

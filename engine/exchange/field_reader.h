@@ -33,7 +33,7 @@ class FieldReader {
 
   bool has(std::string_view field) const;
 
-  // Reads the version number of the file's format and returns it; a version outside `known` is refused.
+  // Read the version number of the file's format and refuse a version outside `known`; the second returns it.
   void version(std::string_view field, int known);
   int version(std::string_view field, Range<int> known);
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t bytes_limit = std::size_t{64} << 20;
 
-// Returns true for a recording, which its first bytes identify: it may be long, or cut within its JSON.
+// Returns true for a recording. Only the first bytes are read: a recording may be long or truncated.
 bool starts_like_recording(const std::filesystem::path& file) {
   return read_first_bytes(file, 64).find("\"spoonbill_recording\"") != std::string::npos;
 }
@@ -29,7 +29,7 @@ Result<FileFormat> find_native_format(const std::filesystem::path& file) {
     if (json->contains("youngs_modulus_pa")) return FileFormat::material;
   }
   return Error{ErrorCode::unsupported,
-               file.string() + ": is no Spoonbill document, recording, script or material"};
+               file.string() + ": is not a Spoonbill document, recording, script or material"};
 }
 
 }  // namespace spoonbill

@@ -29,7 +29,7 @@ enum class FileFormat {
 };
 
 struct FileEnding {
-  std::string_view ending;  // in lower case, without the point
+  std::string_view ending;  // in lower case, without the dot
   FileFormat format;
 };
 
@@ -63,7 +63,7 @@ inline FileFormat format_from_name(const std::filesystem::path& file) {
   return FileFormat::unknown;
 }
 
-// Returns the usual ending of a format's files, without the point; empty for FileFormat::unknown.
+// Returns the usual ending of a format's files, without the dot; empty for FileFormat::unknown.
 inline std::string_view usual_ending(FileFormat format) {
   for (const FileEnding& known : file_endings) {
     if (known.format == format) return known.ending;

@@ -81,7 +81,8 @@ bool is_known(FrameKind kind);
 
 // Reads exactly `bytes` bytes; returns false where fewer are left.
 using ReadBytes = std::function<bool(void* to, std::size_t bytes)>;
-// Reads a whole frame. Returns nullopt where the bytes end, are no frame, or exceed frame_bytes_limit.
+// Reads a whole frame. Returns nullopt where the bytes end early, are not a frame, or exceed
+// frame_bytes_limit.
 std::optional<Frame> read_frame(const ReadBytes& read);
 
 }  // namespace spoonbill

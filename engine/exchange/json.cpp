@@ -239,8 +239,8 @@ std::optional<double> shortest_millimetres(double metres) {
   return best;
 }
 
-// Returns the shortest decimal of `metres` with its point moved by three places. The result may have no
-// double of its own.
+// Returns the shortest decimal of `metres` with its point moved three places to the right. The result need
+// not equal any double.
 std::string decimal_millimetres(double metres) {
   std::array<char, 32> text{};
   const auto end =

@@ -30,8 +30,9 @@ std::string json_to_page(const Json& json);
 Json number_to_json(double number);
 
 // Converts a length from metres to the shortest number of millimetres whose thousandth is `metres` to the
-// last bit. About one length in fifty has no such double (a binade has more metres than millimetres); it
-// becomes a decimal in quotes. Lengths that a person would write in millimetres are always plain numbers.
+// last bit. About one length in fifty has no such double, because doubles of millimetres can be up to 2.4 %
+// sparser than those of metres; it becomes a decimal in quotes. Lengths that a person would write in
+// millimetres are always plain numbers.
 Json length_to_json(double metres);
 
 // Returns the length in metres of a number of millimetres or a decimal in quotes; nullopt for any other

@@ -101,7 +101,7 @@ bool skip_list(std::istream& stream) {
   return count >= 0.0 && count < 1e9 && skip(stream, static_cast<std::uint64_t>(count));
 }
 
-// Larger than the count of any file, small enough not to overflow.
+// Upper limit of the counts of rows and list entries: more than any file has, too few to overflow.
 constexpr std::uint64_t row_limit = std::uint64_t{1} << 32U;
 
 bool skip_bytes(std::istream& stream, std::uint64_t bytes) {
@@ -171,7 +171,7 @@ Status check_rows(std::istream& stream, const PlyHeader& header, const PlyElemen
   return {};
 }
 
-// Size of the end of a file in which its last line is searched.
+// Number of bytes at the end of a file that are searched for its last line.
 constexpr std::size_t tail_bytes = 65536;
 
 std::string_view last_line(std::string_view text) {
@@ -181,8 +181,8 @@ std::string_view last_line(std::string_view text) {
   return text;
 }
 
-// Returns true for binary STL, by the test that Assimp uses: the count of triangles after 80 bytes gives the
-// size.
+// Returns true for binary STL, by the test that Assimp uses: the file's size matches the count of triangles
+// after the first 80 bytes.
 bool is_binary_stl(const std::filesystem::path& file, std::uintmax_t size) {
   constexpr std::size_t head_bytes = 84, count_offset = 80, triangle_bytes = 50;
   const std::string head = read_first_bytes(file, head_bytes);
@@ -231,8 +231,8 @@ bool has_three_words(std::istream& words) {
   return static_cast<bool>(words >> word >> word >> word);
 }
 
-// Returns true for a binary PLY whose data begin, at `begin`, with the byte of a line feed. Assimp 5.2 takes
-// that byte for a part of the header and reads every number from one byte too far.
+// Returns true for a binary PLY whose data begin, at `begin`, with the byte of a line feed. Assimp 5.2 skips
+// that byte as part of the header and reads all numbers one byte late.
 bool begins_with_line_feed(const std::string& file, std::size_t& begin) {
   constexpr std::string_view last_line = "\nend_header\n";
   const std::string start = read_first_bytes(file, ply_header_bytes_limit);
@@ -263,7 +263,7 @@ class PaddedStream final : public Assimp::MemoryIOStream {
   std::vector<std::uint8_t> bytes_;  // storage of the base class; moving keeps its address
 };
 
-// File system that contains one file only: a material that the file names could be a device, a pipe or a
+// File system that contains only one file: a material that the file names could be a device, a pipe or a
 // secret.
 class SingleFileIo final : public Assimp::DefaultIOSystem {
  public:
@@ -343,7 +343,7 @@ Result<TriangleMesh> collect_triangles(const aiScene& scene) {
   return mesh;
 }
 
-// Checks what Assimp overlooks.
+// Checks for damage that Assimp does not report.
 Status check_complete(const std::filesystem::path& file) {
   const FileFormat format = format_from_name(file);
   if (format == FileFormat::ply) return check_ply(file);
@@ -382,7 +382,7 @@ Status check_last_obj_line(const std::filesystem::path& file) {
   words >> keyword;
   const bool is_vector = keyword == "v" || keyword == "vn";
   if (is_vector ? has_three_words(words) : keyword != "f" || is_complete_face(words)) return {};
-  return Error{ErrorCode::malformed, "its last line is no complete " +
+  return Error{ErrorCode::malformed, "its last line is not a complete " +
                                          std::string(is_vector ? "vector" : "face") + ": '" + excerpt(line) +
                                          "'; it is cut or damaged"};
 }

@@ -10,9 +10,9 @@
 
 namespace spoonbill {
 
-// Reads the triangles of an STL, OBJ or PLY file; polygons are cut, points and lines are ignored. Coordinates
-// are in the file's own unit (not yet metres) and single precision. No other file is opened, whatever this
-// one names.
+// Reads the triangles of an STL, OBJ or PLY file; polygons are triangulated, points and lines are ignored.
+// Coordinates are in the file's own unit (not yet metres) and single precision. Other files that this one
+// names are not opened.
 Result<TriangleMesh> import_mesh(const std::filesystem::path& file);
 
 // Checks that a PLY file contains the rows that its header promises. Assimp invents the rest of a truncated

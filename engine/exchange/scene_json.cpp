@@ -31,7 +31,7 @@ void read_counts(FieldReader& reader, LatticeRequest& lattice) {
   }
 }
 
-// Returns nullopt where a list is malformed.
+// Reads the mesh of a solid tool. Returns nullopt where a list is malformed.
 std::optional<TriangleMesh> read_triangles(FieldReader& reader) {
   TriangleMesh mesh;
   const Range<int> counts{3, 3 * tool_triangle_limit};

@@ -22,7 +22,7 @@ void add_tool(const Tool& tool, Json& json);
 BodyRegion read_region(FieldReader reader);
 Json region_to_json(const BodyRegion& region);
 
-// Reads the optional list "regions" of a body, the regions of other material or friction.
+// Reads the optional list "regions" of a body, each with its own material, friction or both.
 std::vector<MaterialRegion> read_material_regions(FieldReader& body);
 void add_material_regions(const std::vector<MaterialRegion>& regions, Json& body);
 

@@ -28,7 +28,7 @@ void add_trims(const std::vector<TrimLoop>& trims, Json& surface_json);
 std::optional<KnotVector> read_knot_vector(FieldReader& reader, Range<int> control_point_counts);
 void add_knot_vector(const KnotVector& knots, Json& json);
 
-// Converts a list of three lengths. Returns false where the value is no such list, or leaves
+// Converts a list of three lengths. Returns false where the value is not such a list, or a length is outside
 // position_range_m.
 bool read_point(const Json& json, Vector3& point_m);
 Json position_to_json(const Vector3& position_m);

@@ -65,8 +65,8 @@ void append_simple_loops(const std::vector<std::uint32_t>& path, const PointGrap
   append_ring(std::move(open), graph, boundary_loops);
 }
 
-// Returns the widest angle around a node without neighbours, in radians, in the plane of its neighbours
-// within two steps; 0 with fewer than three of them.
+// Returns the widest angle, in radians, in which a node has no neighbours within two steps, measured in their
+// plane; 0 with fewer than three of them.
 double widest_gap(const PointGraph& graph, std::uint32_t node) {
   std::set<std::uint32_t> near;
   for (const std::uint32_t other : graph.adjacent(node)) {

@@ -313,7 +313,8 @@ void span_gap(FitPoints& points, const std::vector<std::uint32_t>& a, const std:
   add_spanning_nodes(points, positions, normals, pairs);
 }
 
-// Openings that face each other run in opposite directions, so one ring is reversed.
+// Joins two components by a tube between openings at the nearest pair. Openings that face each other run in
+// opposite directions, so one ring is reversed.
 Result<FitPoints> join_at(const FitPoints& a, const FitPoints& b, const NearestPair& pair) {
   const Vector3 between = (b.graph.points_m[pair.b] - a.graph.points_m[pair.a]).normalized();
   const Opening open_a = cut_opening(a, pair.a, between), open_b = cut_opening(b, pair.b, -between);

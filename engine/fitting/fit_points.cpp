@@ -123,7 +123,7 @@ std::vector<NodePair> mesh_pairs(const Scan& scan, const std::vector<std::uint32
   return pairs;
 }
 
-// Pairs each node with its nearest ones, unless they are much farther than usual or face the other way.
+// Pairs each node with its nearest ones, unless they are much farther than usual or have opposed normals.
 std::vector<NodePair> cloud_pairs(const Scan& nodes) {
   const NearestPoints nearest(nodes.points_m);
   std::vector<NearestPoints::Neighbour> found;
@@ -148,7 +148,8 @@ std::vector<NodePair> cloud_pairs(const Scan& nodes) {
   return pairs;
 }
 
-// Nodes of a cloud average at least three points each, which spreads them more evenly than the points.
+// Groups the points for the nodes. Nodes of a cloud average at least three points each, which spreads them
+// more evenly than the points.
 VoxelGroups groups_for_nodes(const Scan& scan) {
   const std::size_t count = scan.points_m.size();
   const std::size_t target = scan.triangles.empty() ? std::min(node_target, count / 3) : 4 * node_target;

@@ -16,18 +16,18 @@ inline constexpr std::size_t node_target = 5000;
 inline constexpr std::uint32_t no_point = 0xffffffffU;
 
 struct FitPoints {
-  bool is_mesh = false;  // a mesh has no outliers but spikes
+  bool is_mesh = false;  // only spikes count as outliers of a mesh
   Scan scan;             // thinned and cleaned, without triangles
   // Positions of the given points; of a mesh those of its vertices after joining. `representative` holds for
   // each the index of the scan point that stands in for it, or no_point where it was removed.
   std::vector<Vector3> given_m;
   std::vector<std::uint32_t> representative;
-  std::vector<double> weights;               // of each scan point: its area of a mesh, 1 of a cloud
+  std::vector<double> weights;               // of each scan point: its area in a mesh, 1 in a cloud
   PointGraph graph;                          // nodes among and between the points
   std::vector<Vector3> node_normals;         // unit, or zero where unknown
   std::vector<std::uint32_t> node_index;     // node of each scan point
   std::vector<BoundaryLoop> boundary_loops;  // longest first
-  // number of nodes at the end of the graph that have no points and span holes and gaps
+  // Number of nodes at the end of the graph that have no points and span holes and gaps.
   std::size_t spanning_nodes = 0;
   std::size_t outliers = 0;         // given points removed as outliers; spikes of a mesh
   std::size_t joined = 0;           // mesh vertices merged with another at the same position

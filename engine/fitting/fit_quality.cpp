@@ -148,7 +148,7 @@ bool turns_at(const NormalGrid& grid, bool u_closes, double cosine, std::size_t 
   return in_u || (j + 1 < grid.columns && normal.dot(grid.normals[i * grid.columns + j + 1]) < cosine);
 }
 
-// Data normals by position in (u, v), measured in spans; duplicated across a periodic seam.
+// Data normals by position in (u, v), measured in spans; those near a periodic seam are repeated beyond it.
 class DataNormals {
  public:
   DataNormals(const Surface& surface, const NormalsAtParameters& data)
@@ -233,7 +233,8 @@ constexpr std::size_t plane_points = 10;
 // A sample counts as seen within this many mean spacings of the data; beyond a boundary, within one.
 constexpr double seen_spacings = 3.0;
 
-// Returns true for a mesh that was refined: its vertices alone may be a few corners of large triangles.
+// Returns true where errors are measured at the fitted points: the given vertices of a refined mesh may be
+// only a few corners of large triangles.
 bool measures_fitted_points(const FitPoints& points) {
   return points.is_mesh && points.scan.points_m.size() > points.given_m.size();
 }

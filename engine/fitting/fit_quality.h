@@ -64,10 +64,10 @@ struct NormalsAtParameters {
 
 // Counts folds and cusps.
 //
-// Folds: each span has 4 x 4 samples. A sample folds if its normal opposes those of all six data points
-// nearest in (u, v), measured in spans, of which the first is within one span. Distances in space would
-// mislead on thin walls, and normals vary from point to point at sharp rims. Without data normals, a sample
-// also folds if its normal opposes the next sample's. Poles are skipped.
+// Folds: each span has 4 x 4 samples at cell centres, off poles and seams. A sample folds if its normal
+// opposes those of the six data points nearest in (u, v), the nearest of them being less than a span away.
+// Distances in space would mislead on thin walls, and normals vary from point to point at sharp rims. Without
+// data normals, or with estimated ones, a sample also folds if its normal opposes the next sample's.
 //
 // Cusps: each span has 12 x 12 samples. A cusp is a turn of the normal by more than 120 degrees between
 // neighbouring samples. It is a loop too small for the points to show, or an edge sharper than the knots can
@@ -88,7 +88,7 @@ struct FitErrors {
   // Distances from surface samples (4 x 4 a span) to the plane of the nearest data points, or to the nearest
   // point where that is closer.
   Deviation surface_to_data;
-  double unseen_fraction = 0.0;  // fraction of these samples without data nearby, not counted above
+  double unseen_fraction = 0.0;  // fraction of samples without data nearby, which surface_to_data ignores
   // Per data point, for pictures: position, surface parameters, distance, and the stray flag.
   std::vector<Vector3> positions_m;
   std::vector<Vector2> uv;

@@ -31,7 +31,8 @@ Result<FittedBody> fit_body(FitPoints island, const Parameterisation& start, Fit
   return body;
 }
 
-// A real wall brings its two faces much closer to the data than a single surface between them does.
+// Returns true if the points are a real wall: its two faces fit much closer than a single surface between
+// them.
 bool is_closer_as_wall(const FittedBody& wall, const FittedBody& face) {
   constexpr double fraction = 0.8;
   return wall.errors.data_to_surface.p95_m < fraction * face.errors.data_to_surface.p95_m;

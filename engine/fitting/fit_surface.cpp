@@ -253,7 +253,8 @@ void SurfaceFitter::smooth_shifts(const std::vector<Vector2>& before, std::vecto
   }
 }
 
-// Spanning nodes may always move, since their normals are guesses.
+// Returns true if the surface normal at `uv` agrees with the point's own. Spanning nodes may always move,
+// since their normals are guesses.
 bool SurfaceFitter::can_move_to(const FittedData& data, std::size_t point, const Vector2& uv) const {
   if (least_agreement_ <= -1.0 || point + points_->spanning_nodes >= data.normals.size()) return true;
   const SurfacePoint at = evaluate(surface_, uv.x(), uv.y());
@@ -303,8 +304,8 @@ bool SurfaceFitter::add_control_points() {
   return true;
 }
 
-// Compares with the scan's normals, without those of spanning nodes. Without any, uses the enclosed volume of
-// a closed shape, or the orientation rule for open ones.
+// Returns true if the surface normals oppose the scan's, spanning nodes excluded. Without normals, the
+// enclosed volume of a closed shape decides, or the orientation rule for open ones.
 bool SurfaceFitter::has_inward_normals() const {
   double along = 0.0;
   for (std::size_t n = 0; n + points_->spanning_nodes < nodes_.uv.size(); ++n) {
@@ -317,7 +318,7 @@ bool SurfaceFitter::has_inward_normals() const {
   return closed() ? compute_enclosed_mass(surface_).volume_m3 < 0.0 : is_inside_out(surface_);
 }
 
-// Early rounds of a thin wall can enclose a negative volume.
+// Reverses a closed surface of negative volume, which early rounds of a thin wall can give.
 Status SurfaceFitter::orient_outwards() {
   if (!closed() || compute_enclosed_mass(surface_).volume_m3 >= 0.0) return {};
   surface_ = reversed(surface_, Direction::u);
@@ -386,9 +387,9 @@ Status SurfaceFitter::point_rounds() {
   return {};
 }
 
-// Distances are measured from any start, since points may have been held back or caught in a local minimum.
-// Normals estimated for clouds only count folds; on thin walls some belong to the other face, so they do not
-// steer the fit.
+// Returns the fit, with the nearer of two closest points for each point: from its parameters and from the
+// nearest sample, since points may have been held back or caught in a local minimum. Normals estimated for
+// clouds only count folds; on thin walls some belong to the other face, so they do not steer the fit.
 FittedSurface SurfaceFitter::result() {
   const std::size_t count = points_->scan.points_m.size();
   all_.uv.resize(count);
@@ -422,7 +423,7 @@ constexpr double seen_fraction = 0.3, unseen_fairness = 3.0;
 constexpr std::size_t pole_columns = 3;
 constexpr double least_pole_size = 0.02;
 
-// candidates in units of the least fairness
+// Candidates for the fairness, in units of the least fairness.
 constexpr std::array fairness_factors{1.0, 3.0, 10.0, 30.0, 100.0, 300.0};
 // About every fourth point is held out of the fit for cross-validation.
 constexpr std::size_t held_out_stride = 4;
@@ -583,7 +584,7 @@ constexpr double most_fairness = 10.0;
 constexpr double most_smoothing_ratio = 1.2;
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-// Cusps are the smaller fault and are treated only without folds.
+// Returns the spans with folds, or without folds those with cusps, which are the smaller fault.
 const std::vector<bool>& SurfaceFitter::faulty_spans() const {
   return folds_.folds > 0 ? folds_.span_folds : folds_.span_cusps;
 }
@@ -732,17 +733,17 @@ Status SurfaceFitter::unfold(int relaxation) {
 
 }  // namespace
 
-// The best agreement of normals differs from scan to scan. A strict one keeps points in folds of the initial
-// parameters; a loose one lets them slip to the other face. If all results fold or are far off, a larger
-// fairness is tried.
+// Tries several bounds on the agreement of normals, since the best one differs from scan to scan. A strict
+// one keeps points in folds of the initial parameters; a loose one lets them slip to the other face. If all
+// results fold or are far off, a larger fairness is tried.
 Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
                                   const FitSettings& settings) {
   SPOONBILL_ASSERT(start.uv.size() == points.graph.size());
   SPOONBILL_ASSERT(settings.tolerance_m >= 0.0);
   struct Trial {
     double agreement, fairness_factor;
-    std::size_t cusps;      // accept with at most this many cusps, no folds,
-    double error_fraction;  // and an error below this fraction of the size
+    std::size_t cusps;      // largest number of cusps, without folds, at which the result is accepted
+    double error_fraction;  // error below which it is accepted, as a fraction of the size
   };
   constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
   constexpr std::array trials{Trial{0.0, 1.0, 0, 0.005}, Trial{-0.3, 1.0, 0, 0.005},

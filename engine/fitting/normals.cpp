@@ -189,7 +189,8 @@ std::vector<NodePair> pairs_between(const PointGraph& graph, const std::vector<V
   return pairs;
 }
 
-// Points of each component where the surface normal agrees with the node normal, and where it opposes it.
+// Number of points of each component where the surface normal agrees with the node normal, and where it
+// opposes it.
 struct Votes {
   std::vector<double> along, against;
 

@@ -12,8 +12,8 @@ namespace spoonbill {
 
 // Returns a flag for each normal that must be flipped so that all agree along the surface. Normals at both
 // ends of a chord should be mirror images in its bisecting plane; signs spread along the minimum spanning
-// tree of that measure (Hoppe et al. 1992). Each component keeps the majority's orientation if it exceeds 75
-// %, otherwise it faces away from its centre. Zero normals are ignored.
+// tree of that measure (Hoppe et al. 1992). Each component keeps the orientation of its majority if that is
+// at least three quarters, otherwise it faces away from its centre. Zero normals are ignored.
 std::vector<bool> orient_consistently(const std::vector<Vector3>& points_m,
                                       const std::vector<Vector3>& normals,
                                       const std::vector<NodePair>& pairs);
@@ -25,9 +25,8 @@ std::vector<bool> find_inconsistent_normals(const Scan& nodes);
 
 // Estimates a normal for each parameter in `uv`, which belong to the points in order; any further ones get
 // zero. Normals are perpendicular to the local plane of the nodes, oriented consistently, and follow the
-// surface at the majority of each component. They are zero where the nodes have no clear plane. They are zero
-// too where the surface opposes more than a fifth of the component, as where both faces of a thin wall are
-// mixed.
+// surface at the majority of each component. They are zero where the nodes have no clear plane, or where the
+// surface opposes more than a fifth of the component, as where both faces of a thin wall are mixed.
 std::vector<Vector3> estimate_normals(const FitPoints& points, const Surface& surface,
                                       const std::vector<Vector2>& uv);
 

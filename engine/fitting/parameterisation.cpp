@@ -17,8 +17,8 @@ namespace spoonbill {
 namespace {
 
 constexpr double sheet_fraction = 0.12;
-// Least fraction of the area within the loop for surfaces that face outwards: a closed body may have lost its
-// foot.
+// Least ratio of the loop's area to the whole that makes a sheet of a surface that faces outwards. It is
+// larger than sheet_fraction, since a closed body may lack the scan of its foot.
 constexpr double outward_sheet_fraction = 0.3;
 constexpr double tube_fraction = 0.75;
 constexpr double roundness = 0.12;
@@ -118,7 +118,7 @@ std::optional<ShapeEnds> find_poles(const PointGraph& graph, const Vector3& cent
                                                  : ShapeEnds{{on_axis[1]}, {on_axis[0]}};
 }
 
-// Uses the short axis of round, flat shapes (bowls, plates), otherwise the long one.
+// Returns the poles on the short axis of a round, flat shape (bowl, plate), or on the long axis of any other.
 std::optional<ShapeEnds> find_axis_poles(const PointGraph& graph) {
   const Axes axes = principal_axes(graph);
   const bool is_disc = axes.squares[2] - axes.squares[1] < roundness * axes.squares[2] &&
@@ -190,7 +190,7 @@ std::array<std::size_t, 4> find_corners(const PointGraph& graph, const BoundaryL
   return corners;
 }
 
-// Projects onto the principal plane, for sheets that are a height field over it.
+// Parameterises a sheet by projection onto its principal plane, over which it should be a height field.
 Parameterisation start_sheet_on_plane(const FitPoints& island) {
   const Axes axes = principal_axes(island.graph);
   Parameterisation start;
@@ -265,7 +265,7 @@ Result<Parameterisation> initial_parameterisation(FitPoints& island, ShapeKind k
 namespace {
 
 constexpr double axis_roundness = 0.1;
-// Thickest wall, as a fraction of the size; two faces are separable from so many raster cells on.
+// Thickest wall, as a fraction of the size, and thinnest one whose faces can be separated, in raster cells.
 constexpr double thin_fraction = 0.1;
 constexpr double separable_cells = 3.0;
 // Points per raster cell, if all were on a path three times the size.
@@ -458,8 +458,8 @@ double path_length(const std::vector<Vector2>& path) {
   return length;
 }
 
-// Returns the fraction of a grid of sectors and lengths with points no deeper than a face is thick. Wavy
-// sheets fill the profile as well, but each part of it somewhere else.
+// Returns the fraction of the cells of a grid over (u, v) that have a point no deeper than `reach` below the
+// outline. It is small for wavy sheets, which fill the profile only when seen from all sides together.
 double face_coverage(const std::vector<Vector2>& uv, const std::vector<double>& depths, double reach) {
   constexpr int sectors = 8, lengths = 16;
   std::array<bool, sectors * lengths> seen{};

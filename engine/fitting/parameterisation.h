@@ -40,7 +40,7 @@ Result<Parameterisation> initial_parameterisation(FitPoints& island, ShapeKind k
 // Parameterisation of a thin wall about an axis, such as a bowl, cup or plate. Its two faces may be closer
 // than neighbouring points, but all points together draw its profile clearly. The angle about the axis gives
 // u; the profile's outline, from the axis over the rim back to the axis, gives v. Empty if the points are not
-// round about an axis, have no such outline, or are no thin wall with two faces.
+// round about an axis, have no such outline, or are not a thin wall with two faces.
 struct ProfileMap {
   Parameterisation start;
   bool may_be_one_face;  // a single face whose noise may look like a wall

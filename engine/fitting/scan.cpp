@@ -213,11 +213,12 @@ namespace {
 
 // Shortest edge at a tip relative to the median edge; corners of an even mesh have shorter ones.
 constexpr double long_edge_ratio = 3.0;
-// The same relative to the ring's mean edge, of which a few lead to tips beside it.
+// Shortest edge at a tip relative to the mean edge of its ring, a few of whose edges lead to neighbouring
+// tips.
 constexpr double long_ring_edge_ratio = 1.5;
-// Height relative to the ring's radius, above that of any tip in an even mesh, whose next ring is wider.
+// Least height relative to the ring's radius. Tips in an even mesh are lower, since their next ring is wider.
 constexpr double least_spike_height = 4.0;
-// Least distance of the vertices behind the ring, and their largest height above its plane, in ring radii.
+// Least distance of the ring behind from the centre, and its largest height above the plane, in ring radii.
 constexpr double least_outer_radius = 1.2, most_height = 0.6;
 constexpr std::size_t most_measured = 1'000'000;
 

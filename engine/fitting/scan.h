@@ -40,8 +40,8 @@ Scan average_groups(const Scan& scan, const VoxelGroups& groups);
 // Flags points that are much farther from their neighbours than usual. The number of given points that each
 // one represents is in `counts`: 1, or those of its voxel in a thinned cloud. Usual values are weighted by
 // counts, as most given points are on the surface. A thinned point that represents far fewer points than
-// usual is an outlier too. Sparse points on a plane with their neighbours, like most around them, are surface
-// and are not flagged.
+// usual is an outlier too. Sparse points are not flagged where they and most of their neighbours are on
+// planes, as on a surface.
 std::vector<bool> find_outliers(const std::vector<Vector3>& points_m, const std::vector<double>& counts);
 
 // Moves the tip of each spike into the centre of its ring of vertices and returns the tips; the connectivity

@@ -67,8 +67,8 @@ ParameterMinimum search_cell(Candidate from, const std::function<double(double, 
   return from.minimum;
 }
 
-// Returns whether the control points of an edge coincide: those of the first or last row if `of_u`, or
-// column.
+// Returns whether the control points of an edge coincide: of the first or last row if `of_u`, otherwise of
+// the first or last column.
 bool is_collapsed(const ControlNet& net, bool of_u, bool last) {
   const double size = bounding_box(net).size();
   const int count = of_u ? net.columns : net.rows, line = last ? (of_u ? net.rows : net.columns) - 1 : 0;

@@ -30,14 +30,14 @@ struct ParameterMinimum {
 };
 
 // Finds the smallest `value` at the centres and corners of the cells, then refines the best cells by a
-// pattern search with shrinking steps. Ignores values that are not finite; returns an infinite value if none
-// is.
+// pattern search with shrinking steps. Ignores values that are not finite; returns an infinite value if no
+// value is finite.
 ParameterMinimum find_minimum(const std::vector<PieceCell>& cells,
                               const std::function<double(double u, double v)>& value,
                               const Progress& progress = {});
 
-// Curvatures in 1/m, positive where the surface is convex seen from the side of its normals du x dv. A ball
-// of radius r with outward normals has 1 / r twice.
+// Curvatures in 1/m, positive where the surface is convex seen from the side of its normals du x dv. Both
+// are 1 / r on a ball of radius r with outward normals.
 struct PrincipalCurvatures {
   double smallest = 0.0, largest = 0.0;
 };
@@ -55,8 +55,8 @@ struct CurvatureRange {
   CurvatureExtreme smallest, largest;
 };
 
-// Finds the extremes over all pieces, on both sides of each knot, up to a hundredth of a piece from a pole. A
-// smooth extreme is accurate to a millionth.
+// Finds the extremes over all pieces, on both sides of each knot, except within a hundredth of a piece
+// from a pole. A smooth extreme has a relative accuracy of a millionth.
 CurvatureRange find_curvature_range(const Surface& surface, const TrimmedArea& area = {},
                                     const Progress& progress = {});
 

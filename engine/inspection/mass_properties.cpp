@@ -21,7 +21,8 @@ struct Quadrature {
   std::vector<double> nodes, weights;  // on the interval -1 to 1
 };
 
-// Finds the roots of the Legendre polynomial by Newton's method, starting from Tricomi's estimate.
+// Returns the Gauss-Legendre rule. Its nodes are the roots of the Legendre polynomial, found by Newton's
+// method from Tricomi's estimate.
 Quadrature gauss_legendre(int count) {
   Quadrature rule;
   for (int k = 0; k < count; ++k) {

@@ -43,14 +43,15 @@ struct EnclosedMass {
 
 EnclosedMass compute_enclosed_mass(const Surface& surface, const TrimmedArea& area = {});
 
-// Volume between the untrimmed part of a surface and its offset against the normals.
+// Volume between the part of a surface within its trims and that part's offset against the normals.
 struct ShellMass {
   double volume_m3 = 0.0;
   Vector3 centre_m = Vector3::Zero();  // of the volume
 };
 
-// Integrates the area of parallel surfaces, dA (1 - 2 H s + K s^2) at depth s (Steiner 1840), with mean and
-// Gaussian curvature H and K. Valid while the thickness, above 0, is less than the surface's convex radii.
+// Integrates the area of parallel surfaces, dA (1 - 2 H s + K s^2) at depth s (Steiner 1840), with mean
+// and Gaussian curvature H and K. Valid while the thickness, above 0, is less than every convex radius of
+// curvature.
 ShellMass compute_shell_mass(const Surface& surface, double thickness_m, const TrimmedArea& area = {});
 
 // Mass of a body made of several materials.
@@ -60,8 +61,8 @@ struct MaterialMix {
   std::vector<std::string> materials;       // names of the materials in use, the body's own first
 };
 
-// Sums over the lattice cells, each with the material of its region. Refuses a body without a lattice or with
-// regions that lattice_materials() refuses.
+// Sums over the cells of the body's lattice, each with the material of its region. Refuses a body for
+// which no lattice can be made, and regions that lattice_materials() refuses.
 Result<MaterialMix> compute_material_mix(const Body& body);
 
 }  // namespace spoonbill

@@ -17,10 +17,12 @@ namespace spoonbill {
 namespace {
 
 constexpr std::size_t max_meetings = 100'000, max_reported = 16;
-// Spacing of the samples as a fraction of the solid's size, and the most samples along a triangle's side.
+// Spacing of the samples as a fraction of the solid's size, and the largest number of samples along a
+// triangle's side.
 constexpr double relative_spacing = 0.005;
 constexpr int max_along_side = 200;
-// Most samples besides one per triangle, and the growth of the spacing while there are more.
+// Largest number of samples besides one per triangle, and the factor by which the spacing grows while
+// there are more.
 constexpr std::size_t max_samples = 500'000;
 constexpr double spacing_growth = 1.4;
 // Margin between samples and the sides of their triangle, as a fraction of the triangle. A line from a side

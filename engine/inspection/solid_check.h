@@ -21,16 +21,17 @@ struct SolidSelfIntersection {
 struct SolidCheck {
   std::vector<SolidSelfIntersection> self_intersections;  // deepest first
   bool self_intersections_complete = true;                // false: too many to search them all
-  // Thinnest wall found along inward lines from the mesh's triangles (line_exit.h), measured on the exact
-  // surfaces. Another wall may be thinner by twice the mesh's error, and a wall narrower than 1/200 of the
-  // solid's size may be missed. Empty if no line leaves through a wall, as in a tetrahedron.
+  // Thinnest wall found along inward lines from the mesh's triangles, measured on the exact surfaces.
+  // Another wall may be thinner by twice the mesh's error, and a wall narrower than 1/200 of the solid's
+  // size may be missed. Empty if no line leaves through a wall (exits_through_wall()), as in a
+  // tetrahedron.
   std::optional<WallThickness> thinnest;
 };
 
-// Checks a solid by its mesh, which is watertight, has outward normals and is nowhere farther than `error_m`
-// from the bounding surfaces. Ignores intersections no deeper than twice the error. Without usable surfaces
-// (none, or some facing inwards), thicknesses are those of the mesh. Returns nothing if `progress` stopped
-// it.
+// Checks a solid by its mesh, which must be watertight, have outward normals and be nowhere farther than
+// `error_m` from the bounding surfaces. Ignores intersections no deeper than twice the error. Without
+// usable surfaces (none, or some facing inwards), thicknesses are those of the mesh. Returns nothing if
+// `progress` stopped it.
 std::optional<SolidCheck> check_solid(const TriangleMesh& mesh, const std::vector<const Surface*>& surfaces,
                                       double error_m, const Progress& progress = {});
 

@@ -17,7 +17,7 @@ double parameter_at(const KnotVector& knots, double fraction) {
   return knots.domain_start() + fraction * (knots.domain_end() - knots.domain_start());
 }
 
-// Compares the two ends of u if `along_u`, whose edges run along v; else those of v.
+// Compares the two ends of u, which are edges along v, if `along_u`; otherwise those of v.
 EdgeGap measure_edge_gap(const Surface& surface, bool along_u) {
   EdgeGap gap;
   const KnotVector& knots = along_u ? surface.u : surface.v;
@@ -74,15 +74,15 @@ namespace {
 
 // Cells in each direction of a polynomial piece.
 constexpr int parts = 4;
-// Smallest |du x dv| that is no defect, as a fraction of the mean over the surface.
+// Smallest |du x dv| that is not a defect, as a fraction of the mean over the surface.
 constexpr double min_area_ratio = 1e-7;
 constexpr std::size_t max_defects = 16;
 // Number of control points above which elements are not halved. Halving resolves loops of half a cell on
 // usual nets; larger nets are fine enough.
 constexpr std::size_t large_net = 2500;
 
-// Tells which neighbouring cells of one direction belong to the same smooth sheet. An edge, which is a knot
-// of multiplicity at least the degree, separates sheets that may meet at any angle.
+// Determines which neighbouring cells of one direction belong to the same smooth sheet. Sheets that may
+// meet at any angle are separated by an edge, a knot whose multiplicity is at least the degree.
 class SmoothNeighbours {
  public:
   explicit SmoothNeighbours(const KnotVector& knots) {
@@ -98,7 +98,7 @@ class SmoothNeighbours {
   bool is_smooth_after(std::size_t cell) const {
     return (cell + 1) % parts != 0 || smooth_after_[cell / parts];
   }
-  // The next cell; the first one after the last.
+  // Returns the next cell; after the last cell, the first.
   std::size_t next(std::size_t cell) const { return cell + 1 < cells() ? cell + 1 : 0; }
 
  private:
@@ -112,7 +112,7 @@ class NormalFlips {
   NormalFlips(const Surface& surface, double least_area) : surface_(surface), least_area_(least_area) {}
 
   bool between(const PieceCell& from, const PieceCell& to) const {
-    // The line crosses the seam of a closed direction.
+    // The line may cross the seam of a periodic direction.
     const double u = from.centre_u(), v = from.centre_v();
     return flips_between({u, v}, {unwrap(surface_.u, u, to.centre_u()), unwrap(surface_.v, v, to.centre_v())},
                          refinements);
@@ -152,7 +152,7 @@ class NormalFlips {
   double least_area_;
 };
 
-// Finds cells with a degenerate centre, and cells between which and a neighbour the normal flips.
+// Finds cells with a degenerate centre, and pairs of neighbouring cells between which the normal flips.
 void find_defects(const Surface& surface, const TrimmedArea& area, SurfaceCheck& check) {
   const std::vector<PieceCell> cells = piece_cells(surface, parts);
   std::vector<Vector3> products;

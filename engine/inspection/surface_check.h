@@ -18,7 +18,7 @@ namespace spoonbill {
 inline constexpr double closing_tolerance_m = 1e-6;
 
 enum class Closedness {
-  solid,  // bounds a body: periodic in one direction, and closed by poles or periodic in the other
+  solid,  // bounds a body: closed in one direction, and closed or ending in poles in the other
   tube,   // closed in one direction, open in the other
   sheet,  // open in both directions
 };
@@ -32,8 +32,9 @@ struct EdgeGap {
 struct Closing {
   Closedness closedness = Closedness::sheet;
   EdgeGap u, v;
-  // Width of the gap that keeps the surface from being closed: 0 for a solid, otherwise that of the widest
-  // open end.
+  // Width of the gap that keeps the surface from being closed: 0 for a solid, the width of the widest open
+  // end for a tube. For a sheet it is the smaller of two values, one for each direction: the larger of the
+  // distance between that direction's ends and the width of the other direction's widest end.
   double gap_m = 0.0;
 };
 

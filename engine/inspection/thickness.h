@@ -1,5 +1,6 @@
-// Thickness of closed bodies: the distance from a surface point straight inwards to where the line leaves the
-// body through a wall. Outside the tick; any thread.
+// Thickness of closed bodies: the distance from a surface point straight inwards to where the line leaves
+// the body through a wall. Measured on one surface, or on a mesh and then corrected to the exact surfaces.
+// Outside the tick; any thread.
 #pragma once
 
 #include <array>
@@ -26,8 +27,8 @@ struct SurfaceExit {
   double u = 0.0, v = 0.0;
 };
 
-// Thickness search on one surface, which must outlive it. The surface is closed, or one of several that close
-// together, and has outward normals. One owner.
+// Thickness search on one surface, which must outlive the search. The surface is closed, or one of several
+// that close together, and has outward normals. One owner.
 class ThicknessSearch {
  public:
   explicit ThicknessSearch(const Surface& surface);
@@ -36,12 +37,12 @@ class ThicknessSearch {
   // where Newton's method converges, on the facets elsewhere.
   std::optional<SurfaceExit> exit(const Vector3& from, const Vector3& direction) const;
 
-  // Returns nothing where the surface has no normal or the inward line meets no wall: it misses the surface
-  // between samples at an edge, or passes an edge alone (exits_through_wall()).
+  // Returns nothing where the surface has no normal or the inward line meets no wall: it misses the
+  // surface between samples at an edge, or leaves beside an edge (exits_through_wall()).
   std::optional<Thickness> at(double u, double v) const;
 
-  // Returns the smallest thickness found from samples and refined about the smallest of them. Finds a wall
-  // thinner than the spacing of the samples only if a sample's line crosses it.
+  // Returns the smallest thickness at the samples, refined around the best of them. Finds a wall thinner
+  // than the spacing of the samples only if a sample's line crosses it.
   std::optional<Thickness> smallest(const Progress& progress = {}) const;
 
  private:
@@ -65,7 +66,7 @@ struct WallThickness {
 };
 
 // Corrects thicknesses measured on a mesh to the surfaces that the mesh approximates. The surfaces must
-// outlive it, and all their normals point out of the material. One owner.
+// outlive the object, and all their normals must point out of the material. One owner.
 class ExactWalls {
  public:
   // `error_m`, at least 0, is the largest distance of the mesh from the surfaces.

@@ -51,11 +51,11 @@ struct LatticeMaterials {
 Result<LatticeMaterials> lattice_materials(const LatticeMesh& mesh, const Material& own,
                                            std::span<const MaterialRegion> regions);
 
-// Checks that each material is within its ranges. If any material needs springs, that is fails
-// is_linear_elastic(), every material must have a Poisson's ratio that springs can represent.
+// Checks that each material is within its ranges. If any of them requires springs, that is, is not linear
+// elastic, every material must have a Poisson's ratio that springs can represent.
 Status check_materials(const LatticeMaterials& materials);
 
-// Returns whether every material is plainly elastic.
+// Returns whether is_linear_elastic() is true of every material.
 bool are_linear_elastic(const LatticeMaterials& materials);
 double max_youngs_modulus_pa(const LatticeMaterials& materials);
 double min_poissons_ratio(const LatticeMaterials& materials);

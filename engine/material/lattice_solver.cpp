@@ -137,7 +137,7 @@ void linearise_and_follow(SpringLattice& lattice, const LatticeView& view, Linea
   if (square > 0.0f && std::isfinite(square)) lattice.set_fastest_frequency(std::sqrt(square));
 }
 
-// Returns the speed cap of speed_cap_cells, m/s.
+// Returns the speed cap that speed_cap_cells sets, m/s, for substeps of `h`.
 float speed_cap(const SpringLattice& lattice, float h) {
   const auto longest = static_cast<float>(2.0 / lattice.fastest_frequency());
   return static_cast<float>(speed_cap_cells) * lattice.cell_size_m() / std::max(h, longest);
@@ -169,7 +169,7 @@ void compute_forces(const SpringLattice& lattice, const LatticeView& view, float
   apply_node_forces(lattice, view);
 }
 
-// Lattices of one tick and their differing settings.
+// Lattices of one tick and the settings in which they differ.
 struct Relaxation {
   std::span<const RelaxedLattice> lattices;
   std::array<LatticeView, lattice_capacity> view;
@@ -269,7 +269,7 @@ bool begin_supports(Relaxation& relaxation) {
   return limited;
 }
 
-// Returns the velocity that the speed cap of a lattice is relative to.
+// Returns the velocity to which the speed cap of a lattice is relative, m/s.
 Vector3 frame_velocity(const Relaxation& relaxation, std::size_t at, std::span<const TouchingTool> tools) {
   for (const TouchingTool& tool : tools) {
     if (tool.motion.carried.body == static_cast<int>(at)) return tool.state->velocity_m_per_s;
@@ -317,8 +317,8 @@ void stabilise_strained_nodes(Relaxation& relaxation, float h) {
   }
 }
 
-// Returns the result that the tick needs of a lattice's linearisation, as far as it is known before the
-// frequency is tracked.
+// Returns which results of a lattice's linearisation a tick needs if each of its relaxation steps takes this
+// many substeps.
 Linearised choose_linearisation(const SpringLattice& lattice, const RelaxSettings& settings, int substeps) {
   const bool one = settings.iterations * substeps == 1;
   return one && !settings.settles && !lattice.is_damped_further() ? Linearised::forces : Linearised::tangents;

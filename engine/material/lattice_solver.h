@@ -44,17 +44,17 @@ inline constexpr double stability_fraction = 0.85;
 // flow raise the fastest frequency by 1.2 to 1.6 times; a relaxation step then takes a second substep.
 inline constexpr double effective_modulus_stability_fraction = 0.75;
 
-// Largest distance that a node moves in a substep, in cells. It is measured relative to the body's mean
-// velocity, or to the support where a node is fixed. The time is at least 2 / w, the longest step that the
-// lattice alone could take.
+// Distance, in cells, that sets the speed cap: a node moves at most this far in a substep, or in 2 / w, the
+// longest undamped step that the lattice alone could take, if that is longer. Speeds are relative to the
+// tool or support that carries the whole body, or to the mean velocity of a body without fixed nodes.
 //
-// Waves cross a cell in about that time. Nodes stay below a ninth of the wave speed, and an impact strains
-// even a soft, undamped body by no more than its springs can restore.
+// Waves cross a cell in about 2 / w. Nodes stay below a ninth of the wave speed, and an impact strains even
+// a soft, undamped body by no more than its springs can restore.
 inline constexpr double speed_cap_cells = 0.1;
 
-// Distance in cells after which the springs are linearised once more within a tick. The error of the first
-// order in a spring's strain is then below half its square. A sculpting hand moves nodes by about a
-// hundredth of a cell per tick.
+// Distance, in cells, beyond which a node's motion since the linearisation makes a new linearisation
+// necessary within the tick. The error of the first order in a spring's strain is then below half its
+// square. A sculpting hand moves nodes by about a hundredth of a cell per tick.
 inline constexpr double linear_cells = 0.1;
 
 // Returns the largest stable symplectic Euler step, s, for an angular frequency and a damping ratio: h < (2
@@ -77,7 +77,8 @@ struct RelaxSettings {
   bool settles = false;               // true: each body is critically damped, see critical_damping_per_s()
 };
 
-// One lattice that relax() advances, with what moves and loads it. Borrowed for the call.
+// A lattice that relax() advances, its solver, supports and gravity. Pointers must stay valid during the
+// call.
 struct RelaxedLattice {
   SpringLattice* lattice;
   Vector3 gravity_m_per_s2 = Vector3::Zero();
@@ -94,16 +95,18 @@ struct RelaxReport {
   bool speed_capped = false;
 };
 
-// A tool that acts on the lattices: its motion by the hand, its state and its contacts of the tick.
+// A tool that acts on the lattices: the motion that the hand prescribes, its state and its contacts in the
+// tick.
 struct TouchingTool {
   ToolMotion motion;
   ToolState* state;
   ContactConstraints* contacts;
 };
 
-// Advances at most lattice_capacity lattices by as many substeps as the stiffest one needs. Lattices with
-// an implicit solver advance by one implicit step around the contacts. Tools act in their order, then
-// bodies on each other, then the ground. The caller must flush denormals for speed (see DenormalsFlushed).
+// Advances at most lattice_capacity lattices by as many substeps as the stiffest one needs. Lattices with an
+// implicit solver advance by one implicit step: its velocities are computed before the contacts and respond
+// to them afterwards. Tools act in their order, then bodies on each other, then the ground. The caller must
+// flush denormals for speed (see DenormalsFlushed).
 RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,
                   std::span<const TouchingTool> tools, BodyContacts* between = nullptr,
                   GroundContacts* ground = nullptr);
@@ -118,7 +121,7 @@ inline constexpr double critical_damping_fraction = 1.1;
 double critical_damping_per_s(double rayleigh_quotient);
 
 // Returns the Rayleigh quotient of a lattice's velocities; 0 at rest. The springs must be linearised.
-// Overwrites the view's `moved` arrays.
+// Overwrites the forces and the `moved` arrays of the view.
 double rayleigh_quotient(const SpringLattice& lattice, const LatticeView& view);
 
 }  // namespace spoonbill

@@ -96,7 +96,7 @@ double misfit(const EdgeRing& a, const EdgeRing& b, double seam, bool backwards)
   return sum;
 }
 
-// Gauss-Newton step of the seam; converges to rounding for identical rings.
+// Returns the seam after a Gauss-Newton step. Steps converge to rounding for identical rings.
 double improve_seam(const EdgeRing& a, const EdgeRing& b, double seam, bool backwards) {
   double along = 0.0, squared = 0.0;
   for (int k = 0; k < ring_samples; ++k) {
@@ -136,7 +136,8 @@ RingFit fit_best(const EdgeRing& a, const EdgeRing& b, std::optional<bool> reque
   return best;
 }
 
-// Coincident rings are compared as they are, which is exact for identical ones; others after a rotation.
+// Returns the best fit of two rings. Coincident rings are compared as they are, which is exact for identical
+// ones; others after a rotation.
 RingFit fit_best_rotated(const Edge& a, const Edge& b, std::optional<bool> requested) {
   constexpr double coincidence_fraction = 0.02;  // relative to the radius
   const EdgeRing ring_a(a);
@@ -273,7 +274,7 @@ struct GridCell {
 
 constexpr bool both[] = {false, true};
 
-// Returns the orientation that brings the side to `wanted` with the given direction of its edge.
+// Returns the orientation that brings the side to `target` with the given direction of its edge.
 std::optional<Orientation> facing(Side side, Side target, bool reversed) {
   for (const bool exchange : both) {
     for (const bool reverse_u : both) {
@@ -350,7 +351,8 @@ void sort_closing_matches(const std::vector<std::optional<GridCell>>& cells,
   open_unless_all(arrangement.closing_v, arrangement.rows);
 }
 
-// Shifts rings so that their seam is before the first patch, which is at 0. Returns true if there are any.
+// Shifts the cells of closed directions so that the first patch, which is at 0, follows the seam. Returns
+// true if there are any.
 bool start_rings_at_first(const Arrangement& arrangement, std::vector<std::optional<GridCell>>& cells) {
   const auto wrapped = [](int cell, int count) { return (cell % count + count) % count; };
   for (std::optional<GridCell>& cell : cells) {

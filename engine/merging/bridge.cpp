@@ -21,7 +21,7 @@ namespace {
 
 constexpr int samples_across = 64;
 
-// Returns how far point k of the edge after is ahead of the edge before; 0 where the patches turn back.
+// Returns how far point k of the second edge is ahead of the first edge; 0 where the patches turn back.
 double advance_m(const JointEdges& edges, std::size_t k) {
   const SurfacePoint &a = edges.before[k], &b = edges.after[k];
   const Vector3 ahead = a.dv.normalized() + b.dv.normalized();
@@ -45,7 +45,8 @@ Vector3 difference_at_end(const Surface& piece, int line, int k, bool at_end) {
   return points[0];
 }
 
-// Compares the higher Taylor terms of the pieces beside the joint, within the same bound as the first.
+// Returns true if the Taylor terms of third and higher order agree across the joint, within the bound of the
+// first.
 bool agree_beyond_second(const Surface& before, const Surface& after, double stretch, int continuity,
                          double speed) {
   const std::vector<double> breaks_before = before.v.breakpoints(), breaks_after = after.v.breakpoints();
@@ -167,7 +168,7 @@ double mean_length_m(const Surface& surface, double start, double end) {
 
 namespace {
 
-// du x dv at parameters u x v, not normalised.
+// Normals du x dv at parameters u x v, not normalised.
 class NormalGrid {
  public:
   NormalGrid(const Surface& surface, std::vector<double> u, std::vector<double> v)
@@ -224,7 +225,7 @@ constexpr int cells_in_piece = 4;
 
 struct Cells {
   std::vector<double> centres;
-  // from each cell to the next, and from the last to the first; false across a crease
+  // True from each cell to the next, and from the last to the first; false across a crease.
   std::vector<bool> is_smooth;
 };
 
@@ -432,7 +433,7 @@ Result<Surface> bridge(const Surface& before, const Surface& after, int continui
   SPOONBILL_ASSERT(before.u.control_point_count() == after.u.control_point_count() &&
                    before.v.degree() == after.v.degree());
   const int degree = before.v.degree();
-  // Higher continuity than requested if the degree gives it without further pieces.
+  // The order is higher than requested if the degree gives it without further pieces.
   const int order = std::max(continuity, degree / 2);
   const BridgeForm form = choose_form(before, after);
   const int between = form.has_columns_between ? columns_between : 0;

@@ -19,8 +19,8 @@ JointEdges joint_edges(const Surface& before, const Surface& after);
 double largest_gap_m(const JointEdges& edges);
 double mean_gap_m(const JointEdges& edges);
 
-// Returns the mean distance of the edge after ahead of the edge before, along the patches' direction there;
-// negative where they overlap.
+// Returns the mean distance by which the second edge is ahead of the first, along the patches' direction
+// there; negative where they overlap.
 double mean_advance_m(const JointEdges& edges);
 
 // Returns true if the patches continue straight ahead across every gap wider than `touching_m`, neither
@@ -28,7 +28,7 @@ double mean_advance_m(const JointEdges& edges);
 bool continues_ahead(const JointEdges& edges, double touching_m);
 
 // Returns the stretch s that minimises the sum of |before' - after' / s|^2; exact if the derivatives differ
-// by a constant factor. Uses the ratio of lengths if they point elsewhere.
+// by a constant factor. Derivatives that point in different directions give the ratio of their lengths.
 double stretch_at_edge(const JointEdges& edges);
 
 // Returns true if the derivatives up to the continuity agree, so that no blend is needed. The patches must
@@ -49,15 +49,15 @@ double mean_length_m(const Surface& surface, double start, double end);
 // meet there at any angle.
 std::optional<Vector3> find_fold(const Surface& surface);
 
-// Finds folds in the strip from v = `start` to v = `end`. Detects in addition slow turns: normals that oppose
-// both edges although these agree, and neighbouring lines that oppose each other although they agree at both
-// edges.
+// Finds folds in the strip from v = `start` to v = `end`. Besides sudden turns it detects slow ones: normals
+// that oppose both edges although these agree, and neighbouring lines that oppose each other although they
+// agree at both edges.
 std::optional<Vector3> find_fold_between(const Surface& surface, double start, double end);
 
 // Length of a bridge. Both patches cross the gap at one speed, from the chords between the edges and the mean
-// derivatives there. The parameter length is reduce_degree until the bridge does not fold; between rings
-// also, to a quarter at most, until it is nowhere narrower than both rings. Fails for edges without a
-// direction across v, and for bridges that fold at any length unless `may_fold` is set.
+// derivatives there. The parameter length is reduced until the bridge does not fold; between rings also, to a
+// quarter at most, until it is nowhere narrower than the narrower ring. Fails for edges without a direction
+// across v, and for bridges that fold at any length unless `may_fold` is set.
 struct BridgeLength {
   double parameter = 0.0;
   double stretch_of_after = 1.0;
@@ -68,8 +68,9 @@ Result<BridgeLength> bridge_length(const Surface& before, const Surface& after, 
 
 // Returns the bridge from the end of `before` to the start of `after`, over the domain between them. Both
 // need the same knots along u and the same degree along v. The outer control points continue the patches' end
-// pieces with the given continuity. Between rings that face apart, or are farther apart than twice the sum of
-// their radii, columns in between follow a bend and keep the tube open. Fails for an empty gap.
+// pieces with at least the given continuity. Between rings that are more than 45 degrees from facing each
+// other, or farther apart than twice the sum of their radii, columns in between follow a bend and keep the
+// tube open. Fails for an empty gap.
 Result<Surface> bridge(const Surface& before, const Surface& after, int continuity);
 
 }  // namespace spoonbill

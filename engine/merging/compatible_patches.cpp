@@ -21,7 +21,7 @@ double domain_length(const KnotVector& knots) {
   return knots.domain_end() - knots.domain_start();
 }
 
-// Distinct knots; without the end of a period.
+// Returns the distinct knots, without the end of a period.
 std::vector<double> distinct_knots(const KnotVector& knots) {
   std::vector<double> all = knots.breakpoints();
   if (knots.is_periodic()) all.pop_back();
@@ -101,7 +101,7 @@ std::string patch_name(std::size_t patch) {
   return "patch " + std::to_string(patch + 1) + " of the row";
 }
 
-// Equal domains are not touched, which avoids rounding errors.
+// Moves the patch to the u domain of the first. Equal domains are not touched, which avoids rounding errors.
 Result<Surface> match_domain(const Surface& first, const Surface& patch) {
   const double start = first.u.domain_start(), end = first.u.domain_end();
   if (patch.u.domain_start() == start && patch.u.domain_end() == end) return patch;
@@ -182,15 +182,15 @@ Result<Surface> align_seam(const Surface& before, const Surface& patch, const Jo
 // Samples in each piece: for fitting, for finding where knots are needed, and for measuring.
 constexpr int fitted_per_piece = 5, checked_per_piece = 10, measured_per_piece = 40;
 
-// Leaves out the end of a period.
+// Returns evenly spaced parameters in each piece, without the end of a period.
 std::vector<double> dense_parameters(const KnotVector& knots, int per_piece) {
   std::vector<double> dense = nested_parameters(knots, per_piece, 0).parameters;
   if (knots.is_periodic()) dense.pop_back();
   return dense;
 }
 
-// Returns the surface with u reparameterised over `knots`: parameters `fitted` correspond to `beside` on the
-// surface.
+// Returns the surface with u reparameterised over `knots`: parameters `fitted` correspond to `matching`
+// on the surface.
 Result<Surface> compose(const Surface& surface, const KnotVector& knots, const std::vector<double>& fitted,
                         const std::vector<double>& matching) {
   const bool open = !knots.is_periodic();

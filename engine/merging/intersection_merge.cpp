@@ -176,7 +176,7 @@ double LinesFromLoop::metres_per_step(const Eigen::Vector2d& point, const Eigen:
 }
 
 constexpr int lines_checked = 24;
-// Finer search for places where a body leaves the other between two of the checked lines.
+// Finer search for positions where a body leaves the other between two of the checked lines.
 constexpr int lines_searched = 8 * lines_checked;
 
 Surface run_along_v(const Surface& patch) {
@@ -240,7 +240,7 @@ Crossed cross_lines(const Surface& patch, const Surface& other, const CrossingFi
   return crossed;
 }
 
-// Around a pole, the other_u of the crossings covers one period; beside it, it returns.
+// Returns true if the crossings go around a pole of the other body: other_u then covers one period.
 bool goes_around_pole(const Surface& other, const std::vector<LineCrossing>& crossings) {
   const double period = other.u.domain_end() - other.u.domain_start();
   double total = 0.0;
@@ -400,7 +400,8 @@ CornerLines::CornerLines(const CrossingPatches& patches, double fillet_m)
   choose_sides();
 }
 
-// The ball is on the side of both remaining parts: on each surface, the side to which the other's part leads.
+// Chooses the side of both remaining parts for the ball: on each surface, the side to which the other's part
+// leads.
 void CornerLines::choose_sides() {
   const Surface &first = patches_->first, &second = patches_->second;
   const std::vector<LineCrossing> crossings = cross_lines(first, second, second_).crossings;
@@ -462,7 +463,7 @@ using LineShape = std::function<Vector3(double u, const CornerLine& line, double
 struct PartShape {
   LineShape at;
   bool pole_at_start = false, pole_at_end = false;
-  // Fraction at which lines beside a pole become the patch's own.
+  // Fraction at which lines that start beside a pole become the patch's own.
   std::optional<double> bend = {};
 };
 

@@ -116,7 +116,7 @@ Result<double> blend_cut_m(const std::vector<PreparedRow>& rows, std::size_t joi
   return 0.0;
 }
 
-// All rows are cut alike, so that their joints stay at the same parameter.
+// Cuts back the patches of a joint in all rows alike, so that their joints stay at the same parameter.
 Status cut_for_blend(std::vector<PreparedRow>& rows, std::size_t joint, const JoinRequest& request) {
   const JointState state = joint_state(rows, joint, request);
   const auto cut_m = blend_cut_m(rows, joint, state, request);
@@ -137,7 +137,7 @@ Status cut_for_blend(std::vector<PreparedRow>& rows, std::size_t joint, const Jo
   return {};
 }
 
-// Uses common values for all rows: the mean stretch, and the shortest bridge, which folds in none.
+// Measures a joint in each row, with common values for all rows: the mean stretch and the shortest bridge.
 Status measure_joint(std::vector<PreparedRow>& rows, std::size_t joint, const JoinRequest& request) {
   double stretch = 0.0, shortest = std::numeric_limits<double>::infinity();
   for (PreparedRow& row : rows) {
@@ -283,7 +283,7 @@ PointGrid sample_patch(const Surface& patch, const KnotVector& merged_v, int in_
   return sample_grid_points(patch, nested_parameters(patch.u, in_piece, 0).parameters, std::move(along));
 }
 
-// Refines the largest deviation around the worst sample, unless coarse samples show rounding only.
+// Returns the largest deviation, refined around the worst sample unless coarse samples show only rounding.
 double deviation_m_from(const Surface& merged, const Surface& patch) {
   constexpr int few = 3, many = 6;
   const double at_few = largest_deviation_m(merged, sample_patch(patch, merged.v, few));
@@ -323,7 +323,7 @@ Result<double> measured_deviation_m(const Surface& merged, const std::vector<Sur
   return largest;
 }
 
-// Tolerance left for fitting the joints; touching edges each move by half their gap.
+// Returns the tolerance left for fitting the joints; touching edges each move by half their gap.
 double tolerance_left_m(const PreparedRow& row, const JoinRequest& request) {
   double gap_m = 0.0;
   for (const JointMeasure& joint : row.joints) gap_m = std::max(gap_m, joint.bridged ? 0.0 : joint.gap_m);
@@ -360,7 +360,8 @@ std::optional<Vector3> find_fold_in(const Surface& merged, const std::vector<Joi
   return find_fold(merged);
 }
 
-// Exact joins fold only where the patches do.
+// Checks for folds that no patch has. Exact joins are not searched, since they fold only where the patches
+// do.
 Status check_folds(const Surface& merged, const std::vector<Surface>& placed,
                    const std::vector<Joint>& joints, double moved_m) {
   const bool bridged = std::any_of(joints.begin(), joints.end(), [](const Joint& j) { return j.bridged; });

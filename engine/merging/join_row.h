@@ -35,8 +35,8 @@ struct PreparedRow {
 Result<std::vector<PreparedRow>> prepare_rows(std::vector<std::vector<Surface>> rows,
                                               const JoinRequest& request);
 
-// Joint of the merged surface. It leaves the patches from blend_start to blend_end along v; both are equal if
-// it does not.
+// Joint of the merged surface, which differs from the patches from blend_start to blend_end along v; both are
+// equal without a blend or bridge.
 struct Joint {
   double gap_m = 0.0;
   bool bridged = false;
@@ -53,10 +53,10 @@ struct Joined {
 };
 
 // Joins the patches of a row. The result is exact if the derivatives up to the continuity agree. Otherwise
-// the joint knot is reduce_degree to a lower multiplicity by fitting, and knots are added beside it until the
-// tolerance is met. A knot of multiplicity m at degree p has continuity C^(p - m). Control point counts r1
-// and r2 become r1 + r2 + m - p - 1 (Pungotra et al. 2013 give r1 + r2 - 1, which holds for C0 only). Fails
-// on too many control points, on folds that no patch has (except where bridges may fold), or when stopped.
+// the multiplicity of the joint knot is reduced by fitting, and knots are added beside it until the tolerance
+// is met. A knot of multiplicity m at degree p has continuity C^(p - m). Control point counts r1 and r2
+// become r1 + r2 + m - p - 1 (Pungotra et al. 2013 give r1 + r2 - 1, which holds for C0 only). Fails on too
+// many control points, on folds that no patch has (except where bridges may fold), or when stopped.
 Result<Joined> join_prepared(const PreparedRow& row, const JoinRequest& request);
 
 // Prepares and joins a single row. Edges within the tolerance are joined directly, others by a bridge.

@@ -29,7 +29,8 @@ Box box_around(const Vector3& a, const Vector3& b) {
   return box_about(std::array{a, b});
 }
 
-// Newton's residual at grazing crossings exceeds plain rounding.
+// Newton's residual, relative to the surface's size, below which it has converged; grazing crossings need
+// more than rounding.
 constexpr double converged_fraction = 1e-10;
 
 void drop_repeated(std::vector<LineCrossing>& crossings, double nearness) {
@@ -175,7 +176,7 @@ bool clamp_to_domain(const KnotVector& knots, double& t) {
   return true;
 }
 
-// Negative near the end of the domain.
+// Returns the step for finite differences at t, negative near the end of the domain.
 double step_from(const KnotVector& knots, double t) {
   const double step = small_step * domain_length(knots);
   return !knots.is_periodic() && t + step > knots.domain_end() ? -step : step;

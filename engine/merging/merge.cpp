@@ -184,7 +184,7 @@ Result<Merged> merge_grid(const PatchGrid& grid, const JoinRequest& request) {
   return merged;
 }
 
-// Largest ratio of the wider tube's opening to the other's; wider ones would give the bridge a step.
+// Largest ratio of the wider tube's opening to the other's; a wider opening would give the bridge a step.
 constexpr double wider = 1.25;
 
 // Opens the poles of a pair; rings stay unchanged.
@@ -298,7 +298,7 @@ Status check_named_once(const std::vector<ChosenEdges>& chosen) {
   return {};
 }
 
-// Chosen edges must be joined; matched ones touch and may stay open.
+// Fails if a chosen pair of edges would stay open. Matched pairs touch and may stay open.
 Status check_left_open(const Arrangement& arrangement, const std::vector<ChosenEdges>& chosen) {
   if (arrangement.left_open.empty() || chosen.empty()) return {};
   const EdgeMatch& match = arrangement.left_open.front();

@@ -14,7 +14,8 @@ enum class Side { u_start, u_end, v_start, v_end };
 
 inline constexpr Side all_sides[] = {Side::u_start, Side::u_end, Side::v_start, Side::v_end};
 
-// across(): the direction that is constant along the edge. is_start(): true at its start.
+// across() returns the direction that is constant along the edge, is_start() whether the side is at its
+// start.
 Direction across(Side side);
 bool is_start(Side side);
 Side opposite(Side side);
@@ -65,8 +66,9 @@ struct RingFrame {
 RingFrame ring_frame(const Surface& surface, Side side);
 
 // Returns the smallest rotation that aligns the inward direction at b with the outward direction at a. For
-// rings facing the same way, it rotates in the plane of the bend that joins them. Identity for nested rings
-// that face the same way, such as both walls of a cup at its rim, and for rings without a direction.
+// rings that face in the same direction, it rotates in the plane of the bend that joins them. Returns the
+// identity for nested rings that face in the same direction, such as both walls of a cup at its rim, and for
+// rings without a direction.
 Eigen::Matrix3d rotation_towards(const RingFrame& a, const RingFrame& b);
 
 // Returns the ratio of arc length to chord of a circular bend.

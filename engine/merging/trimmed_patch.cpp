@@ -47,7 +47,7 @@ bool is_star_about(const Polygon& polygon, const Eigen::Vector2d& centre, double
   return true;
 }
 
-// Measured in three dimensions, where corners are visible.
+// Returns true if the closed path has no corner. Corners are visible in space, not in the parameters.
 bool is_smooth(const std::vector<Vector3>& points_m) {
   const std::size_t count = points_m.size();
   for (std::size_t c = 0; c < count; ++c) {
@@ -152,8 +152,8 @@ using Polygons = std::vector<std::vector<Eigen::Vector2d>>;
 
 // Smooth trims turn less from chord to chord.
 constexpr double corner_cosine = 0.98;
-// Relative to the part's extent in u: offset of the last line from the edge, and width that is too narrow to
-// count.
+// Offset of the last line from the edge, and width that is too narrow to count, as a fraction of the part's
+// extent in u.
 constexpr double edge_margin = 1e-7;
 constexpr int lines_checked = 64;
 // Shorter lines at an end, relative to the longest, are a point.
@@ -259,7 +259,7 @@ class KeptPart {
     return true;
   }
 
-  // Counts edges from one corner to the next, so that nothing between two checked lines is missed.
+  // Returns true if each line meets two edges, counted from one corner to the next so that none is missed.
   bool meets_all_lines_twice() const {
     std::vector<std::pair<double, int>> changes;  // u and change of the number of edges that a line meets
     for (const auto& [from, to] : edges_) {

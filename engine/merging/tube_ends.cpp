@@ -76,7 +76,7 @@ struct RingSize {
   double radius_m = 0.0;
 };
 
-// `tube` must run along v.
+// Returns the centre and mean radius of the ring at v. `tube` must run along v.
 RingSize ring_at(const Surface& tube, double v) {
   const std::vector<double> parameters = uniform_parameters_without_seam(tube.u, ring_samples);
   RingSize ring;
@@ -138,8 +138,8 @@ Result<Surface> make_cap(const Surface& tube, double height_m) {
   return make_surface(tube.u, knots.value(), std::move(net));
 }
 
-// Spokes are straight and the normal is constant along each, so the cap folds where a spoke's normal opposes
-// the ring's area.
+// Returns a position on the ring where the flat cap folds. Its spokes are straight and have a constant normal
+// each, so it folds where a spoke's normal opposes the ring's area.
 std::optional<Vector3> find_fold_in_flat(const Surface& cap) {
   constexpr int spokes_in_piece = 16;
   const double start = cap.v.domain_start();

@@ -37,8 +37,8 @@ TubeEnd tube_end(const Surface& surface, Side side);
 
 // Closes an open end with a cap of height `height_m` over a nearly plane ring. Above zero, the cap continues
 // the sides with the requested continuity, as a quarter ellipse: the cubic with its tangents and midpoint
-// (Goldapp 1991). At zero it is flat and meets them at an edge. Fails if a flat cap would fold, as the centre
-// does not see the whole ring.
+// (Goldapp 1991). At zero it is flat and meets them at an edge. Fails if a flat cap would fold because the
+// centre does not see the whole ring.
 Result<Joined> add_cap(const Surface& surface, Side side, double height_m, const JoinRequest& request);
 
 // Cuts off a pole so that the tube ends in a ring: where the radius grows by less than 0.1 of the distance

@@ -20,10 +20,10 @@
 namespace spoonbill {
 
 // Parameters of the self-organising map that spreads a lattice's inner nodes (Kohonen 1990). Points of the
-// body are drawn at random. The node nearest to a point x and its neighbours at grid distance d move towards
-// it: w += rate * exp(-d^2 / 2 s^2) (x - w). Rate and neighbourhood s shrink geometrically from their first
-// to their last value. Below about one grid step neighbours no longer follow, and the map can stay folded
-// (Erwin et al. 1992).
+// body are drawn at random. The node nearest to a point x and its neighbours at grid distance d move
+// towards it: w += rate * exp(-d^2 / 2 s^2) (x - w). The rate and the neighbourhood s shrink geometrically
+// from their first to their last values. With s below about one grid step, neighbours no longer follow,
+// and the map can stay folded (Erwin et al. 1992).
 struct FeatureMapSettings {
   int draws_per_node = 500;  // per inner node
   double first_rate = 0.1, last_rate = 0.01;
@@ -52,20 +52,20 @@ struct LatticeRequest {
   int node_budget = 2000;  // most nodes that may be used; ignored if `counts` is given
   // Nodes in each direction, at least 2. The directions are:
   // - tubes and rings: across (first, second) and along (third) the body;
-  // - triangle meshes and bodies in a box of cells (solid_lattice.h): x, y and z;
+  // - triangle meshes and bodies in a box of cells (box_lattice.h): x, y and z;
   // - shells: along u, through the thickness, along v;
   // - closed shells: around, through, along, with the first node around counted twice.
   std::optional<std::array<int, 3>> counts;
   // Spreads the inner nodes of a tube after transfinite interpolation has placed them. Empty: they stay
-  // there.
+  // where interpolation placed them.
   std::optional<FeatureMapSettings> feature_map = {};
 };
 
 inline constexpr Range<int> node_budget_range{50, 40000};
 inline constexpr Range<int> node_count_range{2, 64};  // in each direction
 
-// A solid bounded by one tube (periodic in u, closed by a pole at both ends of v) or one ring (periodic in u
-// and v). With a thickness, a thin shell behind one surface instead (shell_lattice.h).
+// A solid bounded by one tube (periodic in u, closed by a pole at both ends of v) or one ring (periodic in
+// u and v). With a shell thickness, the body is instead a thin shell behind one surface (shell_lattice.h).
 struct Body {
   std::string name;
   Surface surface;
@@ -77,17 +77,18 @@ struct Body {
   std::optional<double> shell_thickness_m = {};
   std::vector<TrimLoop> trims =
       {};  // bound the part of the surface that is drawn and touched (trimmed_area.h)
-  // Name of the CAD solid that has this body as a face. Empty for a body that is no face of one.
+  // Name of the CAD solid that has this body as a face; empty if the body is not a face of a solid.
   std::string solid = {};
 };
 
 inline constexpr Range<int> control_point_count_range{2, 200};  // in each direction
 inline constexpr Range<double> shell_thickness_range_m{1e-5, 0.1};
 
-// Each check's error names the first field that is out of range, with its value and range.
+// The error of each of the following checks names the first field that is out of range, with its value and
+// range.
 Status check_feature_map(const FeatureMapSettings& settings);
 Status check_lattice_request(const LatticeRequest& lattice);
-// Checks the number of loads and supports, and that point loads are within the surface's domain.
+// Checks the numbers of loads and supports, and that point loads are within the surface's domain.
 Status check_loads(const Body& body);
 
 // Returns the area within the body's trim loops; null without trims.

@@ -15,8 +15,8 @@ double smooth_step(double t) {
   return s * s * s * (10.0 + s * (6.0 * s - 15.0));
 }
 
-// Taylor series of the sine over a quarter turn, truncated below 1e-14. Motions enter the state, which must
-// not depend on the processor as the C library's sine does.
+// Taylor series of the sine over a quarter turn, truncated below 1e-14. The C library's sine depends on
+// the processor; the state of the simulation, which motions enter, must not.
 double sine_of_turns(double turns) {
   double t = turns - std::floor(turns);
   if (t > 0.5) return -sine_of_turns(t - 0.5);
@@ -36,7 +36,7 @@ struct LoadChecker {
     if (Status status = check_region(load.region); !status.ok()) return status;
     return check_fields("", load);
   }
-  // check_loads() checks u and v, which depend on the body.
+  // The limits of u and v depend on the body; check_loads() checks them.
   Status operator()(const PointLoad& load) const {
     return check_value("", field_of(&PointLoad::force_n).form, load.force_n);
   }

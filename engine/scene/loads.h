@@ -26,7 +26,8 @@ inline constexpr auto fields_of<FixingPlane> = std::to_array<Field<FixingPlane>>
     direction_field("normal", &FixingPlane::normal),
 });
 
-// Pressure on the surface of a region. It acts inwards, follows the deformation, and pulls if negative.
+// Pressure on the surface of a region. A positive pressure acts inwards, a negative one pulls; both follow
+// the deformation.
 struct PressureLoad {
   BodyRegion region;
   double pressure_pa = 0.0;
@@ -54,9 +55,9 @@ enum class MotionKind { ramp, oscillation };
 // Prescribed motion of a support from the first tick on. It runs on the hand's clock: one tick is one
 // millisecond, whatever the number of iterations.
 //
-// A ramp moves once over the displacement, as 10 t^3 - 15 t^4 + 6 t^5 of t = time / duration. Its speed and
-// acceleration vanish at both ends. An oscillation is a sine about the start, whose amplitude grows in the
-// same manner over the first period.
+// A ramp moves once over the displacement, as 10 t^3 - 15 t^4 + 6 t^5 of t = time / duration. Its speed
+// and acceleration vanish at both ends. An oscillation is a sine about the start; its amplitude grows by
+// the same polynomial over the first period.
 struct SupportMotion {
   MotionKind kind = MotionKind::ramp;
   Vector3 displacement_m = Vector3::Zero();  // of a ramp; amplitude of an oscillation
@@ -64,8 +65,8 @@ struct SupportMotion {
   double frequency_hz = 1.0;                 // oscillations only
 };
 
-// Fixes the nodes of a region, or moves them. Fixing planes take precedence over supports, and later supports
-// over earlier ones.
+// Fixes the nodes of a region, or moves them if a motion is given. Fixing planes take precedence over
+// supports, and later supports over earlier ones.
 struct Support {
   BodyRegion region;
   std::optional<SupportMotion> motion = {};
@@ -94,7 +95,7 @@ inline constexpr Range<double> motion_frequency_range_hz{0.01, 100.0};
 inline constexpr double motion_speed_limit_m_per_s = 5.0;
 inline constexpr Range<double> ground_friction_range{0.0, 5.0};
 
-// Fields of each load after its region; a point load has none.
+// Fields of each load, which files store after its region; a point load has no region.
 template <>
 inline constexpr const char* kind_name<PressureLoad> = "pressure";
 template <>
@@ -111,7 +112,7 @@ inline constexpr auto fields_of<ForceLoad> = std::to_array<Field<ForceLoad>>({
     choice_field<&ForceLoad::distributed_by>("shared_by", force_distribution_names),
 });
 
-// The readers of files check u and v against the domain of the body's surface.
+// check_loads() checks u and v against the domain of the body's surface.
 template <>
 inline constexpr const char* kind_name<PointLoad> = "point";
 template <>
@@ -139,7 +140,8 @@ inline constexpr auto fields_of<Ground> = std::to_array<Field<Ground>>({
     number_field("friction", &Ground::friction, ground_friction_range),
 });
 
-// Each check's error names the first field that is out of range, with its value and range.
+// The error of each of the following checks names the first field that is out of range, with its value and
+// range.
 Status check_fixing_plane(const FixingPlane& plane);
 Status check_load(const Load& load);  // u and v of a point load excepted: see check_loads()
 Status check_support(const Support& support);

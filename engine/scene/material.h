@@ -35,12 +35,12 @@ struct Material {
   double friction = 0.0;  // Coulomb coefficient of the surface
 };
 
-// The ranges reach from the softest gel to beyond diamond and from aerogel to beyond osmium. Every solver
-// stays finite within them.
+// The ranges of stiffness and density reach from the softest gel to beyond diamond and from aerogel to
+// beyond osmium. Every solver stays finite within all ranges.
 inline constexpr Range<double> youngs_modulus_range_pa{1.0, 1e12};
 inline constexpr Range<double> poissons_ratio_range{0.0, 0.49};
-// Smallest Poisson's ratio of plastic, creeping and stiffening materials, which springs step. The volume
-// force that springs need below it is unstable under contact.
+// Smallest Poisson's ratio of plastic, creeping and stiffening materials, which are simulated with
+// springs. The volume force that springs need below it is unstable under contact.
 inline constexpr double min_spring_poissons_ratio = 0.2;
 inline constexpr Range<double> density_range_kg_per_m3{1.0, 30000.0};
 inline constexpr Range<double> damping_ratio_range{0.0, 2.0};
@@ -76,7 +76,7 @@ inline constexpr auto fields_of<Material> = std::to_array<Field<Material>>({
         .with_alias({"loss_factor", 2.0, "Twice the damping ratio"}),
     switch_field("plastic", &Material::plastic),
     number_field("yield_strain", &Material::yield_strain, elastic_yield_strain_range, FieldUnit::none,
-                 "Of a plastic material at least 1e-4")
+                 "At least 1e-4 for a plastic material")
         .with_range_by([](const Material& material) { return yield_strain_range_for(material.plastic); }),
     number_field("flow_rate_per_s", &Material::flow_rate_per_s, flow_rate_range_per_s, FieldUnit::per_second),
     number_field("hardening", &Material::hardening, hardening_range).optional(),
@@ -88,8 +88,8 @@ inline constexpr auto fields_of<Material> = std::to_array<Field<Material>>({
         .with_partner("relaxing_share"),
 });
 
-// Returns whether the material neither flows, creeps nor stiffens. Hexahedra step such a material, at any
-// Poisson's ratio.
+// Returns whether the material neither flows, creeps nor stiffens. Hexahedra can simulate such a material,
+// at any Poisson's ratio.
 bool is_linear_elastic(const Material& material);
 
 // Refuses a material outside the ranges above, or one that both flows and creeps. The error names the field,
@@ -127,7 +127,8 @@ struct MaterialRegion {
 
 inline constexpr Range<int> material_region_count_range{0, 16};
 
-// The error names the field.
+// Refuses an invalid region, a material or friction out of range, and an entry with neither. The error names
+// the field.
 Status check_material_region(const MaterialRegion& region);
 
 }  // namespace spoonbill

@@ -16,23 +16,25 @@
 
 namespace spoonbill {
 
-// Deviations of sculpting from real behaviour: no gravity by default, damping, capped stiffness.
+// Settings by which sculpting deviates from real behaviour: damping, no gravity by default, and scaled
+// forces.
 struct Sculpting {
   double damping_per_s = 4.0;  // mass-proportional
   Vector3 gravity_m_per_s2 = Vector3::Zero();
   double force_scale = 1.0;  // newtons at the hand per newton of contact
-  // Damps each body critically as well, so that it comes to rest without ringing (settling.h).
+  // Damps each body critically as well, so that it comes to rest without ringing
+  // (critical_damping_per_s()).
   bool settles = false;
 };
 
-// Symmetric sculpting: a second tool mirrors the hand's at a plane.
+// Symmetric sculpting: a second tool is the mirror image of the hand's tool in a plane.
 struct Symmetry {
   bool on = false;
   Vector3 point_m = Vector3::Zero();  // any point of the plane
   Vector3 normal = Vector3::UnitZ();  // unit
 };
 
-// Returns the mirror image of a point or a pose at the plane of symmetry.
+// Returns the mirror image of a point or a pose in the plane of symmetry.
 Vector3 mirror_point(const Symmetry& symmetry, const Vector3& point_m);
 Pose mirror_pose(const Symmetry& symmetry, const Pose& pose);
 
@@ -75,7 +77,8 @@ inline constexpr auto fields_of<Symmetry> = std::to_array<Field<Symmetry>>({
 // Refuses more bodies than can be simulated together; the error explains how to select some.
 Status check_body_count(const Scene& scene);
 
-// Each check's error names the first field that is out of range, with its value and range.
+// The error of each of the following checks names the first field that is out of range, with its value and
+// range.
 Status check_sculpting(const Sculpting& sculpting);
 Status check_symmetry(const Symmetry& symmetry);
 // Refuses a soft tool with an action other than push, or with symmetry.
@@ -83,7 +86,8 @@ Status check_tool_and_symmetry(const Tool& tool, const Symmetry& symmetry);
 
 // The commands that the panel, a script or a recording sends to a simulation between two ticks.
 
-// Adds a fixing plane. Knots are inserted where it cuts the surface, so that the fixed part stays exactly.
+// Adds a fixing plane. Knots are inserted where the plane cuts a surface, so that the fixed part keeps its
+// exact shape.
 struct PlacePlane {
   FixingPlane plane;
 };
@@ -102,15 +106,15 @@ struct SetSculpting {
 struct SetSymmetry {
   Symmetry symmetry;
 };
-// Moves the tool to the hand without contact along the path between. Sent after the hand was not followed for
-// a while.
+// Moves the tool to the hand without contact along the path between them. Sent when the tool starts to
+// follow the hand after a pause.
 struct ResetProxy {};
 // Suspends the tool until it has left the body.
 struct LiftTool {};
 // Makes the current shape the rest shape.
 struct KeepShape {};
-// Inserts a knot in each direction where a body's surface follows its lattice worst. The shape stays the same
-// and gains control points for the next strokes.
+// Inserts a knot in each direction where the body's surface follows its lattice worst. The shape does not
+// change, and gains control points for further strokes.
 struct RefineKnots {
   int body = 0;  // index in the scene
 };

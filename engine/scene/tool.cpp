@@ -10,7 +10,7 @@
 namespace spoonbill {
 namespace {
 
-// Returns whether a parameter is a field of Tool with a range within that field's.
+// Returns whether the parameter's name is that of a field of Tool, and its range is within that field's.
 constexpr bool is_tool_field(const ToolParameter& parameter) {
   for (const Field<Tool>& field : fields_of<Tool>) {
     if (std::string_view(field.form.name) != parameter.field) continue;
@@ -45,8 +45,7 @@ Status check_solid(const SurfaceSolid& solid) {
 }
 
 Status check_soft(const ImplicitShape&) {
-  return Error{ErrorCode::unsupported, "only a mesh or a B-spline surface can be soft; leave soft out",
-               "soft"};
+  return Error{ErrorCode::unsupported, "only a mesh or a B-spline surface can be soft; omit soft", "soft"};
 }
 
 Status check_soft(const MeshSolid& solid) {
@@ -54,14 +53,14 @@ Status check_soft(const MeshSolid& solid) {
   if (triangles > soft_mesh_triangle_limit) {
     return Error{ErrorCode::too_many,
                  "mesh: has " + std::to_string(triangles) + " triangles, a soft mesh may have at most " +
-                     std::to_string(soft_mesh_triangle_limit) + "; reduce it or leave soft out",
+                     std::to_string(soft_mesh_triangle_limit) + "; reduce it or omit soft",
                  "mesh"};
   }
   const bool closed = std::all_of(solid.mesh.parts.begin(), solid.mesh.parts.end(),
                                   [](const MeshPart& part) { return part.closed; });
   if (!closed) {
     return Error{ErrorCode::inconsistent,
-                 "mesh: is open, a soft mesh must be closed; close its holes or leave soft out", "mesh"};
+                 "mesh: is open, a soft mesh must be closed; close its holes or omit soft", "mesh"};
   }
   return {};
 }

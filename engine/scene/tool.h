@@ -32,7 +32,8 @@ inline constexpr const char* tool_kind_names[] = {"point", "sphere", "solid"};
 inline constexpr Range<double> tool_radius_range_m{0.0, 0.5};
 inline constexpr Range<int> tool_iterations_range{1, 8};
 
-// Field of Tool that an action uses, by its name in files, and the range it accepts, in SI units.
+// A field of Tool that an action uses, by its name in files, and the range that the action accepts, in SI
+// units.
 struct ToolParameter {
   const char* field = nullptr;
   Range<double> range{0.0, 0.0};
@@ -85,7 +86,7 @@ inline constexpr auto tool_actions = std::to_array<ToolActionRow>({
     {.action = ToolAction::smooth,
      .name = "smooth",
      .label = "Smooth",
-     .help = "Evens out what strokes have done, as far as the radius reaches",
+     .help = "Smooths the surface within the radius",
      .grips = false,
      .allows_soft_tool = false,
      .inverse = ToolAction::smooth,
@@ -133,12 +134,12 @@ constexpr const ToolParameter* find_tool_parameter(ToolAction action, std::strin
   return nullptr;
 }
 
-// Closed tube.
+// A solid bounded by a closed tube.
 struct SurfaceSolid {
   Surface surface;
 };
 
-// Cleaned triangles (triangle_mesh.h).
+// A solid bounded by a cleaned mesh (triangle_mesh.h).
 struct MeshSolid {
   CleanMesh mesh;
 };
@@ -155,14 +156,14 @@ inline constexpr int tool_triangle_limit = 200000;
 // Most triangles of a soft mesh, which every tick of a millisecond moves and searches.
 inline constexpr int soft_mesh_triangle_limit = 20000;
 
-// Deformable tool with a lattice of its own, whose nodes behind a plane the hand holds.
+// A deformable tool with its own lattice. The hand holds the nodes behind the plane `grip`.
 struct SoftTool {
   Material material;
   LatticeRequest lattice;
   FixingPlane grip;  // in the tool's frame
 };
 
-// Tool other than a point or a sphere, in its own frame. Immutable once made.
+// Body of a tool that is neither a point nor a sphere, in the tool's frame. Immutable once made.
 struct ToolBody {
   ToolSolid solid;
   std::optional<SoftTool> soft;  // empty: the tool is rigid
@@ -176,7 +177,8 @@ struct Tool {
   std::shared_ptr<const ToolBody> body = {};  // required for a solid; may stay while another kind is in use
 };
 
-// Returns the range that the tool's action accepts for a field, by its name in files; `any` if it uses none.
+// Returns the range that the tool's action accepts for a field, by the field's name in files; `any` if the
+// action does not use the field.
 inline Range<double> range_in_action(const Tool& tool, const char* field, Range<double> any) {
   const ToolParameter* parameter = find_tool_parameter(tool.action, field);
   return parameter == nullptr ? any : parameter->range;
@@ -199,7 +201,7 @@ inline constexpr auto fields_of<Tool> = std::to_array<Field<Tool>>({
         }),
 });
 
-// Each check's error names the first field at fault.
+// The error of each of the following checks names the first field at fault.
 Status check_tool_body(const ToolBody& body);
 Status check_tool(const Tool& tool);
 

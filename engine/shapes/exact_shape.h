@@ -28,8 +28,8 @@ struct ShapeDirection {
 struct ExactShape {
   ShapeDirection u, v;
   bool pole_at_start = false, pole_at_end = false;  // whether all u give one point at that end of v
-  // The ends of the parts, at the start and at the end of v, in which the shape is in the plane of its pole;
-  // each is a break. Empty if there is no such part.
+  // End of the first part and start of the last part along v in which the shape is in the plane of its pole;
+  // each is one of the breaks. Empty if there is no such part.
   std::optional<double> flat_to = {}, flat_from = {};
   std::function<Vector3(double u, double v)> at;
 
@@ -45,7 +45,7 @@ struct ShapeTangents {
 ShapeTangents tangents(const ExactShape& shape, double u, double v);
 
 // Returns a bound of the distance from a point to the shape: the distance to the shape's point at u, v,
-// reduce_degree by Gauss-Newton steps.
+// reduced by Gauss-Newton steps.
 double distance_near(const ExactShape& shape, const Vector3& point_m, double u, double v);
 
 // Returns the unit normal at the pole at the start or end of v, if the shape has a tangent plane there.
@@ -56,14 +56,14 @@ inline constexpr Range<double> shape_size_range_m{1e-4, 10.0};
 // Smallest rounding, as a fraction of the shortest side that it rounds. Sharper edges need more control
 // points than a stock shape has.
 inline constexpr double min_rounding_fraction = 0.01;
-// Default rounding, as a fraction of the same side.
+// Default rounding, as a fraction of the shortest side that it rounds.
 inline constexpr double default_rounding_fraction = 0.1;
 
 // Returns an out_of_range error in millimetres, such as "radius is 0.01 mm, must be 0.1 mm to 10000 mm".
 Status check_length(std::string_view name, double length_m, Range<double> range_m);
-// Checks a size against shape_size_range_m.
+// Requires a size within shape_size_range_m.
 Status check_size(std::string_view name, double size_m);
-// Checks a rounding against the smallest fraction of a side and `max_m`.
+// Requires a rounding of at least min_rounding_fraction of the side and at most `max_m`.
 Status check_rounding(std::string_view name, double rounding_m, double side_m, double max_m);
 
 }  // namespace spoonbill

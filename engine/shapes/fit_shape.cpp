@@ -93,7 +93,7 @@ Result<ShapeKnots> ShapeKnots::with_control_count(const ShapeDirection& directio
   ShapeKnots knots(direction, degree);
   const int cells = static_cast<int>(knots.spans_.size());
   const int spare = control_count - knots.control_count();
-  // Breaks that leave fewer spare control points are not worth it.
+  // Breaks are ignored if they leave fewer spare control points than half the number of cells.
   if (cells > 1 && spare < cells / 2) {
     knots.ends_ = {direction.start(), direction.end()};
     knots.jumps_ = {false, false};
@@ -309,8 +309,9 @@ Result<DirectionError> error_along(const ExactShape& shape, bool along_u, const 
   return result;
 }
 
-// Returns the number of rings of control points next to a pole that must be in its plane: those that affect
-// the flat part, except the one that bends it beyond the knot at its border; 1 if nothing is flat.
+// Returns the number of rings of control points next to a pole that must be in its plane: those that
+// affect the flat part, except the ring that bends the surface beyond the knot at the part's border; 1 if
+// no part is flat.
 int flat_rings(const ExactShape& shape, bool at_start, const KnotVector& v) {
   const std::vector<double>& knots = v.knots();
   const std::optional<double> border = at_start ? shape.flat_to : shape.flat_from;
@@ -383,7 +384,7 @@ Result<Measure> measure(const ExactShape& shape, const Surface& surface, const S
   return result;
 }
 
-// Measures the deviation at equal parameters: more densely than measure(), on the edges too, and near the
+// Measures the deviation at equal parameters, more densely than measure(): also on the edges and near the
 // worst sample.
 Result<Measure> measure_closely(const ExactShape& shape, const Surface& surface, const ShapeKnots& u,
                                 const ShapeKnots& v, FitRounds& rounds) {

@@ -15,27 +15,27 @@
 
 namespace spoonbill {
 
-// The knots of one direction while a fit refines them: cells between the shape's breaks, each divided evenly.
-// At a break inside the domain the fit is as smooth as the shape: its tangent is continuous, its curvature
-// may jump. One owner.
+// The knots of one direction while a fit refines them: cells between the shape's breaks, each divided
+// evenly. At a break inside the domain the fit has a continuous tangent, but its curvature may jump, as
+// the shape's may. One owner.
 class ShapeKnots {
  public:
   // Makes cells of at most 1 / min_spans of the domain that grow gradually away from short ones.
   ShapeKnots(const ShapeDirection& direction, int degree, int min_spans);
 
-  // Makes knots for about `control_count` control points, leaving some for refine_worst(). Knots are even if
-  // the breaks alone would need more control points.
+  // Makes knots for about `control_count` control points, leaving some for refine_worst(). Ignores the
+  // breaks and spaces the knots evenly if the breaks would leave too few control points.
   static Result<ShapeKnots> with_control_count(const ShapeDirection& direction, int degree,
                                                int control_count);
 
   int control_count() const;
   KnotVector knots() const;
-  // Returns evenly spaced parameters, `in_each_span` in each span, with the ends of the domain and the seam
-  // once.
+  // Returns evenly spaced parameters, `in_each_span` in each span, including both ends of an open domain,
+  // and the seam of a periodic one once.
   std::vector<double> parameters(int in_each_span) const;
 
-  // Subdivides the cells with an error above `allowed_m`, by the degree's order of convergence. Returns
-  // whether there were any.
+  // Subdivides the cells with an error above `allowed_m` into as many spans as the degree's order of
+  // convergence requires. Returns whether there were any.
   bool refine(const std::vector<double>& at, const std::vector<double>& error_m, double allowed_m);
   // Adds a span to the cell with the largest error.
   void refine_worst(const std::vector<double>& at, const std::vector<double>& error_m);
@@ -61,13 +61,13 @@ class ShapeKnots {
 struct ShapeFit {
   double tolerance_m = 1e-5;
   int degree = 3;
-  // Least number of cells in each direction; the default allows shaping everywhere.
+  // Smallest number of cells in each direction; the default allows shaping everywhere.
   int min_spans = 12;
   // True if a displacement along the shape counts as an error too, for shapes whose edges must stay where
   // they are.
   bool keeps_parameters = false;
-  // Numbers of control points along u and v instead of the tolerance; they are placed where the shape needs
-  // them.
+  // Numbers of control points along u and v, placed where the shape needs them. If given, the tolerance is
+  // ignored.
   std::optional<std::array<int, 2>> control_counts = {};
   Progress progress = {};  // can cancel the fit
 };
@@ -77,9 +77,9 @@ struct FittedShape {
   double deviation_m = 0.0;  // largest distance found between a point of the surface and the shape
 };
 
-// Fits a surface to a shape. Poles are interpolated, and smooth where the shape has a tangent plane at them.
-// Refuses a tolerance that needs more than 200 control points in a direction, fewer control points than the
-// degree needs, and a shape that is not finite.
+// Fits a surface to a shape. Poles are interpolated, and the surface is smooth at a pole where the shape
+// has a tangent plane. Refuses a tolerance that needs more than 200 control points in a direction, fewer
+// control points than the degree needs, and a shape that is not finite.
 Result<FittedShape> fit_shape(const ExactShape& shape, const ShapeFit& fit = {});
 
 }  // namespace spoonbill

@@ -15,7 +15,7 @@ namespace spoonbill {
 
 namespace {
 
-// Length of a piece, as a fraction of the whole profile, that is only rounding error.
+// Smallest length of a piece, as a fraction of the whole profile; shorter ones are rounding error.
 constexpr double min_piece = 1e-9;
 
 double cross(const MeridianPoint& a, const MeridianPoint& b) {
@@ -30,7 +30,7 @@ double direction_angle(const MeridianPoint& direction) {
   return std::atan2(direction.y(), direction.x());
 }
 
-// The corner between two directions: its turn to the left, and the length that a rounding removes from either
+// A corner between two directions, its turn to the left, and the length that a rounding removes from each
 // side.
 struct Corner {
   MeridianPoint before, after;

@@ -184,8 +184,8 @@ class BoxAlong {
   double face_, roll_, side_;  // lengths along v
 };
 
-// Returns the axis between the end faces. The squarer faces become ends, so that cells around the poles are
-// not slender; if there is little difference, the longest side decides.
+// Returns the axis through the end faces. The squarer faces become the ends, so that cells around the
+// poles are not slender; if there is little difference, the longest side decides.
 int box_axis(const Vector3& size_m) {
   std::array<int, 3> order = {2, 1, 0};
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return size_m[a] < size_m[b]; });

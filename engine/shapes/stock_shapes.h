@@ -1,4 +1,4 @@
-// Stock shapes, which a design starts from, by their sizes. The origin is the centre of each.
+// Stock shapes that a design starts from, made from their sizes. Each is centred at the origin.
 #pragma once
 
 #include <variant>
@@ -8,10 +8,10 @@
 
 namespace spoonbill {
 
-// A box along x, y and z with rounded edges. The poles are the centres of its two ends, the faces at the ends
-// of its longest side unless these are slender. `rounding_m` is that of the edges around the ends. The four
-// edges between the ends have twice that rounding, at most half the shortest side, and the corners are parts
-// of tori.
+// A box along x, y and z with rounded edges. The poles are the centres of its two ends: the faces at the
+// ends of the longest side, or squarer faces if those are slender. `rounding_m` applies to the edges
+// around the ends. The four edges between the ends have twice that rounding, at most half the shortest
+// side, and the corners are parts of tori.
 struct BoxSize {
   Vector3 size_m{0.06, 0.04, 0.02};
   double rounding_m = 0.002;  // at most max_box_rounding_fraction of the shortest side
@@ -47,8 +47,8 @@ struct CylinderSize {
 // Makes a cylinder along y.
 Result<ExactShape> cylinder_shape(const CylinderSize& size);
 
-// A cone or truncated cone. Radii and height are those of the sharp shape, which contains the roundings: that
-// of the tip, or of the edges around both faces.
+// A cone or truncated cone. Radii and height are those of the sharp cone, from which the roundings remove
+// material. `rounding_m` applies to the edge and the tip, or to both edges of a truncated cone.
 struct ConeSize {
   double radius_m = 0.03, height_m = 0.06;
   double top_radius_m = 0.0;
@@ -82,15 +82,16 @@ struct SheetSize {
 using StockShapeSize =
     std::variant<SphereSize, BoxSize, CylinderSize, ConeSize, PlateSize, SheetSize, TorusSize>;
 
-// Makes a stock shape. Refuses a size that is out of range, and names it.
+// Makes a stock shape. Refuses a size that is out of range, and names the size.
 Result<ExactShape> stock_shape(const StockShapeSize& size);
 
-// Returns the reach of the shape (Federer 1959): every point nearer than this has one nearest point of the
-// shape, so a fitted surface within it that does not fold cannot meet itself. Infinite for a sheet.
+// Returns the reach of the shape (Federer 1959): every point nearer than this has exactly one nearest
+// point on the shape. A fitted surface within the reach that does not fold cannot meet itself. Infinite
+// for a sheet.
 double reach_m(const StockShapeSize& size);
 
-// Returns the default tolerance of a stock shape's fit: 0.01 mm; a thousandth of a body smaller than 10 mm; a
-// hundred-thousandth of a body larger than 1 m in every direction.
+// Returns the default tolerance of a stock shape's fit: 0.01 mm; a thousandth of the longest side if that
+// is shorter than 10 mm; a hundred-thousandth of the shortest side if that is longer than 1 m.
 double default_tolerance_m(const ExactShape& shape);
 
 }  // namespace spoonbill

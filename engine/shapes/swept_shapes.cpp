@@ -17,8 +17,8 @@ namespace spoonbill {
 namespace {
 
 constexpr int frames = 2048;
-// Largest extent of the section toward the centre of a bend, as a fraction of the bend's radius. Above it,
-// the inside of the tube almost folds.
+// Largest extent of the section toward the centre of a bend, as a fraction of the bend's radius. Closer to
+// 1, the inside of the tube almost folds.
 constexpr double max_bend_fraction = 0.98;
 
 struct SweepFrame {
@@ -187,8 +187,8 @@ double squared_distance(const Section& a, const Section& b, std::size_t start, b
   return sum;
 }
 
-// Reverses and restarts a section so that its points are near those of `before` with the same number, both
-// centroids moved together.
+// Reverses a section, and restarts a closed one, so that its points are near the points of `before` with
+// the same index after both centroids are moved together.
 void align_to(const Section& before, Section& section, bool closed) {
   std::size_t best_start = 0;
   bool best_backwards = false;
@@ -237,8 +237,8 @@ Result<std::vector<Section>> even_sections(const LoftSections& loft) {
   return sections;
 }
 
-// The sides of a loft: splines across the sections through each of their points, and along the sections
-// between these.
+// The sides of a loft: splines across the sections through their points with the same index, blended along
+// the sections by further splines.
 class LoftSides {
  public:
   LoftSides(const std::vector<Section>& sections, bool closed) {

@@ -11,16 +11,16 @@
 
 namespace spoonbill {
 
-// A tube of elliptic section, swept along a curve without twist (double reflection, Wang et al. 2008). At the
-// curve's start its width is horizontal, or along x if the curve runs vertically. The ends are half
-// ellipsoids, as long as the smaller half axis.
+// A tube of elliptic section, swept along a curve without twist (double reflection, Wang et al. 2008). At
+// the start of the curve, the tube's width is horizontal, or along x if the curve runs vertically. The
+// ends are half ellipsoids whose length is the smaller half axis.
 struct TubeSize {
   SmoothCurve centre_line;
   double half_width_m = 0.005, half_height_m = 0.005;
 };
 
-// Makes a closed tube. Refuses sizes out of range and a curve that bends too sharply for the tube's width,
-// with the position.
+// Makes a closed tube. Refuses sizes out of range and a curve that bends too sharply for the section, and
+// reports where.
 Result<ExactShape> tube_shape(const TubeSize& size);
 
 // Sections of a loft: the points of each in order, without repeating the first. A first or last section of a
@@ -34,9 +34,10 @@ struct LoftSections {
   bool caps = true;  // whether ends that are not poles are closed
 };
 
-// Makes a surface of a curve through each section and smooth curves across them. Closed sections are reversed
-// and restarted so that successive ones match as closely as possible. A shape with both ends closed has
-// outward normals. Refuses fewer than two sections, sections of too few points, and sizes out of range.
+// Makes a surface of a curve through each section and smooth curves across them. Sections are reversed,
+// and closed ones restarted, so that successive ones match as closely as possible. A shape with both ends
+// closed has outward normals. Refuses fewer than two sections, sections of too few points, successive
+// sections with the same centre, and sizes out of range.
 Result<ExactShape> loft_shape(LoftSections sections);
 
 }  // namespace spoonbill

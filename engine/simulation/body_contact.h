@@ -18,8 +18,8 @@
 
 namespace spoonbill {
 
-// Returns by how much the face of a shell that is pushed along the unit vector `push` is nearer than its
-// surface. `normal` is the surface's unit normal. Exact for flat shells.
+// Returns how much nearer than its surface the touched face of a shell is, m. `push` is the unit vector
+// along which the contact pushes the shell, `normal` the surface's unit normal. Exact for flat shells.
 double far_face_offset_m(double thickness_m, const Vector3& normal, const Vector3& push);
 
 // Finds the gap from a point near the surface point (u, v) to the face on its side, and that face's outward
@@ -89,9 +89,9 @@ class BodyPairContact {
 };
 
 // Contact of a body with itself, where its surface comes near another part of it from outside. A body in a
-// box of cells (solid_lattice.h) has no self-contact if it is thinner than two cells somewhere. Its far side
-// would look like its near side pressed through. One owner, the simulation, which rebuilds it with the body's
-// mapping.
+// box of cells (LatticeMesh::slender) has no self-contact if it is thinner than two cells anywhere, because
+// its far side would look like its near side pressed through. One owner, the simulation, which rebuilds it
+// with the body's mapping.
 class BodySelfContact {
  public:
   explicit BodySelfContact(const BodyState& body);

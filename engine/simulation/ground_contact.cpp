@@ -269,7 +269,7 @@ void BodyGroundContact::find(int index, const BodyState& body, const Ground& gro
                              double time_s) {
   BodyFootings& footings = bodies_[static_cast<std::size_t>(index)];
   const double look_m = reach_m + footings.max_sample_distance_m;
-  // A shell's nodes are on its faces, so that its skin needs no correction.
+  // A shell's nodes are on its faces, so its skin needs no correction.
   const bool thin = body.lattice.mesh().thin, boxed = is_boxed(body.lattice.mesh());
   if (!thin && !footings.heights.compute(body.mapping().current(), ground.point_m, ground.normal, look_m)) {
     for (Footing& footing : footings.footings) footing.is_near = false;
@@ -281,7 +281,7 @@ void BodyGroundContact::find(int index, const BodyState& body, const Ground& gro
       footing.is_near = false;
       continue;
     }
-    // A cell's corner may be outside the skin and then is not part of the body.
+    // The node of a boxed body may be outside its skin, so only the samples count.
     if (boxed) gap_m = std::numeric_limits<double>::infinity();
     for (int s = footing.first_followed; s < footing.first_followed + footing.followed_count; ++s) {
       const EmbeddedPoint& sample = body.mapping().sample(footings.followed[static_cast<std::size_t>(s)]);

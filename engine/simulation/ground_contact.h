@@ -1,4 +1,4 @@
-// Contact of bodies with the ground, as constraints on their lattices.
+// Contact of bodies with the ground, as constraints on their lattices, and the heights of surfaces above it.
 #pragma once
 
 #include <span>

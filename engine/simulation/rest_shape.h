@@ -21,9 +21,10 @@ struct RestShape {
   Vector3 largest_strain_position_m = Vector3::Zero();  // in the undeformed body
 };
 
-// Solves with hexahedra. Planes and supports fix their nodes: at the end of a ramp, at the centre of an
-// oscillation. Ground and other bodies are ignored, and plastic or creeping materials count as elastic.
-// Refuses what make_body_state() refuses, a body that nothing fixes, and loads without an equilibrium.
+// Computes the rest shape with hexahedra. Planes and supports fix their nodes; a moving support is at the
+// end of its ramp or at the centre of its oscillation. Ground and other bodies are ignored, and plastic or
+// creeping materials count as elastic. Refuses what make_body_state() refuses, a body that nothing fixes,
+// and loads without an equilibrium.
 Result<RestShape> compute_rest_shape(const Scene& scene, int body, const Progress& progress = {});
 
 }  // namespace spoonbill

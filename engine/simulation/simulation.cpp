@@ -131,7 +131,8 @@ void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
   }
   std::array<RelaxedLattice, lattice_capacity> lattices{};
   for (std::size_t b = 0; b < s.stepped_count(); ++b) {
-    // Sag is weight over stiffness, so that a softened body gets less weight and load to sag the same.
+    // Sag is weight over stiffness: a softened body gets proportionally less weight and load, so it sags as
+    // much as the real one.
     BodyState& body = s.bodies[b];
     const double ratio = stiffness_ratio(s, b);
     body.loads.apply(1.0 / ratio, body.lattice, body.active_solver());
@@ -168,7 +169,7 @@ void mark_touched(Simulation::State& s) {
   }
 }
 
-// Measures one body in turn, a few times a second, for the panel.
+// Measures the residual of one body in turn, about eight times a second, for the panel.
 void measure_residuals(Simulation::State& s) {
   constexpr std::uint64_t interval_ticks = 128;
   if (s.tick % interval_ticks != 0) return;

@@ -24,7 +24,7 @@ inline constexpr double tick_s = 1e-3;
 // Input of the hand in one tick.
 struct ToolInput {
   Pose pose;
-  bool gripping = false;  // the button is down: holds a pull
+  bool gripping = false;  // the button is down, which holds a pull
   // Stiffness of the spring between hand and tool, in N/m against the real material. 0: the tool is held
   // rigidly.
   double coupling_n_per_m = 0.0;

@@ -17,8 +17,8 @@
 
 namespace spoonbill {
 
-// Tool in the person's hand, or its mirror image. It can move, because the contact keeps addresses of grids
-// that the mappings hold by pointer.
+// Tool in the user's hand, or its mirror image. Movable, because the addresses that the contact keeps are
+// those of grids that the mappings hold by pointer.
 struct HeldTool {
   ToolContact contact;
   Pose hand{};  // in the last tick
@@ -87,7 +87,7 @@ struct ToolTouch {
 struct ToolKernel {
   // Adds the constraints of this tick.
   void (*constrain)(ToolContact& contact, const ToolTouch& touch) = nullptr;
-  // Changes the form of the bodies under the tool; null if the constraints are all.
+  // Changes the shape of the bodies under the tool; null if the action only adds constraints.
   void (*reform)(Simulation::State& state, const HeldTool& held) = nullptr;
   // False if the tool slides on the body without denting it (ToolMotion::body_yields).
   bool body_yields = true;
@@ -103,7 +103,8 @@ ToolHold make_mirrored_hold(const Symmetry& symmetry, const ToolInput& input);
 // Finds the contact of a tool and its motion from the last tick's pose to that of `hold`.
 TouchingTool touch(Simulation::State& state, HeldTool& held, ToolHold hold, double coupling_n_per_m);
 
-// Computes proxy, force and touch of the person's own tool after the bodies have moved.
+// Computes proxy, force and touch of the tool in the user's hand, not of its mirror image, after the bodies
+// have moved.
 void react(Simulation::State& state, const ToolInput& input);
 
 // Carries out commands, outside the tick; may allocate. Each makes all new parts first and changes the state

@@ -3,13 +3,13 @@
 // their shape, edges included.
 //
 // The bump of a shell node is the change of its curvature since the rest shape minus that of its neighbours.
-// It is measured along each of the two lattice lines that cross there. An evenly changing curvature, as of a
-// bend, has no bump and stays. To first order this is the flow d' = -(d^4 d / ds^4) of the normal
-// displacement, as of a thin plate. Shapes smaller than a cell are not resolved. Small changes of volume do
+// It is measured along each of the two lattice lines that cross there. An evenly changing curvature, as in a
+// bend, is not a bump and stays. To first order this is the flow d' = -(d^4 d / ds^4) of the normal
+// displacement, as in a thin plate. Shapes smaller than a cell are not resolved. Small changes of volume do
 // not change the mass.
 //
-// The shell is that of the block of cells. The skin of a body in a box of cells is inside the block. It
-// follows its nodes, which move to the centre of their neighbours like all inner nodes.
+// Shell nodes are those on the hull of the block of cells. The skin of a body in a box of cells is inside
+// the block and follows inner nodes, which return to their rest position among their neighbours.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// Contact debug views: the collision stages of every contact in a snapshot. They cover the tool, its mirror
-// image and every body against every other body.
+// Contact debug views: the collision stages of every contact in a snapshot. They cover the tool and its
+// mirror image against every body, and every body against every other one.
 #pragma once
 
 #include <cstdint>

@@ -33,7 +33,7 @@ Result<BodyState> make_soft_mesh(const MeshSolid& solid, const SoftTool& soft, I
   if (!inside.uses_normals()) {
     return Error{
         ErrorCode::self_intersecting,
-        "mesh: passes through itself or has edges of more than two triangles; mend it, or leave soft out",
+        "mesh: passes through itself or has edges of more than two triangles; repair it or omit soft",
         "mesh"};
   }
   const Vector3 size = inside.bounds().high - inside.bounds().low;
@@ -247,8 +247,8 @@ void ToolContact::grip(std::span<const BodyState> bodies, const ToolHold& hold) 
   gripped_ = true;
 }
 
-// A body that the tool has pressed stays against it and vibrates. The tool has left it at a distance of a
-// margin, or when it hovers outside.
+// A body that the tool has pressed vibrates against it. A lifted tool therefore counts as clear of the body
+// only at a distance of a margin or, while it hovers, outside the body.
 bool ToolContact::acts(bool inside, bool near, const ToolHold& hold) {
   const bool is_against = hold.hovering ? inside : near;
   lifted_ = lifted_ && (is_against || hold.gripping);
@@ -387,8 +387,9 @@ void ToolContact::add_shell_pushes(int body, const BodyState& state, const ToolH
   }
 }
 
-// Adds pushes for the samples and for the nearest point's tangent plane. The latter is added for a tool that
-// fits between samples, or if it is so near that its nearest point stays the nearest over a tick.
+// Adds pushes for the samples and for the nearest point's tangent plane. The tangent plane is added for a
+// tool that fits between samples, or for one so near that its nearest point remains the nearest throughout a
+// tick.
 void ToolContact::add_sphere_pushes(int body, const BodyState& state) {
   BodyContact& contact = contacts_[body];
   const SurfaceContact& nearest = contact.collision.nearest;
@@ -402,7 +403,8 @@ void ToolContact::add_sphere_pushes(int body, const BodyState& state) {
   }
 }
 
-// Uses the surface's gap; the offset of its embedding from the surface is constant over a tick.
+// Uses the gap of the surface instead of that of the embedded point, whose offset from the surface is
+// constant over a tick.
 void ToolContact::add_plane_push(int body, const BodyState& state, const Pushed& pushed,
                                  const ToolHold& hold) {
   const Vector3 from_centre = position_of(state.lattice, pushed.point) - hold.pose.position_m;

@@ -65,7 +65,7 @@ class ToolContact {
   ToolContact(std::span<const BodyState> bodies, const ToolModel& model);
 
   // Finds the tool's contacts and lets the kernel of its action (ToolKernel) add the constraints of this
-  // tick. From hovering on, the tool does not act until it is outside the bodies.
+  // tick. Once it hovers, the tool does not act until it is outside the bodies and hovers no longer.
   void prepare(std::span<const BodyState> bodies, const Tool& tool, const ToolModel& model,
                const ToolHold& hold);
   // Prepares a soft tool, which touches the bodies as a body itself.
@@ -114,7 +114,8 @@ class ToolContact {
   void select_shell_face(BodyContact& contact, const BodyState& body, double margin) const;
   // Returns whether the tool is a sphere that fits between samples.
   bool is_small(const BodyState& body) const;
-  // Returns whether the tool in the hand is a B-spline. The model may be of an earlier solid.
+  // Returns whether the tool in the hand is a B-spline. Its kind decides too, because the model may be of an
+  // earlier solid tool.
   bool is_surface() const { return is_solid_ && placed_ != nullptr; }
   void add_pushes(int body, const BodyState& state, const ToolHold& hold);
   void add_sphere_pushes(int body, const BodyState& state);

@@ -14,15 +14,15 @@ void push(ToolContact& contact, const ToolTouch& touch) {
   contact.push(touch.bodies, touch.hold);
 }
 
-// Pull: fixes what is in the tool when the button goes down in the tool's frame, until the button is
-// released.
+// Pull: grips what is inside the tool when the button goes down, and fixes it in the tool's frame until the
+// button is released.
 void pull(ToolContact& contact, const ToolTouch& touch) {
   if (!touch.hold.gripping) return contact.release();
   if (touch.inside && !contact.gripped()) contact.grip(touch.bodies, touch.hold);
 }
 
-// Smooth: the tool slides on a surface that does not yield. This smooths the surface under it (smoothing.h),
-// within the tool's radius or a few cells for a small tool.
+// Smooth: smooths the surface under the tool (smoothing.h), within the tool's radius, or within a few cells
+// for a small tool. The tool slides on the surface without denting it.
 void smooth(Simulation::State& s, const HeldTool& held) {
   constexpr double least_reach_cells = 2.5;
   const int number = held.contact.deepest_body();

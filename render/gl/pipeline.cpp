@@ -47,34 +47,36 @@ Result<GlFunctions> load_gl_functions(const GlContext& context) {
   return gl;
 }
 
-GlHandle make_buffer(const GlFunctions& gl) {
+namespace {
+
+// Makes an object with one pair of functions, and lets the handle delete it.
+template <auto generate, auto remove>
+GlHandle make_object(const GlFunctions& gl) {
   GLuint id = 0;
-  gl.GenBuffers(1, &id);
-  return {gl, id, [](const GlFunctions& f, GLuint i) { f.DeleteBuffers(1, &i); }};
+  (gl.*generate)(1, &id);
+  return {gl, id, [](const GlFunctions& functions, GLuint object) { (functions.*remove)(1, &object); }};
+}
+
+}  // namespace
+
+GlHandle make_buffer(const GlFunctions& gl) {
+  return make_object<&GlFunctions::GenBuffers, &GlFunctions::DeleteBuffers>(gl);
 }
 
 GlHandle make_vertex_array(const GlFunctions& gl) {
-  GLuint id = 0;
-  gl.GenVertexArrays(1, &id);
-  return {gl, id, [](const GlFunctions& f, GLuint i) { f.DeleteVertexArrays(1, &i); }};
+  return make_object<&GlFunctions::GenVertexArrays, &GlFunctions::DeleteVertexArrays>(gl);
 }
 
 GlHandle make_texture(const GlFunctions& gl) {
-  GLuint id = 0;
-  gl.GenTextures(1, &id);
-  return {gl, id, [](const GlFunctions& f, GLuint i) { f.DeleteTextures(1, &i); }};
+  return make_object<&GlFunctions::GenTextures, &GlFunctions::DeleteTextures>(gl);
 }
 
 GlHandle make_renderbuffer(const GlFunctions& gl) {
-  GLuint id = 0;
-  gl.GenRenderbuffers(1, &id);
-  return {gl, id, [](const GlFunctions& f, GLuint i) { f.DeleteRenderbuffers(1, &i); }};
+  return make_object<&GlFunctions::GenRenderbuffers, &GlFunctions::DeleteRenderbuffers>(gl);
 }
 
 GlHandle make_framebuffer(const GlFunctions& gl) {
-  GLuint id = 0;
-  gl.GenFramebuffers(1, &id);
-  return {gl, id, [](const GlFunctions& f, GLuint i) { f.DeleteFramebuffers(1, &i); }};
+  return make_object<&GlFunctions::GenFramebuffers, &GlFunctions::DeleteFramebuffers>(gl);
 }
 
 Result<Program> Program::make(const GlFunctions& gl, const char* name, const std::string& vertex_source,

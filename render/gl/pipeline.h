@@ -139,7 +139,7 @@ GlHandle make_texture(const GlFunctions& gl);
 GlHandle make_renderbuffer(const GlFunctions& gl);
 GlHandle make_framebuffer(const GlFunctions& gl);
 
-// A linked shader program with uniforms by name.
+// A linked shader program, whose uniforms are set by name.
 class Program {
  public:
   // Compiles and links GLSL sources, to which the version line is prepended. Errors contain `name`, the stage

@@ -1,8 +1,8 @@
 // The picture being drawn, in two layers.
 //
-// The scene has 0 or 4 samples a pixel and is transparent where nothing was drawn. The frame receives the
-// background, the scene and the interface, and pixels are read from it. Shaders compute in linear light and
-// encode to sRGB themselves, because an sRGB target would encode every sample.
+// The scene layer has 0 or 4 samples a pixel and is transparent where nothing was drawn. The frame layer
+// receives the background, the scene and the interface, and pixels are read from it. Shaders compute in
+// linear light and encode to sRGB themselves, because an sRGB target would encode every sample.
 #pragma once
 
 #include <span>

@@ -64,7 +64,8 @@ bool is_shown(const ViewSettings& settings) {
   return settings.stages && settings.overlays.contact_stage != ContactStage::none;
 }
 
-// Returns the point at which the tool ends in a direction.
+// Returns the point of the tool, or of its bounding box, that a ray from its centre leaves last. A soft tool
+// has its position instead.
 Vector3 find_arrow_start(const Snapshot& snapshot, const Vector3& direction) {
   const ToolSnapshot& tool = snapshot.tool;
   const ToolBody* body = rigid_body(tool);

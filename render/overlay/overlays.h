@@ -95,8 +95,8 @@ void append_control_net(const SurfaceSnapshot& surface, std::vector<OverlayLine>
 
 using PlaneCorners = std::array<Vector3, 4>;  // in order around a rectangle
 
-// Returns an upright rectangle around the fixed nodes, which do not move while the body bends; around the box
-// of the body if no node is fixed.
+// Returns an upright rectangle in a fixing plane, around the fixed nodes, because these do not move while the
+// body bends; around the box of the body if no node is fixed.
 PlaneCorners fixing_plane_corners(const PlaneSnapshot& plane, const std::vector<BodySnapshot>& bodies,
                                   const Box& body);
 
@@ -121,11 +121,11 @@ struct ForceArrow {
   double newtons = 0.0;
 };
 
-// Returns an arrow whose length is proportional to the force, at most the larger of 60 mm and five tool
-// radii. Empty if the overlay is off, or below 5 mN, where the direction is noise.
+// Returns an arrow whose length is proportional to the force: at least 6 mm, at most the larger of 60 mm and
+// five tool radii. Empty if the overlay is off, or below 5 mN, where the direction is noise.
 std::optional<ForceArrow> force_arrow(const Snapshot& snapshot, const ViewSettings& settings);
 
-// Returns the length of the lines of append_contact_normals(): more than half the radius of the tool.
+// Returns the length of the lines of append_contact_normals(): the larger of 4 mm and 0.6 tool radii.
 double contact_normal_length_m(const ToolSnapshot& tool);
 
 // Appends the outward normals of the contact points as short lines.
@@ -144,7 +144,7 @@ struct StageShapes {
 // Returns the shapes of the selected stage; empty without stages.
 StageShapes stage_shapes(const Snapshot& snapshot, const ViewSettings& settings);
 
-// Returns the normal and the tangents at the deepest contact of each region.
+// Returns arrows for the normal and the tangents at the deepest contact of each region.
 std::vector<OverlayArrow> contact_arrows(const Snapshot& snapshot, const ViewSettings& settings);
 
 // Returns a sentence that describes the selected stage; empty if no stage is shown.

@@ -32,7 +32,7 @@ std::vector<std::uint8_t> gradient(int width_px, int height_px) {
     const double t = (y + 0.5) / height_px;
     const double fraction = t * t * (3.0 - 2.0 * t);
     std::uint8_t colour[4] = {0, 0, 0, 255};
-    // The channels are dithered with different offsets, otherwise rows would be visible.
+    // The channels are dithered with different offsets; otherwise rows would be visible.
     for (int c = 0; c < 3; ++c) {
       colour[c] = dithered(bottom_srgb[c] + fraction * (top_srgb[c] - bottom_srgb[c]), y + 3 * c);
     }

@@ -29,8 +29,8 @@ class BackgroundPass {
   int width_px_ = 0, height_px_ = 0;
 };
 
-// Draws the shadows on the ground. The ground is not a surface, so that it has no edge: the background is
-// visible through it.
+// Draws the shadows on the ground. The ground itself is not drawn, so that it has no edge: the background
+// stays visible.
 class GroundPass {
  public:
   static Result<GroundPass> make(const GlFunctions& gl);

@@ -10,13 +10,13 @@
 
 namespace spoonbill {
 
-// Made once a frame and read by every pass.
+// The view of one frame, made once and read by every pass.
 struct FrameView {
   Viewport viewport;
   Eigen::Matrix4f world_to_clip;
   Eigen::Vector3f eye_m;
   Eigen::Vector3f eye_right, eye_up;  // unit
-  Eigen::Vector3f toward_key;         // unit, at least 12 degrees above the horizon
+  Eigen::Vector3f toward_key;         // unit, at least 11 degrees above the horizon
   float ground_y_m = 0.0f;
   float interface_scale = 1.0f;
   float nearest_depth_m = 0.0f;    // depth at which lines are clipped before they are widened
@@ -33,7 +33,7 @@ void set_frame_uniforms(const Program& program, const FrameView& view);
 // without attributes.
 extern const char* const whole_viewport_vertex_glsl;
 
-// The uniform toward_key, which must precede the two parts below.
+// The declaration of the uniform toward_key, which must precede the two parts below.
 extern const char* const key_light_glsl;
 
 // Functions for the shadow of the round tool: the fractions of key light and sky that pass it. The shadow is
@@ -41,9 +41,9 @@ extern const char* const key_light_glsl;
 // form for a sphere above a plane. Uniforms: tool_centre, tool_radius (0 without a tool).
 extern const char* const sphere_shadow_glsl;
 
-// Lights and materials of the studio. studio_light() returns the light from a surface point to the eye;
-// opaque_colour() and clear_colour() encode it to sRGB. Uniforms: eye, ground_y, toward_fill, toward_rim,
-// toward_strip.
+// Functions for the lights and materials of the studio. studio_light() returns the light from a surface point
+// to the eye; opaque_colour() and clear_colour() encode it to sRGB. Uniforms: eye, ground_y, toward_fill,
+// toward_rim, toward_strip.
 extern const char* const studio_light_glsl;
 
 }  // namespace spoonbill

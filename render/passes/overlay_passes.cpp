@@ -202,6 +202,18 @@ out vec4 result;
 void main() { result = vec4(colour.rgb * colour.a, colour.a); }
 )";
 
+// Sets the state and the uniforms that all overlays share, and puts the program in use.
+void begin_overlay(const GlFunctions& gl, const Program& program, const FrameView& view) {
+  set_pipeline_state(gl, {Depth::test, Blend::premultiplied, Cull::off});
+  program.use();
+  set_frame_uniforms(program, view);
+}
+
+void set_viewport(const Program& program, const FrameView& view) {
+  program.set("viewport", Eigen::Vector2f(static_cast<float>(view.viewport.width_px),
+                                          static_cast<float>(view.viewport.height_px)));
+}
+
 }  // namespace
 
 InstancedQuads::InstancedQuads(const GlFunctions& gl, std::size_t instance_bytes,
@@ -250,11 +262,8 @@ LinePass::LinePass(const GlFunctions& gl, Program program)
 
 void LinePass::draw(const FrameView& view, const std::vector<OverlayLine>& lines, float lift_m) const {
   if (lines.empty()) return;
-  set_pipeline_state(*gl_, {Depth::test, Blend::premultiplied, Cull::off});
-  program_.use();
-  set_frame_uniforms(program_, view);
-  program_.set("viewport", Eigen::Vector2f(static_cast<float>(view.viewport.width_px),
-                                           static_cast<float>(view.viewport.height_px)));
+  begin_overlay(*gl_, program_, view);
+  set_viewport(program_, view);
   program_.set("lift", lift_m);
   program_.set("width_scale", view.interface_scale);
   program_.set("nearest_depth", view.nearest_depth_m);
@@ -279,11 +288,8 @@ MarkPass::MarkPass(const GlFunctions& gl, Program program)
 
 void MarkPass::draw(const FrameView& view, const std::vector<OverlayMark>& marks, float lift_m) const {
   if (marks.empty()) return;
-  set_pipeline_state(*gl_, {Depth::test, Blend::premultiplied, Cull::off});
-  program_.use();
-  set_frame_uniforms(program_, view);
-  program_.set("viewport", Eigen::Vector2f(static_cast<float>(view.viewport.width_px),
-                                           static_cast<float>(view.viewport.height_px)));
+  begin_overlay(*gl_, program_, view);
+  set_viewport(program_, view);
   program_.set("lift", lift_m);
   program_.set("scale", view.interface_scale);
   program_.set("pixel_depth_ratio", view.pixel_depth_ratio);
@@ -309,9 +315,7 @@ void ShellPass::draw(const FrameView& view, std::vector<OverlayShell>& shells) c
   std::stable_sort(shells.begin(), shells.end(), [&](const OverlayShell& one, const OverlayShell& other) {
     return (one.centre_m - view.eye_m).squaredNorm() > (other.centre_m - view.eye_m).squaredNorm();
   });
-  set_pipeline_state(*gl_, {Depth::test, Blend::premultiplied, Cull::off});
-  program_.use();
-  set_frame_uniforms(program_, view);
+  begin_overlay(*gl_, program_, view);
   program_.set("eye_up", view.eye_up);
   program_.set("pixel_depth_ratio", view.pixel_depth_ratio);
   program_.set("width_scale", view.interface_scale);
@@ -342,9 +346,7 @@ TrianglePass::TrianglePass(const GlFunctions& gl, Program program)
 void TrianglePass::draw(const FrameView& view, const std::vector<OverlayCorner>& corners,
                         float lift_m) const {
   if (corners.empty()) return;
-  set_pipeline_state(*gl_, {Depth::test, Blend::premultiplied, Cull::off});
-  program_.use();
-  set_frame_uniforms(program_, view);
+  begin_overlay(*gl_, program_, view);
   program_.set("lift", lift_m);
   gl_->BindVertexArray(vertex_array_.id());
   gl_->BindBuffer(GL_ARRAY_BUFFER, vertices_.id());

@@ -63,8 +63,8 @@ class MarkPass {
  public:
   static Result<MarkPass> make(const GlFunctions& gl);
 
-  // Draws marks with a radius of at most seven pixels, before the interface scale. Moves them toward the eye,
-  // by lift_m or slightly more than their own size, before the depth test.
+  // Draws marks with a radius of at most seven pixels, before the interface scale. Moves them toward the eye
+  // before the depth test: by lift_m, or by 2.5 times their radius if that is more.
   void draw(const FrameView& view, const std::vector<OverlayMark>& marks, float lift_m) const;
 
  private:

@@ -18,7 +18,7 @@ constexpr float stage_lift_m = 0.0004f;
 constexpr float ghost_translucency = 0.85f;
 
 // Lift of marks on the surface, as a fraction of a lattice cell: marks stay visible above the chords of a
-// curve, those on the far side stay hidden.
+// curve, and those on the far side stay hidden.
 constexpr float lift_fraction_of_cell = 0.4f;
 constexpr float lift_without_lattice_m = 0.0002f;
 
@@ -148,7 +148,7 @@ void ScenePasses::draw_ground(const FrameView& view, const ViewSettings& setting
   if (settings.shadow) passes_.ground.draw_shadow(view, passes_.shadow);
 }
 
-// Drawn after the bodies, which would otherwise hide the bar.
+// Draws the scale bar. Must follow the bodies, which would otherwise hide it.
 void ScenePasses::draw_scale_bar(const FrameView& view, const ViewSettings& settings) {
   if (!settings.overlays.scale_bar) return;
   const auto bar = ground_scale_bar(settings.camera, view.viewport, settings.ground_y_m);
@@ -221,7 +221,7 @@ void ScenePasses::draw_tool(const FrameView& view, const ToolSnapshot& tool, con
   }
 }
 
-// Drawn after the tool, so that contacts are visible through it.
+// Draws the contact stage. Must follow the tool, so that contacts are visible through it.
 void ScenePasses::draw_stage(const FrameView& view, const Snapshot& snapshot,
                              const ViewSettings& settings) const {
   StageShapes shapes = stage_shapes(snapshot, settings);
@@ -236,7 +236,7 @@ void ScenePasses::draw_stage(const FrameView& view, const Snapshot& snapshot,
   }
 }
 
-// Drawn after the tool, which would otherwise tint the nodes behind it.
+// Draws the touched nodes. Must follow the tool, which would otherwise tint the nodes behind it.
 void ScenePasses::draw_touched(const FrameView& view, const Snapshot& snapshot) {
   marks_.clear();
   for (const BodySnapshot& body : snapshot.bodies) append_touched_marks(body.lattice, marks_);

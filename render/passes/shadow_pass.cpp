@@ -151,8 +151,8 @@ int used_px(float fraction, int side_px) {
 
 constexpr float contact_margin_m = 0.012f;
 
-// Returns the projection of points along the light onto the ground, to the clip space of a square map. sign
-// +1 keeps the highest point in front, -1 the lowest.
+// Returns the projection of points onto the ground in the direction `along`, to the clip space of a square
+// map. A sign of +1 puts the highest point in front, -1 the lowest.
 Eigen::Matrix4f ground_projection(const ShadowArea& area, const Eigen::Vector3f& along, float ground_y_m,
                                   float sign) {
   const float to_clip = 2.0f / area.side_m;

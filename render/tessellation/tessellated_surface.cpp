@@ -289,8 +289,8 @@ void TessellatedSurface::orient() {
   for (std::size_t i = 0; i + 2 < indices_.size(); i += 3) std::swap(indices_[i + 1], indices_[i + 2]);
 }
 
-// Replaces the triangles of the whole surface, which served to find out whether it is closed and which side
-// is outside.
+// Replaces the triangles of the whole surface by those within the trim loops. orient() calls this
+// when it has determined from the whole surface whether it is closed and which side is outside.
 void TessellatedSurface::trim_indices() {
   TrimmedGrid cut = trim_grid(grid_->u, grid_->v, *trim_);
   indices_.clear();

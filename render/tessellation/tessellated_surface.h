@@ -50,8 +50,8 @@ SamplingLevel choose_sampling_level(const SurfaceSnapshot& surface, double pixel
 // once. `pieces` has one entry a span.
 std::vector<double> drawing_parameters(const KnotVector& knots, const std::vector<int>& pieces);
 
-// Vertices and normals of a deforming mesh: smooth where adjacent faces are nearly parallel, with an edge
-// elsewhere. One owner, one thread.
+// Computes the vertices and normals of a deforming mesh, smooth where adjacent faces are nearly parallel and
+// with an edge elsewhere. One owner, one thread.
 class MeshShading {
  public:
   // Returns whether the shading was built for these triangles.
@@ -101,7 +101,7 @@ class TessellatedSurface {
   // coincident vertices, some of whose triangles have no area.
   const std::vector<std::uint32_t>& indices() const { return indices_; }
 
-  // Number of rebuilds of the indices; tells buffers when to upload them.
+  // Number of rebuilds of the indices; buffers upload them when it has changed.
   std::uint64_t topology_version() const { return topology_version_; }
 
   // Returns whether the surface encloses a volume, so that its inside is never visible.

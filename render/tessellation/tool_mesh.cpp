@@ -83,8 +83,8 @@ void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, ToolMesh& m
   for (const std::uint32_t corner : {a, b, c}) mesh.indices.push_back(corner);
 }
 
-// Joins `rows` rings of `around` vertices about y, starting at vertex `first`. The outside is on the right of
-// the direction from ring to ring if that direction is up.
+// Joins `rows` rings of `around` vertices about y, starting at vertex `first`. In the profile, with the axis
+// on the left, the outside is on the right of the direction from ring to ring.
 void join_rows(std::uint32_t first, int rows, ToolMesh& mesh) {
   for (int row = 0; row + 1 < rows; ++row) {
     for (int i = 0; i < around; ++i) {
@@ -117,7 +117,7 @@ double signed_power(double x, double exponent) {
   return std::copysign(std::pow(std::abs(x), exponent), x);
 }
 
-// Returns the mesh by the angles of Barr (1981), with y for his z.
+// Returns a mesh over the two angles of Barr (1981), with his z as y.
 ToolMesh superquadric(const SuperquadricShape& shape) {
   const Vector3& size = shape.semi_axes_m;
   const double e1 = shape.exponent_along, e2 = shape.exponent_around;
@@ -215,7 +215,7 @@ struct ShapeMesher {
     return mesh;
   }
 
-  // Returns both sides of a disc, so that its edge is visible from inside too.
+  // Returns both sides of a disc, so that it is visible from inside the half-space too.
   ToolMesh operator()(const HalfSpaceShape& /*shape*/) const {
     constexpr double r = half_space_radius_m;
     ToolMesh mesh;

@@ -1,4 +1,4 @@
-// Rigid solid tools for drawing: triangle mesh, frame, extent, and the order in which a glassy tool is drawn.
+// Rigid solid tools for drawing: triangle mesh, frame, extent, and the order in which glass is drawn.
 // No GL.
 #pragma once
 
@@ -48,7 +48,7 @@ struct ToolVertex {
 struct ToolMesh {
   std::vector<ToolVertex> vertices;
   std::vector<std::uint32_t> indices;
-  bool convex = false;  // true if at most one layer of outsides is visible
+  bool convex = false;  // true if no front face hides another, so that the order of drawing is free
 };
 
 // Returns a mesh fine enough for a tool that fills the screen; empty for a sphere of radius 0. Errors: a

@@ -132,7 +132,7 @@ TEST_F(CadFileTest, OtherContentIsRefused) {
     for (int k = 0; k < 20000; ++k) noise += static_cast<char>(random.integer(0, 255));
     expect_refusal(write(std::string("noise") + ending, noise), "");
   }
-  expect_refusal(write("is-iges.step", text_of(FileFormat::iges)), "is no STEP file");
+  expect_refusal(write("is-iges.step", text_of(FileFormat::iges)), "is not a STEP file");
   expect_refusal(write("is-step.iges", text_of(FileFormat::step)), "");
   const std::string nothing =
       "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"

@@ -158,7 +158,7 @@ TEST_F(FitTest, SaysWhichIslandsBridgingCaps) {
     return json_of_fit(write("islands.xyz", xyz_of(scan, 1e3)),
                        {"--islands", "bridge", "--control", "10x10"});
   };
-  const std::string capped = "islands were open elsewhere than at the gaps";
+  const std::string capped = "islands were open at places other than the gaps";
   Scan pipe = random_cloud(6000, 1, [](double s, double t) { return on_cylinder(s, t, 0.01, 0.08); });
   leave_out(pipe, [](const Vector3& point) { return std::abs(point.z() - 0.04) < 0.003; });
   const Json pillow = bridged(pipe);

@@ -226,8 +226,8 @@ TEST_F(MeshFileTest, DamagedContentIsRefused) {
   expect_refusal(write("countless.stl", countless), "cannot be read as STL");
   expect_refusal(write("json.stl", "{\"spoonbill_document\": 1}"), "cannot be read as STL");
   const std::string text_ply = ply_text(box);
-  expect_refusal(write("last.ply", text_ply.substr(0, text_ply.size() - 12)), "export it anew");
-  expect_refusal(write("headless.ply", "ply\nformat ascii 1.0\n"), "export it anew");
+  expect_refusal(write("last.ply", text_ply.substr(0, text_ply.size() - 12)), "export it again");
+  expect_refusal(write("headless.ply", "ply\nformat ascii 1.0\n"), "export it again");
   expect_refusal(write("json.ply", "{\"spoonbill_document\": 1}"), "cannot be read as PLY");
   expect_refusal(write("noise.obj", std::string("\0\x01\xff\xfe noise \0", 12)), "");
   const std::string ply = ply_text(box);

@@ -98,7 +98,7 @@ TEST(Replay, NamesTheTickWhereTheStateDiffers) {
 
   const std::string older = place.write("older.jsonl", "of before").string();
   EXPECT_EQ(run({"replay", changed, "--no-frames", "--rerecord", older}).code, exit_failed);
-  EXPECT_EQ(content_of(older), "of before") << "what could not be made anew stays";
+  EXPECT_EQ(content_of(older), "of before") << "a file that could not be replaced stays";
 
   const Outcome again = run({"record", changed, "--out", place.text("again.jsonl")});
   EXPECT_EQ(again.code, exit_done) << again.err;

@@ -161,7 +161,7 @@ TEST(DamagedRecording, HasAbsurdSizes) {
 TEST(DamagedRecording, IsNoFile) {
   const TemporaryFolder folder;
   const std::string here = folder.path().string();
-  EXPECT_EQ(read_recording(folder.path()).error().message, here + ": is a folder, name a file in it");
+  EXPECT_EQ(read_recording(folder.path()).error().message, here + ": is a folder; name a file in it");
   EXPECT_EQ(read_recording(folder.path() / "x").error().message, here + "/x: no such file");
   EXPECT_EQ(read_recording("/dev/null").error().message, "/dev/null: is not a regular file");
   EXPECT_EQ(read_recording(folder.write("e", "")).error().message, here + "/e: is empty");

@@ -99,8 +99,8 @@ TEST(Script, NamesWhatIsWrong) {
   const std::string begin = std::string(start) + ",";
   EXPECT_EQ(refusal(""), "bend.json: steps is a list of 0, must be a list of 1 to 10000");
   EXPECT_EQ(refusal("{\"hold_s\": 1}"),
-            "bend.json: steps[0] needs a start, put a step with start_mm before it");
-  EXPECT_EQ(refusal("{\"grip\": true}"), "bend.json: steps have no start, begin with a step with start_mm");
+            "bend.json: steps[0] needs a start; put a step with start_mm before it");
+  EXPECT_EQ(refusal("{\"grip\": true}"), "bend.json: steps have no start; begin with a step with start_mm");
   EXPECT_EQ(refusal(begin + start), "bend.json: steps[1].start_mm must come once, before the other motions");
   EXPECT_EQ(refusal(begin + "{\"move_to_mm\": [0,0,0]}"), "bend.json: steps[1].over_s is missing");
   EXPECT_EQ(refusal(begin + "{\"move_to_mm\": [0,0,0], \"over_s\": 0}"),
@@ -108,7 +108,7 @@ TEST(Script, NamesWhatIsWrong) {
   EXPECT_EQ(refusal(begin + "{\"hold_s\": 0.0005}"),
             "bend.json: steps[1].hold_s is 5e-04, must be whole milliseconds");
   EXPECT_EQ(refusal(begin + "{\"hold_s\": 599.999},{\"hold_s\": 0.002}"),
-            "bend.json: steps[2] leads beyond 10 minutes, shorten the script");
+            "bend.json: steps[2] makes the script longer than 10 minutes; shorten it");
   EXPECT_EQ(refusal(begin + "{\"hold_s\": 2},{\"at_s\": 1, \"grip\": true}"),
             "bend.json: steps[2].at_s is before the end of the steps before it, at 2 s");
   EXPECT_EQ(refusal(begin + "{\"move_to_mm\": [0,0,99999], \"over_s\": 1}"),

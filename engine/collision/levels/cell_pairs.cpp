@@ -10,9 +10,9 @@ namespace spoonbill {
 
 namespace {
 
-// Number of slab groups in the cache; once it is full, the cache is cleared.
+// Number of slab groups in the cache, which is cleared once it is full.
 constexpr int group_capacity = 8192;
-// Tolerance for the rounding of parameters in the sizes of the cells of one element.
+// Factor that allows for rounding: the cells of one element differ slightly in their parameter steps.
 constexpr double size_tolerance = 1.0 + 1e-9;
 
 }  // namespace
@@ -54,7 +54,7 @@ void CellSlabs::compute_children(const LevelCell& cell, SlabGroup& group) {
 }
 
 void CellSlabs::compute_single(const LevelCell& cell, SlabGroup& group) {
-  // Every lane gets the same four corners.
+  // Every lane gets the same four corners, mirrored in some lanes.
   const PatchCorners corners = levels_->corners(cell);
   constexpr int corner_index[9] = {0, 1, 0, 2, 3, 2, 0, 1, 0};
   for (int axis = 0; axis < 3; ++axis) {
@@ -161,7 +161,7 @@ Box ElementTree::control_box(const ControlNet& net, int element_u, int element_v
 
 namespace {
 
-// Largest number of pairs at a level below the coarsest; beyond it a coarser level is precise enough.
+// Largest number of pairs at any level but the coarsest; with more pairs, a coarser level is precise enough.
 constexpr std::size_t fine_pair_capacity = 1 << 16;
 
 }  // namespace
@@ -172,7 +172,7 @@ CellPairs::CellPairs(SurfaceLevels& first, SurfaceLevels& second)
       second_slabs_(second),
       first_tree_(first.nested().grid.u.knots, first.nested().grid.v.knots),
       second_tree_(second.nested().grid.u.knots, second.nested().grid.v.knots) {
-  // Each descent leaves one node pair on the stack, and up to fifteen cell pairs.
+  // Each step of a descent leaves up to three node pairs on the stack, or fifteen cell pairs.
   node_pairs_.reserve(256);
   pending_.reserve(
       static_cast<std::size_t>(16 * (2 + std::max(first.nested().levels, second.nested().levels))));
@@ -212,7 +212,8 @@ const std::vector<CellPair>& CellPairs::find_within_at_level(double reach_m, int
   return pairs_;
 }
 
-// Starts from the centre of the smaller surface's box, then projects back onto the smaller surface.
+// Starts from the centre of the smaller surface's box and takes the larger surface's element nearest to it,
+// then the smaller surface's element nearest to that.
 CellPair CellPairs::find_likely_near_elements() const {
   const auto centre = [](const Box& box) -> Vector3 { return 0.5 * (box.low + box.high); };
   const bool first_is_smaller = first_tree_.size(first_tree_.root()) < second_tree_.size(second_tree_.root());
@@ -277,7 +278,7 @@ void CellPairs::refine(const CellPair& elements, double reach, int level) {
   }
 }
 
-// Cells that share both parents are neighbours, so later ones continue the region of the first.
+// Children of the same two parents are neighbours, so the later pairs continue the region of the first.
 void CellPairs::add_pair(const NodePair& nodes, bool is_first) {
   overflow_ = overflow_ || pairs_.size() == limit_;
   if (!overflow_) pairs_.push_back({nodes.first.cell, nodes.second.cell, is_first ? 0 : -1});

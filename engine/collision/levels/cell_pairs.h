@@ -97,8 +97,8 @@ class ElementTree {
     bool is_leaf() const { return left < 0; }
   };
 
-  // Updates the boxes to the current shape. An element's box encloses its corners and bulge, intersected with
-  // the box of its control points where the surface is far from flat.
+  // Updates the boxes to the current shape. An element's box encloses its corners and bulge. Where the
+  // surface is far from flat, it is intersected with the box of the element's control points.
   void update(SurfaceLevels& levels);
 
   int root() const { return 0; }
@@ -136,8 +136,8 @@ inline constexpr std::size_t cell_pair_capacity = 1 << 19;
 // One cell of each surface.
 struct CellPair {
   LevelCell first, second;
-  // Index of the region, set by ContactRegions. Before that, -1 where both cells are neighbours of those of
-  // the preceding pair.
+  // Index of the region, set by ContactRegions. Before that, -1 if both cells are equal to or neighbours of
+  // those of the preceding pair, otherwise 0.
   int region = 0;
 };
 
@@ -152,7 +152,7 @@ class CellPairs {
   void invalidate_first();
   void invalidate_second();
 
-  // Updates the trees to the current shapes. The find functions call it themselves.
+  // Updates the trees to the current shapes. find_within() and find_within_at_level() call it themselves.
   void update();
 
   // Returns two elements, as coarsest cells, that are likely to be near each other.
@@ -213,7 +213,7 @@ class CellPairs {
     }
   }
 
-  // True if the last search met a capacity, so that pairs may be missing.
+  // True if the last search exceeded a capacity, so that pairs may be missing.
   bool overflow() const { return overflow_; }
 
   const ElementTree& first_tree() const { return first_tree_; }

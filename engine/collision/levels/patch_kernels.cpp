@@ -4,15 +4,15 @@ namespace spoonbill::SPOONBILL_KERNELS {
 
 namespace {
 
-// Relative rounding error of an extent in single precision, of the slab's size and of its position.
+// Bounds of the rounding error of a slab's extent in single precision, relative to its size and its position.
 constexpr double size_rounding = 1e-6;
 constexpr double position_rounding = 2.5e-7;
-// Relative rounding error of the offset between two centres.
+// Bound of the relative rounding error of the offset between two centres.
 constexpr float offset_rounding = 1e-6F;
 constexpr float rounded_down = 1.0F - 1e-5F;
 constexpr float rounded_up = 1.0F + 1e-5F;
 
-// Vector type of one sum per lane. It needs no alignment to a whole vector.
+// One sum per lane. The alignment is that of one number, not of the whole vector.
 typedef double Lanes __attribute__((vector_size(slab_lanes * sizeof(double)), aligned(sizeof(double))));
 
 // Adds weights[k] * values[k][j] over k for four neighbouring j.
@@ -178,6 +178,7 @@ struct RepeatAll {
     }
   }
 };
+// Repeats lane `first`, and the next lane if two slabs are tested at once, four times each.
 template <int first>
 struct RepeatEach {
   template <class Out>
@@ -243,7 +244,7 @@ inline __attribute__((always_inline)) void find_separated(const ManySlabs& a, co
   store_product_magnitude(b.normal, a.v, v_b);
   separated = across_a > a.thickness + b.slack + u_a + v_a + further;
   separated |= across_b > b.thickness + a.slack + u_b + v_b + further;
-  // squared > along + slack * length, squared on both sides to avoid the root.
+  // The slabs are apart if squared > along + slack * length; both sides are squared to avoid the root.
   Many au, av, bu, bv;
   store_product_magnitude(a.u, offset, au);
   store_product_magnitude(a.v, offset, av);

@@ -30,9 +30,9 @@ struct PlanarOutput {
 // Slabs around four cells, or around one cell repeated in all lanes.
 //
 // The bilinear patch of a cell's corners is p(s, t) = centre + s along_u + t along_v + s t w, with s and t
-// from -1 to 1. The surface is within the bulge of that patch. Along its unit normal it leaves the centre by
-// at most `thickness`; along any unit vector d by at most |d . along_u| + |d . along_v| + slack. The values
-// are single precision; thickness and slack include the rounding.
+// from -1 to 1. The surface is within the bulge of that patch. Along the unit normal, it is at most
+// `thickness` from the centre; along any unit vector d, at most |d . along_u| + |d . along_v| + slack. The
+// values are single precision; thickness and slack include the rounding.
 struct SlabGroup {
   float centre[3][slab_lanes];
   float along_u[3][slab_lanes];
@@ -46,17 +46,17 @@ struct SlabGroup {
 struct PatchKernels {
   // Samples one element, first along v for each control row into `lines` (working memory of 3 * u.bandwidth *
   // v.padded numbers), then along u. Rows of `samples` are `columns` apart. Each sum starts at zero and adds
-  // by rising control index, as a single sample does.
+  // its terms in the order of SurfaceLevels::sample(), so that the results are bitwise equal.
   void (*sample_tile)(const TileBand& u, const TileBand& v, const PlanarPoints& net, long net_columns,
                       double* lines, const PlanarOutput& samples, long columns);
 
-  // Computes the slabs of the four cells between 3 x 3 samples (9 numbers a coordinate, row by row). The
+  // Computes the slabs of the four cells between 3 x 3 samples (9 numbers per coordinate, row by row). The
   // surface leaves each bilinear patch by at most `bulge`.
   void (*compute_slabs)(const PlanarPoints& samples, double bulge, SlabGroup& group);
 
-  // Returns bit 4 i + j set if slab i of the first group may be within `reach` of slab j of the second.
-  // Tested are the planes across both normals and across the line between the centres. `lanes` is the number
-  // of slabs of the first group, 1 or 4.
+  // Returns bit 4 i + j set if slab i of the first group may be within `reach` of slab j of the second. The
+  // tested planes are across both normals and across the line between the centres. `lanes` is the number of
+  // slabs of the first group, 1 or 4.
   unsigned (*find_meeting)(const SlabGroup& first, int lanes, const SlabGroup& second, float reach);
 };
 

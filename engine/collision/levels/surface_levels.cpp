@@ -87,8 +87,8 @@ void SurfaceBounds::unroll_row(const ControlNet& net, int i) {
   }
 }
 
-// Computes the squared norms of one unrolled row of control points for all columns. Rows i and i + 1 must be
-// unrolled already.
+// Computes the squared norms of the second derivatives' control points in one unrolled row, for all columns.
+// Rows i and i + 1 must be unrolled already.
 void SurfaceBounds::update_row_norms(const ControlNet& net, int i) {
   if (i + 2 < rows_) unroll_row(net, i + 2);
   const std::vector<double>*const here = row_[i % 3], *const next = row_[(i + 1) % 3],
@@ -117,7 +117,8 @@ void SurfaceBounds::update_row_norms(const ControlNet& net, int i) {
   }
 }
 
-// Computes the bounds of the elements (eu, .), first over their rows for all columns at once.
+// Computes the bounds of the elements (eu, .). Takes the maximum over their rows first, for all columns at
+// once.
 void SurfaceBounds::update_elements(int eu) {
   double* const uu = row_[0][0].data();
   double* const vv = row_[0][1].data();
@@ -256,8 +257,8 @@ const PatchKernels& kernels_for(InstructionSet set) {
 
 constexpr int tile_padding = 4;
 
-// Number of knots at the end of an element. The basis functions of the sample there, which belongs to the
-// next element, are shifted by that number.
+// Returns the number of knots at the end of an element. The sample there belongs to the next element, whose
+// basis functions begin that many control points later.
 int knots_at_end(const GridDirection& direction, int levels, int element) {
   const KnotVector& knots = direction.knots;
   const int elements = (static_cast<int>(direction.parameters.size()) - 1) >> levels;
@@ -288,7 +289,7 @@ SurfaceLevels::Bands SurfaceLevels::make_bands(const GridDirection& direction, i
     for (int sample = 0; sample < bands.samples; ++sample) {
       const int row = first_row + sample;
       const int shift = sample + 1 < bands.samples ? 0 : knots_at_end(direction, levels, element);
-      // The functions that would be shifted beyond the element vanish at its end.
+      // The remaining functions belong only to the next element and vanish at this sample.
       for (int k = 0; k + shift < bands.bandwidth; ++k) {
         bands.values[(element * bands.bandwidth + k + shift) * bands.padded + sample] =
             matrix.values[row * bands.bandwidth + k];
@@ -509,7 +510,8 @@ Vector3 patch_centre(const PatchCorners& corners) {
   return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
 }
 
-// Returns by how much the corners of b are beyond those of a along `direction`, scaled by its length.
+// Returns the gap from the corners of a to those of b along `direction`, times its length; negative if they
+// overlap.
 double gap_along(const Vector3& direction, const PatchCorners& a, const PatchCorners& b) {
   double last_a = -std::numeric_limits<double>::infinity(), first_b = -last_a;
   for (const Vector3& corner : a) last_a = std::max(last_a, direction.dot(corner));

@@ -1,5 +1,6 @@
 // Levels of detail of one surface (section 4.1 of Pungotra et al. 2013): samples at nested strides of its
-// blending matrices, evaluated on demand, and bounds of the surface between them.
+// blending matrices, evaluated on demand, bounds of the surface between them, and lower bounds of the
+// distance between patches.
 #pragma once
 
 #include <array>
@@ -17,21 +18,23 @@
 
 namespace spoonbill {
 
-// A rectangle of a surface's parameters, around cells of a grid. In a periodic direction it is the whole
-// domain if the cells are at both its ends.
+// A rectangle in a surface's parameter domain that encloses some cells of a grid. In a periodic direction it
+// is the whole domain if there are cells on both sides of the seam.
 struct ParameterRange {
   double u0, u1, v0, v1;
   bool contains(double u, double v) const { return u0 <= u && u <= u1 && v0 <= v && v <= v1; }
 };
 
-// Largest norms of the second derivatives over each element (one polynomial piece in u by one in v).
+// Upper bounds of the norms of the second derivatives over each element (one polynomial piece in u by one in
+// v).
 //
 // They come from the control points of the derivative surfaces, whose convex hull contains the derivatives:
 //   Q_i = p (P_{i+1} - P_i) / (u_{i+p+1} - u_{i+1}),
 //   second_i = (p - 1) (Q_{i+1} - Q_i) / (u_{i+p+1} - u_{i+2}).
 // A cell of sides h_u, h_v inside one element is within (h_u^2 M_uu + h_v^2 M_vv) / 8 of the bilinear patch
-// through its corners. This is the error of linear interpolation, once for each direction. The bounds are
-// valid only for the control points of the last update.
+// through its corners, with M_uu and M_vv the bounds of the element. This is the error of linear
+// interpolation, once for each direction. The bounds are valid only for the control points of the last
+// update.
 //
 // One owner, one thread; allocates only on construction.
 class SurfaceBounds {
@@ -44,7 +47,7 @@ class SurfaceBounds {
   void begin() { ++stamp_; }
   void update(const ControlNet& net, int element_v);
 
-  // Updates the boxes that box() and row_box() read. They enclose the control points of the elements (.,
+  // Updates the boxes that box() and row_box() return. They enclose the control points of the elements (.,
   // element_v) and (element_u, .).
   void update_boxes(const ControlNet& net);
   Box box(int element_v) const;
@@ -81,7 +84,7 @@ class SurfaceBounds {
   std::vector<Box> row_boxes_;            // per control row
 };
 
-// Distance below which two things count as touching, in metres.
+// Distance in metres up to which surfaces count as touching.
 inline constexpr double touch_tolerance_m = 1e-6;
 
 // A sampling grid whose strides are nested.
@@ -117,9 +120,9 @@ class SurfaceLevels {
 
   // Starts a query. Call it whenever the control points may have moved. If none moved since the last call, it
   // returns false and all evaluated values stay valid. The surface must have the grid's knots and outlive the
-  // calls below. `samples`, optional, are all samples of the finest grid in its order, as
-  // GridEvaluator<double> has them; no sample is then evaluated. They must belong to the surface and outlive
-  // the calls below.
+  // calls below. The optional `samples` are all samples of the finest grid in the order of
+  // GridEvaluator<double>; no sample is then evaluated. They must belong to the surface and outlive the calls
+  // below.
   bool begin(const Surface& surface, const PlanarPoints& samples = {});
 
   const Surface& surface() const { return *surface_; }
@@ -130,7 +133,7 @@ class SurfaceLevels {
 
   // Returns one sample; index is row * columns + column of the finest grid.
   Vector3 sample(int index);
-  // Evaluates the coarsest samples of one column, which have their sums along v in common.
+  // Evaluates the samples of the coarsest level in one column, which share their sums along v.
   void sample_column(int column);
   // Evaluates all samples of one element. Cheaper than single samples, with bitwise equal results.
   void sample_element(int element_u, int element_v);
@@ -201,13 +204,13 @@ class SurfaceLevels {
   int samples_evaluated_ = 0;
 };
 
-// Lower bound of the distance between two patches, in metres, from the line between their centres and both
-// normals. A surface leaves the hull of its patch's corners by at most its bulge, so a plane that separates
-// the hulls bounds the distance.
+// Returns a lower bound of the distance between two patches, in metres: the largest gap along the line
+// between their centres and along both normals, less both bulges. A surface leaves the hull of its patch's
+// corners by at most its bulge, so a plane that separates the hulls bounds the distance.
 double patch_distance(const PatchCorners& a, double bulge_a, const PatchCorners& b, double bulge_b);
 
-// Lower bound of the distance between two patches, in metres, from the in-plane directions across the sides
-// of each patch. It separates slivers that are side by side.
+// Returns a lower bound of the distance between two patches, in metres: the largest gap along the in-plane
+// directions across the sides of each patch, less both bulges. It separates slivers that are side by side.
 double patch_distance_in_plane(const PatchCorners& a, double bulge_a, const PatchCorners& b, double bulge_b);
 
 }  // namespace spoonbill

@@ -107,9 +107,9 @@ class LineExits {
   std::unique_ptr<BoxTree> tree_;
 };
 
-// Returns true if a line in the unit direction leaves through a wall, within 50 degrees of the triangle's
-// normal. A more oblique exit is beside an edge, where the distance between the sides does not measure a
-// wall's thickness.
+// Returns true if a line in the unit direction leaves through a wall: if the direction is within 50 degrees
+// of the triangle's normal. A more oblique exit is beside an edge, where the distance between the sides does
+// not measure a wall's thickness.
 bool exits_through_wall(const Triangle& triangle, const Vector3& direction);
 
 struct MeshIntersection {
@@ -121,14 +121,14 @@ struct MeshIntersection {
 
 struct MeshIntersections {
   std::vector<MeshIntersection> found;
-  bool complete = true;  // false if more exist, if the pair limit was met or if the search was stopped
+  bool complete = true;  // false if more exist, if the pair limit was exceeded or if the search was stopped
 };
 
-// Finds up to `most` pairs of intersecting triangles. Triangles with a common corner are shrunk by a
-// millionth first. `triangles` must be in the order of the tree's leaves.
+// Finds up to `limit` pairs of intersecting triangles. Triangles with a common corner are first shrunk by a
+// millionth. `triangles` must be in the order of the tree's leaves.
 //
-// Takes about a microsecond a triangle without intersections. The search ends early if it needs more than 200
-// pair tests a triangle, as with long needles. `progress` can only stop it.
+// The search takes about a microsecond per triangle without intersections. It ends early if it needs more
+// than 200 pair tests per triangle, as with long needles. `progress` can stop it but gets no fraction done.
 MeshIntersections self_intersections(const std::vector<Vector3>& vertices_m,
                                      const std::vector<TriangleCorners>& triangles, const BoxTree& tree,
                                      std::size_t limit, const Progress& progress = {});

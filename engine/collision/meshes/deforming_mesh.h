@@ -1,4 +1,4 @@
-// A closed mesh whose vertices move, with its nearest points and signed gaps.
+// A closed mesh whose vertices move, and queries for its nearest points and signed gaps.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ class DeformingMesh {
   explicit DeformingMesh(const TriangleMesh& mesh);
 
   const std::vector<Vector3>& vertices_m() const { return vertices_m_; }
-  // Vertices to be moved. Call settle() afterwards, before any query.
+  // Returns the vertices for modification. Call refit() afterwards, before any query.
   std::vector<Vector3>& mutable_vertices_m() { return vertices_m_; }
   void refit();
 
@@ -42,7 +42,7 @@ class DeformingMesh {
   const Box& bounds() const { return tree_.nodes()[0].box; }
 
   // Returns the nearest point, or nothing beyond `reach_m`. The sign of the gap comes from the normals of
-  // faces, edges and vertices, the latter weighted by angle (Baerentzen and Aanaes 2005).
+  // faces, edges and vertices; those of vertices are weighted by angle (Baerentzen and Aanaes 2005).
   std::optional<NearestOnMesh> nearest(const Vector3& point_m, double reach_m) const;
 
  private:

@@ -36,7 +36,8 @@ class WindingNumber {
   std::vector<Dipole> dipoles_;  // per node of the tree
 };
 
-// Distance to the triangles of one part. Immutable; any thread. Queries allocate nothing.
+// Distance to the triangles of one closed part, or of sheets. Immutable; any thread. Queries allocate
+// nothing.
 class ShellDistance {
  public:
   // `triangles` must not be empty. A solid is oriented outward, a cavity inward.
@@ -54,12 +55,12 @@ class ShellDistance {
 
   const Box& bounds() const { return tree_.nodes()[0].box; }
 
-  // True if the sign comes from the normals of faces, edges and vertices, the latter weighted by angle
-  // (Baerentzen and Aanaes 2005). This requires a manifold of at most `checked_triangles` without
-  // self-intersections. Otherwise the winding number decides, at twice the time or more.
+  // True if the sign comes from the normals of faces, edges and vertices; those of vertices are weighted by
+  // angle (Baerentzen and Aanaes 2005). This requires a manifold of at most `checked_triangles` without
+  // self-intersections. Otherwise the winding number gives the sign, which takes at least twice as long.
   bool uses_normals() const { return !corner_normals_.empty(); }
 
-  // True if all vertices are behind all faces, to 1e-7 of the size. False also where that was not tested.
+  // True if all vertices are behind all faces, to 1e-7 of the size. False also if that was not tested.
   bool is_convex() const;
 
   static constexpr std::size_t checked_triangles = 1'000'000;
@@ -82,15 +83,15 @@ class ShellDistance {
   std::optional<WindingNumber> winding_;
 };
 
-// Thickness of a sheet in metres. A surface does not pass through it between two ticks of a slow hand.
+// Default thickness of a sheet in metres. A slowly moved surface does not pass through it between two ticks.
 inline constexpr double sheet_thickness_m = 1e-3;
 
 // Signed distance to the union of the mesh's closed parts, without their cavities, and of its sheets. A sheet
-// is a plate of the given thickness with a round boundary, centred on the sheet.
+// is a plate of the given thickness with rounded edges, centred on the sheet.
 //
-// Outside, and inside a single solid, the distance is exact to rounding. Where parts overlap it is the depth
-// in the part that contains the point deepest, a lower bound of the true depth. The distance is continuous
-// and changes by at most the distance moved. Immutable; any thread.
+// Outside, and inside a single solid, the distance is exact to rounding. Where parts overlap, it is the depth
+// in the part in which the point is deepest, a lower bound of the true depth. The distance is continuous and
+// changes by at most the distance moved. Immutable; any thread.
 class MeshDistance final : public SignedDistance {
  public:
   explicit MeshDistance(const CleanMesh& mesh, double thickness_m = sheet_thickness_m);

@@ -52,22 +52,21 @@ class MeshEdges {
 // Fails with too_many beyond `triangle_limit` triangles.
 Result<TriangleMesh> refine_edges(TriangleMesh mesh, double longest_m, std::size_t triangle_limit);
 
-// Normals that are continuous over facets and insensitive to slivers. The mesh must outlive the object; any
-// thread.
+// Smoothed normals, insensitive to slivers. The mesh must outlive the object; any thread.
 class SmoothNormals {
  public:
   explicit SmoothNormals(const TriangleMesh& mesh);
 
   // Returns the unit normal at a point of a triangle, with barycentric weights `to_b` and `to_c`. It is
-  // interpolated from the corners, whose normals average the adjacent triangles within 30 degrees of this one
-  // by area. Zero if the triangle has no area.
+  // interpolated from the corners, whose normals are area-weighted means over the adjacent triangles within
+  // 30 degrees of this one. Zero if the triangle has no area.
   Vector3 at(std::uint32_t triangle, double to_b, double to_c) const;
 
  private:
   Vector3 twice_area(std::uint32_t triangle) const;
 
   const TriangleMesh* mesh_;
-  // Triangles at a vertex: around_[starts_[vertex]] to around_[starts_[vertex + 1]].
+  // Triangles at a vertex: adjacent_[starts_[vertex]] to adjacent_[starts_[vertex + 1] - 1].
   std::vector<std::uint32_t> starts_, adjacent_;
 };
 

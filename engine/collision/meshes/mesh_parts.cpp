@@ -17,8 +17,8 @@ namespace spoonbill {
 namespace {
 
 constexpr std::uint32_t none = 0xffffffffU;
-// Limit of the triangles visited in the search for cavities, which bounds the time for files of countless
-// specks.
+// Limit of the box tests and triangles visited in the search for cavities, which bounds the time for files of
+// countless specks.
 constexpr std::size_t cavity_work = 50'000'000;
 
 struct Flood {
@@ -98,7 +98,8 @@ bool encloses(const TriangleMesh& mesh, const MeshPart& part, const Vector3& poi
   return std::abs(angle) > 0.5 * full_solid_angle;
 }
 
-// Goes from the largest part to the smallest, so that a possible container precedes its contents.
+// Marks the cavities, from the largest closed part to the smallest, so that a container precedes its
+// contents.
 void find_cavities(const TriangleMesh& mesh, std::vector<MeshPart>& parts,
                    const std::vector<double>& volumes) {
   std::vector<int> closed;
@@ -139,7 +140,7 @@ MeshParts split_into_parts(const TriangleMesh& mesh) {
       TriangleCorners corners = mesh.triangles[order[t]];
       for (std::uint32_t& corner : corners) {
         std::uint32_t& own = copy[corner];
-        // A copy with an index below the part's first vertex belongs to another part.
+        // An index below the part's first vertex is that of a copy for an earlier part.
         if (own == none || own < part.first_vertex) {
           own = static_cast<std::uint32_t>(result.mesh.vertices_m.size());
           result.mesh.vertices_m.push_back(mesh.vertices_m[corner]);
@@ -212,7 +213,7 @@ MeshPart append_part(const TriangleMesh& from, const MeshPart& part, TriangleMes
 
 double signed_volume(const TriangleMesh& mesh, const MeshPart& part) {
   SPOONBILL_ASSERT(part.first_triangle <= part.end_triangle && part.end_triangle <= mesh.triangles.size());
-  // The origin is one of the part's own vertices, which keeps precision for small parts far away.
+  // The origin is at one of the part's own vertices, which keeps precision for small parts far away.
   const Vector3 origin = mesh.vertices_m[part.first_vertex];
   double six_volumes = 0.0;
   for (std::uint32_t t = part.first_triangle; t < part.end_triangle; ++t) {
@@ -324,7 +325,7 @@ struct Openings {
   double area_m2 = 0.0;
 };
 
-// The triangles that fill a crack would have no normal.
+// Returns true for a hole whose filling triangles would have no normal.
 bool is_crack(const TriangleMesh& mesh, const VertexLoop& loop) {
   double longest = 0.0;
   for (std::size_t k = 0; k < loop.size(); ++k) {
@@ -354,7 +355,8 @@ std::size_t find_part_of_vertex(const std::vector<MeshPart>& parts, std::uint32_
 std::vector<Openings> find_openings(MeshParts& parts) {
   const TriangleMesh& mesh = parts.mesh;
   const MeshEdges edges(mesh.triangles, mesh.vertices_m.size());
-  // Two triangles that share a branching edge may be in one part without a consistent orientation.
+  // A branching edge of the mesh may become an ordinary edge of one part, whose two triangles then need not
+  // be oriented consistently.
   for (MeshSide side = 0; side < 3 * mesh.triangles.size(); ++side) {
     const MeshSide other = edges.across(side);
     if (other == MeshEdges::open || other == MeshEdges::branching) continue;

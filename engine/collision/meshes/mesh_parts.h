@@ -23,7 +23,8 @@ MeshParts split_into_parts(const TriangleMesh& mesh);
 // Removes open parts with less than speck_area_fraction of the closed parts' area. Returns their number.
 std::size_t drop_specks(MeshParts& parts);
 
-// Orients closed parts outward and cavities inward, and counts both in the report.
+// Orients closed parts outward and cavities inward. Counts closed parts, cavities, sheets and flipped parts
+// in the report.
 void orient_outward(TriangleMesh& mesh, std::vector<MeshPart>& parts, MeshReport& report);
 
 // Volume of a closed part in cubic metres, by the divergence theorem; negative if the part is inside out.
@@ -35,9 +36,9 @@ double part_area(const TriangleMesh& mesh, const MeshPart& part);
 // Appends the part's vertices and triangles to `to`. Returns the part with its indices there.
 MeshPart append_part(const TriangleMesh& from, const MeshPart& part, TriangleMesh& to);
 
-// Marks as closed the parts whose holes are absent or small (hole_area_fraction) and fills each hole by a fan
-// around the length-weighted mean of its boundary loop. Returns the number of holes filled. Cracks, whose
-// loops have no area, count but get no triangles.
+// Marks as closed the orientable parts that have no holes or only small ones (hole_area_fraction). Fills each
+// of these holes with a fan around the length-weighted mean of its boundary loop. Returns the number of holes
+// filled. Cracks, whose loops have no area, count but get no triangles.
 std::size_t fill_small_holes(MeshParts& parts);
 
 }  // namespace spoonbill

@@ -37,7 +37,7 @@ class Separation {
 
 bool triangles_meet(const Triangle& first, const Triangle& second, double slack_m) {
   SPOONBILL_ASSERT_DEBUG(slack_m >= 0.0);
-  // Coordinates relative to a corner, so that a distance from the origin costs no digits.
+  // Coordinates are relative to a corner, so that a large distance from the origin costs no precision.
   const Vector3& origin = first[0];
   const Triangle a = {Vector3::Zero(), first[1] - origin, first[2] - origin};
   const Triangle b = {second[0] - origin, second[1] - origin, second[2] - origin};
@@ -70,7 +70,7 @@ NearestOnTriangle nearest_on_triangle(const Vector3& a, const Vector3& b, const 
   if (along_bc <= 0.0 && before_ab <= 0.0) return {b, On::corner, 1};
   if (along_ca <= 0.0 && before_bc <= 0.0) return {c, On::corner, 2};
 
-  // The barycentric weights use the normal. Products of lengths, which avoid it, lose all digits in slivers.
+  // The barycentric weights use the normal. Formulas of dot products alone lose all digits in slivers.
   const Vector3 normal = ab.cross(-ca);
   const double past_ab = normal.dot(ab.cross(ap)), past_bc = normal.dot(bc.cross(bp)),
                past_ca = normal.dot(ca.cross(cp));

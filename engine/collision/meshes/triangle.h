@@ -1,5 +1,4 @@
-// Queries on single triangles in double precision: intersection, nearest point, solid angle. Pure; any
-// thread.
+// Queries on triangles in double precision: intersection, nearest point, solid angle. Pure; any thread.
 #pragma once
 
 #include <array>
@@ -17,17 +16,17 @@ inline Box bounding_box(const Triangle& t) {
   return {t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])};
 }
 
-// Returns true if the triangles intersect or touch, or if no plane separates them by more than `slack_m`.
-// The result includes every pair nearer than the slack and some slightly farther pairs whose corners face
-// each other. The separating axes are both normals, the cross products of the edges and the directions across
-// the edges, for coplanar triangles.
+// Returns true if the triangles intersect or touch, or if no plane separates them by more than `slack_m`. It
+// is true for every pair nearer than the slack and for some slightly farther pairs whose corners face each
+// other. The separating axes are both normals, the cross products of the edges and, for coplanar triangles,
+// the in-plane directions across the edges.
 bool triangles_meet(const Triangle& a, const Triangle& b, double slack_m = 0.0);
 
 // Result of intersect_line_triangle().
 struct LineTriangleHit {
   double along = 0.0;             // position on the line, in lengths of its direction; may be negative
   double to_b = 0.0, to_c = 0.0;  // barycentric weights of the corners b and c
-  double facing = 0.0;            // negative where the line leaves through the triangle along its normal
+  double facing = 0.0;            // negative if the line crosses the triangle in the direction of its normal
 };
 
 // Intersects an infinite line with a triangle. Returns nothing if the line is parallel to the triangle or
@@ -57,9 +56,9 @@ NearestOnTriangle nearest_on_triangle(const Vector3& a, const Vector3& b, const 
 
 inline constexpr double full_solid_angle = 4.0 * 3.14159265358979323846;
 
-// Solid angle of the triangle a, b, c seen from the origin, in steradians (van Oosterom and Strackee 1983).
-// Positive where its back is visible, so a closed outward mesh gives 4 pi from inside. Zero from a point in
-// its plane.
+// Returns the solid angle of the triangle a, b, c seen from the origin, in steradians (van Oosterom and
+// Strackee 1983). It is positive if the triangle's back is visible, so a closed outward mesh gives 4 pi from
+// inside, and zero from a point in its plane.
 inline double solid_angle(const Vector3& a, const Vector3& b, const Vector3& c) {
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
   const double numerator = a.dot(b.cross(c));

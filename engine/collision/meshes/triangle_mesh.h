@@ -1,4 +1,4 @@
-// Triangle meshes as files have them, and their cleaning with a report.
+// Triangle meshes as read from files, and their cleaning with a report.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@ struct TriangleMesh {
   std::vector<TriangleCorners> triangles;  // indices into vertices_m; counter-clockwise seen from outside
 };
 
-// Triangles that are connected over edges that exactly two of them share. No other part has any of their
-// vertices. An open part is a sheet without an inside.
+// A set of triangles that are connected over edges that exactly two of them share. Parts have no vertices in
+// common. An open part is a sheet without an inside.
 struct MeshPart {
   std::uint32_t first_vertex = 0, end_vertex = 0;
   std::uint32_t first_triangle = 0, end_triangle = 0;
@@ -58,19 +58,19 @@ inline constexpr std::size_t mesh_triangle_limit = 6'000'000;
 inline constexpr double vertex_joining_fraction = 1e-6;
 // Triangles with a height below this fraction of the mesh's size have no reliable normal.
 inline constexpr double degenerate_height_fraction = 1e-9;
-// A part's holes are filled if that adds at most this fraction to its area. A part with larger openings is an
-// unchanged sheet.
+// A part's holes are filled if that adds at most this fraction to its area. A part with larger openings
+// remains a sheet.
 inline constexpr double hole_area_fraction = 0.05;
-// Open parts below this fraction of the closed parts' area are scanner noise or fins on an edge.
+// Open parts below this fraction of the closed parts' area are dropped as scanner noise or fins on an edge.
 inline constexpr double speck_area_fraction = 1e-3;
 
 // Joins vertices, drops degenerate and duplicate triangles, orients each part consistently, fills small
-// holes, drops specks and orients closed parts outward. A part of opposite orientation inside another one
-// that it does not touch is a cavity and stays inward.
+// holes, drops specks and orients closed parts outward. A closed part of opposite orientation inside another
+// one is a cavity and stays inward.
 //
-// `source` begins the error messages. Fails without triangles, beyond the triangle limit, for an index beyond
+// Error messages begin with `source`. Fails without triangles, beyond the triangle limit, for an index beyond
 // the vertices, for a coordinate that is not finite or outside position_range_m, and for a mesh without
-// extent.
+// extent or area.
 Result<CleanMesh> clean_mesh(TriangleMesh mesh, const std::string& source,
                              std::size_t triangle_limit = mesh_triangle_limit);
 
@@ -80,8 +80,8 @@ struct JoinedVertices {
   std::vector<std::uint32_t> joined_into;  // index into vertices_m of each input vertex
 };
 
-// Joins each vertex to an earlier kept one that is equal or no farther than the tolerance. Coordinates must
-// be finite and the tolerance positive. Time is linear in the number of vertices, wherever they are.
+// Joins each vertex to an earlier kept one that is within the tolerance. Coordinates must be finite and the
+// tolerance positive. The time is linear in the number of vertices, whatever their positions.
 JoinedVertices join_vertices(const std::vector<Vector3>& vertices_m, double tolerance_m);
 
 }  // namespace spoonbill

@@ -103,7 +103,7 @@ void MeshProximity::search_element(const ElementTree::Node& element, const Box& 
   if (is_near) collect_samples(element, mesh, margin);
 }
 
-// The first vertex of a patch that is near represents all of them.
+// Only the first vertex of a patch that is found near is offered to the elements.
 void MeshProximity::offer_vertex(const ElementTree::Node& element, const Box& box, std::uint32_t vertex,
                                  const Vector3& point, double margin) {
   const int patch = patches_[vertex];

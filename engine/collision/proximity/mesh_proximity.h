@@ -32,14 +32,14 @@ struct VertexNearSurface {
 class MeshProximity {
  public:
   // `patches` assigns each vertex of the mesh to a patch, counted from 0. Vertices may be much denser than
-  // the nodes that they move, so each patch reports only its deepest or nearest vertex, assuming that the
-  // surface is flat beside it.
+  // the lattice nodes that move them, so each patch reports only its deepest or nearest vertex, assuming that
+  // the surface is flat beside it.
   MeshProximity(const NestedGrid& surface, std::vector<int> patches);
   MeshProximity(const MeshProximity&) = delete;
   MeshProximity& operator=(const MeshProximity&) = delete;
 
   // Finds all points within `margin_m`. The surface must have the grid's knots and bound a body, with du x dv
-  // outward. The mesh must be the one of the patches, after settle().
+  // outward. The mesh must have the vertices of the patches and be up to date (refit()).
   void find(const Surface& surface, const DeformingMesh& mesh, double margin_m);
 
   // Removes the points for which `keep_sample` or `keep_vertex` returns false. Both may modify the point.
@@ -57,7 +57,7 @@ class MeshProximity {
   // Vertices of the mesh near the surface, of the last find().
   const std::vector<VertexNearSurface>& mesh_vertices() const { return vertices_; }
   double least_gap_m() const { return least_gap_m_; }  // infinite if nothing is near
-  // A capacity was met, and points may be missing. Remedy: fewer control points or a smaller margin.
+  // A capacity was exceeded, and points may be missing. Remedy: fewer control points or a smaller margin.
   bool overflow() const { return overflow_; }
 
  private:

@@ -16,10 +16,10 @@ namespace {
 
 // Cosine of the largest angle between a direction into the body and the inward normal.
 constexpr double inward_cosine = 0.3;
-// Thickness, in lattice cells, below which a body cannot be; such points are of a rest shape pressed onto
-// itself.
+// Least thickness of a body, in lattice cells. Facing points that are closer belong to a rest shape that is
+// pressed onto itself.
 constexpr double least_thickness_cells = 0.25;
-// Largest number of blocks of the surface in each direction, by which neighbours are found.
+// Largest numbers of blocks of the surface in each direction. Neighbours are found by blocks.
 constexpr int most_blocks_u = 32, most_blocks_v = 64;
 
 std::vector<double> block_starts(const KnotVector& knots, int most) {
@@ -53,7 +53,7 @@ RestPairs::RestPairs(const Grid& grid, Surface rest, double cell_m)
   find_neighbours();
 }
 
-// Twice the volume over the area, from the triangles between the samples and their tetrahedra.
+// Returns twice the volume over the area, from the triangles between the samples.
 double RestPairs::thickness(int columns) const {
   double volume = 0.0, area = 0.0;
   const auto add = [&](const Vector3& a, const Vector3& b, const Vector3& c) {
@@ -91,7 +91,7 @@ void RestPairs::find_neighbours() {
   }
 }
 
-// Dijkstra's shortest paths between blocks, up to the neighbour distance.
+// Dijkstra's shortest paths from one block to the others, up to the neighbour distance.
 void RestPairs::measure_from(int block, std::vector<double>& distances) const {
   using Path = std::pair<double, int>;
   std::priority_queue<Path, std::vector<Path>, std::greater<>> queue;
@@ -225,10 +225,10 @@ bool RingSeparation::are_apart_along(const ControlNet& net, int axis_ring, int o
 
 namespace {
 
-// Number of positions around a ring at which it is tested whether it can meet another.
+// Number of sampled positions around a ring for the test whether it can meet another one.
 constexpr int positions_around = 24;
-// Distance in lattice cells beyond the margin within which elements are searched. If there are none, none can
-// come within the margin until a control point has moved half as far.
+// Extra distance beyond the margin, in lattice cells. If no elements are within the sum, none can come within
+// the margin until a control point has moved by half the extra distance.
 constexpr double lead_cells = 1.0;
 constexpr std::size_t element_pair_capacity = 1 << 14;
 // Number of elements whose cells are cached; beyond it the cache is cleared.
@@ -268,7 +268,7 @@ std::vector<std::array<int, 2>> SelfProximity::find_rings_that_can_meet() const 
   return pairs;
 }
 
-// Tests positions at the ends of the rings.
+// Samples positions around both ends of each ring.
 bool SelfProximity::can_meet(int ring, int other) const {
   const Grid& grid = near_.levels().nested().grid;
   const int step = near_.levels().step(0), stride = std::max(1, (grid.rows() - 1) / positions_around);
@@ -284,7 +284,8 @@ bool SelfProximity::can_meet(int ring, int other) const {
   return false;
 }
 
-// The surface moves no farther than its control points, so two parts approach by at most twice that.
+// A surface moves no farther than its control points, so two parts approach each other by at most twice that
+// distance.
 bool SelfProximity::is_still_clear(const ControlNet& net) const {
   if (!clear_) return false;
   const double most = 0.5 * lead_cells * cell_m_;
@@ -323,7 +324,7 @@ void SelfProximity::find(const Surface& surface, double margin_m) {
   near_.keep_if(keep);
 }
 
-// Elements are excluded by the rest positions of their centres.
+// Skips elements whose centres can never meet, by their rest positions.
 void SelfProximity::find_near_elements(double reach) {
   nearby_.clear();
   SurfaceLevels& levels = near_.levels();
@@ -389,8 +390,8 @@ void SelfProximity::offer_elements(const LevelCell& one, const LevelCell& other,
   offer_samples(other, bounding_box(one), cells, reach);
 }
 
-// Offers the samples of an element to the cells of another, within a box, that may be nearer than the cells
-// offered so far.
+// Offers the samples of an element to the cells of another one, which is within the box, unless a cell
+// offered before is nearer.
 void SelfProximity::offer_samples(const LevelCell& element, const Box& box, std::span<const NearCell> cells,
                                   double reach) {
   SurfaceLevels& levels = near_.levels();
@@ -398,7 +399,7 @@ void SelfProximity::offer_samples(const LevelCell& element, const Box& box, std:
   const bool ring = levels.surface().v.is_periodic();
   for (int i = element.i; i < element.i + side; ++i) {
     for (int j = element.j; j <= element.j + side; ++j) {
-      // Samples at the end belong to the next element; those of a pole are a single point.
+      // The samples at the end belong to the next element; all samples of a pole are one point.
       const bool pole = !ring && (j == 0 || j == columns - 1);
       if (pole ? i > 0 : j == element.j + side) continue;
       const int sample = i * columns + j;
@@ -421,7 +422,7 @@ void SelfProximity::offer_samples(const LevelCell& element, const Box& box, std:
   }
 }
 
-// Newton's method may have led to a neighbour, or to another wall.
+// Rejects points from which Newton's method led to a neighbour or to another wall.
 bool SelfProximity::is_contact(const NearPoint& near) const {
   if (near.gap_m < -deepest_self_cells * cell_m_) return false;
   if (!(near.normal.dot(unit_normal(near_.levels().surface(), near.u, near.v)) < 0.0)) return false;

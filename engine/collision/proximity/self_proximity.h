@@ -15,18 +15,18 @@
 namespace spoonbill {
 
 // Distance along the surface at rest below which points are neighbours: the larger of a number of lattice
-// cells and of thicknesses of the body (twice its volume over its area). A bar bent into a loop whose inner
-// side touches itself is longer than 4.4 times its bending radius. Three thicknesses leave it a radius of two
-// thirds of the thickness.
+// cells and a number of thicknesses of the body (twice its volume over its area). A bar bent into a loop
+// whose inner side touches itself is longer than 4.4 times its bending radius. With three thicknesses, only
+// loops with a bending radius below two thirds of the thickness are missed.
 inline constexpr double neighbour_cells = 4.0;
 inline constexpr double neighbour_thicknesses = 3.0;
 
-// Multiple of the neighbour distance up to which two points that face each other through the body are its two
-// sides, which never deform until they meet. Farther apart, like the ends of a bar, they may meet.
+// Multiple of the neighbour distance up to which two points that face each other through the body count as
+// its two sides, which never meet. Points farther apart, such as those at the ends of a bar, may meet.
 inline constexpr double through_body = 2.0;
 
-// Decides by their rest positions which points of one body's surface can ever touch from outside. All others
-// are neighbours or face each other through the body. Immutable; any thread.
+// Decides by their rest positions which pairs of points of one body's surface can ever touch from outside.
+// All other pairs are neighbours or face each other through the body. Immutable; any thread.
 class RestPairs {
  public:
   // `rest` is the surface at rest with the knots of the grid, du x dv outward. `cell_m` is the size of the
@@ -58,11 +58,11 @@ class RestPairs {
 };
 
 // Finds rings of a surface (its elements between two knots of v) that may be near each other, by boxes and
-// then by intervals along each ring's axis. An unfolded long body is excluded in a few microseconds. One
-// owner, one thread; allocates only on construction.
+// then by intervals along each ring's axis. A long body that is not folded is ruled out in a few
+// microseconds. One owner, one thread; allocates only on construction.
 class RingSeparation {
  public:
-  // `pairs` lists the elements of v to be tested.
+  // `pairs` lists the pairs of rings to be tested, as elements of v.
   RingSeparation(const KnotVector& v, std::vector<std::array<int, 2>> pairs);
 
   // Returns the pairs for which no separating plane with a gap above `reach_m` was found. Updates the boxes
@@ -114,7 +114,7 @@ class SelfProximity {
   const std::vector<NearPoint>& points() const { return near_.points(); }
   // True if nothing was near in the last find(), so that the next one takes almost no time.
   bool is_clear() const { return clear_; }
-  // A capacity was met, and points may be missing. Remedy: fewer control points or a smaller margin.
+  // A capacity was exceeded, and points may be missing. Remedy: fewer control points or a smaller margin.
   bool overflow() const { return missing_elements_ || near_.overflow(); }
 
  private:

@@ -95,7 +95,7 @@ void NearPoints::offer(int i, int j, const SurfaceLevels& other, const LevelCell
     near_.push_back(
         {sample, grid.u.parameters[i], grid.v.parameters[j], 0.0, 0.0, point, Vector3::UnitY(), infinity});
   }
-  // Until settle(), the gap is the distance to the other surface's triangles.
+  // Until compute_nearest(), the gap is the distance to the other surface's triangles.
   NearPoint& near = near_[index_[sample]];
   if (on.distance >= near.gap_m) return;
   const auto between = [](const std::vector<double>& parameters, int at, int to, double fraction) {
@@ -141,8 +141,8 @@ bool NearPoints::is_local_deepest(const NearPoint& near) const {
   return true;
 }
 
-// The search starts at the nearest samples and uses the exact surfaces. deepest_pair() also ascends from in
-// front of the other surface, where a gap is a negative depth.
+// Starts at the locally deepest samples and uses the exact surfaces. deepest_pair() also ascends from points
+// in front of the other surface, where the depth is the negative gap.
 void NearPoints::add_between_samples(const SurfaceLevels& other, double outside) {
   SPOONBILL_ASSERT(std::abs(outside) == 1.0);
   const std::size_t samples = near_.size();

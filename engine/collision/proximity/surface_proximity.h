@@ -41,8 +41,8 @@ class NearPoints {
   void offer_corners(const LevelCell& cell, SurfaceLevels& other, const LevelCell& patch);
   // Offers the sample (i, j) of the finest grid to a cell with the given corners.
   void offer(int i, int j, const SurfaceLevels& other, const LevelCell& patch, const PatchCorners& corners);
-  // Returns the least distance of a sample to the triangles of the cells offered so far; infinite before the
-  // first.
+  // Returns the least distance of a sample to the triangles of the cells offered so far; infinite if there
+  // are none.
   double offered_distance_m(int sample) const;
   // Computes the nearest point of the exact other surface for each sample, and removes samples beyond the
   // margin. `outside` is -1 if the other surface's du x dv points inward, else 1.
@@ -71,7 +71,7 @@ class NearPoints {
   const SurfaceLevels& levels() const { return levels_; }
   const std::vector<NearPoint>& points() const { return near_; }
   double least_gap_m() const { return least_gap_m_; }  // infinite if nothing is near
-  // A capacity was met, and points may be missing.
+  // A capacity was exceeded, and points may be missing.
   bool overflow() const { return overflow_; }
 
  private:
@@ -95,7 +95,7 @@ class SurfaceProximity {
   SurfaceProximity& operator=(const SurfaceProximity&) = delete;
 
   // Finds all points within `margin_m`. The surfaces must have the grids' knots and bound bodies with du x dv
-  // outward. `second_outside` is -1 if it points inward on the second, as on a mirrored surface.
+  // outward. `second_outside` is -1 if du x dv points inward on the second, as on a mirrored surface.
   void find(const Surface& first, const Surface& second, double margin_m, double second_outside = 1.0);
 
   // Removes the points of either surface for which its predicate returns false. Both may modify the point.
@@ -109,7 +109,7 @@ class SurfaceProximity {
   const std::vector<NearPoint>& first_points() const { return first_.points(); }
   const std::vector<NearPoint>& second_points() const { return second_.points(); }
   double least_gap_m() const;  // infinite if nothing is near
-  // A capacity was met, and points may be missing. Remedy: fewer control points or a smaller margin.
+  // A capacity was exceeded, and points may be missing. Remedy: fewer control points or a smaller margin.
   bool overflow() const { return missing_cells_ || first_.overflow() || second_.overflow(); }
 
  private:

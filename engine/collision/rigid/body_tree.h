@@ -12,14 +12,14 @@
 
 namespace spoonbill {
 
-// Indices of two bodies, in the boxes of the first and second tree or of the same tree.
+// Indices of two bodies among the boxes of the first and the second tree, or of the same tree.
 using BodyPair = std::pair<std::size_t, std::size_t>;
 
 // Tree of the boxes of bodies. Immutable, but queries are not concurrent: one owner, one thread.
 class BodyTree {
  public:
-  // `boxes` are finite, in metres, and may have no volume. Boxes that touch count as near: grow them by half
-  // the distance that bodies may be apart.
+  // The `boxes`, in metres, must be finite and may have no volume. Boxes that touch count as near: to find
+  // bodies within a distance of each other, grow their boxes by half of it.
   explicit BodyTree(const std::vector<Box>& boxes);
   ~BodyTree();
   BodyTree(const BodyTree&) = delete;
@@ -30,9 +30,9 @@ class BodyTree {
   std::vector<BodyPair> near_pairs() const;
   std::vector<BodyPair> near_pairs(const BodyTree& other) const;
 
-  // Returns the least value of `distance_m` over the pairs of this tree's bodies and the other's. It is
-  // called until no other pair of boxes is nearer than that. Infinite if a tree is empty. The distance must
-  // not be below that of the boxes.
+  // Returns the least value of `distance_m` over the pairs of a body of this tree and one of the other;
+  // infinite if a tree is empty. Pairs whose boxes are no nearer than the least value found are skipped, so
+  // the value of a pair must not be below the distance of its boxes.
   double find_nearest(const BodyTree& other,
                       const std::function<double(std::size_t, std::size_t)>& distance_m) const;
 

@@ -127,8 +127,8 @@ void MeshDepths::visit_edge(std::uint32_t from, std::uint32_t to, double least_m
   }
 }
 
-// Moves repeatedly to the intersection of the depth's tangents at both ends. Finds the deepest point if the
-// depth is concave, as in a convex mesh.
+// Raises `best` to the deepest point found on a stretch: moves repeatedly to the intersection of the depth's
+// tangents at both ends. Finds the maximum if the depth is concave, as in a convex mesh.
 void MeshDepths::climb(DeepPoint low, DeepPoint high, double half_thickness_m, DeepPoint& best) const {
   const Vector3 between = high.point_m - low.point_m;
   const double whole_m = between.norm(), tolerance_m = climb_tolerance * other_box_.size();
@@ -201,8 +201,9 @@ bool may_contain(const PosedMesh& mesh, const PosedMesh& other) {
                      [&](const Box& part) { return around.holds(part); });
 }
 
-// Regions in which two meshes overlap. Connected are inside vertices of one triangle, and pairs of crossing
-// triangles with the inside vertices of both and with pairs of a neighbour and the same other triangle.
+// Search for the regions in which two meshes overlap. The inside vertices of one triangle are in the same
+// region. A pair of crossing triangles is in the region of the inside vertices of both, and of pairs with the
+// same triangle of one mesh and a neighbouring triangle of the other.
 class ContactSearch {
  public:
   ContactSearch(const PosedMesh& first, const PosedMesh& second, double thickness_m)
@@ -254,7 +255,7 @@ class ContactSearch {
     return true;
   }
 
-  // Pairs triangles with those that a plate reaches beside its sheet.
+  // Adds pairs of triangles that meet only because of the thickness of plates.
   void find_plates_crossing(int s) {
     if (!meshes_[0]->has_plates() && !meshes_[1]->has_plates()) return;
     MeshDepths& depths = depths_[s];
@@ -339,7 +340,8 @@ class ContactSearch {
     }
   }
 
-  // Offers the deepest points of those edges of the triangle in these pairs that have no end inside.
+  // Offers the deepest points of those edges that have no end inside. The pairs from `first` to `end` all
+  // have the same triangle of mesh `s`.
   void find_deepest_between(int s, std::size_t first, std::size_t end) {
     const TriangleCorners& corners = meshes_[s]->corners(pairs_[first][s]);
     for (int k = 0; k < 3; ++k) {
@@ -391,7 +393,8 @@ class ContactSearch {
     return contact;
   }
 
-  // Contact of a region that is an entire part inside the other mesh; its item is a vertex.
+  // Makes the contact of a region that is a whole part inside the other mesh, whose item is a vertex. Returns
+  // nothing if the region is not such a part.
   std::optional<MeshPairContact> make_containment_contact(std::size_t item) {
     const int s = item < meshes_[0]->vertex_count() ? 0 : 1;
     const auto vertex = static_cast<std::uint32_t>(item - vertex_item(s, 0));
@@ -412,7 +415,7 @@ class ContactSearch {
     return MeshPairContact{gap.first_m, gap.second_m, direction, gap.gap_m + length_m};
   }
 
-  // Contact of meshes that touch no deeper than the tolerance.
+  // Makes the contact of meshes that touch no deeper than the tolerance.
   MeshPairContact make_touch_contact(const Gap& gap) const {
     const Vector3 separation = gap.gap_m > 0.0 ? gap.first_m - gap.second_m : gap.second_m - gap.first_m;
     const bool has_direction = separation.norm() > 1e-3 * touch_tolerance_m;
@@ -423,7 +426,7 @@ class ContactSearch {
 
   std::array<const PosedMesh*, 2> meshes_;
   std::array<MeshDepths, 2> depths_;  // depths of each mesh in the other
-  std::vector<Pair> pairs_;           // crossing triangles, in ascending order
+  std::vector<Pair> pairs_;           // meeting triangles, in ascending order
   DisjointSets regions_{0};
   std::vector<Deepest> deepest_;  // per region, at the lowest of its items
 };

@@ -1,6 +1,7 @@
 // Contact of two rigid meshes: touching, distance, and position and depth of the contacts. FCL decides
-// touching and distance. Containment and depths use signed distances, because FCL lacks them or has faults
-// there (its issues 492, 574 and 106). For reports, not for the tick.
+// touching and distance. Containment, positions and depths come from signed distances: FCL tests surfaces
+// only, reports no depth between meshes and can misplace their contacts at corners of triangles. For reports,
+// not for the tick.
 #pragma once
 
 #include <limits>
@@ -30,13 +31,14 @@ struct MeshPairResult {
   std::vector<MeshPairContact> contacts;
 };
 
-// Finds the contacts or the distance of two meshes; `second_pose` places the second. Closed parts are solid
-// except for their cavities, open parts are plates of the given thickness, as in MeshDistance.
+// Finds the contacts or the distance of two meshes; `second_pose` is the pose of the second in the first
+// one's frame. Closed parts are solid except for their cavities, open parts are plates of the given
+// thickness, as in MeshDistance.
 //
 // A contact is the deepest of the vertices and edge points of both meshes in a region. On edges it is exact
-// to rounding if the other mesh is convex, otherwise found in steps of 1/32 of its size. A part inside
-// another leaves through the nearest wall: its depth is the distance to the wall plus the smaller length of
-// the two along that direction. Deterministic; any thread.
+// to rounding if the other mesh is convex, otherwise found in steps of 1/32 of that mesh's size. A part
+// inside another leaves through the nearest wall: its depth is the distance to the wall plus the smaller
+// length of the two parts along that direction. Deterministic; any thread.
 MeshPairResult collide_meshes(const CleanMesh& first, const CleanMesh& second, const Pose& second_pose,
                               double thickness_m = sheet_thickness_m);
 

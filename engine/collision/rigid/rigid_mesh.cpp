@@ -20,8 +20,8 @@ namespace {
 
 using Model = fcl::BVHModel<fcl::OBBRSS<double>>;
 
-// FCL's triangle distance ignores normals with a square below 1e-15. Twice the area of the smallest triangle
-// is scaled to at least this value.
+// FCL's triangle distance ignores normals whose squared length is below 1e-15. Twice the area of the smallest
+// triangle is scaled to at least this value.
 constexpr double smallest_doubled_area = 1e-6;
 
 void update_smallest_area(const TriangleMesh& mesh, double& doubled_area) {

@@ -1,5 +1,5 @@
-// Rigid meshes in FCL's trees of boxes: distance and crossing triangles. For loading, checks and reports, not
-// for the tick, because queries allocate.
+// Rigid meshes in FCL's trees of boxes: distance and crossing triangles; and posed meshes of several such
+// parts. For loading, checks and reports, not for the tick, because queries allocate.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@
 namespace spoonbill {
 
 // Unit and origin in which FCL computes. Its triangle distance treats normals below an absolute size as zero;
-// the scale keeps all triangles of both meshes above it.
+// the scale keeps the normals of all triangles above that size.
 struct RigidScale {
   Vector3 origin_m = Vector3::Zero();
   double per_m = 1.0;
@@ -24,8 +24,8 @@ struct RigidScale {
 // Returns the scale for two meshes that are tested against each other.
 RigidScale scale_for(const TriangleMesh& first, const TriangleMesh& second);
 
-// Triangles in FCL's tree of boxes. FCL tests surfaces only, so a mesh inside another counts as apart (its
-// issue 492). Immutable; any thread may query it.
+// Triangles in FCL's tree of boxes. FCL tests surfaces only, so a mesh that is entirely inside another counts
+// as apart. Immutable; any thread may query it.
 class RigidMesh {
  public:
   // `triangles` must not be empty. Their corners are vertex indices that start at `first_vertex`.
@@ -43,8 +43,8 @@ class RigidMesh {
   // scale.
   std::optional<Nearest> nearest(const RigidMesh& other, double below_m) const;
 
-  // Returns the pairs of crossing or touching triangles, as sorted indices into this mesh and the other,
-  // about `most` at most. Both must have the same scale.
+  // Returns at most about `limit` pairs of crossing or touching triangles, as sorted indices into this mesh
+  // and the other. Both must have the same scale.
   using Crossing = std::pair<std::uint32_t, std::uint32_t>;
   std::vector<Crossing> find_crossings(const RigidMesh& other, std::size_t limit) const;
 

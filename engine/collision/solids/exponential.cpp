@@ -45,7 +45,7 @@ double power_of_two(int power) {
 
 }  // namespace
 
-// Taylor series within half a part of an octave, where the sixth term is below rounding.
+// Taylor series within half a part of an octave, where the term of order six is below rounding.
 double stable_exp(double x) {
   if (!(x > -700.0)) return 0.0;
   const double whole = (x * (parts * 1.4426950408889634) + to_whole) - to_whole;

@@ -83,20 +83,21 @@ class TorusDistance final : public SignedDistance {
   bool is_convex() const override { return false; }
   Box bounds() const override;
 
-  // The distance is convex in the distance from the axis and the height. Only nearer to the axis than the
-  // ring is it concave around the axis, with a curvature below one over the distance from the axis.
+  // The distance is a convex function of the distance from the axis and the height. Around the axis it is
+  // concave only where the ring is farther from the axis, with a curvature of at most one over the distance
+  // from the axis.
   double concavity(const Vector3& centre_m, double radius_m) const override;
 
  private:
   TorusShape shape_;
 };
 
-// Signed distance of an ellipsoid with the semi-axes e_i and the shortest e_m (Eberly 2013, who uses s = w -
-// 1).
+// Signed distance of an ellipsoid with the semi-axes e_i, the shortest of which is e_m (Eberly 2013, whose s
+// is w - 1).
 //
 // The point of the surface nearest to y is x_i = r_i y_i / (w + r_i - 1), r_i = (e_i / e_m)^2. The scalar w
-// >= 0 solves sum (x_i / e_i)^2 = 1. In terms of w nothing cancels inside, where w goes to 0. Near the
-// surface, y_i - x_i = y_i (w - 1) / (w + r_i - 1) does not cancel either.
+// is the root of sum (x_i / e_i)^2 = 1 that is not negative. In terms of w nothing cancels inside, where w
+// goes to 0. Near the surface, y_i - x_i = y_i (w - 1) / (w + r_i - 1) does not cancel either.
 class EllipsoidDistance final : public SignedDistance {
  public:
   explicit EllipsoidDistance(const EllipsoidShape& shape);
@@ -122,7 +123,8 @@ double from_axis(const Vector3& point) {
   return std::sqrt(point.x() * point.x() + point.z() * point.z());
 }
 
-// On the axis every radial direction is equivalent; x is chosen.
+// Rotates a direction from the meridian half-plane into that of the point. On the axis, where all are
+// equivalent, that of the x axis is used.
 Vector3 rotate_from_meridian(const MeridianDirection& direction, const Vector3& point) {
   const double out = from_axis(point);
   if (!(out > 0.0)) return {direction.out, direction.up, 0.0};
@@ -248,8 +250,8 @@ EllipsoidDistance::EllipsoidDistance(const EllipsoidShape& shape) : axes_(shape.
   }
 }
 
-// The reciprocal norm of c_i / (w + excess_i) is concave and increases with w, so Newton's method from below
-// the root never passes it (More and Sorensen 1983).
+// The reciprocal norm of scaled_k / (w + excess_k) is concave and increases with w, so Newton's method from
+// below the root never passes it (More and Sorensen 1983).
 double EllipsoidDistance::solve(const Vector3& scaled, double low) const {
   double w = low;
   for (int step = 0; step < 60; ++step) {

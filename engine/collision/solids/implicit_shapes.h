@@ -131,7 +131,7 @@ inline constexpr auto fields_of<SuperquadricShape> = std::to_array<Field<Superqu
 });
 
 // Checks ranges and proportions. The error's field names the value: a length or exponent out of range,
-// semi-axes of too different lengths, or a torus with a tube as wide as its ring.
+// semi-axes that differ too much, or a torus with a tube as wide as its ring.
 Status check_implicit_shape(const ImplicitShape& shape);
 
 // Makes the signed distance of a shape that passed check_implicit_shape(). It is exact to 1e-12 of the size.

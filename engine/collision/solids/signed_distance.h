@@ -19,12 +19,12 @@ class SignedDistance {
  public:
   virtual ~SignedDistance() = default;
 
-  // Returns the distance, which changes by at most the distance moved. Therefore at(centre) - radius bounds a
-  // ball.
+  // Returns the distance and its gradient. The distance changes by at most the distance moved, so its value
+  // at the centre of a ball, less the radius, is a lower bound within the ball.
   virtual DistanceSample at(const Vector3& point_m) const = 0;
 
-  // Returns the distance if it is less than `enough_m`. Beyond, a convex solid may return any plane that
-  // bounds it and is at least that far, which saves time for costly distances.
+  // Returns the distance if it is less than `enough_m`. Otherwise, a convex solid may return the distance to
+  // any plane that bounds it and is at least that far, which saves time where the distance is costly.
   virtual DistanceSample at_within(const Vector3& point_m, double enough_m) const {
     (void)enough_m;
     return at(point_m);
@@ -35,15 +35,15 @@ class SignedDistance {
     return at_within(point_m, limit_m).distance_m > limit_m;
   }
 
-  // Returns true for a convex solid. Its distance is above each of its tangents: at(a) + gradient . (b - a)
+  // Returns true for a convex solid. Its distance is nowhere below its tangents: at(a) + gradient . (b - a)
   // <= at(b), a much tighter bound than the distance moved.
   virtual bool is_convex() const = 0;
 
   // Returns a box around the solid; infinite if the solid is.
   virtual Box bounds() const = 0;
 
-  // Returns the largest concavity K, in 1/m, such that at(a) + gradient . (b - a) - K |b - a|^2 / 2 <= at(b)
-  // within the ball. Infinite if unknown.
+  // Returns a bound K of the concavity within the ball, in 1/m: at(a) + gradient . (b - a) - K |b - a|^2 / 2
+  // <= at(b). Infinite if unknown.
   virtual double concavity(const Vector3& centre_m, double radius_m) const {
     (void)centre_m, (void)radius_m;
     return is_convex() ? 0.0 : std::numeric_limits<double>::infinity();

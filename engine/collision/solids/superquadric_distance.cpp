@@ -13,7 +13,8 @@ constexpr double nothing = -1e300;     // logarithm of a zero coordinate
 constexpr double least_ratio = 1e-60;  // fraction of a semi-axis below which a coordinate counts as 0
 // Convergence tolerance of log(price), and so of the distance.
 constexpr double convergence_step = 1e-13;
-// Deviation of the gauge from 1 below which the tangent plane gives the distance to rounding.
+// Largest |log(gauge)| of a point that counts as on the surface, where the tangent plane gives the distance
+// to rounding.
 constexpr double at_surface_gauge = 1e-14;
 
 double log_of_sum(double a, double b) {
@@ -28,7 +29,8 @@ struct Coordinate {
   double slope = 0.0;  // derivative of log_value by log(price)
 };
 
-// Both terms are convex in L and at most the target, so Newton's method descends monotonically from there.
+// Starts where the larger term alone would be the target, which is at or above the root. Both terms are
+// convex in L, so Newton's method descends monotonically from there.
 Coordinate solve_coordinate(double log_target, double log_price, double q) {
   if (log_target == nothing) return {};
   const double target = stable_exp(log_target);
@@ -161,11 +163,12 @@ struct Fractions {
 
 }  // namespace
 
-// A point of the surface against a point of the first octant, with derivatives by both logits.
+// Half the squared distance of a point of the surface from a point of the first octant, with derivatives by
+// both logits.
 struct SuperquadricDistance::Expansion {
   double half_square;  // half the squared distance
   double slope[2];
-  double curvature[3];  // second derivatives: around twice, both, along twice
+  double curvature[3];  // second derivatives: twice by around, by both, twice by along
 };
 
 void SuperquadricDistance::expand(const Spot& spot, const Vector3& point, Expansion& out) const {

@@ -5,24 +5,24 @@
 
 namespace spoonbill {
 
-// With q1 = 2 / e1, q2 = 2 / e2 the solid is |(|(x/a, z/c)|_q2, y/b)|_q1 <= 1, a ball of nested norms.
+// With q1 = 2 / e1, q2 = 2 / e2 the solid is |(|(x/a, z/c)|_q2, y/b)|_q1 <= 1, the unit ball of nested norms.
 //
-// Outside, the nearest point x of p solves p_i - x_i = mu_i |x_i / a_i|^(q-1) / a_i. The multiplier is mu for
-// x and z, and lambda for y. Each of these equations has one root. The multipliers are related by lambda = mu
-// rho^(q2-q1), rho = |(x/a, z/c)|_q2. Minimising the distance for a given price lambda of the constraint is
-// convex, so lambda and mu increase together. One monotone equation in mu remains.
+// Outside, the nearest point x of p solves p_i - x_i = mu_i |x_i / a_i|^(q-1) / a_i. The multiplier mu_i is
+// mu for x and z, and lambda for y. Each of these equations has one root. The multipliers are related by
+// lambda = mu rho^(q2-q1), rho = |(x/a, z/c)|_q2. Minimising the distance for a given price lambda of the
+// constraint is convex, so lambda and mu increase together. One monotone equation in mu remains.
 //
-// Inside, the distance has several local minima over the surface. Newton's method finds each from its own
-// start, in logit coordinates of the surface (Spot). The tangent plane at each point found gives the
-// distance.
+// Inside, the distance to the surface has several local minima. Newton's method searches for them from
+// several starting points, in logit coordinates of the surface (Spot). The nearest of the tangent planes at
+// the points found gives the distance.
 class SuperquadricDistance final : public SignedDistance {
  public:
   explicit SuperquadricDistance(const SuperquadricShape& shape);
   DistanceSample at(const Vector3& point_m) const override;
-  // Returns the distance to the tangent plane where the ray from the centre leaves the solid, if that is
-  // enough.
+  // Returns the distance to the tangent plane where the ray from the centre leaves the solid, if that is at
+  // least `enough_m`, otherwise the distance.
   DistanceSample at_within(const Vector3& point_m, double enough_m) const override;
-  // Points inside are rejected by the gauge alone.
+  // Decides points inside by the gauge alone, without a distance.
   bool is_beyond(const Vector3& point_m, double limit_m) const override;
   bool is_convex() const override { return true; }
   Box bounds() const override { return {-axes_, axes_}; }

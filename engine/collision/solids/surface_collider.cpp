@@ -52,8 +52,8 @@ constexpr int deepest_patch = 24;
 // Newton's method itself is usually exact to the last digit. A tighter bound costs most where surface and
 // tool fit snugly and all points are equally near.
 constexpr double nearest_tolerance_m = 2e-5;
-// Proven accuracy in metres for a solid of unknown concavity, whose patches must be cut down to the
-// tolerance.
+// Proven accuracy in metres for a solid of unknown concavity, against which patches must be cut down to the
+// size of the tolerance.
 constexpr double unbent_tolerance_m = 5e-5;
 // Limit of the patches cut in one search against a solid, which bounds the time of a tick.
 constexpr int cut_capacity = 20000;
@@ -141,9 +141,9 @@ Clearance SurfaceCollider::clearance(const Surface& surface, const ToolShape& to
           result.overflow};
 }
 
-// Depth of a tool inside a closed surface, along the nearest wall's normal; 0 if it is not inside. A sphere
-// is inside if its centre is. A convex solid that touches the wall is inside if the centre of its bounds is.
-// A tool that touches nothing is inside if its nearest point is.
+// Returns the depth of a tool inside a closed surface, along the nearest wall's normal; 0 if it is not
+// inside. A sphere is inside if its centre is. A convex solid that touches the wall is inside if the centre
+// of its bounds is. A tool that touches nothing is inside if its point nearest to the wall is.
 double SurfaceCollider::depth_inside(const ToolShape& tool, const SurfaceContact& nearest) const {
   if (tool.kind == ToolShape::Kind::sphere) {
     const bool inside = (tool.centre_m - nearest.point_m).dot(nearest.normal) < 0.0;
@@ -161,8 +161,8 @@ double SurfaceCollider::depth_inside(const ToolShape& tool, const SurfaceContact
   return std::max(depth_behind(tool, nearest.point_m, nearest.normal), -best_.distance_m);
 }
 
-// Offers the coarsest samples, except of elements that are too far. The nearest box comes first, since its
-// samples tighten that bound.
+// Offers the coarsest samples, except those of elements that are too far away. The nearest box comes first,
+// because its samples tighten that bound.
 void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
   const Grid& grid = levels_.nested().grid;
   const int stride = levels_.step(0);
@@ -267,7 +267,7 @@ void SurfaceCollider::visit_cell(const ToolShape& tool, const LevelCell& cell, d
   }
 }
 
-// Returns the bound from which a patch cannot contain a point that counts.
+// Returns the lower bound at which a patch can be skipped.
 double SurfaceCollider::enough() const {
   const double best = best_.distance_m;
   if (proof_ == Proof::clearance) {
@@ -342,8 +342,8 @@ void SurfaceCollider::polish(const Surface& surface, const ToolShape& tool) {
   if (region_ >= 0 && region_at(best_.u, best_.v) != region_) best_ = before;
 }
 
-// Newton's method on the parameters of the best point. A step that does not come nearer is halved. The
-// gradient is used where the curvature has the wrong sign.
+// Newton's method on the parameters of the best point. A step that does not decrease the distance is halved.
+// The gradient is used where the curvature has the wrong sign.
 void SurfaceCollider::polish_analytic(const Surface& surface, const ToolShape& tool) {
   const bool sphere = tool.kind == ToolShape::Kind::sphere;
   SurfacePoint at = evaluate(surface, best_.u, best_.v);
@@ -377,7 +377,7 @@ void SurfaceCollider::polish_analytic(const Surface& surface, const ToolShape& t
 
 namespace {
 
-// Number of golden section steps, for a ten-thousandth of an edge.
+// Number of golden-section steps, which locate a minimum to 1e-4 of an edge's length.
 constexpr int golden_section_steps = 20;
 constexpr double golden_fraction = 0.6180339887498949;
 
@@ -446,8 +446,8 @@ void SurfaceCollider::minimise_on_edges(const Surface& surface, const ToolShape&
   }
 }
 
-// Nothing is proven for a partly trimmed cell. Newton's method starts from its centre, if that is present,
-// after corners, samples and loops were offered.
+// Nothing is proven for a cell that trim loops cross. Newton's method starts from its centre, if that is not
+// trimmed away and is nearer than the corners, samples and loops offered before.
 void SurfaceCollider::search_trimmed_cell(const Surface& surface, const ToolShape& tool,
                                           const LevelCell& cell) {
   const Patch patch = whole_patch(cell);
@@ -533,7 +533,7 @@ int SurfaceCollider::region_at(double u, double v) const {
   return touched_at_[index] == query_ ? touched_[touched_index_[index]].region : -1;
 }
 
-// Cuts patches until a corner touches or no patch can touch.
+// Cuts patches until a corner touches or no patch can touch the tool.
 bool SurfaceCollider::touches(const Surface& surface, const ToolShape& tool, const LevelCell& cell) {
   if (is_cut(cell)) return touches_trimmed_cell(surface, tool, cell);
   patches_.clear();

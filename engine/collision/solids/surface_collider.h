@@ -1,6 +1,6 @@
-// Contact of a tool with one B-spline surface through levels of detail of its blending matrices (section 4.1
-// of Pungotra et al. 2013). Coarse samples with spheres that cover their patches are refined where a sphere
-// meets the tool. The nearest point is then polished on the exact surface.
+// Contact of a tool with one B-spline surface, which may be trimmed, through levels of detail of its blending
+// matrices (section 4.1 of Pungotra et al. 2013). Coarse samples with spheres that cover their patches are
+// refined where a sphere meets the tool. The nearest point is then polished on the exact surface.
 #pragma once
 
 #include <array>
@@ -53,10 +53,10 @@ struct NearSample {
 // Result of SurfaceCollider::collide().
 struct CollisionResult {
   bool found = false;  // the surface is within the margin or encloses the tool, to 1e-6 m
-  // Deepest contact, valid if found. None is deeper by 2e-5 m, or by 5e-5 m for a non-convex solid of unknown
-  // concavity.
+  // Deepest contact, valid if found. No point is deeper by more than 2e-5 m, or 5e-5 m for a non-convex solid
+  // of unknown concavity.
   SurfaceContact nearest;
-  bool overflow = false;  // a capacity was met; `nearest` is the best of the part that was searched
+  bool overflow = false;  // a capacity was exceeded; `nearest` is the best of the part that was searched
   int samples_evaluated = 0;
 };
 
@@ -65,7 +65,7 @@ struct CollisionResult {
 struct Clearance {
   double guaranteed_m = 0.0;
   SurfaceContact nearest;
-  bool overflow = false;  // a capacity was met, and the distance is not guaranteed
+  bool overflow = false;  // a capacity was exceeded, and the distance is not guaranteed
 };
 
 // Contact search of one surface with a tool. Reuses what it evaluated until control points move, and starts
@@ -73,22 +73,23 @@ struct Clearance {
 // it.
 class SurfaceCollider {
  public:
-  // `trim`, optional, restricts the surface to the trimmed area. Nearest points on trim loops are those of
-  // their polygons. In cells that loops cross they are what Newton's method finds from samples and loops,
-  // without proof.
+  // The optional `trim` restricts the surface to the trimmed area. Nearest points on trim loops are those of
+  // their polygons. In cells that loops cross, the nearest point is the best that Newton's method finds from
+  // samples and loops, without proof.
   explicit SurfaceCollider(const NestedGrid& nested, std::shared_ptr<const TrimmedArea> trim = nullptr);
 
   // Finds the deepest contact within `margin_m`. The surface must have the grid's knots. `closed` is true if
   // the surface bounds a body, which may contain the tool; the depth is then the exit along the nearest
-  // wall's normal. near_samples() has the samples within the margin afterwards. `samples` are optional, see
-  // SurfaceLevels::begin().
+  // wall's normal. Afterwards, near_samples() returns the samples within the margin. `samples` are optional,
+  // see SurfaceLevels::begin().
   CollisionResult collide(const Surface& surface, const ToolShape& tool, double margin_m, bool closed,
                           const PlanarPoints& samples = {});
 
   // Finds every region of the surface that the tool touches, deepest first. Call after collide() with the
   // same surface and tool. Valid until the next call of a member function.
   const std::vector<ToolContactRegion>& find_contact_regions(const Surface& surface, const ToolShape& tool);
-  // True if the last find_contact_regions() met a capacity, so that regions or parts of them may be missing.
+  // True if the last find_contact_regions() exceeded a capacity, so that regions or parts of them may be
+  // missing.
   bool regions_overflow() const { return regions_overflow_; }
 
   // Returns a guaranteed distance to the surface, ignoring its interior.
@@ -133,7 +134,7 @@ class SurfaceCollider {
   void update_best(const ToolShape& tool, double u, double v, const Vector3& point);
   bool is_trimmed_away(const LevelCell& cell) const { return trimmed_ && trimmed_->is_trimmed_away(cell); }
   bool is_cut(const LevelCell& cell) const { return trimmed_ && trimmed_->is_cut(cell); }
-  // The edge of a trim loop that is nearest, and the one that meets it there.
+  // The nearest edge of a trim loop, and the edge that meets it at the nearest point.
   struct TrimEdges {
     const TrimmedArea::Edge* first = nullptr;
     const TrimmedArea::Edge* second = nullptr;

@@ -28,7 +28,7 @@ struct MinimaxStep {
 };
 
 // Computes min over s of max_i (value_i + slope_i . s) + s . quadratic s / 2 by trying which one, two or
-// three planes are active. The quadratic must be positive definite, `count` from 1 to max_faces.
+// three planes are active. The quadratic must be positive definite and `count` from 1 to max_faces.
 MinimaxStep minimise_largest(const std::array<FacePlane, max_faces>& planes, int count,
                              const Eigen::Matrix2d& quadratic);
 
@@ -42,7 +42,7 @@ double model(const Planes& planes, int count, const Matrix2d& quadratic, const V
   return largest + 0.5 * step.dot(quadratic * step);
 }
 
-// Every candidate is a feasible step, so the one with the least model value is the answer.
+// Candidates for the minimum. Each is valued by the whole model, so the least one is the answer.
 struct Search {
   const Planes& planes;
   int count;
@@ -148,12 +148,12 @@ using Eigen::Vector2d;
 constexpr int max_steps = 60, max_restarts = 2;
 // Smallest worthwhile gain of a step, as a fraction of the solid's size.
 constexpr double least_gain = 1e-12;
-// Half the interval of the gradient's central differences, as a fraction of the solid's size and at most in
+// Half the interval of the gradient's central differences: a fraction of the solid's size, and its limit in
 // metres.
 constexpr double difference_fraction = 1e-5, longest_difference_m = 1e-5;
-// Change of the gradient above which it has crossed an edge and gives no curvature.
+// Change of the gradient above which the interval crosses an edge of the solid and gives no curvature.
 constexpr double edge_change = 0.2;
-// Cosine above which two gradients belong to the same face; the newer one is used.
+// Cosine above which two gradients belong to the same face, of which one expansion is stored.
 constexpr double same_face = 0.9995;
 // Least curvature times the solid's size, which bounds the step in flat directions.
 constexpr double least_curvature = 1e-6;
@@ -298,7 +298,7 @@ class Descent {
     for (int k = 0; k < count_; ++k) {
       const Face& face = faces_[k];
       const Vector2d slope = face.slope + face.curvature * (at_ - face.at);
-      // No face can exceed the distance, which is their maximum where a minimum may be on an edge.
+      // No face may exceed the distance, the maximum of the faces wherever a minimum may be on an edge.
       planes[k] = {k == current_ ? 0.0 : std::min(face.value(at_) - here, 0.0), scale.cwiseProduct(slope)};
     }
     Matrix2d curvature = quadratic();

@@ -15,10 +15,10 @@ struct SurfaceSpot {
   double distance_m = 0.0;
 };
 
-// Descends from `from` to a local minimum of the distance over the surface; the result is never farther.
-// If several faces of the solid are equally near (an edge, an inner ridge), it keeps each face's second
-// order expansion. Each step minimises their maximum: a bundle-Newton method (Luksan and Vlcek 1998) in two
-// unknowns. The tool must be a solid. Allocates nothing.
+// Descends from `from` to a local minimum of the distance over the surface; the result is never farther than
+// `from`. If several faces of the solid are equally near (an edge, an inner ridge), it keeps each face's
+// second order expansion. Each step minimises their maximum: a bundle-Newton method (Luksan and Vlcek 1998)
+// in two unknowns. The tool must be a solid. Allocates nothing.
 SurfaceSpot polish_on_solid(const Surface& surface, const ToolShape& tool, const SurfaceSpot& from);
 
 // Unit tangents spanning the plane across a unit normal: the projection of du and normal x u. Where du

@@ -34,7 +34,7 @@ double best_mix(const CornerValues& a, const CornerValues& b) {
     for (int k = 0; k < 4; ++k) values[k] = a[k] + fraction * (b[k] - a[k]);
     return least(values);
   };
-  // The optimal fraction is one where two corners have equal values, or close to it.
+  // The best fraction is 0, 1 or one at which two corners have equal values.
   double best = std::max(mixed(low), mixed(high));
   for (int i = 0; i < 4; ++i) {
     for (int k = i + 1; k < 4; ++k) {

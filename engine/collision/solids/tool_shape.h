@@ -12,9 +12,9 @@
 
 namespace spoonbill {
 
-// A tool of one of three kinds. A sphere is around `centre_m`, and a point if its radius is 0. A half-space
-// is behind the plane through `centre_m` with the unit normal `normal`. A solid has its frame at `centre_m`,
-// rotated by `turn`.
+// A tool of one of three kinds. A sphere is centred on `centre_m`, and is a point if its radius is 0. A
+// half-space is behind the plane through `centre_m` with the unit normal `normal`. A solid has its frame at
+// `centre_m`, rotated by `turn`.
 struct ToolShape {
   enum class Kind { sphere, half_space, solid };
   Kind kind = Kind::sphere;
@@ -43,7 +43,7 @@ struct ToolShape {
   static ToolShape solid(const SignedDistance& distance_field, const Pose& pose) {
     return solid(distance_field, pose.position_m, pose.orientation.normalized().toRotationMatrix());
   }
-  // The frame may be mirrored: `turn` is orthogonal. The solid must outlive the tool.
+  // `turn` must be orthogonal and may mirror the frame. The solid must outlive the tool.
   static ToolShape solid(const SignedDistance& distance_field, const Vector3& centre_m,
                          const Eigen::Matrix3d& turn) {
     ToolShape tool;
@@ -56,8 +56,8 @@ struct ToolShape {
 
   bool is_solid() const { return kind == Kind::solid; }
 
-  // Returns the signed distance, which changes by at most the distance moved. Therefore distance(centre) -
-  // radius bounds a ball.
+  // Returns the signed distance. It changes by at most the distance moved, so its value at the centre of a
+  // ball, less the radius, is a lower bound within the ball.
   double distance(const Vector3& point) const {
     if (is_solid()) return distance_field->at(into_frame(point)).distance_m;
     return kind == Kind::sphere ? (point - centre_m).norm() - radius_m : normal.dot(point - centre_m);
@@ -87,15 +87,15 @@ struct ToolShape {
   Vector3 into_frame(const Vector3& point) const { return turn.transpose() * (point - centre_m); }
 };
 
-// Lower bound of the tool's distance over a box, in metres.
+// Returns a lower bound of the tool's distance over a box, in metres.
 double lower_bound(const ToolShape& tool, const Box& box);
 
-// Lower bound of the tool's distance over a patch that leaves the bilinear patch of its corners by at most
-// `bulge`. The bound is not improved once it is at least `enough`.
+// Returns a lower bound of the tool's distance over a patch that leaves the bilinear patch of its corners by
+// at most `bulge`, in metres. The bound is not improved once it is at least `enough`.
 double lower_bound(const ToolShape& tool, const PatchCorners& corners, double bulge, double enough);
 
-// Distance along the unit normal that moves the tool in front of the plane through `point`. Infinite if the
-// tool is unbounded. Exact to 1e-5 of the tool's size.
+// Returns the distance by which the tool must move along the unit normal to be in front of the plane through
+// `point`, in metres. Infinite if the tool is unbounded. Exact to 1e-5 of the tool's size.
 double depth_behind(const ToolShape& tool, const Vector3& point, const Vector3& normal);
 
 }  // namespace spoonbill

@@ -13,10 +13,10 @@ namespace spoonbill {
 
 namespace {
 
-// Products of three differences stay below 2^63.
+// Number of steps along the longest side. A volume, six products of three differences, stays below 2^63.
 constexpr double steps_a_side = 1 << 20;
 
-// Bend below which an edge is omitted. The triangulation of nearly flat sides depends on the last digits.
+// Bend below which an edge is omitted. The triangulation of nearly flat sides depends on rounding.
 constexpr double least_bend_rad = 0.5 * std::numbers::pi / 180.0;
 
 using Steps = Eigen::Matrix<std::int64_t, 3, 1>;
@@ -157,8 +157,8 @@ void add_hull(const ControlNet& net, ContactStages& stages) {
   }
 }
 
-// The centre of a bilinear patch leaves the diagonal of its triangles by a quarter of the corners' deviation
-// from a parallelogram; no other point is farther.
+// A bilinear patch deviates most from its triangles at its centre: by a quarter of the corners' deviation
+// from a parallelogram.
 double triangle_slack(SurfaceLevels& levels, const LevelCell& cell) {
   const PatchCorners at = levels.corners(cell);
   return levels.bulge(cell) + 0.25 * (at[0] + at[3] - at[1] - at[2]).norm();

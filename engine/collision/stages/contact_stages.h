@@ -19,18 +19,19 @@ namespace spoonbill {
 // The convex hull of points as triangles and edges, given by indices into the points.
 struct HullFacets {
   std::vector<std::array<int, 3>> triangles;  // counter-clockwise seen from outside
-  std::vector<std::array<int, 2>> edges;      // edges between triangles that bend by half a degree or more
+  std::vector<std::array<int, 2>> edges;      // edges where the hull bends by more than half a degree
 };
 
-// Builds the hull of points rounded to 2^20 steps of their box's longest side, for which the volume signs are
-// exact. The points are outside it by less than one step. Empty if they are in one plane or not finite.
+// Builds the hull of points rounded to a grid of 2^20 steps along their box's longest side, so that the signs
+// of volumes are exact. The points are outside it by less than one step. Empty if they are in one plane,
+// fewer than four or not finite.
 //
-// Time is proportional to points times triangles, up to half a second for the largest control nets. Any
+// The time is proportional to points times triangles, up to half a second for the largest control nets. Any
 // thread.
 HullFacets hull_facets(const std::vector<Vector3>& points_m);
 
-// Finest level of the displayed spheres. A body's grid in a simulation ends at level 1; below it the contact
-// search cuts patches in four, as these levels do.
+// Finest level of the displayed spheres. Below the finest level of its own grid, the contact search cuts
+// patches into four, as these levels do.
 inline constexpr int finest_stage_level = 3;
 
 // Largest number of stored items of each kind; ContactStages::overflow is set beyond it.
@@ -50,8 +51,8 @@ struct StageSphere {
   bool kept = false;       // refined, or triangulated at the last level; false if dropped
 };
 
-// One of the two triangles of a cell of the last level that may meet the other side, including the deviation
-// of the surface from it.
+// One of the two triangles of a cell of the last level, stored if it may meet the other side, given the
+// surface's deviation from it.
 struct StageTriangle {
   Triangle corners;
   LevelCell cell;
@@ -86,7 +87,7 @@ double triangle_slack(SurfaceLevels& levels, const LevelCell& cell);
 // Returns the two triangles of a cell with the given corners.
 std::array<Triangle, 2> cell_triangles(const PatchCorners& corners);
 
-// Appends an item unless stage_capacity is met, in which case it sets the overflow flag.
+// Appends an item. If there are stage_capacity items already, it sets the overflow flag instead.
 template <class Item>
 void append(Item item, std::vector<Item>& items, ContactStages& stages) {
   if (items.size() == stage_capacity) {
@@ -96,7 +97,7 @@ void append(Item item, std::vector<Item>& items, ContactStages& stages) {
   items.push_back(std::move(item));
 }
 
-// Set of elements of one surface. One owner, one thread. The levels must have begun a query and outlive it.
+// Set of elements of one surface. One owner, one thread. The levels must outlive it and have begun a query.
 class ElementMarks {
  public:
   explicit ElementMarks(SurfaceLevels& levels)
@@ -117,6 +118,7 @@ class ElementMarks {
       }
     }
   }
+  // Adds the borders of the marked elements and the numbers of elements.
   void add_to(ContactStages& stages) const;
 
  private:
@@ -127,7 +129,8 @@ class ElementMarks {
     if (row < 0 || row >= rows_ || column < 0 || column >= columns_) return false;
     return within_[static_cast<std::size_t>(row * columns_ + column)] != 0;
   }
-  // Adds the line through the samples from (i, j), with the given step in rows and columns.
+  // Adds one side of an element as a line through its samples from (i, j), with the given step in rows and
+  // columns.
   void add_border(int i, int j, int row_step, int column_step, ContactStages& stages) const;
 
   SurfaceLevels& levels_;

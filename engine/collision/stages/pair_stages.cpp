@@ -78,7 +78,8 @@ std::vector<LevelCell> PairStages::add_level(SurfaceLevels& levels, const std::v
   return finer;
 }
 
-// Returns the last level whose pairs fit the capacity.
+// Adds the parameter ranges, and the spheres level by level. Returns the last level whose pairs fit the
+// capacity.
 int PairStages::add_spheres(double margin_m, int first_surface, ContactStages& stages) {
   SurfaceLevels* const levels[2] = {&collider_->first_levels(), &collider_->second_levels()};
   CellPairs& pairs = collider_->cell_pairs();

@@ -1,4 +1,4 @@
-// Stages of the contact of a surface with a tool that is a signed distance.
+// Stages of the contact of a surface with a tool.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace spoonbill {
 
-// Records the stages of a new SurfaceCollider: its cells, spheres and contacts. One owner, one thread. The
-// knots must be those of the surfaces given later.
+// Records the stages of a SurfaceCollider: its cells, spheres, triangles and contacts. One owner, one thread.
+// Surfaces given to add() must have the knots given to make().
 class ToolStages {
  public:
   static Result<ToolStages> make(const KnotVector& u, const KnotVector& v);

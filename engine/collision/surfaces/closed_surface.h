@@ -28,8 +28,8 @@ struct ClosedSkin {
 // Samples a closed surface at its skin_parameters().
 ClosedSkin make_skin(const Surface& surface);
 
-// Number of samples in a direction that skin_parameters() aims at. Each element gets two to eight, so a
-// surface of many elements has more.
+// Number of samples per direction that skin_parameters() aims at. Each element gets two to eight, so a
+// surface of many elements has more samples, one of few elements fewer.
 inline constexpr int skin_samples = 200;
 std::vector<double> skin_parameters(const KnotVector& knots);
 

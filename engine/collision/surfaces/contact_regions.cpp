@@ -59,7 +59,7 @@ void ContactRegions::join(const std::vector<CellPair>& pairs, const Paired& cell
   }
 }
 
-// Visits the cell itself and half of its neighbours; the other half visit it.
+// Visits half of the cell's neighbours; the other half visit the cell.
 void ContactRegions::join_neighbours(const std::vector<CellPair>& pairs, int pair) {
   const LevelCell& cell = pairs[pair].first;
   const Grid& grid = first_->nested().grid;
@@ -95,7 +95,7 @@ void ContactRegions::collect_cells(const std::vector<CellPair>& pairs) {
 const std::vector<ContactRegions::Region>& ContactRegions::group(std::vector<CellPair>& pairs) {
   const int count = static_cast<int>(pairs.size());
   collect_cells(pairs);
-  // Visits each cell once, at its first pair.
+  // Each cell is visited once, at its first pair.
   for (int k = 0; k < count; ++k) {
     if (previous_[k] >= 0) continue;
     Paired& cell = paired_[cell_[k]];

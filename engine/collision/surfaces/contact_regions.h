@@ -25,7 +25,7 @@ class ContactRegions {
   };
 
   // Sorts the pairs by region and returns the regions. Two pairs are connected if their cells are equal or
-  // neighbours on both surfaces, across a seam too. Regions beyond the capacity join the last one.
+  // neighbours on both surfaces, across a seam too. Regions beyond the capacity are merged into the last one.
   const std::vector<Region>& group(std::vector<CellPair>& pairs);
 
  private:
@@ -143,8 +143,8 @@ RegionRanges region_ranges(const RegionCells& cells);
 // `touch` if none is behind. See deepest_pair() for `outside`.
 PairParameters find_deepest_seed(const RegionCells& cells, const PairParameters& touch, double outside);
 
-// Returns the side of one's own surface on which another surface is: 1 if the two face each other, -1 if they
-// face the same way. `normal` is the other's outward normal and `own` one's du x dv.
+// Returns the side of a surface on which another surface is: 1 if the two face each other, -1 if they face
+// the same way. `normal` is the other surface's outward normal, `own` the du x dv of this one.
 double facing_side(const Vector3& normal, const Vector3& own);
 
 }  // namespace spoonbill

@@ -203,7 +203,8 @@ bool on_edge(const PiecewiseSurface& surface, double u, double v) {
   return is_end(surface.u->knots(), u) || is_end(surface.v->knots(), v);
 }
 
-// Tolerance beyond the convergence of Newton's method.
+// Returns true if the difference is not along the normal, within a tolerance above the error of Newton's
+// method.
 bool is_oblique(const Vector3& difference, const Vector3& normal) {
   return difference.cross(normal).norm() > 1e-6 * difference.norm();
 }
@@ -224,6 +225,7 @@ DepthPoint evaluate_depth(const PiecewiseSurface& first, const PiecewiseSurface&
   return result;
 }
 
+// Returns the Hessian of the signed distance, see deepest_pair().
 Matrix2 distance_curvature(const DepthPoint& at) {
   const Matrix2 first = first_form(at.b), second = along(at.b, at.normal);
   Matrix2 motion;  // one column each for A_u and A_v

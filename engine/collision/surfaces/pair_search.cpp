@@ -13,7 +13,7 @@ namespace spoonbill {
 namespace {
 
 constexpr int max_steps = 32;
-// Fraction of the coordinates that rounding may leave of a zero gap.
+// Largest rounding error of a gap, as a fraction of the coordinates.
 constexpr double rounding = 1e-12;
 
 Vector3 farthest(const ControlNet& net, const Vector3& direction) {
@@ -28,8 +28,8 @@ Vector3 farthest(const ControlNet& net, const Vector3& direction) {
   return {net.x[at], net.y[at], net.z[at]};
 }
 
-// Up to four points of the difference of the hulls, limited to those that span the part nearest to the
-// origin.
+// Up to four points of the Minkowski difference of the hulls. It is reduced to those that span the face
+// nearest to the origin.
 struct Simplex {
   std::array<Vector3, 4> points;
   int count = 0;
@@ -91,7 +91,7 @@ bool hulls_are_apart(const ControlNet& first, const ControlNet& second) {
   double before = std::numeric_limits<double>::infinity();
   for (int step = 0; step < max_steps; ++step) {
     const Vector3 a = farthest(first, -nearest), b = farthest(second, nearest);
-    // The first hull is beyond a plane across `nearest`, the second before it.
+    // The first hull is beyond a plane across `nearest`, and the second in front of it.
     const double noise = rounding * nearest.norm() * (a.norm() + b.norm());
     if (nearest.dot(a - b) > noise) return true;
     simplex.points[simplex.count++] = a - b;
@@ -163,7 +163,7 @@ void PairSearch::search(const LevelCell& a, const LevelCell& b, double tolerance
     const auto are_apart = [&](const auto& distance) {
       return distance(pair.a.corners, pair.a.bulge, pair.b.corners, pair.b.bulge) >= near_enough;
     };
-    // The additional test pays off for one surface, where most cells are side by side.
+    // The additional test pays off for one surface against itself, where most cells are side by side.
     if (are_apart(patch_distance) || (judge_ != nullptr && are_apart(patch_distance_in_plane))) continue;
     const Vector3 offset = patch_centre(pair.b.corners) - patch_centre(pair.a.corners);
     if (offset.norm() < best_distance_m_) {

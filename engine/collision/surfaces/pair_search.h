@@ -16,8 +16,8 @@ namespace spoonbill {
 // Keerthi 1988). Allocates nothing.
 bool hulls_are_apart(const ControlNet& first, const ControlNet& second);
 
-// Decides which pairs of points count. For one surface against itself, Newton's method may lead to a single
-// point, whose distance from itself is meaningless.
+// Decides which pairs of points count. For one surface against itself, Newton's method may converge to the
+// same point on both sides, whose distance of zero means nothing.
 class PairJudge {
  public:
   virtual bool counts(const PairParameters& at) const = 0;
@@ -46,7 +46,7 @@ class PairSearch {
   // the best pair is within `enough_m`. Both are in metres; the tolerance must be positive.
   void search(const LevelCell& a, const LevelCell& b, double tolerance_m, double enough_m);
 
-  // True if a search met a capacity and ended early.
+  // True if a search exceeded a capacity and skipped some patches.
   bool overflow() const { return overflow_; }
 
  private:

@@ -105,7 +105,7 @@ bool SurfacePairCollider::touches(const RegionCells& cells, const Seed* last) {
   if (search_.best_distance_m() <= touch_tolerance_m) return true;
   const std::size_t count = cells.pairs.size(), seeds = cells.at_most(region_seeds);
   for (std::size_t k = 0; k < seeds; ++k) {
-    // Goes from the centre of the list outwards, where a region is likely to be deepest.
+    // Starts halfway through the list, where a region is likely to be deepest.
     search_.offer(cells.pair_centre(cells.pairs[(count / 2 + k * count / seeds) % count]));
     if (search_.best_distance_m() <= touch_tolerance_m) return true;
   }
@@ -160,9 +160,9 @@ RegionCentre SurfacePairCollider::find_centre(const RegionCells& cells) const {
   return centre;
 }
 
-// Seeds at the centre of the region and between it and a few pairs, which are where the surfaces cross, and
-// as far beyond. Keeps the deepest and the farthest in front. With a seed from the last call, only one of the
-// other candidates is tried per call.
+// Tries the centre of the region and, in the direction of a few pairs, where the surfaces cross, the points
+// halfway to the pair and twice as far as it. Keeps the deepest point and the one farthest in front. With a
+// seed from the last call, only one of the points in a direction is tried per call.
 SurfacePairCollider::Seeds SurfacePairCollider::find_seeds(const RegionCells& cells, const Seed* last) const {
   const RegionCentre centre = find_centre(cells);
   Seeds seeds;
@@ -191,7 +191,7 @@ SurfacePairCollider::Seeds SurfacePairCollider::find_seeds(const RegionCells& ce
 }
 
 // Computes the depth of a touch with both interiors on the same side, where one body is inside the other. A
-// few such points are tried; the one whose wall gives the shorter exit counts.
+// few such points are tried; the one with the shortest exit counts.
 void SurfacePairCollider::find_inner_touch(const RegionCells& cells, PairContact& contact) const {
   const Surface& first = first_.surface();
   const Surface& second = second_.surface();
@@ -213,9 +213,9 @@ void SurfacePairCollider::find_inner_touch(const RegionCells& cells, PairContact
   }
 }
 
-// Updates the contact if both surfaces are deeper behind each other than its depth; the smaller depth
-// separates them. Depths beyond `shortest` need not be exact. `from` becomes the deepest parameters of the
-// first surface.
+// Updates the contact if each surface is deeper behind the other than the contact's depth; the smaller of
+// both depths separates them. Depths beyond `shortest` need not be exact. `from` receives the parameters of
+// the first surface's deepest point.
 void SurfacePairCollider::deepen_contact(PairContact& contact, PairParameters& from, double outside,
                                          bool first_closed, double shortest) const {
   const PiecewiseSurface first = first_.pieces(), second = second_.pieces();
@@ -257,7 +257,7 @@ double SurfacePairCollider::tolerance() const {
   return nearest_tolerance * (std::isfinite(best) ? std::max(size, best) : size);
 }
 
-// Returns the largest tolerance that was used.
+// Searches all elements within reach for the nearest pair. Returns the largest tolerance that was used.
 double SurfacePairCollider::search_all(double reach) {
   double largest = 0.0;
   cells_.visit_elements([&] { return std::min(reach, search_.best_distance_m() - tolerance()); },
@@ -279,8 +279,8 @@ void SurfacePairCollider::find_nearest(const PairQuery& query, PairResult& resul
   search_.forget_best();
   search_.offer(RegionCells{&first_, &second_, {}}.pair_centre(cells_.find_likely_near_elements()));
   if (nearest_known_) search_.offer(nearest_);
-  // A first guess that is much too long has a large tolerance, which may have skipped nearer points. The
-  // search is repeated from the point found.
+  // A first guess that is much too far has a large tolerance, with which nearer points may have been skipped.
+  // The search is then repeated from the pair found.
   while (search_all(reach) > 2.0 * tolerance()) continue;
   nearest_ = search_.best().at;
   nearest_known_ = true;

@@ -29,10 +29,11 @@ struct PairResult {
   bool touching = false;   // to within touch_tolerance_m
   bool contained = false;  // one body is inside the other; the only contact describes its exit
   // Distance of surfaces that do not touch; infinite beyond the reach. No points are nearer by more than 1e-4
-  // of it or of the smaller surface's size.
+  // of the larger of this distance and the smaller surface's size.
   double distance_m = std::numeric_limits<double>::infinity();
   SurfacePair nearest;
-  // A capacity was met, and a contact may be missing. Remedy: surfaces of fewer elements or a smaller reach.
+  // A capacity was exceeded, and a contact may be missing. Remedy: surfaces of fewer elements or a smaller
+  // reach.
   bool overflow = false;
   int samples_evaluated = 0;
 };
@@ -68,7 +69,7 @@ class SurfacePairCollider {
   using Pairs = std::vector<CellPair>;
   using Region = ContactRegions::Region;
 
-  // Result of a region that the next collide() starts from: where the surfaces touched, and where the first
+  // Points of a region from which the next collide() starts: where the surfaces touched, and where the first
   // was deepest, by side as in Seeds.
   struct Seed {
     PairParameters touch, deepest[2];

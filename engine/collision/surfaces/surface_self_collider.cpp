@@ -135,7 +135,7 @@ bool PatchFolds::never_meets_itself(std::span<const LevelCell> cells) {
 namespace {
 
 constexpr std::size_t contact_capacity = 64;
-// Largest number of pairs at a level below the coarsest; beyond it a coarser level is used.
+// Largest number of pairs at any level but the coarsest; with more pairs, a coarser level is used.
 constexpr std::size_t fine_pair_capacity = 1 << 17;
 // Number of candidates from which Newton's method looks for a touch before the whole region is searched.
 constexpr std::size_t region_seeds = 8;
@@ -165,7 +165,7 @@ SurfaceSelfCollider::SurfaceSelfCollider(const NestedGrid& nested)
       search_(levels_, levels_, &not_joined_),
       regions_(levels_, levels_) {
   pairs_.reserve(cell_pair_capacity);
-  // Each descent leaves two node pairs on the stack, or fifteen cell pairs.
+  // Each step of a descent leaves up to two node pairs on the stack, or fifteen cell pairs.
   nodes_.reserve(256);
   pending_.reserve(static_cast<std::size_t>(16 * (2 + nested.levels)));
   contacts_.reserve(contact_capacity);
@@ -183,7 +183,7 @@ SelfResult SurfaceSelfCollider::collide(const Surface& surface, const SelfQuery&
   search_.begin();
   int level = levels_.nested().levels;
   collect_pairs(level);
-  // At a coarser level adjacent cells are larger, and contacts between them are missed.
+  // At a coarser level the joined cells are larger, and contacts between them are missed.
   const bool coarser = overflow_;
   while (overflow_ && level > 0 && !stopped_) collect_pairs(--level);
   const std::vector<Region>& regions = regions_.group(pairs_);
@@ -197,7 +197,7 @@ SelfResult SurfaceSelfCollider::collide(const Surface& surface, const SelfQuery&
   return {!contacts_.empty(), coarser || search_.overflow(), stopped_};
 }
 
-// Reports progress every 64 calls only, because looking for a signal is a system call.
+// Reports progress only every 64 calls, because the callback may make a system call.
 bool SurfaceSelfCollider::should_continue(double fraction) {
   constexpr std::uint64_t calls_between_reports = 64;
   if (!stopped_ && calls_++ % calls_between_reports == 0) stopped_ = !query_->progress.report(fraction);
@@ -334,7 +334,7 @@ void SurfaceSelfCollider::split(const CellPair& pair) {
   }
 }
 
-// Returns true if an earlier region has the same pairs in the opposite order.
+// Returns true if an earlier region has the same pairs with the two cells swapped.
 bool SurfaceSelfCollider::is_mirror_of_earlier(const Region& region) const {
   const CellPair& sought = pairs_[region.begin];
   const auto end = pairs_.begin() + static_cast<std::ptrdiff_t>(region.begin);

@@ -1,7 +1,7 @@
 // Contact of a B-spline surface with itself, open, periodic or closed, by the descent of SurfacePairCollider
-// with the same surface on both sides. Cells that are joined (at a corner, across a seam or in a pole) always
-// meet there. They are skipped as soon as PatchFolds proves that they meet nowhere else, and split until
-// then.
+// with the same surface on both sides. Cells that are joined (at an edge or a corner, across a seam or at a
+// pole) always meet there. They are skipped as soon as PatchFolds proves that they meet nowhere else, and
+// split until then.
 #pragma once
 
 #include <array>
@@ -78,7 +78,8 @@ struct SelfQuery {
 // Result of SurfaceSelfCollider::collide().
 struct SelfResult {
   bool touching = false;  // to within touch_tolerance_m
-  // A capacity was met, and a contact may be missing. Remedy: a surface of fewer elements or fewer levels.
+  // A capacity was exceeded, and a contact may be missing. Remedy: a surface of fewer elements or fewer
+  // levels.
   bool overflow = false;
   bool stopped = false;  // by the progress callback; contacts found so far are valid
 };
@@ -86,8 +87,8 @@ struct SelfResult {
 // Self-contact search of one surface. One owner, one thread; allocates only on construction. The grid must
 // outlive it.
 //
-// Joined cells of the finest level are not separated: a loop within two of them, and the sharp edge of a
-// fold, are no contact. More levels find smaller loops.
+// Joined cells of the finest level are not tested against each other. A loop within two of them, or the sharp
+// edge of a fold, is therefore not a contact. More levels find smaller loops.
 class SurfaceSelfCollider {
  public:
   explicit SurfaceSelfCollider(const NestedGrid& nested);
@@ -100,7 +101,7 @@ class SurfaceSelfCollider {
   const std::vector<PairContact>& contacts() const { return contacts_; }
 
  private:
-  // Joints of cells at the ends of a direction, in addition to corners of the grid.
+  // How cells at the ends of a direction are joined, apart from the corners that they share in the grid.
   struct Joints {
     bool seam = false;                         // both ends of the direction are the same edge
     bool low_pole = false, high_pole = false;  // an end is a single point

@@ -22,7 +22,7 @@
 namespace spoonbill {
 namespace {
 
-// Boundary between two smooth pieces, across which derivatives up to this order agree.
+// Boundary between two smooth pieces, across which derivatives up to order `continuity` agree.
 struct PatchBreak {
   double parameter;
   int continuity;
@@ -30,7 +30,7 @@ struct PatchBreak {
 
 struct PatchDirection {
   std::vector<PatchBreak> breaks;  // increasing, both ends of the domain included
-  // The end meets the start with the continuity of the first break; the result is periodic then.
+  // True where the end meets the start with the continuity of the first break; the result is then periodic.
   bool closed = false;
 };
 
@@ -94,7 +94,7 @@ PointRows sample_patch(const Patch& patch, const std::vector<double>& u, const s
   return points;
 }
 
-// Returns the same points with those of one v in a row.
+// Returns the points transposed: those of one v are a row.
 PointRows transpose_points(const PointRows& points) {
   const Eigen::Index rows = points.rows(), columns = points.cols() / 3;
   PointRows result(columns, 3 * rows);
@@ -155,7 +155,7 @@ std::vector<double> piece_errors(const Eigen::MatrixXd& distances, std::size_t p
   return errors;
 }
 
-// Divides smooth pieces whose error is too large further. Returns true where there was any.
+// Divides smooth pieces whose error is too large into more parts. Returns true where there were any.
 bool refine(const std::vector<double>& errors, double allowed_m, int degree, Pieces& pieces) {
   bool refined = false;
   std::size_t piece = 0;
@@ -176,7 +176,8 @@ int count_control_points(const PatchDirection& direction, const Pieces& pieces, 
   return knots ? knots->control_point_count() : control_point_count_range.high + 1;
 }
 
-// Returns nullopt where too many control points would be needed. An error means that the patch is not finite.
+// Approximates the patch with one degree. Returns nullopt where too many control points would be needed, an
+// error where the patch is not finite.
 Result<std::optional<PatchFit>> approximate_with_degree(const Patch& patch, double tolerance_m, int degree) {
   Pieces u_pieces = initial_pieces(patch.u, degree), v_pieces = initial_pieces(patch.v, degree);
   const double allowed_m = allowed_fraction * tolerance_m;
@@ -233,7 +234,7 @@ struct Derivatives {
   Vector3 position, first, second;
 };
 
-// One direction of a surface over a box, with a few lines along which derivatives are compared.
+// One direction of a surface over a box, and a few lines along it on which derivatives are compared.
 class ParameterLine {
  public:
   ParameterLine(const GeomAdaptor_Surface& surface, const ParameterBox& box, bool along_u)
@@ -304,7 +305,7 @@ PatchDirection make_direction(const ParameterLine& line, double scale) {
   for (std::size_t k = 1; k + 1 < ends.size(); ++k) {
     direction.breaks[k].continuity = std::max(0, continuity_across(line, ends[k], ends[k], scale));
   }
-  // A direction along which all points are equal is a pole, not closed.
+  // A direction along which every line is a single point belongs to a pole and is not closed.
   double largest_span = 0.0;
   for (int k = 0; k < lines_compared; ++k) {
     const Vector3 centre = line.at(0.5 * (line.start() + line.end()), k).position;

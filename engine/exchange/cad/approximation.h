@@ -16,12 +16,12 @@ struct ParameterBox {
 
 struct PatchFit {
   Surface surface;  // over the parameters of the original
-  // Largest distance at equal parameters over nine positions of each piece in both directions, in metres.
+  // Largest distance at equal parameters, in metres, checked at 9 x 9 positions of each piece.
   double deviation_m = 0.0;
 };
 
-// Approximates the part of a surface over a box. `scale` is metres for each unit of the surface. The result
-// is cubic where that is enough, and of degree 5 or 7 where fewer control points then suffice. A direction
+// Approximates the part of a surface over a box. `scale` is the length of one unit of the surface in metres.
+// The result is cubic, or of degree 5 or 7 where the lower degrees need too many control points. A direction
 // whose box is a whole period, or whose ends meet, becomes periodic. Refused: a tolerance that needs more
 // control points than a surface may have, a surface that is not finite.
 Result<PatchFit> approximate_patch(const opencascade::handle<Geom_Surface>& surface, const ParameterBox& box,

@@ -49,8 +49,7 @@ using Geometry = opencascade::handle<Geom_BSplineSurface>;
 using Polygon = std::vector<Eigen::Vector2d>;
 
 constexpr double vertex_distance_mm = 1e-7;
-// Error of the curves in space that accompany those over (u, v): the target, and the limit where a kink needs
-// it.
+// Distance of edge curves in space from those over (u, v): the target, and the limit, which kinks may reach.
 constexpr double curve_tolerance_mm = 1e-6, curve_error_limit_mm = 1e-2;
 constexpr double corner_sine = 1e-4;
 constexpr int degree_limit = 14, segment_limit = 1000;
@@ -203,7 +202,7 @@ std::vector<double> find_corners(const Curve& curve) {
   return ends;
 }
 
-// Appends the vertex at a point, an existing one where there is one: a loop may return along a seam.
+// Appends the vertex at a point; one that exists there is repeated, since a loop may return along a seam.
 void add_vertex(const gp_Pnt& at, std::vector<TopoDS_Vertex>& vertices) {
   for (const TopoDS_Vertex& vertex : vertices) {
     if (BRep_Tool::Pnt(vertex).Distance(at) > vertex_distance_mm) continue;
@@ -213,7 +212,7 @@ void add_vertex(const gp_Pnt& at, std::vector<TopoDS_Vertex>& vertices) {
   vertices.push_back(BRepBuilderAPI_MakeVertex(at));
 }
 
-// Gives an edge the curve in space that accompanies the one over (u, v), which bounds the face.
+// Adds to an edge the curve in space that matches its curve over (u, v).
 Status add_curve_in_space(const Curve& curve, const Geometry& geometry, const TopoDS_Edge& edge) {
   Approx_CurveOnSurface approximation(new Geom2dAdaptor_Curve(curve), new GeomAdaptor_Surface(geometry),
                                       curve->FirstParameter(), curve->LastParameter(), curve_tolerance_mm);
@@ -303,8 +302,8 @@ bool is_closed_surface(const Surface& surface) {
   return (u && v) || (u && poles_of_v) || (v && poles_of_u);
 }
 
-// Moves the seams of periodic directions to where no loop crosses them. A surface that closes and has nothing
-// but holes is divided into two parts. Refused: loops that leave no such position.
+// Moves the seams of periodic directions to where no loop crosses them. A surface that closes and has only
+// holes is divided into two parts. Refused: loops that leave no such position.
 Result<std::vector<TrimmedSurface>> open_surface(const Surface& surface, const std::vector<TrimLoop>& trims) {
   TrimmedSurface part{surface, trims};
   for (const Direction direction : {Direction::u, Direction::v}) {
@@ -326,7 +325,8 @@ Result<std::vector<TopoDS_Face>> make_faces(const Geometry& geometry, const Trim
     for (const Outline& hole : outlines.value()) {
       if (hole.area < 0.0 && find_owner(hole, outlines.value()) == owner) maker.Add(hole.wire);
     }
-    if (!maker.IsDone()) return Error{ErrorCode::unsupported, "OpenCASCADE makes no face of its trim loops"};
+    if (!maker.IsDone())
+      return Error{ErrorCode::unsupported, "OpenCASCADE cannot make a face of the trim loops"};
     faces.push_back(maker.Face());
     return {};
   };

@@ -22,21 +22,21 @@ struct PartFaces {
 };
 
 // Builds the faces of the part of a surface that its trims keep. A face's edge ends at each corner of its
-// loop. A surface that closes and has nothing but holes is divided into two parts: CAD systems support no
-// face between poles without an outer edge. Refused: as build_body_shape() does.
+// loop. A surface that closes and has only holes is divided into two parts, because CAD systems do not
+// support a face between poles without an outer edge. Fails where build_body_shape() does.
 Result<PartFaces> build_faces(const CadSurface& part);
 
 // Returns a shell of one face.
 TopoDS_Shell make_shell(const TopoDS_Face& face);
 
-// Builds a solid of a surface that closes, and otherwise an open shell. A trimmed surface is one shell, or a
+// Builds a solid from a surface that closes, otherwise an open shell. A trimmed surface is one shell, or a
 // compound of one for each connected component.
 //
 // A side whose control points coincide is a pole of the body, two opposite sides that coincide are its seam;
 // the surface closes when every side is one or the other. Faces of a surface that closes, trimmed or not,
 // face outwards, whatever the direction of the surface's normals. A face of a solid becomes a shell and keeps
-// its orientation. Refused: a surface or trim loops of which OpenCASCADE can build no valid shape, and loops
-// that leave no position for a seam.
+// its orientation. Refused: a surface or trim loops from which OpenCASCADE cannot build a valid shape, and
+// loops that leave no position for a seam.
 Result<BodyShape> build_body_shape(const CadSurface& part);
 
 }  // namespace spoonbill

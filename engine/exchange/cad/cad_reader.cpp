@@ -39,7 +39,7 @@ namespace {
 struct NamedFace {
   TopoDS_Face face;
   std::string name;   // its own, its body's or its product's; unique within the file
-  std::string solid;  // unique name of the solid that it is one of several faces of; empty without one
+  std::string solid;  // unique name of the solid of several faces that has this one; empty: none
 };
 
 struct NamedFaces {
@@ -196,7 +196,7 @@ Result<Content> read_step(const std::filesystem::path& file, const Progress& pro
   reader.SetLayerMode(false);
   reader.SetNameMode(true);
   if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) {
-    return Error{ErrorCode::malformed, "is no STEP file, or a damaged one"};
+    return Error{ErrorCode::malformed, "is not a STEP file, or is damaged"};
   }
   if (!progress.report(parsing_fraction)) return Progress::stopped();
   Content content{new_document(), find_unit(reader.Reader().StepModel())};
@@ -215,7 +215,7 @@ Result<Content> read_iges(const std::filesystem::path& file, const Progress& pro
   reader.SetLayerMode(false);
   reader.SetNameMode(true);
   if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) {
-    return Error{ErrorCode::malformed, "is no IGES file, or a damaged one"};
+    return Error{ErrorCode::malformed, "is not an IGES file, or is damaged"};
   }
   if (!progress.report(parsing_fraction)) return Progress::stopped();
   Content content{new_document(), find_unit(reader.IGESModel(), file)};
@@ -241,7 +241,7 @@ void add_unit(const FileUnit& unit, const CadReading& reading, CadModel& model) 
 Error no_surface_error(const Content& content) {
   if (content.losses.faces > 0) {
     return Error{ErrorCode::malformed, "has " + std::to_string(content.losses.faces) +
-                                           " faces, none of which can be read; export it anew"};
+                                           " faces, none of which can be read; export it again"};
   }
   if (content.external_files > 0) {
     return Error{ErrorCode::missing, "contains no surface but names other files; export all as one"};
@@ -261,7 +261,7 @@ void add_loss_notes(const Content& content, CadModel& model) {
   add_note(losses.lost_instances, losses.instances, "placed parts");
   if (losses.unread > 0) {
     model.notes.push_back("damaged entities of the file: " + std::to_string(losses.unread) +
-                          "; what they belong to is missing or wrong; export it anew");
+                          "; what they belong to is missing or wrong; export it again");
   }
   if (content.unread_placements > 0) {
     model.notes.push_back(
@@ -279,7 +279,7 @@ void add_loss_notes(const Content& content, CadModel& model) {
   }
 }
 
-// Adds a note about solids, whose faces become a body each.
+// Adds a note about solids, each face of which becomes a body.
 void add_solid_notes(const NamedFaces& named, CadModel& model) {
   if (named.solids == 0) return;
   const std::string faces = std::to_string(named.faces_of_solids);
@@ -288,7 +288,8 @@ void add_solid_notes(const NamedFaces& named, CadModel& model) {
                         " come in as a body each; they leave joined where they still close");
 }
 
-// Returns metres for each unit of OpenCASCADE's numbers, which are millimetres where the unit is right.
+// Returns metres for each unit of OpenCASCADE's numbers, which are millimetres. A unit that the file does not
+// declare counts as 1 mm, unless the caller gives it.
 double find_scale(const FileUnit& unit, const CadReading& reading) {
   if (reading.unit_m > 0.0) return reading.unit_m / unit.millimetres;
   return unit.declared ? 1e-3 : 1e-3 / unit.millimetres;
@@ -325,8 +326,8 @@ Result<FaceSurface> convert_near_face(const TopoDS_Face& face, double scale, dou
   return found;
 }
 
-// Passes the surfaces of all faces to the sink; notes report faces that cannot be converted. Refused: no face
-// left.
+// Passes the surfaces of all faces to the sink; notes report faces that cannot be converted. Fails where that
+// is all of them.
 Status convert_faces(const std::vector<NamedFace>& faces, double scale, const CadReading& reading,
                      const SurfaceSink& sink, const Progress& progress, CadModel& model) {
   std::optional<Error> first;

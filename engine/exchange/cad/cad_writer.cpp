@@ -57,7 +57,7 @@ struct WrittenBody {
   std::string name;  // unique within the file
   TopoDS_Shape shape;
   bool solid = false;
-  const CadSurface* surface = nullptr;  // of the model; null for a solid joined of several
+  const CadSurface* surface = nullptr;  // of the model; null for a solid joined from several
 };
 
 const char* const two_bytes = "\\X2\\";
@@ -84,8 +84,8 @@ Character character_at(std::string_view text, std::size_t start) {
   return {code, end - start};
 }
 
-// Writes characters of UTF-8 beyond ASCII, which occur in strings only, as hexadecimal digits of STEP (ISO
-// 10303-21, 6.4.3): \X2\....\X0\ or \X4\........\X0\.
+// Replaces characters beyond ASCII, which occur only in strings, by STEP's hexadecimal form (ISO 10303-21,
+// 6.4.3): \X2\....\X0\ or \X4\........\X0\.
 std::string to_step_ascii(std::string_view text) {
   std::string ascii;
   ascii.reserve(text.size());
@@ -133,7 +133,7 @@ std::string describe_open_shell(const CadSurface& surface, const BodyShape& body
                     : std::string());
 }
 
-// Counts a body, and adds a note where it is not the solid that one expects of a surface that closes.
+// Counts a body. Adds a note where its surface was moved to close it, or would close but is not a solid.
 void add_body_notes(const CadSurface& surface, const BodyShape& body, double moved_m,
                     CadFileContent& content) {
   ++(body.solid ? content.solids : content.open_shells);
@@ -199,8 +199,8 @@ class BodyCollector {
   std::set<std::string> added_solids_;
 };
 
-// Returns the bodies of a file: surfaces and joined solids, which are at the position of their first face.
-// Counts and notes are added to `content`.
+// Returns the bodies of a file in the order of the surfaces; a joined solid is at the position of its first
+// face. Counts and notes are added to `content`.
 Result<std::vector<WrittenBody>> collect_bodies(const CadModel& model, const Progress& progress,
                                                 CadFileContent& content) {
   BodyCollector collector(model, content);
@@ -242,7 +242,8 @@ opencascade::handle<TCollection_HAsciiString> text(const char* characters) {
 
 const char* const program_name = "Spoonbill";
 
-// Replaces OpenCASCADE's own entries, in IGES files with the name of the logged-in user.
+// Replaces the header entries that OpenCASCADE writes by default. In IGES these include the user's login
+// name.
 void fill_header(const opencascade::handle<StepData_StepModel>& model) {
   APIHeaderSection_MakeHeader header(model);
   header.SetDescriptionValue(1, text("Spoonbill model"));
@@ -300,7 +301,7 @@ void name_entity(const opencascade::handle<IGESData_IGESModel>& model,
   model->AddEntity(property);
 }
 
-// Names the entities of a type that were added after the first `before`.
+// Names all entities of the given type, except the first `before` entities of the model.
 void name_entities(const opencascade::handle<IGESData_IGESModel>& model, int before, int type,
                    const std::string& name) {
   for (int k = before + 1, count = model->NbEntities(); k <= count; ++k) {
@@ -309,7 +310,7 @@ void name_entities(const opencascade::handle<IGESData_IGESModel>& model, int bef
   }
 }
 
-// Extends the extent in the header by a shape that the writer does not consider.
+// Extends the header's largest coordinates to include a shape that IGESControl_Writer does not know.
 void extend_extent(const TopoDS_Shape& shape, const opencascade::handle<IGESData_IGESModel>& model) {
   Bnd_Box box;
   BRepBndLib::Add(shape, box);
@@ -318,7 +319,7 @@ void extend_extent(const TopoDS_Shape& shape, const opencascade::handle<IGESData
   for (const gp_Pnt& corner : {box.CornerMin(), box.CornerMax()}) header.MaxMaxCoords(corner.XYZ() / unit_mm);
 }
 
-// Adds a solid. IGESControl_Writer itself writes either all shapes of a file as solids, or none.
+// Adds a solid as a finished entity: IGESControl_Writer converts either all shapes to solids or none.
 bool add_solid(IGESControl_Writer& writer, const TopoDS_Shape& solid) {
   BRepToIGESBRep_Entity maker;
   maker.SetModel(writer.Model());

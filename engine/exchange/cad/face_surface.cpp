@@ -38,7 +38,8 @@ namespace spoonbill {
 namespace {
 
 constexpr int samples_per_edge = 16;
-// Distance from the side of a box as a fraction of its length; files store curves less exactly than surfaces.
+// Largest distance of an edge on the side of a box, as a fraction of the box's length; files store curves
+// less exactly than surfaces.
 constexpr double side_fraction = 1e-5;
 
 // Returns the projections of a point to the four sides of a box.
@@ -71,8 +72,8 @@ bool is_on_side(const TopoDS_Edge& edge, const TopoDS_Face& face, const Paramete
   return std::any_of(is_near.begin(), is_near.end(), [](bool near) { return near; });
 }
 
-// Returns true where an edge of the face, other than at the surface's own seam, leaves the sides of its box
-// by more than `tolerance`, in the face's unit, and more than a file rounds away.
+// Returns true where an edge of the face is not on one of the sides of its box, to within `tolerance` (in the
+// face's unit) or the edge's own tolerance.
 bool is_trimmed(const TopoDS_Face& face, const ParameterBox& box, double tolerance) {
   for (TopExp_Explorer edges(face, TopAbs_EDGE); edges.More(); edges.Next()) {
     const TopoDS_Edge& edge = TopoDS::Edge(edges.Current());
@@ -86,8 +87,8 @@ using Point = Eigen::Vector2d;
 // Control points of a cubic Bezier curve.
 using CubicPiece = std::array<Point, 4>;
 
-// Distance of loops from the file's curves as a fraction of the domain: by default, and the smallest that a
-// tolerance leads to.
+// Largest distance between loops and the file's curves, as a fraction of the domain: the default, and the
+// smallest that a tight tolerance leads to.
 constexpr double curve_fraction = 1e-6, smallest_curve_fraction = 1e-9;
 // Largest gap between edges that is closed by moving their ends, as a fraction of the domain.
 constexpr double meeting_fraction = 1e-3;
@@ -103,7 +104,7 @@ Point evaluate(const CubicPiece& piece, double t) {
          t * t * t * piece[3];
 }
 
-// Lengths of a surface's domain, and the tolerance of curves over it as a fraction of them.
+// Lengths of a surface's domain, and the tolerance of curves over it as a fraction of these lengths.
 struct CurveTolerance {
   Point lengths;
   double fraction;
@@ -261,7 +262,7 @@ std::vector<TrimLoop> orient_loops(std::vector<TrimLoop> loops, const KnotVector
 }
 
 // Returns a loop for each wire of the face except those around the whole domain, over the face's own
-// parameters. Its cubic pieces are within a millionth of the domain of the edges' curves, or nearer where the
+// parameters. Its cubic pieces are within a millionth of the domain of the edges' curves, or closer where the
 // surface stretches that beyond the tolerance; splines of degree 3 and less are exact. Refused: edges that
 // have no curves over the parameters or are not connected, and loops that bound no area.
 Result<std::vector<TrimLoop>> read_trim_loops(const TopoDS_Face& face, const Surface& surface,

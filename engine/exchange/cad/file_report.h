@@ -1,5 +1,5 @@
-// Facts about a CAD file that OpenCASCADE does not report: its unit, lost entities, ignored placements, other
-// files.
+// Facts about a CAD file that OpenCASCADE does not report: its unit, lost entities, ignored placements,
+// references to other files.
 #pragma once
 
 #include <IGESData_IGESModel.hxx>
@@ -20,12 +20,12 @@ struct FileUnit {
 };
 
 FileUnit find_unit(const opencascade::handle<StepData_StepModel>& model);
-// Sets the unit of the model to millimetres where it is invalid: OpenCASCADE would convert nothing.
+// Also sets an invalid unit of the model to millimetres, because OpenCASCADE would convert nothing.
 FileUnit find_unit(const opencascade::handle<IGESData_IGESModel>& model, const std::filesystem::path& file);
 
 // Numbers of entities that OpenCASCADE omits although it reports success.
 struct LossCount {
-  int faces = 0, lost_faces = 0;          // faces of the file, and those of them that became no shape
+  int faces = 0, lost_faces = 0;          // faces of the file, and those that did not become a shape
   int instances = 0, lost_instances = 0;  // placed copies of parts of an IGES file
   int unread = 0;                         // IGES entities that could not be parsed or have no type
 };

@@ -60,7 +60,7 @@ std::optional<long> parse_field(const std::string& line, std::size_t start) {
 
 struct LineCounts {
   std::map<char, long> counts;  // number of lines of each section
-  std::string last;             // last line of the file, with the counts of the others
+  std::string last;             // last line of the file, which counts those of the other sections
   int null_entities = 0;
   long farthest = 0;  // last line of parameters that an entity refers to
   std::optional<long>
@@ -98,7 +98,7 @@ LineCounts count_lines(const std::filesystem::path& file) {
 
 Error damaged(const std::string& fault) {
   return Error{ErrorCode::malformed,
-               "is cut short or damaged: " + fault + "; copy it whole, or export it anew"};
+               "is cut short or damaged: " + fault + "; copy it whole, or export it again"};
 }
 
 }  // namespace

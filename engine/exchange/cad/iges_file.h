@@ -22,8 +22,8 @@ bool declares_iges_unit(const std::filesystem::path& file);
 double iges_model_scale(const std::filesystem::path& file);
 
 // Returns the number of directory entries without a type, which are ignored. Refused: a file without its last
-// line, with more or fewer lines than that counts, or with entities whose parameters would be beyond its end.
-// A file without a directory passes; OpenCASCADE judges it.
+// line, with more or fewer lines than that line counts, or with entities whose parameters would be beyond its
+// end. A file without a directory passes; OpenCASCADE judges it.
 Result<int> count_null_entities(const std::filesystem::path& file);
 
 }  // namespace spoonbill

@@ -30,14 +30,15 @@
 namespace spoonbill {
 namespace {
 
-// Sewing tolerances that are tried, from the rounding of files to the distance of two approximated faces.
+// Sewing tolerances in the order they are tried: from the rounding of files to the gap between two
+// approximated faces.
 constexpr double tolerances_mm[] = {1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1};
 
-// Gap between two faces of usual accuracy.
+// Largest gap between two faces that is not reported; a larger deviation of the faces raises it.
 constexpr double expected_gap_m = 2e-5;
 constexpr int gap_samples = 16;
 
-// Index of the part of each geometry; sewing makes new faces on the same geometry.
+// Part that each geometry belongs to; sewing makes new faces on the same geometry.
 using PartOf = std::map<const Geom_Surface*, std::size_t>;
 
 // Number of faces of each part.
@@ -187,8 +188,8 @@ Result<AllFaces> collect_faces(const std::vector<const CadSurface*>& parts) {
   return all;
 }
 
-// Returns true where all faces of each part were found; a part with faces outside a solid does not belong to
-// it.
+// Returns true where the parts in `found` have all their faces there: a part with a face outside a solid does
+// not belong to the solid.
 bool are_complete(const FaceCounts& found, const FaceCounts& all) {
   return std::all_of(found.begin(), found.end(),
                      [&](const auto& count) { return count.second == all.at(count.first); });

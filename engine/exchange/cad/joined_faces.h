@@ -1,4 +1,4 @@
-// Joining of the faces of a solid, which are surfaces of their own in the program, to that solid.
+// Joins the faces of a solid, which are separate surfaces in the program, into that solid.
 #pragma once
 
 #include <TopoDS_Solid.hxx>
@@ -22,9 +22,10 @@ struct JoinedFaces {
   std::vector<std::size_t> loose;  // indices of the parts that belong to no solid
 };
 
-// Sews the parts' edges where they are no farther apart than approximated faces may be. The normals of most
-// of a shell's faces decide which side is outside: a shell that is inside out is a cavity of the solid around
-// it, or loose where there is none. Refused: a surface or trim loops of which OpenCASCADE can build no face.
+// Sews the parts' edges where they are at most 0.1 mm apart, as approximated faces may be. The normals of
+// most of a shell's faces decide which side is outside: a shell that is inside out is a cavity of the solid
+// around it, or loose where there is none. Refused: a surface or trim loops from which OpenCASCADE cannot
+// build a face.
 Result<JoinedFaces> join_faces(const std::vector<const CadSurface*>& parts);
 
 // Returns notes about the joined faces of the solid `name`, one line each: bridged gaps that are wider than

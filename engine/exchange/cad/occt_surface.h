@@ -14,8 +14,8 @@ namespace spoonbill {
 inline constexpr double millimetres_per_metre = 1e3;
 
 // Converts a surface exactly. The result is open and clamped in both directions: a periodic direction is
-// opened at its seam by knot insertion, an open one that is not clamped gets the knots at its ends. Refused:
-// knots that OpenCASCADE takes for equal.
+// opened at its seam by knot insertion, and an open one that is not clamped gets the knots at its ends.
+// Refused: different knots that OpenCASCADE treats as equal.
 Result<opencascade::handle<Geom_BSplineSurface>> to_occt(const Surface& surface);
 
 // Converts a surface that is neither rational nor periodic exactly. Refused: a degree above max_degree,
@@ -35,8 +35,8 @@ struct ClosedSurface {
   double moved_m = 0.0;  // largest displacement of samples
 };
 
-// Returns a surface that find_closing() calls a solid with periodic seams and poles of a single point. Any
-// other surface, and one that cannot be closed within the tolerance, is returned unchanged.
+// Returns a solid (as classified by find_closing()) with periodic seams and single-point poles. Any other
+// surface, and one that cannot be closed within the tolerance, is returned unchanged.
 ClosedSurface close_exactly(const Surface& surface);
 
 // Returns the Greville parameters, at which a spline of as many control points is interpolated well: the mean

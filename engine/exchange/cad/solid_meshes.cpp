@@ -1,4 +1,4 @@
-// Meshes of the solids that are joined of a model's faces.
+// Meshes of the solids that are joined from a model's faces.
 #include <BRepAdaptor_Curve.hxx>
 #include <BRepGProp.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
@@ -45,11 +45,11 @@ struct ShapeMesh {
 
 // Largest angle between neighbouring triangles of a face, in radians.
 constexpr double angle_limit = 0.5;
-// Initial deflection as a fraction of the chord error, which the mesher may exceed, and the smallest factor
-// of a step.
+// First deflection as a fraction of the chord error, which the mesher may exceed, and smallest ratio of a
+// deflection to the one before.
 constexpr double initial_fraction = 0.7, smallest_step = 0.2;
 constexpr int try_limit = 6;
-// Number of parts of a triangle's side between samples.
+// Number of sampling intervals on a side of a triangle.
 constexpr int side_parts = 3;
 
 using Triangulation = opencascade::handle<Poly_Triangulation>;
@@ -214,7 +214,7 @@ bool is_watertight(const TriangleMesh& mesh) {
          std::adjacent_find(edges.begin(), edges.end()) == edges.end();
 }
 
-// Returns the largest distance of samples over a triangle in (u, v) from the triangle in space, in metres.
+// Returns the largest distance in metres between a triangle and the surface, at samples in (u, v).
 double triangle_error_m(const MeshedFace& meshed, const Geom_Surface& surface,
                         const std::array<int, 3>& local, const std::array<Vector3, 3>& corners) {
   std::array<gp_XY, 3> uv;
@@ -288,10 +288,10 @@ Result<std::optional<ShapeMesh>> mesh_with_deflection(const TopoDS_Shape& shape,
   return std::optional(std::move(found));
 }
 
-// Meshes a closed shape so that faces share the points of their edges. The mesh is refined until samples of
-// faces and edges are within the chord error plus `gap_m`, the widest gap between two faces: a point of both
-// can be on one of them only. Returns nullopt where no mesh is found in which each edge has two triangles of
-// opposite direction. Refused: more triangles than the limit.
+// Meshes a closed shape so that faces share the points of their edges, with a smaller deflection at each try.
+// Samples of faces and edges should be within the chord error plus `gap_m`, the widest gap between two faces:
+// a shared point cannot be on both. Returns the most accurate mesh found, or nullopt where none is
+// watertight. Refused: more triangles than the limit before a watertight mesh is found.
 Result<std::optional<ShapeMesh>> mesh_shape(const TopoDS_Shape& shape, const SolidMeshing& meshing,
                                             double gap_m) {
   std::optional<ShapeMesh> best;
@@ -313,10 +313,10 @@ Result<std::optional<ShapeMesh>> mesh_shape(const TopoDS_Shape& shape, const Sol
   return best;
 }
 
-// Relative tolerance to which OpenCASCADE integrates volume and area; its default errs by a hundredth.
+// Relative tolerance to which OpenCASCADE integrates volume and area; its default has an error of about 1 %.
 constexpr double integration_tolerance = 1e-6;
-// Allowed difference of a mesh's volume from the solid's: a multiple of area times chord error, because
-// narrow bends add to it, and a fraction of the volume for the error of its integral.
+// Allowed difference between the volumes of mesh and solid: a multiple of area times chord error, because
+// narrow bends add to it, plus a fraction of the volume for the error of its integral.
 constexpr double volume_slack = 2.0, integral_slack = 1e-3;
 
 CadSolid measure_solid(const std::string& name, const JoinedSolid& joined) {
@@ -333,12 +333,12 @@ CadSolid measure_solid(const std::string& name, const JoinedSolid& joined) {
   return solid;
 }
 
-// Mesher of the solids of a model, each at its first face.
+// Mesher of the solids of a model, in the order of their first faces.
 class SolidMesher {
  public:
   SolidMesher(const CadModel& model, const SolidMeshing& meshing) : model_(model), remaining_(meshing) {}
 
-  // Adds the solid that the surface with this index is a face of, unless it has been added.
+  // Adds the solid of the surface at an index, once for all its faces. A surface without a solid is loose.
   Status add(std::size_t index) {
     const std::string& name = model_.surfaces[index].solid;
     if (name.empty()) {
@@ -396,7 +396,7 @@ class SolidMesher {
     return {};
   }
 
-  // Returns true where the mesh has the volume of the solid; a mesh that folds over has not.
+  // Returns true where mesh and solid have the same volume; a mesh that folds over does not.
   static bool has_same_volume(const ShapeMesh& found, const CadSolid& solid) {
     const double difference_m3 = enclosed_volume_m3(found.mesh) - solid.volume_m3;
     return std::abs(difference_m3) <=

@@ -168,7 +168,7 @@ std::string escape_attribute(const std::string& text) {
   return escaped;
 }
 
-// Poll of whether the sink wants to continue. The first error is stored.
+// Asks the sink whether to continue. The first error is stored.
 class StopCheck {
  public:
   explicit StopCheck(const ByteSink& sink) : sink_(sink) {}
@@ -263,7 +263,7 @@ class Archive {
     zip_register_cancel_callback_with_state(archive_, stops, nullptr, &stop_check);
     if (zip_close(archive_) != 0) return false;
     archive_ = nullptr;
-    // A stop that the last call of the callback reports has no effect on zip_close().
+    // zip_close() ignores a stop that the last call of the callback reports.
     return stop_check.status().ok();
   }
 

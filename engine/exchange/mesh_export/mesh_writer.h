@@ -23,10 +23,10 @@ struct NamedMesh {
 using ByteSink = std::function<Status(std::string_view)>;
 
 // Writes meshes to a file. STL is binary in single precision, as the format requires; OBJ is text with all
-// digits and an object for each mesh; PLY is binary in double precision, all meshes in one; 3MF (3D
+// digits and an object for each mesh; PLY is binary in double precision, with all meshes merged; 3MF (3D
 // Manufacturing Format, core specification 1.3) is a zip with an object for each mesh, always in millimetres.
-// `format` must be one of these. `unit_m` is the length of one of the file's numbers. Refused: more triangles
-// than the format's indices count, what libzip cannot pack, and errors of the sink.
+// `format` must be one of these. `unit_m` is the length of one unit of the file. Refused: more triangles than
+// the format can index, errors of libzip and of the sink.
 Status write_meshes(const std::vector<NamedMesh>& meshes, FileFormat format, double unit_m,
                     const ByteSink& sink);
 

@@ -30,7 +30,7 @@ inline constexpr std::size_t exported_triangle_limit = 10'000'000;
 
 // Tessellates the part of a surface that the trim loops keep, on a grid over its polynomial pieces that is
 // finer where it bends. A cell of sides h_u and h_v is within (h_u^2 |S_uu| + h_v^2 |S_vv|) / 8 of the
-// bilinear patch through its corners (surface_bounds.h), and the patch within |P00 - P10 - P01 + P11| / 4 of
+// bilinear patch through its corners (surface_levels.h), and the patch within |P00 - P10 - P01 + P11| / 4 of
 // its triangles; both hold for cells that loops cut. A loop's polygon is within polygon_error_fraction() of
 // the domain of the loop, which the surface stretches by at most its first derivatives. Refused: more
 // triangles than the limit, loops that bound no area, a request to stop.

@@ -135,7 +135,7 @@ Error comma_error(std::uint64_t point, std::string_view word) {
 }
 
 Error truncated_error(std::uint64_t point, std::uint64_t points) {
-  return Error{ErrorCode::malformed, "it ends or is no number at point " + std::to_string(point + 1) +
+  return Error{ErrorCode::malformed, "it ends or has no number at point " + std::to_string(point + 1) +
                                          " of " + std::to_string(points) + "; it is cut or damaged"};
 }
 
@@ -211,8 +211,8 @@ Result<PointCloud> read_binary_body(Header header) {
   });
 }
 
-// Reads the compressed and the full length, then LZF data of all values of the first field, the second and so
-// on.
+// Reads the compressed and the full size, then LZF data: all values of the first field, those of the second,
+// and so on.
 Result<PointCloud> read_compressed_body(Header header) {
   if (header.points > point_limit) {
     return collect_points(header, [](auto, auto) { return std::optional<double>(); });

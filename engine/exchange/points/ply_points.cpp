@@ -59,7 +59,7 @@ std::optional<NumberType> find_type(std::string_view name) {
 
 Error line_error(std::string_view line) {
   return Error{ErrorCode::malformed,
-               "its header has a line that is no PLY: '" + std::string(line.substr(0, 60)) + "'"};
+               "its header has a line that is not PLY: '" + std::string(line.substr(0, 60)) + "'"};
 }
 
 Status read_property(std::string_view rest, std::string_view line, std::vector<Element>& elements) {
@@ -102,7 +102,7 @@ Result<Header> read_header(std::string_view bytes) {
   Header header;
   std::string_view rest = bytes;
   if (extract_line(rest) != "ply") {
-    return Error{ErrorCode::malformed, "does not begin with the word ply; it is no PLY file"};
+    return Error{ErrorCode::malformed, "does not begin with the word ply; it is not a PLY file"};
   }
   while (!rest.empty() && bytes.size() - rest.size() < header_bytes_limit) {
     const std::string_view line = extract_line(rest);
@@ -179,7 +179,8 @@ Error truncated_error(const Element& element, std::uint64_t row, std::string_vie
     return Error{ErrorCode::malformed,
                  row_name + " has '" + excerpt(word) + "', a number with a comma; write decimal points"};
   }
-  return Error{ErrorCode::malformed, "it ends or is no number within " + row_name + "; it is cut or damaged"};
+  return Error{ErrorCode::malformed,
+               "it ends or has no number within " + row_name + "; it is cut or damaged"};
 }
 
 Status skip_element(NumberReader& numbers, const Element& element) {

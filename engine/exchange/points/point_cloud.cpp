@@ -105,7 +105,7 @@ bool is_comment(std::string_view line) {
 }
 
 Error no_point_error(std::size_t line, std::string_view text) {
-  return Error{ErrorCode::malformed, "line " + std::to_string(line) + " is no point: '" +
+  return Error{ErrorCode::malformed, "line " + std::to_string(line) + " is not a point: '" +
                                          excerpt(text, excerpt_length) + "'; a line has x, y and z"};
 }
 
@@ -150,7 +150,7 @@ Result<PointCloud> PointCollector::finish() && {
   if (!cloud_.points.empty()) return std::move(cloud_);
   if (cloud_.skipped > 0) {
     return Error{ErrorCode::too_few, "all of its " + std::to_string(cloud_.skipped) +
-                                         " points have a coordinate that is no number; scan it again"};
+                                         " points have a coordinate that is not a number; scan it again"};
   }
   return Error{ErrorCode::too_few, "has no points"};
 }

@@ -21,7 +21,7 @@ inline constexpr std::size_t point_file_bytes_limit = std::size_t{1} << 30;
 
 struct PointCloud {
   std::vector<Vector3> points;   // in the file's own unit
-  std::vector<Vector3> normals;  // one a point, of any length, or none at all
+  std::vector<Vector3> normals;  // one for each point, of any length; or empty
   std::size_t skipped = 0;       // points with a coordinate that is NaN, as depth cameras write them
 };
 
@@ -36,7 +36,7 @@ class PointCollector {
   // the limit.
   Status add(const Vector3& point, const Vector3& normal);
 
-  // Returns the cloud. Refused: no point at all.
+  // Returns the cloud. Refused: a cloud without points.
   Result<PointCloud> finish() &&;
 
  private:
@@ -55,11 +55,11 @@ std::uint64_t ply_face_count(std::string_view bytes);
 // normal_x, normal_y and normal_z are its normals.
 Result<PointCloud> parse_pcd_points(std::string_view bytes);
 
-// Reads one point a line: x, y, z separated by blanks, commas or semicolons, followed by a normal where three
-// further columns have length 1 in all lines. Between semicolons "12,5" is a number with a decimal comma.
-// Ignored: other columns, comments (#, //), a byte order mark, and before the first point one line of words
-// or of one number, the count. Refused: commas within words between blanks, which may separate numbers or be
-// decimal.
+// Reads one point from each line: x, y, z separated by blanks, commas or semicolons, followed by a normal
+// where three further columns have length 1 in all lines. Between semicolons "12,5" is a number with a
+// decimal comma. Ignored: other columns, comments (#, //), a byte order mark, and before the first point one
+// line of words or of one number, the count. Refused: a comma within a word where blanks separate the words,
+// since it may separate numbers or be decimal.
 Result<PointCloud> parse_text_points(std::string_view bytes);
 
 // Reads the `v` lines of an OBJ file; its `vn` lines are normals where there are as many.

@@ -35,7 +35,7 @@ struct AchievedElasticity {
   Vector3 poissons_ratio;  // mean of the two lateral ratios in tension along each axis
 };
 
-// Computes the elasticity from the normal stresses by the normal strains, Pa.
+// Computes the elasticity from the matrix that maps normal strains to normal stresses, Pa.
 AchievedElasticity compute_elasticity(const Eigen::Matrix3d& normal_stiffness_pa);
 
 // Elasticity that a body's cells achieve, compared with the requested one: means over the cells, weighted

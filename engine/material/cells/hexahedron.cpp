@@ -21,7 +21,7 @@ Vector3 natural(int corner) {
   return {corner >> 2 & 1 ? 1.0 : -1.0, corner >> 1 & 1 ? 1.0 : -1.0, corner & 1 ? 1.0 : -1.0};
 }
 
-// Gradients of the shape functions by the natural coordinates.
+// Returns the gradients of the shape functions with respect to the natural coordinates.
 CellGradients natural_gradients(const Vector3& at) {
   CellGradients gradients;
   for (int c = 0; c < 8; ++c) {
@@ -32,7 +32,7 @@ CellGradients natural_gradients(const Vector3& at) {
   return gradients / 8.0;
 }
 
-// Rows: natural coordinates; columns: x, y, z.
+// Returns the derivatives of the position: rows for the natural coordinates, columns for x, y, z.
 Eigen::Matrix3d jacobian(const CellCorners& corners, const CellGradients& gradients) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (int c = 0; c < 8; ++c) {

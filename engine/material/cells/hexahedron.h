@@ -34,16 +34,16 @@ struct HexahedronPart {
 // layers bend as a composite does.
 CellMatrix hexahedron_stiffness(const CellCorners& corners, std::span<const HexahedronPart> parts);
 
-// Returns the volume of a part by the corners that get its mass, m^3.
+// Returns the volume of a part of a cell, m^3, divided among the corners to which its mass is assigned.
 std::array<double, 8> part_volumes(const CellCorners& corners, const Vector3& low, const Vector3& high);
 
 // Returns Young's modulus and Poisson's ratio of a cell with this stiffness along x, y and z, for uniform
 // strains.
 AchievedElasticity achieved_elasticity(const CellCorners& corners, const CellMatrix& stiffness);
 
-// Returns the gradients of the trilinear shape functions at the centre of the cell, one row per corner,
-// 1/m.
+// Gradients of a cell's shape functions, one row per corner, 1/m.
 using CellGradients = Eigen::Matrix<double, 8, 3>;
+// Returns the gradients of the trilinear shape functions at the centre of the cell.
 CellGradients centre_gradients(const CellCorners& corners);
 
 }  // namespace spoonbill

@@ -182,7 +182,7 @@ AchievedElasticity achieved_elasticity(const CellCorners& corners, const CellSpr
 
 namespace {
 
-// Gradient of cell_volume() by its corners.
+// Returns the gradient of cell_volume() with respect to the corners.
 CellVector volume_gradient(const CellCorners& p) {
   const Vector3 a = p[7] - p[4], b = p[3] - p[0], c = p[7] - p[2];
   const Vector3 d = p[6] - p[0], e = p[5] - p[0], f = p[7] - p[1];
@@ -195,8 +195,8 @@ CellVector volume_gradient(const CellCorners& p) {
   return gradient / 12.0;
 }
 
-// Second derivatives of cell_volume(). The gradient is linear in each single coordinate, so differences are
-// exact.
+// Returns the second derivatives of cell_volume(). The gradient is linear in each single coordinate, so
+// differences are exact.
 CellMatrix volume_hessian(const CellCorners& at, double size) {
   CellMatrix hessian;
   for (int n = 0; n < 24; ++n) {

@@ -1,5 +1,5 @@
 // Lattice cells of springs and one volume force, with the elasticity of the lattice that sculpting steps
-// (lattice_kernels.h), in double precision and with a tangent.
+// (springs/lattice_kernels.h), but in double precision and with a tangent.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,8 +33,8 @@ struct CellSprings {
 // permutations). The solution is the one closest to a cube of the same volume with two fifths of the
 // largest possible body diagonals. Without body diagonals, or with the largest, zero-energy modes appear.
 //
-// Eq. 6 of Pungotra et al. 2013, K = A E / L with A = a^2, is the formula of a bar; for all springs of a
-// lattice it gives 2.09 to 2.25 times the target E.
+// Eq. 6 of Pungotra et al. 2013, K = A E / L with A = a^2, is the stiffness of a bar; applied to every
+// spring, it makes a lattice 2.09 to 2.25 times too stiff.
 CellSprings cell_springs(const CellCorners& corners, double shear_modulus_pa);
 
 // Returns K_v = mu (4 nu - 1) / (1 - 2 nu), Pa: the stiffness that a cell's volume force adds to the

@@ -26,12 +26,12 @@ class BodyContacts {
   explicit BodyContacts(int capacity);
 
   void clear();
-  // Adds a constraint that keeps the first point on the side of the second to which the unit vector
-  // `normal` points. `gap_m` is its present distance beyond it, negative if it has passed. Both points may
-  // be of the same body and share nodes. Returns false when full.
+  // Adds a constraint that keeps the first point on the side of the second to which the unit vector `normal`
+  // points. `gap_m` is the present distance of the first point beyond the second along `normal`, negative
+  // for a penetration. Both points may be of the same body and share nodes. Returns false when full.
   bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m);
 
-  // Starts a tick: no constraint has acted.
+  // Starts a tick: marks all constraints as not acted.
   void begin();
 
   // Solves the constraints. Call after the kick and before the drift of a substep of h_s.
@@ -64,8 +64,8 @@ class BodyContacts {
 // Contact of one node with the ground. Plain data.
 //
 // Friction is limited by the coefficient times the mean push of the last `friction_memory_s`, not by the
-// present push. Friction that followed every oscillation of the push would amplify it, and a body would hop
-// down a slope on which it should stick.
+// present push. Friction that followed every oscillation of the push would amplify the oscillation, and a
+// body would hop down a slope on which it should stick.
 //
 // Measured friction follows a change of pressure gradually (Prakash 1998), which makes sliding well posed
 // (Ranjith and Rice 2001). Over that time the impulses sum to Coulomb's law.
@@ -89,8 +89,8 @@ inline constexpr double friction_memory_s = 0.01;
 // substep, after all other contacts; the implicit solver once a tick.
 //
 // Stores the contacts of one tick and their memory for the next. Each constrains a single node, so one pass
-// solves those of springs exactly, and sticking contacts do not creep. One owner, one thread; allocates
-// only in its constructor.
+// solves the contacts of spring-stepped lattices exactly, and sticking contacts do not creep. One owner, one
+// thread; allocates only in its constructor.
 class GroundContacts {
  public:
   explicit GroundContacts(int capacity);

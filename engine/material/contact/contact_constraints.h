@@ -23,8 +23,7 @@ struct ContactPace {
 // Pace of ground contacts. Each node on the ground has its own contact and closes its gap within a substep.
 inline constexpr ContactPace ground_pace{1.0, 0.7};
 
-// Impulse of one contact in one substep: two points that may not pass each other, before the drift of the
-// substep.
+// Contact of two points that must not pass each other, before the drift of one substep, and its impulse.
 struct ContactPush {
   double gap_m;      // negative: penetration depth
   Vector3 normal;    // unit vector along which the points separate
@@ -135,7 +134,7 @@ class ContactConstraints {
     Vector3 direction = Vector3::Zero();  // plane push: normal; grip: offset in the tool's frame
     double offset_m = 0.0;                // plane push only
     double compliance = 0.0;              // of the point, 1/kg; 0 if all of its nodes are fixed
-    double friction = 0.0;                // of the body's surface; the tool's is the same
+    double friction = 0.0;                // coefficient of the body's surface; tools have none
     bool acted = false;
   };
   bool add(Kind kind, int body, const SpringLattice& lattice, const EmbeddedPoint& point,

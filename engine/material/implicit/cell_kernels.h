@@ -18,7 +18,7 @@ struct CellBatch {
   double rest[cell_axes][cell_lanes];      // relative to the centre, m
   double gradient[cell_axes][cell_lanes];  // of the shape functions at the centre, 1/m
 
-  // Present rotation of the cells, set by compute_forces().
+  // State of the cells at the last compute_forces().
   double quaternion[4][cell_lanes];            // w, x, y, z
   double turn[9][cell_lanes];                  // R - 1, row by row
   double spin_map[9][cell_lanes];              // (tr S - S)^-1
@@ -27,7 +27,8 @@ struct CellBatch {
 
 struct CellKernels {
   // Updates the rotations of the cells for the displacements `moved` (3 n + axis, m) and subtracts the
-  // forces that keep them so from `force`, N. The rotation follows the last one by a few Newton steps.
+  // forces that hold the cells in this shape from `force`, N. A few Newton steps from the last rotation find
+  // the new one.
   void (*compute_forces)(CellBatch* batches, int count, const double* moved, double* force);
   // Adds `scale` times the product of the plain tangent R P^T K P R^T and `field` to `out`.
   void (*apply)(const CellBatch* batches, int count, double scale, const double* field, double* out);

@@ -49,12 +49,13 @@ struct BlockMaterials {
                                                  // it; empty if all cells have the first material
 };
 
-// Returns the materials of a coarser grid over the same body. Each of its cells consists of the parts of
-// the lattice's cells that are inside it, in the grid's coordinates.
+// Returns the materials of a coarser grid over the same body. Each cell of the grid consists of the parts of
+// the lattice's cells that overlap it, in its natural coordinates.
 BlockMaterials make_block_materials(const LatticeMaterials& of, const std::array<int, 3>& lattice_count,
                                     const std::array<int, 3>& block_count);
 
-// One cell of an implicit body: its part of stiffness, masses and report. Plain data.
+// A cell of an implicit body, from which its stiffness, its masses and its part of the report are computed.
+// Plain data.
 struct BlockCell {
   CellCorners corners;
   double fraction;  // fraction of the cell that belongs to the body
@@ -92,11 +93,13 @@ struct ImplicitReport {
 // with the damping a by mass and t by stiffness. This is one step of Newton's method. K is the plain
 // tangent at x, which is never indefinite, so the matrix is positive definite.
 //
-// The conjugate gradients may stop early: at any iteration the stored energy is at most that of the body at
-// rest. Their preconditioner is the Cholesky factor of the same matrix a few ticks earlier, updated in
-// parts. Bodies are long and their nodes are numbered along them, so it is a narrow band.
+// The conjugate gradients may stop early: at every iteration the quadratic form that they minimise is at
+// most its value at w = 0. Their preconditioner is the Cholesky factor of the same matrix a few ticks
+// earlier, updated in parts. Bodies are long and their nodes are numbered along them, so the matrix is a
+// narrow band.
 //
-// Fixed nodes that move have w prescribed; their pull on free nodes is on the right-hand side.
+// The velocities of fixed nodes that move are prescribed; their pull on free nodes is on the right-hand
+// side.
 //
 // A node moves at most half a cell per step, relative to the rigid motion of a free body. Faster motion
 // could crush cells irreversibly.

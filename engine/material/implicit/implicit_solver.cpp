@@ -12,7 +12,8 @@
 namespace spoonbill {
 namespace {
 
-// Each step needs one solution with the factor, as an iteration of the conjugate gradients does.
+// Largest number of steps in a tick. Each costs one solution with the factor, like an iteration of the
+// conjugate gradients.
 constexpr int step_limit = 4;
 // Velocity error below which a tick is solved: a nanometre per second.
 constexpr double accepted_error_m_per_s = 1e-9;

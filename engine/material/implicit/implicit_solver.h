@@ -1,5 +1,5 @@
-// Implicit solver of a lattice whose material is too stiff for its springs: a coarser block of hexahedra
-// that the lattice's nodes follow. Drawing, contacts and supports use the lattice.
+// Implicit solver of a lattice whose material is too stiff for its springs, and its contacts with the
+// ground.
 #pragma once
 
 #include <array>
@@ -37,11 +37,10 @@ struct GridPoint {
   }
 };
 
-// Impulses of the ground on a body that an implicit step moves once a tick, for all of its contacts
-// together.
+// Contacts of an implicitly stepped body with the ground, solved all together once a tick.
 //
 // Impulses r on points of the body change their velocities by W r, where W is the response of the whole
-// body. The solution complements the gaps, with Coulomb friction:
+// body. The solution satisfies these complementarity conditions, with Coulomb friction:
 //
 //   r_n >= 0,  v_n >= target,  with equality in one of them;
 //   |r_t| <= friction r_n,  v_t = 0 or r_t opposite to v_t.
@@ -52,8 +51,8 @@ struct GridPoint {
 // energy along its direction (Birgin, Martinez and Raydan 2000). A body at rest is at the fixed point and
 // does not creep.
 //
-// `points` are indexed by nodes of the lattice to which the contacts belong; points of fixed nodes do not
-// respond.
+// The functions index `points` by nodes of the lattice to which the contacts belong. Points that are
+// attached mostly to fixed nodes do not respond.
 //
 // One owner, the implicit solver of the body; allocates only at construction.
 class ImplicitGroundContacts {
@@ -88,10 +87,13 @@ class ImplicitGroundContacts {
   std::vector<Vector3> velocity_errors_, impulse_changes_;  // by contact, m/s and N s
 };
 
-// Node budget of the hexahedral block: the most that a tick can solve for a long body with a narrow band.
-// Compact bodies get fewer. Hexahedra need few nodes, since each can bend.
+// Node budget of the hexahedral block: the largest number that a tick can solve for a long body with a
+// narrow band. Compact bodies get fewer. Hexahedra need few nodes, since each can bend.
 inline constexpr int implicit_node_budget = 500;
 
+// Implicit solver of a lattice: a coarser block of hexahedra that the lattice's nodes follow. Drawing,
+// contacts and supports use the lattice.
+//
 // Contacts push the lattice's nodes as if each were free, with an inverse mass that matches the block's
 // response to the last contacts. The block then responds as a whole. The ground comes last and pushes the
 // block directly. One owner, the body; built outside the tick, allocates nothing afterwards.

@@ -10,7 +10,8 @@
 namespace spoonbill {
 namespace {
 
-// Multiplications in one part: about 0.1 to 0.2 ms. The factor of a long body takes about four parts.
+// Number of multiplications in one part, which takes about 0.1 to 0.2 ms. The factor of a long body takes
+// about four parts.
 constexpr double products_a_piece = 8e5;
 
 }  // namespace

@@ -30,8 +30,8 @@ struct MatrixParts {
 // one.
 int node_reach(const LatticeMesh& mesh);
 
-// Coordinates are 3 n + axis, and nodes are numbered along the body, so the matrix is a band. One owner;
-// allocates only at construction.
+// Factor of the matrix that MatrixParts describes. Coordinates are 3 n + axis, and nodes are numbered along
+// the body, so the matrix is a band. One owner; allocates only at construction.
 class RollingFactor {
  public:
   using Doubles = AlignedVector<double>;
@@ -45,7 +45,7 @@ class RollingFactor {
   // Length of vectors, with zeros after the last coordinate.
   int padded_size() const;
 
-  // Discards the factor: the next part factorises the whole matrix.
+  // Discards the factor: the next advance() factorises the whole matrix.
   void forget() { next_.stiffness = 0.0; }
   // Factorises a part of the present matrix. A complete factor replaces the one in use.
   void advance(const MatrixParts& parts);

@@ -97,7 +97,7 @@ Hull make_hull(const LatticeMesh& mesh) {
   return Hull(std::move(faces));
 }
 
-// Locations of all nodes, without depths unless the mesh stores them.
+// Returns the body coordinates of all nodes, without depths unless the mesh stores them.
 std::vector<BodyCoordinates> block_coordinates(const LatticeMesh& mesh) {
   std::vector<BodyCoordinates> coordinates(mesh.nodes.size());
   for (int n = 0; n < mesh.node_count(); ++n) {

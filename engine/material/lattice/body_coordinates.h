@@ -16,7 +16,7 @@ namespace spoonbill {
 std::vector<BodyCoordinates> find_node_coordinates(const LatticeMesh& mesh);
 
 // Returns the mean body coordinates of some nodes, given those of all nodes: the mean of `along`, and the
-// mean of `around` with weights by distance from the centre line. `around` is 0 if the nodes surround the
+// mean of `around`, weighted by the distance from the centre line. `around` is 0 if the nodes surround the
 // axis. The depth is not set.
 //
 // Uses sums only: the C library's trigonometric functions differ between processors, and the cells of a
@@ -31,8 +31,8 @@ std::vector<BodyCoordinates> find_cell_coordinates(const LatticeMesh& mesh);
 // Nodes of a boundary quad of the block, counter-clockwise seen from outside.
 using ShellFace = std::array<int, 4>;
 
-// Returns the faces of the block's hull. They bear pressure and measure areas of a body that fills its
-// block; a body in a box of cells has a BodySkin instead.
+// Returns the faces of the block's hull. If the body fills its block, pressure acts on these faces and areas
+// are measured on them; a body in a box of cells has a BodySkin instead.
 std::vector<ShellFace> shell_faces(const LatticeMesh& mesh);
 
 // Returns the faces whose mean_coordinates() are in the region. `coordinates` are those of all nodes.

@@ -24,7 +24,7 @@ namespace {
 constexpr int sweeps = 60, halvings = 10;
 // Largest move of a node in the last sweep, relative to the mean edges.
 constexpr double still_fraction = 1e-3;
-// Determinant below which corners are regularised by d, relative to a box of the mean edges.
+// Determinant below which corners are regularised by the d of unfold(), relative to a box of the mean edges.
 constexpr double min_determinant = 1e-2;
 
 // Nodes of a cell, and the corner at which the moving node is.
@@ -71,8 +71,8 @@ Vector3 mean_edges(const LatticeMesh& mesh) {
   return sums.cwiseQuotient(edges);
 }
 
-// A corner of a cell: its edges over the mean edges, and their derivatives by the moving node, 0 or +-1
-// over the mean edge.
+// A corner of a cell: its edges over the mean edges, and their derivatives with respect to the moving node,
+// 0 or +-1 over the mean edge.
 struct Corner {
   std::array<Vector3, 3> edges;
   Vector3 follows;
@@ -165,7 +165,7 @@ class Around {
   const Vector3* mean_edge_;
 };
 
-// Newton's step, with a diagonal shift if the second derivatives are not positive definite.
+// Returns Newton's step, with a diagonal shift if the second derivatives are not positive definite.
 Vector3 newton_step(const Sum& sum) {
   constexpr int tries = 7;
   const double size = sum.second.diagonal().cwiseAbs().sum();
@@ -268,7 +268,7 @@ double smallest_mesh_jacobian_ratio(const LatticeMesh& mesh) {
   return smallest;
 }
 
-// Smallest thickness over the width: cells of flatter bodies have no spring that keeps them open.
+// Smallest ratio of thickness to width: cells of flatter bodies have no spring that keeps them open.
 constexpr double min_thickness_ratio = 1e-4;
 
 // Direction of a node of a slice from its centre, as the parameter u of a point of the ring (arbitrary at

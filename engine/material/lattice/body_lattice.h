@@ -1,4 +1,4 @@
-// Lattices of bodies: solids by one block of cells bent into a tube or by a box of cells, and shells.
+// Lattices of bodies: shells, and solids as one block of cells bent into a tube or as a box of cells.
 #pragma once
 
 #include "engine/base/result.h"

@@ -21,7 +21,8 @@
 namespace spoonbill {
 namespace {
 
-// Smallest side over the longest: cells of flatter boxes have no spring that keeps them open.
+// Smallest ratio of the shortest side to the longest: cells of flatter boxes have no spring that keeps them
+// open.
 constexpr double min_thickness_ratio = 1e-4;
 constexpr int samples_a_side = 5;
 
@@ -150,7 +151,8 @@ double shortest_edge_m(const LatticeMesh& box) {
   return std::min({(cell[4] - cell[0]).norm(), (cell[2] - cell[0]).norm(), (cell[1] - cell[0]).norm()});
 }
 
-// Thins parameters out. `step_m(from, to)` returns the largest distance of the surface between two of them.
+// Returns as few of the parameters as leave steps of at most `longest_m`, and at least `min_pieces` steps.
+// `step_m(from, to)` returns the largest distance of the surface's points between two of them.
 template <class StepOf>
 std::vector<double> thin_out(const std::vector<double>& parameters, double longest_m, const StepOf& step_m) {
   const std::size_t last = parameters.size() - 1, most = std::max<std::size_t>(last / min_pieces, 1);
@@ -187,9 +189,9 @@ ClosedSkin coarse_skin(const Surface& surface, double longest_m) {
   return sample_skin(surface, thin_out(u, longest_m, over_u), thin_out(v, longest_m, over_v));
 }
 
-// Returns the skin of a body in a box of cells. It keeps as many samples of make_skin() as have a distance of
-// at most two thirds of a cell's shortest edge, where the samples are that dense, and at least eight per
-// direction. The lost volume of a round body is small slivers.
+// Returns the skin of a body in a box of cells. Its points are those samples of make_skin() that leave
+// distances of at most two thirds of a cell's shortest edge, where the samples are that dense, and at least
+// eight steps per direction. A round body loses only thin slivers of its volume.
 //
 // `coordinates_at` returns the body coordinates of (u, v). Points of the skin are in filled cells if
 // the samples are.
@@ -221,7 +223,7 @@ Status check_thick(const ClosedSkin& skin, double volume_m3, double size_m) {
                "surface"};
 }
 
-// Fraction of the body's length, or of the turn of a ring, by v.
+// Returns the fraction of the body's length, or of the turn of a ring, as a function of v.
 LinearTable fractions_along(const Surface& surface) {
   if (surface.v.is_periodic()) return {{surface.v.domain_start(), surface.v.domain_end()}, {0.0, 1.0}};
   const Profile profile = sample_profile(surface);
@@ -230,7 +232,7 @@ LinearTable fractions_along(const Surface& surface) {
   return fractions;
 }
 
-// Locations on the body: of points of its surface, and of any point by the nearest sample of the surface.
+// Body coordinates of points on the surface, and of other points by the nearest sample of the surface.
 class SurfaceCoordinates {
  public:
   SurfaceCoordinates(const Surface& surface, const ClosedSkin& skin, const ShellDistance& inside)
@@ -277,8 +279,8 @@ void set_node_coordinates(const SurfaceCoordinates& coordinates, LatticeMesh& bo
   }
 }
 
-// Sets the centres of all cells. Void cells get the body coordinates of the nearest surface point, so that
-// they do not stiffen anything softer.
+// Sets the body coordinates of all cells' centres. Void cells get the body coordinates of the nearest
+// surface point, so that they do not stiffen anything softer.
 void set_cell_coordinates(const SurfaceCoordinates& coordinates, LatticeMesh& box) {
   box.cell_centres.resize(box.cell_count());
   for (int k = 0; k + 1 < box.count[2]; ++k) {

@@ -16,8 +16,9 @@
 
 namespace spoonbill {
 
-// Smallest fraction of a filled cell, that is of one that contains any of the surface. Nodes of smaller
-// slivers would be so light and weakly attached that a contact on their surface would sink in.
+// Smallest fraction of a filled cell (LatticeMesh::filled), before all fractions are scaled to the volume of
+// the body. Nodes of smaller slivers would be so light and weakly attached that a contact on their surface
+// would sink in.
 //
 // Mass and stiffness of a cell scale alike, so no fraction makes the lattice faster: the fastest frequency
 // of an assembly is at most that of its fastest part (Irons and Treharne 1971).

@@ -52,7 +52,8 @@ class Draws {
   }
 
  private:
-  // From raw bits, because library distributions differ between implementations.
+  // Returns a number in [0, 1) made from raw bits, because library distributions differ between
+  // implementations.
   double uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
 
   std::mt19937_64 random_;
@@ -141,9 +142,9 @@ double worst_around(const LatticeMesh& mesh, const std::array<int, 3>& at) {
   return worst;
 }
 
-// Moves the nodes towards `targets`, each as far as keeps every cell around it at least as good as `worst`.
-// Several passes, since a node may be able to move further after its neighbours. Returns the fraction of
-// the moves that was applied.
+// Moves the nodes towards `targets`, each only so far that no Jacobian ratio around it falls below `worst`.
+// Makes several passes, because a node may be able to move further after its neighbours have moved. Returns
+// the fraction of the moves that was applied.
 double apply_moves(const std::vector<Vector3>& targets, double worst, LatticeMesh& mesh) {
   double requested = 0.0, remaining = 0.0;
   for (std::size_t n = 0; n < targets.size(); ++n) requested += (targets[n] - mesh.nodes[n]).norm();

@@ -1,5 +1,5 @@
-// Distributes the nodes inside a lattice evenly through its body: the volumetric self-organising feature
-// map of section 4.3 of Pungotra et al. 2013.
+// Even distribution of the nodes inside a body by the volumetric self-organising feature map of section 4.3
+// of Pungotra et al. 2013.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,8 @@ struct FeatureMapWatch {
   std::function<void(const FeatureMapReport&)> done;  // called on the computing thread; may be empty
 };
 
-// Moves the nodes inside the body, not those on its surface. The same seed gives the same nodes. The worst
-// Jacobian never falls.
+// Distributes the nodes inside the body evenly; those on its surface stay. The same seed gives the same
+// nodes. The worst Jacobian never falls.
 FeatureMapReport order_by_feature_map(LatticeMesh& mesh, const FeatureMapSettings& settings,
                                       const FeatureMapWatch& watch = {});
 

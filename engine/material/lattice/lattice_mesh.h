@@ -1,5 +1,5 @@
-// Geometry of a lattice: a regular block of nodes bent into a body, without material, and the choice of its
-// node counts. Plain data.
+// Geometry of a lattice, without material: a regular block of nodes bent into a body, its cells, and the
+// choice of node counts.
 #pragma once
 
 #include <array>
@@ -14,7 +14,8 @@
 
 namespace spoonbill {
 
-// Location of a node relative to the body. `on_shell` means on its surface, or in a box on a boundary cell.
+// Location of a node relative to the body. `on_shell` means on its surface or, in a box, on the boundary of
+// the filled cells.
 enum class NodeLocation : std::uint8_t { outside_body, in_body, on_shell };
 
 // A point that follows a cell: non-negative weights that sum to 1.
@@ -32,8 +33,8 @@ struct BodySkin {
   std::vector<BodyCoordinates> triangle_centres;
 };
 
-// i and j run across the body, k along it and slowest in memory. Nodes of neighbouring slices are thus
-// close in memory, and the nodes fixed by a plane are contiguous.
+// Nodes and cells of a lattice. Plain data. i and j run across the body, k along it and slowest in memory.
+// Nodes of neighbouring slices are thus close in memory, and the nodes fixed by a plane are contiguous.
 struct LatticeMesh {
   std::array<int, 3> count{};
   // True if i runs once around the body: the nodes of the last i coincide with those of the first, which

@@ -181,7 +181,7 @@ constexpr int length_stations = 200, lines = 16, volume_stations = 48;
 // Relative tolerance for the farthest point, so that the start of a ring does not depend on rounding.
 constexpr double farthest_tolerance = 1.0 - 1e-6;
 
-// Table of arc length, the mean over several lines, against the fractions of the stations.
+// Returns a table from arc length, the mean over the lines `over`, to the fractions of the stations.
 template <class PositionAt>
 LinearTable length_to_fraction(const ShellSurface& face, const std::vector<double>& stations,
                                const std::vector<double>& over, const PositionAt& position_at) {

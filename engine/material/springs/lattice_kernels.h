@@ -13,10 +13,9 @@ namespace spoonbill {
 inline constexpr int lattice_block = 64;  // nodes per block; fixed, because the order of sums depends on it
 inline constexpr int lattice_direction_count = 13;
 
-// Floats per spring of the linearised springs of one direction. With a the vector from a node to its
-// neighbour at the reference, a spring pulls its node by transverse * m + axial * (a.m) a when its ends
-// move apart by m. Each block stores five runs: the x, y and z components of a in m, axial in N/m^3 and
-// transverse in N/m.
+// Number of floats that a linearisation stores per spring. With a the vector from a node to its neighbour at
+// the reference, a spring pulls its node by transverse * m + axial * (a.m) a when its ends move apart by m.
+// Each block stores five runs: the x, y and z components of a in m, axial in N/m^3 and transverse in N/m.
 inline constexpr int tangent_runs = 5;
 
 // Springs of one direction, one entry per node.
@@ -42,9 +41,9 @@ struct SpringArrays {
   const float* relaxation_time = nullptr;  // s
 };
 
-// Flow of rest lengths: the strain beyond the yield strain relaxes by the factor `rate_step`. The yield
-// strain grows with the strain already yielded. Where springs differ, each has its own yield strain and
-// hardening, and its rate step is its flow rate times `time_s`.
+// Flow of rest lengths: each step removes the fraction `rate_step` of the strain beyond the yield strain.
+// The yield strain grows with the strain already yielded. Where springs differ, each has its own yield
+// strain and hardening, and its rate step is its flow rate times `time_s`.
 struct FlowRule {
   float yield = 0.0f;
   float hardening = 0.0f;  // added yield strain per |L0 / first L0 - 1|
@@ -55,9 +54,9 @@ struct FlowRule {
 // Largest fraction of the strain beyond yield that one flow step removes.
 inline constexpr double largest_flow_step = 0.5;
 
-// Creep of rest lengths: the creep strain approaches `fraction` of the strain by the factor `rate_step`.
-// If springs differ, each has its own fraction and relaxation time, and its rate step follows from
-// `time_s`.
+// Creep of rest lengths: in each step, the difference of the creep strain from `fraction` of the strain
+// shrinks by the fraction `rate_step`. If springs differ, each has its own fraction and relaxation time, and
+// its rate step follows from `time_s`.
 struct CreepRule {
   float fraction = 0.0f;
   float rate_step = 0.0f;  // 1 / (1 + relaxation time / time_s)
@@ -100,7 +99,7 @@ struct LatticeView {
                                      // exactly zero strain; changed by reforming
   const float* further_bulk_damping = nullptr;  // per cell, J s, see damp_further(); null if unused
   const float* has_cell = nullptr;              // 1 or 0
-  const float* inverse_cell_count = nullptr;    // over the number of cells around a node
+  const float* inverse_cell_count = nullptr;    // 1 / the number of cells around a node
   float* node_dilation = nullptr;               // working memory of flow(): mean J of the cells around a node
   float* power_x = nullptr;                     // vector of the power iteration
   float* power_y = nullptr;
@@ -133,7 +132,7 @@ struct LatticeKernels {
   // Linearises the springs at the present extrapolated positions: F = k (L - L0) s n for every spring, and
   // its derivative. With the strain e = L / L0 - 1 and a stiffening b, s = 1 + b e^2 up to 2 for b > 0, s =
   // (1 - b e^2)^(-1/2) for b < 0, and s = 1 for b = 0. A softening spring's force still grows with its
-  // length, so no lattice snaps.
+  // length, so no lattice snaps through.
   //
   // Eq. 7 of Pungotra et al. 2013 damps the whole velocity, rotations included. The extrapolation of a
   // rotating body is the same body rotated further, so rotations are not damped here.
@@ -168,9 +167,9 @@ struct LatticeKernels {
   // rest length L0 = L00 (1 + q), with e = L / (L00 J^(1/3)) - 1, within the bounds of flow(). At constant
   // strain the stress falls by `fraction` of itself, as in a standard linear solid.
   void (*creep)(const LatticeView&, int direction, const CreepRule&);
-  // Computes Gershgorin's bound on each node's part of the stiffness: 2 k for a spring, K_v/V0 |g_i| sum
-  // |g_j| for a cell. Never below the largest eigenvalue of its rows; 1.4 to 1.9 times too large for a
-  // whole lattice.
+  // Computes Gershgorin's row sums of the stiffness by node: 2 k for a spring, K_v/V0 |g_i| sum |g_j| for a
+  // cell. The largest sum bounds the largest eigenvalue from above; for a whole lattice it is 1.4 to 1.9
+  // times as large.
   void (*row_sums)(const LatticeView&, float* sum_n_per_m);
   // Sets rest_volume_sum from the present shape.
   void (*measure_rest_volumes)(const LatticeView&);
@@ -195,7 +194,7 @@ extern const LatticeKernels lattice_kernels;
 
 #ifdef SPOONBILL_KERNELS
 // Parts of the kernels of one instruction set, shared by the sources of this folder. Functions without a
-// comment are described where LatticeKernels names them.
+// comment are described at the members of LatticeKernels with the same names.
 namespace spoonbill::SPOONBILL_KERNELS {
 
 // Adds a nodal field over each seam pair and gives both nodes the sum.

@@ -332,8 +332,8 @@ const float* SpringLattice::stabilise_strained_nodes(float h_s, float fraction) 
     if (is_damped_further()) stable *= by_all / (by_all + 2.0f * slowest_damping_[i] * h_s);
     stable_inverse_mass_[i] = std::min(inverse_mass_[i], stable);
     if (!(stable < inverse_mass_[i])) continue;
-    // The momentum stays the same. At the old velocity, forces that act on more mass could not stop the
-    // node.
+    // The velocity falls so that the momentum stays the same: at the old velocity, the forces could not stop
+    // the larger mass.
     const float slower = stable / inverse_mass_[i];
     for (Floats* v : {&vx_, &vy_, &vz_}) (*v)[i] *= slower;
   }
@@ -574,7 +574,7 @@ void SpringLattice::set_further_damping(const Assembly& sum, const std::vector<d
 }
 
 // Returns the largest eigenvalue of the damping matrix over the mass, 1/s. A step h is stable while h^2 w^2
-// plus 2 h times this eigenvalue stays below 4. Measured as the frequency is, with the damping of every
+// plus 2 h times this eigenvalue stays below 4. It is measured like the frequency, with the damping of every
 // spring and cell in place of its stiffness.
 double SpringLattice::measure_damping_eigenvalue() {
   const Floats vector[3] = {power_x_, power_y_, power_z_}, bulk = bulk_;

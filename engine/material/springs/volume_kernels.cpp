@@ -79,7 +79,7 @@ inline float volume_sum(const FaceDiagonals& p) {
   return dot(p.a + p.b, cross(p.c, p.d)) + dot(p.c + p.e, cross(p.f, p.b)) + dot(p.f + p.d, cross(p.a, p.e));
 }
 
-// Gradient of 12 V by the diagonals.
+// Gradient of 12 V with respect to the diagonals.
 inline FaceDiagonals volume_gradient(const FaceDiagonals& p) {
   const Vector ab = p.a + p.b, ce = p.c + p.e, fd = p.f + p.d;
   const Vector cd = cross(p.c, p.d), fb = cross(p.f, p.b), ae = cross(p.a, p.e);
@@ -161,7 +161,7 @@ inline float cell_dilation(const LatticeView& view, const FaceDiagonals& p, int 
 // Dilation below which a cell is crushed.
 constexpr float crushed_dilation = -0.7f;
 
-// Derivative of a cell's pressure by J, times its rest volume.
+// Derivative of a cell's pressure with respect to J, times its rest volume.
 inline float volume_tangent(const LatticeView& view, const FaceDiagonals& p, int n) {
   const float crushed = view.crushed_stiffness[n];  // read unconditionally, so that the loop vectorises
   return view.bulk_stiffness[n] + (cell_dilation(view, p, n) < crushed_dilation ? crushed : 0.0f);

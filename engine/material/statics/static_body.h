@@ -59,7 +59,7 @@ class PressedSkin {
 };
 
 enum class CellKind : std::uint8_t {
-  springs,    // as sculpting steps them; Poisson's ratio from 1/4 on
+  springs,    // as sculpting steps them; Poisson's ratio at least 1/4
   hexahedra,  // far fewer cells for the same error in bending; any Poisson's ratio
 };
 
@@ -92,7 +92,8 @@ struct FixedAxis {
 // Fixes all three coordinates of a node.
 void fix_node(int node, const Vector3& displacement_m, std::vector<FixedAxis>& fixed);
 
-// Immutable; one owner. Built for a study, never in the tick.
+// Cells of a lattice and the masses of its nodes. Immutable; one owner. Built for a study, never in the
+// tick.
 class StaticBody {
  public:
   // Fails on materials outside their ranges, folded cells, and springs below a Poisson's ratio of 1/4.

@@ -67,7 +67,9 @@ class Equilibrium {
   bool cancelled() const { return cancelled_; }
 
  private:
-  // Reports progress. Newton's method gains orders of magnitude, the more the closer it is.
+  // Reports the progress as the orders of magnitude by which the unbalanced force has fallen, relative to
+  // those required: Newton's method gains more of them in each step. Returns false if the caller has
+  // cancelled.
   bool report(double fraction, double unbalanced, double first) const {
     if (!settings_->progress.is_watched()) return true;
     const double orders = std::log(first / settings_->tolerance);

@@ -7,11 +7,11 @@
 namespace spoonbill {
 
 struct StaticSettings {
-  // Largest unbalanced force, relative to the forces of the cells on the nodes.
+  // Largest accepted unbalanced force, relative to the forces of the cells on the nodes.
   double tolerance = 1e-8;
   int step_limit = 400;  // Newton steps in total
-  // Reported after each step; may decrease where the loads must grow more slowly. Cancelling it is an
-  // error.
+  // Progress, reported after each step. It may decrease where the loads must grow more slowly. Cancelling it
+  // makes rest_under_load() fail.
   Progress progress = {};
 };
 

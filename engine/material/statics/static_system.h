@@ -15,7 +15,7 @@ class StaticSystem {
   StaticSystem(const StaticBody& body, const std::vector<FixedAxis>& fixed);
 
   using Coordinates = Eigen::VectorXd;
-  // Lower half, by free coordinates.
+  // Lower half of the stiffness matrix, by free coordinates.
   using Stiffness = Eigen::SparseMatrix<double>;
 
   const StaticBody& body() const { return *body_; }
@@ -44,7 +44,7 @@ class StaticSystem {
   void add(std::size_t cell, const CellMatrix& tangent);
 
   const StaticBody* body_;
-  std::vector<FixedAxis> fixed_;    // on both of joined nodes
+  std::vector<FixedAxis> fixed_;    // on both nodes of a joined pair
   std::vector<Eigen::Index> free_;  // by coordinate: index of the free coordinate, or -1 if fixed
   Eigen::Index free_count_ = 0;
   Stiffness stiffness_;

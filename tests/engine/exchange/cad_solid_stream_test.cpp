@@ -67,9 +67,9 @@ TEST(FrameStream, AFailureCarriesItsCode) {
     EXPECT_TRUE(frame && frame->kind == FrameKind::failure);
     return parse_failure(frame ? frame->content : std::string());
   };
-  const Error coded = pass_on(Error{ErrorCode::malformed, "is no STEP file"});
+  const Error coded = pass_on(Error{ErrorCode::malformed, "is not a STEP file"});
   EXPECT_EQ(coded.code, ErrorCode::malformed);
-  EXPECT_EQ(coded.message, "is no STEP file");
+  EXPECT_EQ(coded.message, "is not a STEP file");
   const Error plain = pass_on(std::string("#1000000 is no code"));
   EXPECT_EQ(plain.code, ErrorCode::process_failed);
   EXPECT_EQ(plain.message, "#1000000 is no code");

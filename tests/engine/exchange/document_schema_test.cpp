@@ -57,8 +57,8 @@ Json with_description_of(const Json& old) {
   return json;
 }
 
-// With all that tables describe written anew.
-Json described_anew(Json schema) {
+// Returns the schema with all parts that the tables describe written again.
+Json rewritten_schema(Json schema) {
   Json& all = schema["$defs"];
   all["material"] = with_description_of<Material>(all["material"]);
   all["plane"] = with_description_of<FixingPlane>(all["plane"]);
@@ -77,9 +77,9 @@ Json described_anew(Json schema) {
 TEST(DocumentSchema, SaysWhatTheTablesOfFieldsSay) {
   const auto schema = parse_json(text_of(schema_file), schema_file);
   ASSERT_TRUE(schema.ok()) << schema.error().message;
-  const std::string anew = json_to_page(described_anew(schema.value()));
-  if (std::getenv("SPOONBILL_APPROVE") != nullptr) std::ofstream(schema_file, std::ios::binary) << anew;
-  EXPECT_EQ(text_of(schema_file), anew) << "to write it anew: SPOONBILL_APPROVE=1";
+  const std::string rewritten = json_to_page(rewritten_schema(schema.value()));
+  if (std::getenv("SPOONBILL_APPROVE") != nullptr) std::ofstream(schema_file, std::ios::binary) << rewritten;
+  EXPECT_EQ(text_of(schema_file), rewritten) << "to rewrite it: SPOONBILL_APPROVE=1";
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ TEST(File, HasALineForEveryFileThatCannotBeRead) {
   const TemporaryFolder folder;
   const std::string here = folder.path().string();
   EXPECT_EQ(reading_refusal(folder.path() / "none.json"), here + "/none.json: no such file");
-  EXPECT_EQ(reading_refusal(folder.path()), here + ": is a folder, name a file in it");
+  EXPECT_EQ(reading_refusal(folder.path()), here + ": is a folder; name a file in it");
   EXPECT_EQ(reading_refusal(folder.write("empty.json", "")), here + "/empty.json: is empty");
   EXPECT_EQ(reading_refusal(folder.write("big.json", std::string((1 << 20) + 1, ' '))),
             here + "/big.json: is larger than 1 MiB");

@@ -135,12 +135,11 @@ TEST(ToolJson, NamesWhatIsWrongWithASoftMesh) {
             }).substr(0, 34),
             "sample.json: tool.soft.grip.normal");
   EXPECT_EQ(refused([](Json& tool) { tool["solid"]["triangles"].erase(3); }),
-            "sample.json: tool mesh: is open, a soft mesh must be closed; close its holes or leave soft "
-            "out");
+            "sample.json: tool mesh: is open, a soft mesh must be closed; close its holes or omit soft");
   EXPECT_EQ(refused([](Json& tool) {
               tool["solid"] = {{"shape", "half_space"}};
             }),
-            "sample.json: tool only a mesh or a B-spline surface can be soft; leave soft out");
+            "sample.json: tool only a mesh or a B-spline surface can be soft; omit soft");
 }
 
 TEST(ToolJson, KeepsSeveralBodies) {

@@ -74,7 +74,7 @@ TEST(PlyPoints, SkipsAndCountsWhatIsNoNumber) {
 }
 
 TEST(PlyPoints, RefusesEachDamageWithItsReason) {
-  expect_refusal(parse_ply_points("solid thing"), "no PLY file");
+  expect_refusal(parse_ply_points("solid thing"), "not a PLY file");
   expect_refusal(parse_ply_points("ply\nformat ascii 1.0\nelement vertex 3\n"), "no end");
   expect_refusal(parse_ply_points(ply_header("ascii", "4000000000")), "cut or damaged");
   expect_refusal(parse_ply_points("ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\n"
@@ -95,7 +95,7 @@ TEST(PlyPoints, RefusesEachDamageWithItsReason) {
   expect_refusal(
       parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                        "property float z\nend_header\nnan nan nan\n"),
-      "no number");
+      "not a number");
   expect_refusal(
       parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                        "property float z\nend_header\n1 inf 2\n"),
@@ -203,7 +203,7 @@ TEST(TextPoints, RefusesCommasThatMayPartNumbersOrNot) {
     expect_refusal(parse_text_points(std::string("1 2 3\n") + line + "\n"), "line 2 has commas");
     expect_refusal(parse_text_points(std::string(line) + "\n"), "line 1 has commas");
   }
-  expect_refusal(parse_obj_points("v 12,345 67,890 1,234\n"), "line 1 is no point");
+  expect_refusal(parse_obj_points("v 12,345 67,890 1,234\n"), "line 1 is not a point");
   expect_refusal(
       parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
                        "property float z\nend_header\n1,5 2,5 3,5\n"),
@@ -219,7 +219,7 @@ TEST(TextPoints, RefusesEachDamageWithItsReason) {
   expect_refusal(parse_text_points("1 2 3\n4 5 6 7\n"), "line 2");
   expect_refusal(parse_text_points("1 2 3\n4 5 seven\n"), "line 2");
   expect_refusal(parse_text_points("a story\nof no\npoints\n"), "line 2");
-  expect_refusal(parse_text_points("nan nan nan\n"), "no number");
+  expect_refusal(parse_text_points("nan nan nan\n"), "not a number");
   expect_refusal(parse_text_points("1 2 1e999\n"), "infinity");
 }
 

@@ -134,7 +134,7 @@ TEST_F(IgesFile, WhatIsCutShortIsRefused) {
     EXPECT_TRUE(found.surfaces.empty()) << k;
   }
   EXPECT_EQ(read(text.substr(0, text.size() / 2)).refusal,
-            "is cut short or damaged: its last line is missing; copy it whole, or export it anew");
+            "is cut short or damaged: its last line is missing; copy it whole, or export it again");
 }
 
 TEST_F(IgesFile, ALineThatIsMissingIsMissed) {
@@ -156,7 +156,7 @@ TEST_F(IgesFile, AnEntityWhoseParametersLieBeyondTheEndIsRefused) {
   text.replace(at, declared.size(), field(0) + field(0) + field(4) + field(0));
   EXPECT_EQ(read(text).refusal,
             "is cut short or damaged: the parameters of an entity would reach line 7 of 6; copy it whole, or "
-            "export it anew");
+            "export it again");
 }
 
 TEST_F(IgesFile, ABareSurfaceThatIsDamagedIsMissed) {
@@ -186,7 +186,7 @@ TEST_F(IgesFile, AnEntryOfTheDirectoryThatIsDamagedIsRefused) {
   text.insert(second + 16, "0.5");
   EXPECT_EQ(read(text).refusal,
             "is cut short or damaged: its last line counts 6 lines of section D, and there are 5; copy it "
-            "whole, or export it anew");
+            "whole, or export it again");
 }
 
 TEST_F(IgesFile, ACurveThatIsDamagedIsTold) {
@@ -194,7 +194,7 @@ TEST_F(IgesFile, ACurveThatIsDamagedIsTold) {
   EXPECT_EQ(found.surfaces.size(), 1u);
   EXPECT_EQ(found.model.notes,
             std::vector<std::string>{
-                "damaged entities of the file: 1; what they belong to is missing or wrong; export it anew"});
+                "damaged entities of the file: 1; what they belong to is missing or wrong; export it again"});
 }
 
 TEST_F(IgesFile, AMatrixThatStretchesIsTold) {
