@@ -21,6 +21,13 @@
 
 namespace spoonbill {
 
+// The real-time privileges that the operating system granted to a thread.
+struct RealTimeGrant {
+  bool fifo = false;
+  bool memory_locked = false;
+  std::string notice;  // one line: what was refused and how to permit it; empty if nothing was refused
+};
+
 namespace {
 
 constexpr double nanosecond_s = 1e-9;
@@ -44,13 +51,6 @@ void sleep_until(std::int64_t deadline_ns) {
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr) == EINTR) {
   }
 }
-
-// The real-time privileges that the operating system granted to a thread.
-struct RealTimeGrant {
-  bool fifo = false;
-  bool memory_locked = false;
-  std::string notice;  // one line: what was refused and how to permit it; empty if nothing was refused
-};
 
 // Priority above ordinary threads and below the kernel threads at 99.
 constexpr int desired_priority = 80;

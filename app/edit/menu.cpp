@@ -177,7 +177,7 @@ void draw_overlays(MenuChoice& choice) {
   ImGui::EndMenu();
 }
 
-void draw_view(const ActionItems& item, MenuChoice& choice) {
+void draw_view_items(const ActionItems& item, MenuChoice& choice) {
   if (!ImGui::BeginMenu("View")) return;
   item("Whole model", EditAction::frame_model);
   item("Front", EditAction::view_front);
@@ -205,7 +205,7 @@ MenuChoice draw_menu(const MenuState& state) {
   const ActionItems item(choice.actions);
   draw_file(state, item);
   draw_edit(state, item);
-  draw_view(item, choice);
+  draw_view_items(item, choice);
   if (ImGui::BeginMenu("Help")) {
     item("Keys", EditAction::show_keys);
     ImGui::EndMenu();

@@ -13,7 +13,7 @@
 namespace spoonbill {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using SteadyClock = std::chrono::steady_clock;
 
 constexpr int width_px = 1280;
 constexpr int height_px = 720;
@@ -46,12 +46,12 @@ class Painting {
 // Waits until a frame satisfies `done`. A notice about a problem is an error.
 template <class Done>
 Status wait_until(LiveSession& live, Done done, const char* what) {
-  const auto give_up = Clock::now() + wait_limit;
+  const auto give_up = SteadyClock::now() + wait_limit;
   while (!done(live.frame())) {
     for (Notice& notice : live.consume_notices()) {
       if (notice.kind == Notice::Kind::problem) return Error{ErrorCode::unwritable, std::move(notice.text)};
     }
-    if (Clock::now() > give_up) {
+    if (SteadyClock::now() > give_up) {
       return Error{ErrorCode::unavailable, std::string(what) + " took longer than 10 s"};
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -72,11 +72,12 @@ Status send_due_requests(const Script& script, std::uint64_t tick, std::size_t& 
 
 Status play(const Script& script, LiveSession& live, TargetMailbox& mailbox, Painting* painting,
             const ViewChoice& view, const std::function<bool()>& interrupted, std::uint64_t& frames) {
-  const auto begin = Clock::now();
+  const auto begin = SteadyClock::now();
   std::size_t next = 0;
-  for (auto at = begin; !interrupted(); at = std::max(at + picture_interval, Clock::now())) {
+  for (auto at = begin; !interrupted(); at = std::max(at + picture_interval, SteadyClock::now())) {
     std::this_thread::sleep_until(at);
-    const auto passed = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - begin).count();
+    const auto passed =
+        std::chrono::duration_cast<std::chrono::milliseconds>(SteadyClock::now() - begin).count();
     const auto tick = static_cast<std::uint64_t>(passed);
     if (Status sent = send_due_requests(script, tick, next, live); !sent) return sent;
     if (tick >= script.tick_count()) break;

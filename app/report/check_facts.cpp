@@ -18,7 +18,7 @@ constexpr double least_curvature_per_m = 1e-3;
 
 constexpr const char* no_walls = "unknown: no two walls face each other";
 
-Json vector_json(const Vector3& vector) {
+Json position_json(const Vector3& vector) {
   return Json::array({vector.x(), vector.y(), vector.z()});
 }
 
@@ -26,7 +26,7 @@ Json curvature_json(const CurvatureExtreme& place) {
   return {{"per_m", place.curvature_per_m},
           {"u", place.u},
           {"v", place.v},
-          {"point_m", vector_json(place.position_m)}};
+          {"point_m", position_json(place.position_m)}};
 }
 
 // Returns the radius of curvature in metres; null if the surface has no curvature of that sign, except by
@@ -62,10 +62,10 @@ void add_thickness(FactSheet& facts, const SurfaceCheck& check, Json& json) {
   json["smallest_thickness_m"] = thin.thickness_m;
   json["thinnest"] = {{"u", thin.u},
                       {"v", thin.v},
-                      {"point_m", vector_json(thin.position_m)},
+                      {"point_m", position_json(thin.position_m)},
                       {"opposite_u", thin.opposite_u},
                       {"opposite_v", thin.opposite_v},
-                      {"opposite_m", vector_json(thin.opposite_m)}};
+                      {"opposite_m", position_json(thin.opposite_m)}};
 }
 
 bool has_material_regions(const Body& body) {
@@ -97,7 +97,7 @@ void add_mass(FactSheet& facts, const Body& body, double volume_m3, const Vector
   json["volume_m3"] = volume_m3;
   json["mass_kg"] = mass_kg;
   json["materials"] = mix.materials;
-  json["centre_of_mass_m"] = vector_json(mass_centre_m);
+  json["centre_of_mass_m"] = position_json(mass_centre_m);
 }
 
 void add_content(FactSheet& facts, const Body& body, CheckedAs as, const TrimmedArea& area,
@@ -124,13 +124,13 @@ void add_faults(const SurfaceCheck& check, Json& json) {
                                           {"other_u", meeting.other_u},
                                           {"other_v", meeting.other_v},
                                           {"depth_m", meeting.depth_m},
-                                          {"point_m", vector_json(meeting.position_m)}});
+                                          {"point_m", position_json(meeting.position_m)}});
   }
   json["self_intersections_complete"] = check.self_intersections_complete;
   json["degenerate"] = Json::array();
   for (const SurfaceDefect& spot : check.surface_defects) {
     json["degenerate"].push_back(
-        {{"u", spot.u}, {"v", spot.v}, {"folds", spot.folds}, {"point_m", vector_json(spot.position_m)}});
+        {{"u", spot.u}, {"v", spot.v}, {"folds", spot.folds}, {"point_m", position_json(spot.position_m)}});
   }
 }
 
@@ -190,7 +190,7 @@ void add_self_meetings(const SolidCheck& check, Json& json) {
   json["self_intersections"] = Json::array();
   for (const SolidSelfIntersection& meeting : check.self_intersections) {
     json["self_intersections"].push_back(
-        {{"depth_m", meeting.depth_m}, {"point_m", vector_json(meeting.position_m)}});
+        {{"depth_m", meeting.depth_m}, {"point_m", position_json(meeting.position_m)}});
   }
   json["self_intersections_complete"] = check.self_intersections_complete;
 }
@@ -212,8 +212,8 @@ void add_solid_thickness(FactSheet& facts, const CadSolid& solid, const SolidChe
             nullptr);
   json["smallest_thickness_m"] = thin.thickness_m;
   json["thickness_error_m"] = error_m;
-  json["thinnest"] = {{"point_m", vector_json(thin.position_m)},
-                      {"opposite_m", vector_json(thin.opposite_m)}};
+  json["thinnest"] = {{"point_m", position_json(thin.position_m)},
+                      {"opposite_m", position_json(thin.opposite_m)}};
 }
 
 // Returns what makes the body unsound, one line each; none if it is sound.
@@ -278,7 +278,7 @@ Json add_meeting_facts(FactSheet& facts, const BodyOverlap& meeting, const Body&
           {"b", second.name},
           {"contained", meeting.contained},
           {"depth_m", meeting.depth_m},
-          {"point_m", vector_json(meeting.position_m)}};
+          {"point_m", position_json(meeting.position_m)}};
 }
 
 Json add_solid_check_facts(FactSheet& facts, const CadSolid& solid, const SolidCheck& check,
@@ -302,7 +302,7 @@ Json add_solid_check_facts(FactSheet& facts, const CadSolid& solid, const SolidC
   json["volume_m3"] = solid.volume_m3;
   add_solid_mass(facts, solid, bodies, json);
   facts.add("  Centre of mass", position_text(solid.centre_m), "", nullptr);
-  json["centre_of_mass_m"] = vector_json(solid.centre_m);
+  json["centre_of_mass_m"] = position_json(solid.centre_m);
   add_solid_thickness(facts, solid, check, json);
   add_self_meetings(check, json);
   return json;

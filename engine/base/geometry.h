@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -12,6 +13,8 @@
 #include "engine/base/result.h"
 
 namespace spoonbill {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // A closed range. Ranges are declared beside the structs whose fields they bound, so that files, commands and
 // sliders all use the same one.

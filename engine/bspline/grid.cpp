@@ -15,6 +15,17 @@
 
 namespace spoonbill {
 
+int GridDirection::find_cell(double parameter) const {
+  const auto next = std::upper_bound(parameters.begin(), parameters.end(), parameter) - parameters.begin();
+  return std::clamp(static_cast<int>(next) - 1, 0, cell_count() - 1);
+}
+
+int GridDirection::wrap_cell(int i) const {
+  const int cells = cell_count();
+  if (i >= 0 && i < cells) return i;
+  return knots.is_periodic() ? (i + cells) % cells : -1;
+}
+
 namespace {
 
 Status check_parameters(const KnotVector& knots, const std::vector<double>& parameters) {

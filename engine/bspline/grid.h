@@ -25,6 +25,13 @@ struct GridDirection {
   BlendingMatrix values;
   BlendingMatrix first_derivatives;
   BlendingMatrix second_derivatives;
+
+  // Cells lie between neighbouring parameters.
+  int cell_count() const { return static_cast<int>(parameters.size()) - 1; }
+  // The cell that contains the parameter, or the one at the end beside it.
+  int find_cell(double parameter) const;
+  // Maps a cell index across the seam of a periodic direction; returns -1 beyond an open end.
+  int wrap_cell(int i) const;
 };
 
 // A grid of samples: u runs over rows, v over columns, and sample (i, j) has the index i *

@@ -147,7 +147,7 @@ namespace {
 // Smallest usable ratio of |du x dv| to the largest value that the control points in reach allow. A smaller
 // product is rounding noise of the coordinates themselves.
 template <class Real>
-constexpr double noise = 16.0 * std::numeric_limits<Real>::epsilon();
+constexpr double product_noise = 16.0 * std::numeric_limits<Real>::epsilon();
 
 // Distance in domain lengths within which the product must grow beyond its own size for an edge to count as
 // collapsed. A ring of control points that a refit in single precision has moved together coincides only to
@@ -251,7 +251,7 @@ Vector3 unit_normal(const KnotVector& u_knots, const KnotVector& v_knots, const 
   const LimitTangents here = tangents_at(u_knots, v_knots, net, u, v);
   const Vector3 product = here.du.cross(here.dv);
   const Growth growth = growth_from_edge(here, inward(u_knots, u), inward(v_knots, v));
-  const double threshold = noise<Real> * here.product_bound;
+  const double threshold = product_noise<Real> * here.product_bound;
   if (exceeds(product, std::max({threshold, hole * growth.by_u.norm(), hole * growth.by_v.norm()}))) {
     return normalize_product(product);
   }
@@ -264,7 +264,8 @@ Vector3 unit_normal(const KnotVector& u_knots, const KnotVector& v_knots, const 
     for (const auto& [nu, nv] : neighbours) {
       const LimitTangents there = tangents_at(u_knots, v_knots, net, nu, nv);
       const Vector3 product_there = there.du.cross(there.dv);
-      if (exceeds(product_there, noise<Real> * there.product_bound)) return normalize_product(product_there);
+      if (exceeds(product_there, product_noise<Real> * there.product_bound))
+        return normalize_product(product_there);
     }
   }
   return Vector3::Zero();

@@ -16,7 +16,7 @@ namespace spoonbill {
 
 namespace {
 
-struct Edge {
+struct PolygonEdge {
   Eigen::Vector2d from, to;
   std::size_t polygon = 0;
 
@@ -31,9 +31,9 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 }
 
 // Returns the edges sorted by x, in units of the tolerance: edges at most 1 apart touch.
-std::vector<Edge> sorted_edges(const std::vector<std::vector<Eigen::Vector2d>>& polygons,
-                               const Eigen::Vector2d& tolerance) {
-  std::vector<Edge> edges;
+std::vector<PolygonEdge> sorted_edges(const std::vector<std::vector<Eigen::Vector2d>>& polygons,
+                                      const Eigen::Vector2d& tolerance) {
+  std::vector<PolygonEdge> edges;
   for (std::size_t p = 0; p < polygons.size(); ++p) {
     const auto& corners = polygons[p];
     for (std::size_t c = 0; c < corners.size(); ++c) {
@@ -41,11 +41,12 @@ std::vector<Edge> sorted_edges(const std::vector<std::vector<Eigen::Vector2d>>& 
                        corners[(c + 1) % corners.size()].cwiseQuotient(tolerance), p});
     }
   }
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.low_x() < b.low_x(); });
+  std::sort(edges.begin(), edges.end(),
+            [](const PolygonEdge& a, const PolygonEdge& b) { return a.low_x() < b.low_x(); });
   return edges;
 }
 
-bool touches(const Eigen::Vector2d& point, const Edge& edge) {
+bool touches(const Eigen::Vector2d& point, const PolygonEdge& edge) {
   const Eigen::Vector2d along = edge.to - edge.from;
   const double length2 = along.squaredNorm();
   const double fraction =
@@ -53,7 +54,7 @@ bool touches(const Eigen::Vector2d& point, const Edge& edge) {
   return (edge.from + fraction * along - point).squaredNorm() <= 1.0;
 }
 
-bool cross_each_other(const Edge& a, const Edge& b) {
+bool cross_each_other(const PolygonEdge& a, const PolygonEdge& b) {
   const Eigen::Vector2d along_a = a.to - a.from, along_b = b.to - b.from;
   const auto sides_differ = [](double one, double other) { return (one > 0.0) != (other > 0.0); };
   if (!sides_differ(cross(along_a, b.from - a.from), cross(along_a, b.to - a.from))) return false;
@@ -66,7 +67,7 @@ bool cross_each_other(const Edge& a, const Edge& b) {
 std::optional<PolygonCrossing> find_crossing(const std::vector<std::vector<Eigen::Vector2d>>& polygons,
                                              const Eigen::Vector2d& tolerance) {
   SPOONBILL_ASSERT(tolerance.x() > 0.0 && tolerance.y() > 0.0);
-  const std::vector<Edge> edges = sorted_edges(polygons, tolerance);
+  const std::vector<PolygonEdge> edges = sorted_edges(polygons, tolerance);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const double high_x = edges[i].high_x(), low_y = edges[i].low_y(), high_y = edges[i].high_y();
     for (std::size_t j = i + 1; j < edges.size() && edges[j].low_x() <= high_x; ++j) {
@@ -74,7 +75,7 @@ std::optional<PolygonCrossing> find_crossing(const std::vector<std::vector<Eigen
       if (!cross_each_other(edges[i], edges[j])) continue;
       const auto [first, second] = std::minmax(edges[i].polygon, edges[j].polygon);
       // The midpoint of the shorter edge is nearer to the crossing.
-      const Edge& shorter =
+      const PolygonEdge& shorter =
           (edges[i].to - edges[i].from).norm() < (edges[j].to - edges[j].from).norm() ? edges[i] : edges[j];
       return PolygonCrossing{first, second, (0.5 * (shorter.from + shorter.to)).cwiseProduct(tolerance)};
     }

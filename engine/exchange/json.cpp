@@ -226,7 +226,6 @@ bool have_same_bits(double a, double b) {
 // Returns the shortest number of millimetres that reads back to the same bits; nullopt where there is none.
 std::optional<double> shortest_millimetres(double metres) {
   const double near = metres * millimetres_per_metre;
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   std::optional<double> best;
   std::size_t best_length = 0;
   for (const double candidate : {near, std::nextafter(near, -infinity), std::nextafter(near, infinity)}) {

@@ -30,7 +30,7 @@ struct Opening {
 
 // Radius of an opening along the surface, as a fraction of the component's size.
 constexpr double opening_fraction = 0.12;
-constexpr std::size_t least_loop_nodes = 5;
+constexpr std::size_t least_hole_nodes = 5;
 
 // Returns each node's position on the source's tangent plane, to which the surface is unrolled along the
 // shortest paths.
@@ -186,7 +186,7 @@ Opening cut_opening(const FitPoints& whole, std::uint32_t node, const Vector3& t
       ring.push_back(n);
     }
   }
-  if (ring.size() < least_loop_nodes) return opened;
+  if (ring.size() < least_hole_nodes) return opened;
   const Vector3 facing = whole.node_normals[node].isZero() ? towards : whole.node_normals[node];
   ring = order_ring(whole, ring, paths, reach, facing, towards);
   if (!runs_counterclockwise(whole, ring, paths, reach, towards)) std::reverse(ring.begin(), ring.end());

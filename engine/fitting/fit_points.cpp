@@ -16,7 +16,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr std::size_t least_points = 30;
+constexpr std::size_t least_scan_points = 30;
 constexpr std::size_t neighbours_per_node = 9;
 
 void join_coincident_vertices(Scan& scan) {
@@ -216,9 +216,9 @@ Result<FitPoints> make_fit_points(Scan scan) {
     refine(scan);
     fit.weights = compute_vertex_normals(scan);
   }
-  if (scan.points_m.size() < least_points) {
+  if (scan.points_m.size() < least_scan_points) {
     return Error(ErrorCode::too_few, "has too few points for a fit: " + std::to_string(scan.points_m.size()) +
-                                         ", needs at least " + std::to_string(least_points));
+                                         ", needs at least " + std::to_string(least_scan_points));
   }
   if (!(bounding_diagonal_m(scan.points_m) > 0.0))
     return Error(ErrorCode::degenerate, "all its points coincide");

@@ -227,7 +227,7 @@ FoldCheck check_folds(const Surface& surface, const NormalsAtParameters& data) {
 
 namespace {
 
-constexpr int projection_steps = 4;
+constexpr int distance_steps = 4;
 constexpr int error_samples_per_span = 4;
 constexpr std::size_t plane_points = 10;
 // A sample counts as seen within this many mean spacings of the data; beyond a boundary, within one.
@@ -247,10 +247,10 @@ void measure_data(const FittedSurface& fit, const FitPoints& points, FitErrors& 
   for (std::size_t g = 0; g < errors.positions_m.size(); ++g) {
     const std::size_t fitted = are_fitted ? g : points.representative[g];
     const Vector3& point = errors.positions_m[g];
-    ClosestPoint found = closest.project_from(point, fit.uv[fitted], projection_steps);
+    ClosestPoint found = closest.project_from(point, fit.uv[fitted], distance_steps);
     // Points caught in a local minimum are also searched from the nearest sample.
     if (found.distance_m > 1.5 * fit.distance_m[fitted] || fit.trust[fitted] < 1.0) {
-      const ClosestPoint other = closest.project(point, projection_steps);
+      const ClosestPoint other = closest.project(point, distance_steps);
       if (other.distance_m < found.distance_m) found = other;
     }
     errors.uv.push_back(found.uv);

@@ -122,7 +122,7 @@ std::optional<std::vector<double>> compute_v(const PointGraph& graph, const Shap
 
 // Returns the local surface normal, of either sign: the direction in which the neighbours within two steps
 // spread least.
-Vector3 estimate_normal(const PointGraph& graph, std::uint32_t node) {
+Vector3 estimate_local_normal(const PointGraph& graph, std::uint32_t node) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   Vector3 mean = graph.points_m[node];
   for (const std::uint32_t other : graph.adjacent(node)) mean += graph.points_m[other];
@@ -167,7 +167,7 @@ std::vector<Vector3> compute_lefts(const PointGraph& graph, const std::vector<st
   for (std::size_t k = 0; k < path.size(); ++k) {
     const std::size_t back = k < reach ? 0 : k - reach, ahead = std::min(path.size() - 1, k + reach);
     const Vector3 along = graph.points_m[path[ahead]] - graph.points_m[path[back]];
-    lefts[k] = estimate_normal(graph, path[k]).cross(along).normalized();
+    lefts[k] = estimate_local_normal(graph, path[k]).cross(along).normalized();
     Vector3 before = Vector3::Zero();
     for (std::size_t b = k < memory ? 0 : k - memory; b < k; ++b) before += lefts[b];
     if (lefts[k].dot(before) < 0.0) lefts[k] = -lefts[k];

@@ -21,7 +21,7 @@ constexpr double gap_steps = 3.0;
 constexpr double facing_fraction = 0.7;
 constexpr std::size_t least_around = 5;
 // Fewer points do not determine their spacing.
-constexpr std::size_t least_points = 3;
+constexpr std::size_t least_island_points = 3;
 // Larger groups are subsampled.
 constexpr std::size_t most_points = 64;
 
@@ -62,7 +62,7 @@ class NodePoints {
 
   bool bridges_gap(const NodePair& pair) const {
     const std::vector<Vector3>&first = points_[pair.first], &second = points_[pair.second];
-    if (first.size() < least_points || second.size() < least_points) return false;
+    if (first.size() < least_island_points || second.size() < least_island_points) return false;
     double nearest = std::numeric_limits<double>::infinity();
     for (const Vector3& a : first) {
       for (const Vector3& b : second) nearest = std::min(nearest, (a - b).norm());

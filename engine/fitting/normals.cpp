@@ -16,7 +16,7 @@ namespace spoonbill {
 namespace {
 
 // Two nodes may coincide with opposite normals, so enough neighbours are needed to reach all around.
-constexpr std::size_t neighbours_per_node = 12;
+constexpr std::size_t normal_neighbours = 12;
 constexpr double longest_pair = 3.0;  // relative to the median
 constexpr double opposite_cosine = -0.5;
 // Largest height of a neighbour on the same face, relative to its distance; more is a wall's thickness.
@@ -31,7 +31,7 @@ std::vector<NodePair> near_pairs(const std::vector<Vector3>& points_m) {
   std::vector<NodePair> pairs;
   std::vector<double> lengths;
   for (std::uint32_t n = 0; n < points_m.size(); ++n) {
-    nearest.nearest(points_m[n], neighbours_per_node + 1, found);
+    nearest.nearest(points_m[n], normal_neighbours + 1, found);
     for (const NearestPoints::Neighbour& other : found) {
       if (other.index == n) continue;
       pairs.emplace_back(n, other.index);

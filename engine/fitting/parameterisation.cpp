@@ -273,8 +273,8 @@ constexpr double points_per_cell = 12.0;
 constexpr double face_fraction = 0.2;  // relative to the wall's thickness
 // If half the points are deeper than this fraction of the thickness, they may be one noisy face.
 constexpr double between_fraction = 0.25;
-constexpr double seen_fraction = 0.85;
-constexpr int least_points = 2;              // per cell that counts
+constexpr double covered_fraction = 0.85;
+constexpr int least_cell_points = 2;         // per cell that counts
 constexpr int dilation = 2;                  // in cells
 constexpr double near_axis_fraction = 0.05;  // relative to the largest distance from the axis
 
@@ -336,7 +336,7 @@ class ProfileRaster {
       for (int column = 0; column < columns_; ++column) {
         // Rings near the axis are short and have few points, so one point there fills all cells to the axis.
         const bool near_axis = column < near_axis_fraction * columns_;
-        if (counts[index(column, row)] < (near_axis ? 1 : least_points)) continue;
+        if (counts[index(column, row)] < (near_axis ? 1 : least_cell_points)) continue;
         for (int c = near_axis ? 0 : column; c <= column; ++c) fill_around(c, row);
       }
     }
@@ -501,7 +501,7 @@ std::optional<ProfileMap> map_profile(const std::vector<Vector3>& points_m) {
     start.uv.emplace_back(turn - std::floor(turn), fractions[found.index]);
     depths.push_back(found.distance - dilation * cell);
   }
-  if (face_coverage(start.uv, depths, face_fraction * thickness + 1.5 * cell) < seen_fraction) return {};
+  if (face_coverage(start.uv, depths, face_fraction * thickness + 1.5 * cell) < covered_fraction) return {};
   return ProfileMap{std::move(start), median(depths) > between_fraction * thickness};
 }
 

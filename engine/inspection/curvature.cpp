@@ -142,7 +142,7 @@ ParameterMinimum find_minimum(const std::vector<PieceCell>& cells,
 
 namespace {
 
-constexpr int parts = 3;
+constexpr int samples_per_span = 3;
 // Smallest |du x dv| as a fraction of |du| |dv| that is not rounding.
 constexpr double min_relative_area = 1e-9;
 
@@ -167,7 +167,7 @@ std::optional<PrincipalCurvatures> compute_principal_curvatures(const SurfacePoi
 CurvatureRange find_curvature_range(const Surface& surface, const TrimmedArea& area,
                                     const Progress& progress) {
   SPOONBILL_ASSERT_DEBUG(is_valid(surface));
-  const std::vector<PieceCell> cells = piece_cells(surface, parts);
+  const std::vector<PieceCell> cells = piece_cells(surface, samples_per_span);
   const auto extreme = [&](bool largest) {
     const auto value = [&](double u, double v) {
       constexpr double none = std::numeric_limits<double>::infinity();
@@ -188,7 +188,7 @@ CurvatureRange find_curvature_range(const Surface& surface, const TrimmedArea& a
 double compute_bending_energy(const Surface& surface, const TrimmedArea& area) {
   SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   double sum = 0.0;
-  for (const PieceCell& cell : piece_cells(surface, 2 * parts)) {
+  for (const PieceCell& cell : piece_cells(surface, 2 * samples_per_span)) {
     if (!area.contains(cell.centre_u(), cell.centre_v())) continue;
     // Midpoint rule, because the integrand is not smooth at knots, poles and trims.
     const SurfacePoint point = evaluate(surface, cell.centre_u(), cell.centre_v());

@@ -73,7 +73,7 @@ Closing find_closing(const Surface& surface) {
 namespace {
 
 // Cells in each direction of a polynomial piece.
-constexpr int parts = 4;
+constexpr int cells_per_span = 4;
 // Smallest |du x dv| that is not a defect, as a fraction of the mean over the surface.
 constexpr double min_area_ratio = 1e-7;
 constexpr std::size_t max_defects = 16;
@@ -93,10 +93,10 @@ class SmoothNeighbours {
     }
   }
 
-  std::size_t cells() const { return parts * smooth_after_.size(); }
+  std::size_t cells() const { return cells_per_span * smooth_after_.size(); }
   // Returns whether the cell and next(cell) belong to one sheet.
   bool is_smooth_after(std::size_t cell) const {
-    return (cell + 1) % parts != 0 || smooth_after_[cell / parts];
+    return (cell + 1) % cells_per_span != 0 || smooth_after_[cell / cells_per_span];
   }
   // Returns the next cell; after the last cell, the first.
   std::size_t next(std::size_t cell) const { return cell + 1 < cells() ? cell + 1 : 0; }
@@ -154,7 +154,7 @@ class NormalFlips {
 
 // Finds cells with a degenerate centre, and pairs of neighbouring cells between which the normal flips.
 void find_defects(const Surface& surface, const TrimmedArea& area, SurfaceCheck& check) {
-  const std::vector<PieceCell> cells = piece_cells(surface, parts);
+  const std::vector<PieceCell> cells = piece_cells(surface, cells_per_span);
   std::vector<Vector3> products;
   double mean = 0.0;
   for (const PieceCell& cell : cells) {

@@ -10,7 +10,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr int parts = 3;
+constexpr int lines_per_span = 3;
 constexpr int newton_steps = 12;
 // Largest distance from the line at which Newton's method has converged, as a fraction of the distance to the
 // exit.
@@ -23,7 +23,8 @@ double clamp_to_domain(const KnotVector& knots, double parameter) {
 std::vector<double> subdivide(const std::vector<double>& ends) {
   std::vector<double> all;
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
-    for (int p = 0; p < parts; ++p) all.push_back(ends[k] + (ends[k + 1] - ends[k]) * p / parts);
+    for (int p = 0; p < lines_per_span; ++p)
+      all.push_back(ends[k] + (ends[k + 1] - ends[k]) * p / lines_per_span);
   }
   all.push_back(ends.back());
   return all;
@@ -32,7 +33,7 @@ std::vector<double> subdivide(const std::vector<double>& ends) {
 }  // namespace
 
 ThicknessSearch::ThicknessSearch(const Surface& surface)
-    : surface_(&surface), cells_(piece_cells(surface, parts)), exits_(facets()) {
+    : surface_(&surface), cells_(piece_cells(surface, lines_per_span)), exits_(facets()) {
   SPOONBILL_ASSERT(has_matching_net(surface));
 }
 

@@ -18,7 +18,7 @@ namespace spoonbill {
 namespace {
 
 constexpr int open_samples = 33;
-constexpr int ring_samples = 64;
+constexpr int rotation_samples = 64;
 constexpr int seams_tried = 256;
 
 struct Gaps {
@@ -35,16 +35,16 @@ Gaps gaps_between(const std::vector<Vector3>& a, const std::vector<Vector3>& b) 
   return gaps;
 }
 
-// Edge prepared for comparison with several others.
-struct Edge {
+// An edge prepared for comparison with several others.
+struct GraphEdge {
   PatchEdge name;
   EdgeCurve curve;
   std::vector<Vector3> points_m;  // open edges: at equal fractions of the length
   RingFrame frame;                // rings only
 };
 
-Edge prepare_edge(const std::vector<Surface>& patches, PatchEdge name) {
-  Edge edge{name, edge_curve(patches[name.patch], name.side), {}, {}};
+GraphEdge prepare_edge(const std::vector<Surface>& patches, PatchEdge name) {
+  GraphEdge edge{name, edge_curve(patches[name.patch], name.side), {}, {}};
   if (edge.curve.knots.is_periodic()) {
     edge.frame = ring_frame(patches[name.patch], name.side);
   } else {
@@ -53,7 +53,7 @@ Edge prepare_edge(const std::vector<Surface>& patches, PatchEdge name) {
   return edge;
 }
 
-EdgeMatch match_open(const Edge& a, const Edge& b, std::optional<bool> requested) {
+EdgeMatch match_open(const GraphEdge& a, const GraphEdge& b, std::optional<bool> requested) {
   const std::vector<Vector3>& points_a = a.points_m;
   std::vector<Vector3> points_b = b.points_m;
   const Gaps direct = gaps_between(points_a, points_b);
@@ -68,7 +68,7 @@ EdgeMatch match_open(const Edge& a, const Edge& b, std::optional<bool> requested
 // rotated to face the first.
 class EdgeRing {
  public:
-  explicit EdgeRing(const Edge& edge) : curve_(edge.curve), centre_(edge.frame.centre_m) {}
+  explicit EdgeRing(const GraphEdge& edge) : curve_(edge.curve), centre_(edge.frame.centre_m) {}
   void turn(const Eigen::Matrix3d& turn) { turn_ = turn; }
 
   // Returns the parameter at a fraction of the period from `from`, forwards or backwards.
@@ -88,8 +88,8 @@ class EdgeRing {
 
 double misfit(const EdgeRing& a, const EdgeRing& b, double seam, bool backwards) {
   double sum = 0.0;
-  for (int k = 0; k < ring_samples; ++k) {
-    const double fraction = static_cast<double>(k) / ring_samples;
+  for (int k = 0; k < rotation_samples; ++k) {
+    const double fraction = static_cast<double>(k) / rotation_samples;
     const double parameter_a = a.parameter(a.seam(), fraction, false);
     sum += (a.at(parameter_a) - b.at(b.parameter(seam, fraction, backwards))).squaredNorm();
   }
@@ -99,8 +99,8 @@ double misfit(const EdgeRing& a, const EdgeRing& b, double seam, bool backwards)
 // Returns the seam after a Gauss-Newton step. Steps converge to rounding for identical rings.
 double improve_seam(const EdgeRing& a, const EdgeRing& b, double seam, bool backwards) {
   double along = 0.0, squared = 0.0;
-  for (int k = 0; k < ring_samples; ++k) {
-    const double fraction = static_cast<double>(k) / ring_samples;
+  for (int k = 0; k < rotation_samples; ++k) {
+    const double fraction = static_cast<double>(k) / rotation_samples;
     const double parameter_b = b.parameter(seam, fraction, backwards);
     const Vector3 slope = b.derivative_at(parameter_b);
     const Vector3 offset = a.at(a.parameter(a.seam(), fraction, false)) - b.at(parameter_b);
@@ -138,14 +138,14 @@ RingFit fit_best(const EdgeRing& a, const EdgeRing& b, std::optional<bool> reque
 
 // Returns the best fit of two rings. Coincident rings are compared as they are, which is exact for identical
 // ones; others after a rotation.
-RingFit fit_best_rotated(const Edge& a, const Edge& b, std::optional<bool> requested) {
+RingFit fit_best_rotated(const GraphEdge& a, const GraphEdge& b, std::optional<bool> requested) {
   constexpr double coincidence_fraction = 0.02;  // relative to the radius
   const EdgeRing ring_a(a);
   EdgeRing ring_b(b);
   const RingFit unrotated = fit_best(ring_a, ring_b, requested);
   const double coincidence_m = coincidence_fraction * a.frame.radius_m;
   const bool coincides = (b.frame.centre_m - a.frame.centre_m).norm() <= coincidence_m &&
-                         unrotated.misfit <= ring_samples * coincidence_m * coincidence_m;
+                         unrotated.misfit <= rotation_samples * coincidence_m * coincidence_m;
   if (coincides) return unrotated;
   const Eigen::Matrix3d turn = rotation_towards(a.frame, b.frame);
   if (turn.isIdentity(0.0)) return unrotated;
@@ -153,13 +153,13 @@ RingFit fit_best_rotated(const Edge& a, const Edge& b, std::optional<bool> reque
   return fit_best(ring_a, ring_b, requested);
 }
 
-EdgeMatch match_rings(const Edge& a, const Edge& b, std::optional<bool> requested) {
+EdgeMatch match_rings(const GraphEdge& a, const GraphEdge& b, std::optional<bool> requested) {
   const RingFit best = fit_best_rotated(a, b, requested);
   const double seam = b.curve.knots.into_domain(best.seam);
   const EdgeRing ring_a(a), ring_b(b);
   std::vector<Vector3> points_a, points_b;
-  for (int k = 0; k < ring_samples; ++k) {
-    const double fraction = static_cast<double>(k) / ring_samples;
+  for (int k = 0; k < rotation_samples; ++k) {
+    const double fraction = static_cast<double>(k) / rotation_samples;
     points_a.push_back(position(a.curve, ring_a.parameter(ring_a.seam(), fraction, false)));
     points_b.push_back(position(b.curve, ring_b.parameter(seam, fraction, best.reversed)));
   }
@@ -167,7 +167,7 @@ EdgeMatch match_rings(const Edge& a, const Edge& b, std::optional<bool> requeste
   return {a.name, b.name, best.reversed, seam, gaps.largest, gaps.mean};
 }
 
-Result<EdgeMatch> match_edge_pair(const Edge& a, const Edge& b, std::optional<bool> reversed) {
+Result<EdgeMatch> match_edge_pair(const GraphEdge& a, const GraphEdge& b, std::optional<bool> reversed) {
   const bool ring = a.curve.knots.is_periodic();
   if (ring != b.curve.knots.is_periodic()) {
     return Error(ErrorCode::mismatch, edge_name(a.name) + " and " + edge_name(b.name) +
@@ -207,7 +207,7 @@ class Groups {
 };
 
 std::vector<EdgeMatch> find_candidates(const std::vector<Surface>& patches) {
-  std::vector<Edge> edges;
+  std::vector<GraphEdge> edges;
   for (const PatchEdge& name : joinable_edges(patches)) edges.push_back(prepare_edge(patches, name));
   std::vector<EdgeMatch> found;
   for (std::size_t a = 0; a < edges.size(); ++a) {

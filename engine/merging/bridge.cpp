@@ -221,7 +221,7 @@ class NormalGrid {
   std::vector<Vector3> normals_;
 };
 
-constexpr int cells_in_piece = 4;
+constexpr int cells_in_bridge_piece = 4;
 
 struct Cells {
   std::vector<double> centres;
@@ -234,8 +234,9 @@ Cells cells_along(const KnotVector& knots) {
   const std::vector<double> ends = knots.breakpoints();
   const std::vector<KnotMultiplicity> starts = knot_multiplicities(knots);
   for (std::size_t piece = 0; piece < starts.size(); ++piece) {
-    for (int k = 0; k < cells_in_piece; ++k) {
-      cells.centres.push_back(ends[piece] + (ends[piece + 1] - ends[piece]) * (k + 0.5) / cells_in_piece);
+    for (int k = 0; k < cells_in_bridge_piece; ++k) {
+      cells.centres.push_back(ends[piece] +
+                              (ends[piece + 1] - ends[piece]) * (k + 0.5) / cells_in_bridge_piece);
       cells.is_smooth.push_back(true);
     }
     // Open ends count as clamped, so nothing is smooth across them.
@@ -249,14 +250,14 @@ constexpr int least_lines = 32, least_steps = 24;
 
 std::vector<double> sample_lines(const KnotVector& u) {
   const int pieces = static_cast<int>(u.breakpoints().size()) - 1;
-  return uniform_parameters(u, std::max(least_lines, cells_in_piece * pieces) + 1);
+  return uniform_parameters(u, std::max(least_lines, cells_in_bridge_piece * pieces) + 1);
 }
 
 std::vector<double> sample_steps(const KnotVector& v, double start, double end) {
   const std::vector<double> knots = v.breakpoints();
   const auto inside =
       std::count_if(knots.begin(), knots.end(), [&](double knot) { return knot > start && knot < end; });
-  const int steps = std::max(least_steps, cells_in_piece * (static_cast<int>(inside) + 1));
+  const int steps = std::max(least_steps, cells_in_bridge_piece * (static_cast<int>(inside) + 1));
   std::vector<double> along;
   for (int k = 0; k <= steps; ++k) along.push_back(start + (end - start) * k / steps);
   return along;

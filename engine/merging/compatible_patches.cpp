@@ -17,10 +17,6 @@
 namespace spoonbill {
 namespace {
 
-double domain_length(const KnotVector& knots) {
-  return knots.domain_end() - knots.domain_start();
-}
-
 // Returns the distinct knots, without the end of a period.
 std::vector<double> distinct_knots(const KnotVector& knots) {
   std::vector<double> all = knots.breakpoints();
@@ -43,7 +39,7 @@ double nearest_to(const std::vector<double>& sorted, double knot) {
 // knot of `from` is closer to it.
 std::vector<std::pair<double, double>> find_moves(const KnotVector& from, const KnotVector& to) {
   const std::vector<double> own = from.breakpoints(), targets = to.breakpoints();
-  const double reach = snap_fraction * domain_length(from);
+  const double reach = snap_fraction * from.domain_length();
   std::vector<std::pair<double, double>> moves;
   for (std::size_t k = 1; k + 1 < own.size(); ++k) {
     const double target = nearest_to(targets, own[k]);
@@ -58,7 +54,7 @@ std::vector<std::pair<double, double>> find_moves(const KnotVector& from, const 
 
 double align_seam_to_knots(const KnotVector& first, const KnotVector& second, double seam) {
   SPOONBILL_ASSERT(first.is_periodic() && second.is_periodic());
-  const double length = domain_length(second);
+  const double length = second.domain_length();
   const auto wrapped_distance = [&](double at_second, double at_first) {
     const double step = (at_second - seam) - (at_first - first.domain_start());
     return step - length * std::round(step / length);

@@ -163,13 +163,9 @@ struct ContactParameters {
 // Finite difference step relative to the domain.
 constexpr double small_step = 1e-6;
 
-double domain_length(const KnotVector& knots) {
-  return knots.domain_end() - knots.domain_start();
-}
-
 // Clamps t to the domain. Returns false if it is outside by more than rounding.
 bool clamp_to_domain(const KnotVector& knots, double& t) {
-  const double rounding = 1e-9 * domain_length(knots);
+  const double rounding = 1e-9 * knots.domain_length();
   if (knots.is_periodic()) return true;
   if (t < knots.domain_start() - rounding || t > knots.domain_end() + rounding) return false;
   t = std::clamp(t, knots.domain_start(), knots.domain_end());
@@ -178,7 +174,7 @@ bool clamp_to_domain(const KnotVector& knots, double& t) {
 
 // Returns the step for finite differences at t, negative near the end of the domain.
 double step_from(const KnotVector& knots, double t) {
-  const double step = small_step * domain_length(knots);
+  const double step = small_step * knots.domain_length();
   return !knots.is_periodic() && t + step > knots.domain_end() ? -step : step;
 }
 
@@ -230,7 +226,7 @@ class Corner {
     const bool before = pole_at_start_ && at.other_v < start, behind = pole_at_end_ && at.other_v > end;
     if (!before && !behind) return;
     at.other_v = 2.0 * (before ? start : end) - at.other_v;
-    at.other_u += 0.5 * domain_length(other_.u);
+    at.other_u += 0.5 * other_.u.domain_length();
   }
 
   const Surface& surface_;

@@ -140,7 +140,7 @@ EdgeSamples edge_samples(const EdgeCurve& curve, int count) {
 
 namespace {
 
-constexpr int ring_samples = 64;
+constexpr int frame_samples = 64;
 
 Vector3 column_centre(const ControlNet& net, int column) {
   Vector3 sum = Vector3::Zero();
@@ -160,8 +160,8 @@ RingFrame ring_frame(const Surface& surface, Side side) {
   const EdgeCurve ring = edge_curve(surface, side);
   RingFrame frame;
   frame.outward = outward(surface, side);
-  const std::vector<double> parameters = uniform_parameters_without_seam(ring.knots, ring_samples);
-  for (const double t : parameters) frame.centre_m += position(ring, t) / ring_samples;
+  const std::vector<double> parameters = uniform_parameters_without_seam(ring.knots, frame_samples);
+  for (const double t : parameters) frame.centre_m += position(ring, t) / frame_samples;
   for (const double t : parameters) {
     frame.radius_m = std::max(frame.radius_m, (position(ring, t) - frame.centre_m).norm());
   }

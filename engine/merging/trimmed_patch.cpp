@@ -155,7 +155,7 @@ constexpr double corner_cosine = 0.98;
 // Offset of the last line from the edge, and width that is too narrow to count, as a fraction of the part's
 // extent in u.
 constexpr double edge_margin = 1e-7;
-constexpr int lines_checked = 64;
+constexpr int trim_lines_checked = 64;
 // Shorter lines at an end, relative to the longest, are a point.
 constexpr double point_fraction = 1e-3;
 // Largest change of a line's ends across a corner, relative to the part's extent in v.
@@ -212,8 +212,9 @@ class KeptPart {
   bool is_cut_in_single_pieces() const {
     if (!meets_all_lines_twice()) return false;
     double longest = 0.0, first = 0.0, last = 0.0;
-    for (int k = 0; k <= lines_checked; ++k) {
-      const auto interval = on_line(inside(along_u_, along_u_.low + along_u_.length() * k / lines_checked));
+    for (int k = 0; k <= trim_lines_checked; ++k) {
+      const auto interval =
+          on_line(inside(along_u_, along_u_.low + along_u_.length() * k / trim_lines_checked));
       if (!interval) return false;
       last = interval->length();
       if (k == 0) first = last;

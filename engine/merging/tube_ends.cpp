@@ -66,7 +66,7 @@ Result<Approximation> close_around(const Surface& surface, Direction direction, 
 
 namespace {
 
-constexpr int ring_samples = 48;
+constexpr int rim_samples = 48;
 
 // Control point distance of a cubic quarter circle: 4 (sqrt 2 - 1) / 3.
 constexpr double quarter_circle = 0.5522847498307936;
@@ -78,14 +78,14 @@ struct RingSize {
 
 // Returns the centre and mean radius of the ring at v. `tube` must run along v.
 RingSize ring_at(const Surface& tube, double v) {
-  const std::vector<double> parameters = uniform_parameters_without_seam(tube.u, ring_samples);
+  const std::vector<double> parameters = uniform_parameters_without_seam(tube.u, rim_samples);
   RingSize ring;
   std::vector<Vector3> points;
   for (const double u : parameters) {
     points.push_back(position(tube, u, v));
-    ring.centre_m += points.back() / ring_samples;
+    ring.centre_m += points.back() / rim_samples;
   }
-  for (const Vector3& point : points) ring.radius_m += (point - ring.centre_m).norm() / ring_samples;
+  for (const Vector3& point : points) ring.radius_m += (point - ring.centre_m).norm() / rim_samples;
   return ring;
 }
 
@@ -105,8 +105,8 @@ Result<Surface> make_cap(const Surface& tube, double height_m) {
   const double end = tube.v.domain_end();
   const TubeEnd ring = tube_end(tube, Side::v_end);
   double speed = 0.0;
-  for (const double u : uniform_parameters_without_seam(tube.u, ring_samples)) {
-    speed += evaluate(tube, u, end).dv.norm() / ring_samples;
+  for (const double u : uniform_parameters_without_seam(tube.u, rim_samples)) {
+    speed += evaluate(tube, u, end).dv.norm() / rim_samples;
   }
   if (!(speed > 0.0))
     return Error(ErrorCode::degenerate,

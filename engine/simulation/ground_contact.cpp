@@ -118,7 +118,7 @@ double SkinHeights::lowest_m(int row, int column) const {
 namespace {
 
 // Reach beyond the movement of a tick, in lattice cells.
-constexpr double margin_cells = 0.25;
+constexpr double ground_margin_cells = 0.25;
 
 // Time constant of the filter on a footing's skin height, longer than a round body takes to roll over.
 // Without it a node would push its neighbours' skin at once, and round bodies would roll for ever.
@@ -159,14 +159,6 @@ int find_nearest(const std::vector<double>& parameters, double parameter) {
   const auto after = std::lower_bound(parameters.begin(), parameters.end() - 1, parameter);
   const bool before = after != parameters.begin() && parameter - *(after - 1) < *after - parameter;
   return static_cast<int>(after - parameters.begin()) - (before ? 1 : 0);
-}
-
-Vector3 position_of(const SpringLattice& lattice, const EmbeddedPoint& sample) {
-  Vector3 sum = Vector3::Zero();
-  for (int i = 0; i < sample.count; ++i) {
-    sum += static_cast<double>(sample.weight[i]) * lattice.position(sample.node[i]);
-  }
-  return sum;
 }
 
 int count_nodes(std::span<const BodyState> bodies) {
@@ -248,7 +240,7 @@ void BodyGroundContact::find(std::span<const BodyState> bodies, const Ground& gr
     for (const Footing& footing : bodies_[b].footings) {
       fastest = std::max(fastest, -ground.normal.dot(body.lattice.velocity(footing.node)));
     }
-    const double margin_m = margin_cells * static_cast<double>(body.lattice.cell_size_m());
+    const double margin_m = ground_margin_cells * static_cast<double>(body.lattice.cell_size_m());
     find(static_cast<int>(b), body, ground, fastest * time_s + fall_m + margin_m, time_s);
   }
 }
@@ -285,7 +277,7 @@ void BodyGroundContact::find(int index, const BodyState& body, const Ground& gro
     if (boxed) gap_m = std::numeric_limits<double>::infinity();
     for (int s = footing.first_followed; s < footing.first_followed + footing.followed_count; ++s) {
       const EmbeddedPoint& sample = body.mapping().sample(footings.followed[static_cast<std::size_t>(s)]);
-      gap_m = std::min(gap_m, ground.normal.dot(position_of(body.lattice, sample) - ground.point_m));
+      gap_m = std::min(gap_m, ground.normal.dot(sample.position_m(body.lattice) - ground.point_m));
     }
     if (!thin) update_skin_offset(footings, gap_m, time_s, footing);
     footing.is_near = true;

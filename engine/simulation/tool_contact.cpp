@@ -143,10 +143,10 @@ constexpr int constraint_capacity = 1024;
 
 // Gap below which a sample becomes a constraint, in lattice cells: the largest distance that the refit may
 // leave between the colliding surface and the lattice.
-constexpr double margin_cells = 0.5;
+constexpr double tool_margin_cells = 0.5;
 
 double find_margin_m(const BodyState& body) {
-  return margin_cells * static_cast<double>(body.lattice.cell_size_m());
+  return tool_margin_cells * static_cast<double>(body.lattice.cell_size_m());
 }
 
 // Returns the direction in which the tool pushes a point: the gradient of its distance; zero at a sphere's
@@ -160,14 +160,6 @@ Vector3 push_direction_at(const ToolShape& tool, const Vector3& point_m) {
 
 bool is_inside(const CollisionResult& collision) {
   return collision.found && collision.nearest.depth_m >= 0.0;
-}
-
-Vector3 position_of(const SpringLattice& lattice, const EmbeddedPoint& point) {
-  Vector3 position = Vector3::Zero();
-  for (int i = 0; i < point.count; ++i) {
-    position += static_cast<double>(point.weight[i]) * lattice.position(point.node[i]);
-  }
-  return position;
 }
 
 ToolShape make_shape(const Tool& tool, const ToolModel& model, const ToolHold& hold) {
@@ -407,15 +399,14 @@ void ToolContact::add_sphere_pushes(int body, const BodyState& state) {
 // constant over a tick.
 void ToolContact::add_plane_push(int body, const BodyState& state, const Pushed& pushed,
                                  const ToolHold& hold) {
-  const Vector3 from_centre = position_of(state.lattice, pushed.point) - hold.pose.position_m;
+  const Vector3 from_centre = pushed.point.position_m(state.lattice) - hold.pose.position_m;
   overflow_ |= !constraints_.add_plane_push(body, state.lattice, pushed.point, pushed.normal,
                                             from_centre.dot(pushed.normal) - pushed.gap_m);
 }
 
 void ToolContact::add_grips(int body, const BodyState& state, const Pose& pose) {
   const auto grip = [&](const EmbeddedPoint& point) {
-    const Vector3 offset =
-        pose.orientation.conjugate() * (position_of(state.lattice, point) - pose.position_m);
+    const Vector3 offset = pose.orientation.conjugate() * (point.position_m(state.lattice) - pose.position_m);
     overflow_ |= !constraints_.add_grip(body, state.lattice, point, offset);
   };
   BodyContact& contact = contacts_[body];

@@ -24,7 +24,7 @@ OSMesaContext as_context(void* handle) {
 }
 
 template <class Function>
-bool load(const SharedLibrary& library, const char* name, Function& function) {
+bool load_symbol(const SharedLibrary& library, const char* name, Function& function) {
   function = reinterpret_cast<Function>(library.symbol(name));
   return function != nullptr;
 }
@@ -47,10 +47,10 @@ Result<std::unique_ptr<OsmesaContext>> OsmesaContext::make(int width_px, int hei
   const auto library = SharedLibrary::open("libOSMesa.so.8", "libosmesa6");
   if (!library) return library.error();
   auto functions = std::make_unique<Functions>();
-  if (!load(library.value(), "OSMesaCreateContextAttribs", functions->create) ||
-      !load(library.value(), "OSMesaDestroyContext", functions->destroy) ||
-      !load(library.value(), "OSMesaMakeCurrent", functions->make_current) ||
-      !load(library.value(), "OSMesaGetProcAddress", functions->procedure)) {
+  if (!load_symbol(library.value(), "OSMesaCreateContextAttribs", functions->create) ||
+      !load_symbol(library.value(), "OSMesaDestroyContext", functions->destroy) ||
+      !load_symbol(library.value(), "OSMesaMakeCurrent", functions->make_current) ||
+      !load_symbol(library.value(), "OSMesaGetProcAddress", functions->procedure)) {
     return Error{
         ErrorCode::unavailable,
         "libOSMesa.so.8 lacks functions of OSMesa: install libosmesa6 of Debian 12 (Mesa 22 or later)"};

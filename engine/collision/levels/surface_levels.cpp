@@ -506,10 +506,6 @@ const CoverSphere& SurfaceLevels::cover(const LevelCell& cell) {
 
 namespace {
 
-Vector3 patch_centre(const PatchCorners& corners) {
-  return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
-}
-
 // Returns the gap from the corners of a to those of b along `direction`, times its length; negative if they
 // overlap.
 double gap_along(const Vector3& direction, const PatchCorners& a, const PatchCorners& b) {

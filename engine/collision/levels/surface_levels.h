@@ -112,6 +112,10 @@ struct CoverSphere {
 // Corners in the order (low u, low v), (low u, high v), (high u, low v), (high u, high v).
 using PatchCorners = std::array<Vector3, 4>;
 
+inline Vector3 patch_centre(const PatchCorners& corners) {
+  return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+}
+
 // Samples, bounds and spheres of one surface at all levels. One owner, one thread; allocates only on
 // construction. The grid must outlive it.
 class SurfaceLevels {

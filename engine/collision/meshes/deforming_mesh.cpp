@@ -11,7 +11,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr std::uint32_t leaf_size = 4;
+constexpr std::uint32_t deforming_leaf_size = 4;
 // Distance in metres below which the offset to the surface has no reliable direction.
 constexpr double on_surface_m = 1e-12;
 
@@ -39,7 +39,7 @@ double arc_tangent(double x) {
 }
 
 // Angle between two unit vectors, 0 to pi. Half of it has the tangent |a - b| / |a + b|.
-double angle_between(const Vector3& a, const Vector3& b) {
+double corner_angle(const Vector3& a, const Vector3& b) {
   constexpr double quarter_turn = 1.57079632679489662;
   const double across = (a - b).norm(), along = (a + b).norm();
   if (across <= along) return along > 0.0 ? 2.0 * arc_tangent(across / along) : 0.0;
@@ -65,7 +65,7 @@ struct DeformingMesh::Nearest {
 };
 
 DeformingMesh::DeformingMesh(const TriangleMesh& mesh)
-    : vertices_m_(mesh.vertices_m), tree_(make_boxes(mesh), leaf_size) {
+    : vertices_m_(mesh.vertices_m), tree_(make_boxes(mesh), deforming_leaf_size) {
   SPOONBILL_ASSERT(!mesh.triangles.empty());
   triangles_.reserve(mesh.triangles.size());
   for (const std::uint32_t index : tree_.order()) triangles_.push_back(mesh.triangles[index]);
@@ -100,7 +100,7 @@ Vector3 DeformingMesh::vertex_normal(std::uint32_t vertex) const {
     const Vector3& corner = vertices_m_[vertex];
     const Vector3 to_next = (vertices_m_[triangles_[triangle][(k + 1) % 3]] - corner).normalized();
     const Vector3 to_previous = (vertices_m_[triangles_[triangle][(k + 2) % 3]] - corner).normalized();
-    sum += angle_between(to_next, to_previous) * face_normal(triangle);
+    sum += corner_angle(to_next, to_previous) * face_normal(triangle);
   }
   return sum;
 }

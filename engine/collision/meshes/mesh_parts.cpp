@@ -16,7 +16,7 @@ namespace spoonbill {
 
 namespace {
 
-constexpr std::uint32_t none = 0xffffffffU;
+constexpr std::uint32_t no_part = 0xffffffffU;
 // Limit of the box tests and triangles visited in the search for cavities, which bounds the time for files of
 // countless specks.
 constexpr std::size_t cavity_work = 50'000'000;
@@ -42,7 +42,7 @@ void flood_from(std::uint32_t seed, const std::vector<TriangleCorners>& triangle
       const bool same_direction = side_start(triangles, side) == side_start(triangles, other);
       const bool flip = flood.flipped[triangle] != same_direction;
       const std::uint32_t neighbour = other / 3;
-      if (flood.part_index[neighbour] == none) {
+      if (flood.part_index[neighbour] == no_part) {
         flood.part_index[neighbour] = part;
         flood.flipped[neighbour] = flip;
         flipped += flip ? 1 : 0;
@@ -58,12 +58,12 @@ void flood_from(std::uint32_t seed, const std::vector<TriangleCorners>& triangle
 
 Flood flood_parts(const TriangleMesh& mesh) {
   const MeshEdges edges(mesh.triangles, mesh.vertices_m.size());
-  Flood flood{std::vector<std::uint32_t>(mesh.triangles.size(), none),
+  Flood flood{std::vector<std::uint32_t>(mesh.triangles.size(), no_part),
               std::vector<bool>(mesh.triangles.size(), false),
               {}};
   std::vector<std::uint32_t> reached;
   for (std::uint32_t seed = 0; seed < mesh.triangles.size(); ++seed) {
-    if (flood.part_index[seed] == none) flood_from(seed, mesh.triangles, edges, flood, reached);
+    if (flood.part_index[seed] == no_part) flood_from(seed, mesh.triangles, edges, flood, reached);
   }
   return flood;
 }
@@ -133,7 +133,7 @@ MeshParts split_into_parts(const TriangleMesh& mesh) {
   const std::vector<std::uint32_t> order = sort_by_part(flood, result.parts);
   result.mesh.triangles.reserve(order.size());
   result.mesh.vertices_m.reserve(mesh.vertices_m.size());
-  std::vector<std::uint32_t> copy(mesh.vertices_m.size(), none);
+  std::vector<std::uint32_t> copy(mesh.vertices_m.size(), no_part);
   for (MeshPart& part : result.parts) {
     part.first_vertex = static_cast<std::uint32_t>(result.mesh.vertices_m.size());
     for (std::uint32_t t = part.first_triangle; t < part.end_triangle; ++t) {
@@ -141,7 +141,7 @@ MeshParts split_into_parts(const TriangleMesh& mesh) {
       for (std::uint32_t& corner : corners) {
         std::uint32_t& own = copy[corner];
         // An index below the part's first vertex is that of a copy for an earlier part.
-        if (own == none || own < part.first_vertex) {
+        if (own == no_part || own < part.first_vertex) {
           own = static_cast<std::uint32_t>(result.mesh.vertices_m.size());
           result.mesh.vertices_m.push_back(mesh.vertices_m[corner]);
         }
@@ -254,9 +254,9 @@ class BoundaryWalk {
  public:
   BoundaryWalk(const TriangleMesh& mesh, const std::vector<MeshSide>& boundary)
       : mesh_(mesh),
-        first_(mesh.vertices_m.size(), none),
-        next_(boundary.size(), none),
-        position_(mesh.vertices_m.size(), none),
+        first_(mesh.vertices_m.size(), no_part),
+        next_(boundary.size(), no_part),
+        position_(mesh.vertices_m.size(), no_part),
         boundary_(boundary) {
     for (std::uint32_t k = 0; k < boundary.size(); ++k) {
       std::uint32_t& first = first_[side_start(mesh.triangles, boundary[k])];
@@ -270,14 +270,14 @@ class BoundaryWalk {
   void walk(const Visit& visit) {
     for (const MeshSide side : boundary_) {
       std::uint32_t vertex = side_start(mesh_.triangles, side);
-      while (first_[vertex] != none) {
+      while (first_[vertex] != no_part) {
         const MeshSide leaving = boundary_[std::exchange(first_[vertex], next_[first_[vertex]])];
         position_[vertex] = static_cast<std::uint32_t>(path_.size());
         path_.push_back(vertex);
         vertex = side_end(mesh_.triangles, leaving);
-        if (position_[vertex] != none) cut_at(vertex, visit);
+        if (position_[vertex] != no_part) cut_at(vertex, visit);
       }
-      for (const std::uint32_t left : path_) position_[left] = none;
+      for (const std::uint32_t left : path_) position_[left] = no_part;
       path_.clear();
     }
   }
@@ -286,7 +286,7 @@ class BoundaryWalk {
   template <class Visit>
   void cut_at(std::uint32_t vertex, const Visit& visit) {
     const VertexLoop loop(path_.begin() + position_[vertex], path_.end());
-    for (const std::uint32_t vertex_in_loop : loop) position_[vertex_in_loop] = none;
+    for (const std::uint32_t vertex_in_loop : loop) position_[vertex_in_loop] = no_part;
     path_.resize(path_.size() - loop.size());
     visit(loop);
   }

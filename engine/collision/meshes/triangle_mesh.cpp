@@ -16,7 +16,7 @@ namespace spoonbill {
 
 namespace {
 
-constexpr std::uint32_t none = 0xffffffffU;
+constexpr std::uint32_t no_vertex = 0xffffffffU;
 // Width of a grid cell in tolerances. Few vertices are within the tolerance of a neighbouring cell of that
 // width, and a cell still has few kept vertices, because these are farther apart than the tolerance.
 constexpr double cell_tolerances = 4.0;
@@ -41,14 +41,14 @@ std::size_t table_size(std::size_t entries) {
 JoinedVertices join_equal(const std::vector<Vector3>& vertices) {
   JoinedVertices result;
   result.joined_into.reserve(vertices.size());
-  std::vector<std::uint32_t> table(table_size(vertices.size()), none);
+  std::vector<std::uint32_t> table(table_size(vertices.size()), no_vertex);
   const std::uint64_t mask = table.size() - 1;
   for (const Vector3& input : vertices) {
     const Vector3 vertex = input.array() + 0.0;  // turns -0.0 into 0.0
     const auto bits = [&](int axis) { return std::bit_cast<std::uint64_t>(vertex[axis]); };
     std::uint64_t slot = mix_bits(bits(0), bits(1), bits(2)) & mask;
-    while (table[slot] != none && result.vertices_m[table[slot]] != vertex) slot = (slot + 1) & mask;
-    if (table[slot] == none) {
+    while (table[slot] != no_vertex && result.vertices_m[table[slot]] != vertex) slot = (slot + 1) & mask;
+    if (table[slot] == no_vertex) {
       table[slot] = static_cast<std::uint32_t>(result.vertices_m.size());
       result.vertices_m.push_back(vertex);
     }
@@ -61,7 +61,7 @@ JoinedVertices join_equal(const std::vector<Vector3>& vertices) {
 class VertexGrid {
  public:
   VertexGrid(std::size_t count, double tolerance)
-      : tolerance_(tolerance), first_(table_size(count), none), mask_(first_.size() - 1) {
+      : tolerance_(tolerance), first_(table_size(count), no_vertex), mask_(first_.size() - 1) {
     next_.reserve(count);
   }
 
@@ -70,13 +70,13 @@ class VertexGrid {
     for (std::int64_t x = low[0]; x <= high[0]; ++x) {
       for (std::int64_t y = low[1]; y <= high[1]; ++y) {
         for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-          for (std::uint32_t at = first_[slot({x, y, z})]; at != none; at = next_[at]) {
+          for (std::uint32_t at = first_[slot({x, y, z})]; at != no_vertex; at = next_[at]) {
             if ((kept[at] - vertex).squaredNorm() <= tolerance_ * tolerance_) return at;
           }
         }
       }
     }
-    return none;
+    return no_vertex;
   }
 
   // Adds a vertex, with the next index of the kept vertices.
@@ -120,7 +120,7 @@ JoinedVertices join_vertices(const std::vector<Vector3>& vertices_m, double tole
   joined.reserve(distinct.size());
   for (const Vector3& vertex : distinct) {
     std::uint32_t into = near.find(vertex, result.vertices_m);
-    if (into == none) {
+    if (into == no_vertex) {
       into = static_cast<std::uint32_t>(result.vertices_m.size());
       near.add(vertex);
       result.vertices_m.push_back(vertex);
@@ -180,7 +180,7 @@ bool is_degenerate(const TriangleMesh& mesh, const TriangleCorners& corners, dou
 
 // Removes triangles with the same corners as an earlier one, in any order. Returns their number.
 std::size_t drop_duplicates(std::vector<TriangleCorners>& triangles) {
-  std::vector<std::uint32_t> table(std::bit_ceil(2 * triangles.size() + 2), none);
+  std::vector<std::uint32_t> table(std::bit_ceil(2 * triangles.size() + 2), no_vertex);
   const std::uint64_t mask = table.size() - 1;
   const auto sorted = [](TriangleCorners corners) {
     std::sort(corners.begin(), corners.end());
@@ -195,8 +195,8 @@ std::size_t drop_duplicates(std::vector<TriangleCorners>& triangles) {
       hash ^= hash >> 29;
     }
     std::uint64_t slot = hash & mask;
-    while (table[slot] != none && sorted(triangles[table[slot]]) != key) slot = (slot + 1) & mask;
-    if (table[slot] != none) continue;
+    while (table[slot] != no_vertex && sorted(triangles[table[slot]]) != key) slot = (slot + 1) & mask;
+    if (table[slot] != no_vertex) continue;
     table[slot] = static_cast<std::uint32_t>(kept);
     triangles[kept++] = corners;
   }
@@ -221,13 +221,13 @@ void join_and_drop(TriangleMesh& mesh, double size, MeshReport& report) {
 // Renumbers vertices by first use, because flipping triangles changed the order of their corners. Cleaning a
 // clean mesh therefore leaves it unchanged, and a document is written as it was read.
 void number_by_first_use(TriangleMesh& mesh) {
-  std::vector<std::uint32_t> new_index(mesh.vertices_m.size(), none);
+  std::vector<std::uint32_t> new_index(mesh.vertices_m.size(), no_vertex);
   std::vector<Vector3> vertices_m;
   vertices_m.reserve(mesh.vertices_m.size());
   for (TriangleCorners& corners : mesh.triangles) {
     for (std::uint32_t& corner : corners) {
       std::uint32_t& index = new_index[corner];
-      if (index == none) {
+      if (index == no_vertex) {
         index = static_cast<std::uint32_t>(vertices_m.size());
         vertices_m.push_back(mesh.vertices_m[corner]);
       }

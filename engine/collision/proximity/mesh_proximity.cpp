@@ -12,8 +12,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr std::size_t near_capacity = 4096;
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t near_mesh_capacity = 4096;
 
 // Box of the control net, which contains the surface.
 Box net_box(const ControlNet& net) {
@@ -46,8 +45,8 @@ MeshProximity::MeshProximity(const NestedGrid& surface, std::vector<int> patches
   offered_at_.assign(patch_count, 0);
   candidate_index_.assign(patch_count, 0);
   candidates_.reserve(patch_count);
-  samples_.reserve(near_capacity);
-  vertices_.reserve(near_capacity);
+  samples_.reserve(near_mesh_capacity);
+  vertices_.reserve(near_mesh_capacity);
   // A descent of the binary tree leaves one node on the stack at every step.
   pending_.reserve(64);
 }
@@ -130,7 +129,7 @@ void MeshProximity::collect_samples(const ElementTree::Node& element, const Defo
       sampled_at_[sample] = search_;
       const auto nearest = mesh.nearest(levels_.sample(sample), margin);
       if (!nearest) continue;
-      if (samples_.size() == near_capacity) {
+      if (samples_.size() == near_mesh_capacity) {
         overflow_ = true;
         return;
       }
@@ -185,7 +184,7 @@ void MeshProximity::resolve_patches(const DeformingMesh& mesh, double margin) {
       if (other.gap_m < near.gap_m) near = other;
     }
     if (near.gap_m > margin) continue;
-    if (vertices_.size() == near_capacity) {
+    if (vertices_.size() == near_mesh_capacity) {
       overflow_ = true;
       return;
     }

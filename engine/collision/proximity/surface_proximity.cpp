@@ -49,8 +49,7 @@ NearestOnCell nearest_on_cell(const Vector3& point, const PatchCorners& at) {
 
 namespace {
 
-constexpr std::size_t near_capacity = 4096;
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t near_surface_capacity = 4096;
 
 }  // namespace
 
@@ -58,7 +57,7 @@ NearPoints::NearPoints(const NestedGrid& nested) : levels_(nested) {
   const auto samples = static_cast<std::size_t>(nested.grid.rows() * nested.grid.columns());
   index_.assign(samples, 0);
   indexed_at_.assign(samples, 0);
-  near_.reserve(near_capacity);
+  near_.reserve(near_surface_capacity);
 }
 
 bool NearPoints::begin(const Surface& surface) {
@@ -86,7 +85,7 @@ void NearPoints::offer(int i, int j, const SurfaceLevels& other, const LevelCell
   const Vector3 point = levels_.sample(sample);
   const NearestOnCell on = nearest_on_cell(point, corners);
   if (indexed_at_[sample] != generation_) {
-    if (near_.size() == near_capacity) {
+    if (near_.size() == near_surface_capacity) {
       overflow_ = true;
       return;
     }
@@ -149,7 +148,7 @@ void NearPoints::add_between_samples(const SurfaceLevels& other, double outside)
   for (std::size_t s = 0; s < samples; ++s) {
     const NearPoint& near = near_[s];
     if (!is_local_deepest(near)) continue;
-    if (near_.size() == near_capacity) {
+    if (near_.size() == near_surface_capacity) {
       overflow_ = true;
       return;
     }

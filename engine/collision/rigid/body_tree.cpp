@@ -15,14 +15,14 @@ namespace {
 using Object = fcl::CollisionObject<double>;
 
 // Slack as a fraction of the largest coordinate, because FCL takes a rounded centre and rounded sides.
-constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
+constexpr double box_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 
 std::size_t body_index(const Object* object) {
   return reinterpret_cast<std::size_t>(object->getUserData());
 }
 
 Object make_object(const Box& box, std::size_t index) {
-  const double slack = rounding * box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
+  const double slack = box_rounding * box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
   const Vector3 sides = (box.high - box.low).array() + 2.0 * slack;
   fcl::Transform3d at = fcl::Transform3d::Identity();
   at.translation() = 0.5 * (box.low + box.high);

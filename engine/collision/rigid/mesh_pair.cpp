@@ -172,8 +172,8 @@ struct Gap {
   Vector3 first_m = Vector3::Zero(), second_m = Vector3::Zero();
 };
 
-void update_nearest(const PosedMesh& first, const PosedMesh& second, std::size_t i, std::size_t j,
-                    Gap& least) {
+void update_nearest_triangles(const PosedMesh& first, const PosedMesh& second, std::size_t i, std::size_t j,
+                              Gap& least) {
   const double half_thickness_m = first.half_thickness_m(i) + second.half_thickness_m(j);
   const auto found = first.rigid(i).nearest(second.rigid(j), least.gap_m + half_thickness_m);
   if (!found || !(found->distance_m - half_thickness_m < least.gap_m)) return;
@@ -186,7 +186,7 @@ Gap find_gap(const PosedMesh& first, const PosedMesh& second) {
   Gap least;
   const BodyTree parts(first.boxes()), others(second.boxes());
   parts.find_nearest(others, [&](std::size_t i, std::size_t j) {
-    update_nearest(first, second, i, j, least);
+    update_nearest_triangles(first, second, i, j, least);
     return least.gap_m;
   });
   return least;
@@ -406,7 +406,7 @@ class ContactSearch {
     Gap gap;
     for (std::size_t q = 0; q < meshes_[1 - s]->parts().size(); ++q) {
       if (meshes_[s]->boxes()[p].gap(meshes_[1 - s]->boxes()[q]) >= gap.gap_m) continue;
-      update_nearest(*meshes_[0], *meshes_[1], s == 0 ? p : q, s == 0 ? q : p, gap);
+      update_nearest_triangles(*meshes_[0], *meshes_[1], s == 0 ? p : q, s == 0 ? q : p, gap);
     }
     if (!(gap.gap_m > touch_tolerance_m)) return std::nullopt;
     const Vector3 direction = (gap.second_m - gap.first_m).normalized();

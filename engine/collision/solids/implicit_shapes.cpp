@@ -156,7 +156,6 @@ Box SphereDistance::bounds() const {
 }
 
 Box HalfSpaceDistance::bounds() const {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   return {Vector3::Constant(-infinity), {infinity, 0.0, infinity}};
 }
 

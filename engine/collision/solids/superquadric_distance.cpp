@@ -138,7 +138,7 @@ namespace {
 
 constexpr double farthest_logit = 600.0;
 // Smallest relative gain of the squared distance that is more than rounding.
-constexpr double least_gain = 1e-15;
+constexpr double least_distance_gain = 1e-15;
 
 double bounded(double logit) {
   return std::clamp(logit, -farthest_logit, farthest_logit);
@@ -211,7 +211,7 @@ SuperquadricDistance::Spot SuperquadricDistance::improve(Spot spot, const Vector
     const double move_around = (b * here.slope[1] - c * here.slope[0]) / determinant;
     const double move_along = (b * here.slope[0] - a * here.slope[1]) / determinant;
     const double promise = -0.5 * (here.slope[0] * move_around + here.slope[1] * move_along);
-    if (promise < least_gain * here.half_square) break;
+    if (promise < least_distance_gain * here.half_square) break;
     const double size = std::max({1.0, std::abs(move_around) / 20.0, std::abs(move_along) / 20.0});
     const Spot next{bounded(spot.around + move_around / size), bounded(spot.along + move_along / size)};
     expand(next, point, there);
@@ -224,7 +224,7 @@ SuperquadricDistance::Spot SuperquadricDistance::improve(Spot spot, const Vector
     spot = next;
     here = there;
     damping = damping > 1e-6 ? 0.1 * damping : 0.0;
-    if (gain < least_gain * here.half_square) break;
+    if (gain < least_distance_gain * here.half_square) break;
   }
   return spot;
 }

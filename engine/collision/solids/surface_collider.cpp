@@ -482,23 +482,6 @@ namespace {
 // Limit of the patches cut in one query for regions.
 constexpr int region_cut_capacity = 16000;
 
-int cell_count(const GridDirection& direction) {
-  return static_cast<int>(direction.parameters.size()) - 1;
-}
-
-// Maps a cell index across the seam of a periodic direction; returns -1 beyond an open end.
-int wrap_cell(const GridDirection& direction, int i) {
-  const int cells = cell_count(direction);
-  if (i >= 0 && i < cells) return i;
-  return direction.knots.is_periodic() ? (i + cells) % cells : -1;
-}
-
-int find_cell(const GridDirection& direction, double parameter) {
-  const auto& parameters = direction.parameters;
-  const auto next = std::upper_bound(parameters.begin(), parameters.end(), parameter) - parameters.begin();
-  return std::clamp(static_cast<int>(next) - 1, 0, cell_count(direction) - 1);
-}
-
 // Range of cells of a region in one direction.
 struct CellRange {
   int low, high;  // cell indices
@@ -515,7 +498,7 @@ struct CellRange {
 
 void SurfaceCollider::reserve_regions() {
   const Grid& grid = levels_.nested().grid;
-  const std::size_t cells = static_cast<std::size_t>(cell_count(grid.u) * cell_count(grid.v));
+  const std::size_t cells = static_cast<std::size_t>(grid.u.cell_count() * grid.v.cell_count());
   touched_index_.assign(cells, 0);
   touched_at_.assign(cells, 0);
   touched_.reserve(cells_.capacity());
@@ -524,12 +507,12 @@ void SurfaceCollider::reserve_regions() {
 }
 
 int SurfaceCollider::finest_index(int i, int j) const {
-  return i * cell_count(levels_.nested().grid.v) + j;
+  return i * levels_.nested().grid.v.cell_count() + j;
 }
 
 int SurfaceCollider::region_at(double u, double v) const {
   const Grid& grid = levels_.nested().grid;
-  const int index = finest_index(find_cell(grid.u, u), find_cell(grid.v, v));
+  const int index = finest_index(grid.u.find_cell(u), grid.v.find_cell(v));
   return touched_at_[index] == query_ ? touched_[touched_index_[index]].region : -1;
 }
 
@@ -574,7 +557,7 @@ void SurfaceCollider::join_neighbours(int first, int region) {
   for (; next < grouped_.size(); ++next) {
     const LevelCell cell = touched_[grouped_[next]].cell;
     for (int k = 0; k < 9; ++k) {
-      const int i = wrap_cell(grid.u, cell.i + k / 3 - 1), j = wrap_cell(grid.v, cell.j + k % 3 - 1);
+      const int i = grid.u.wrap_cell(cell.i + k / 3 - 1), j = grid.v.wrap_cell(cell.j + k % 3 - 1);
       if (i < 0 || j < 0) continue;
       const int index = finest_index(i, j);
       if (touched_at_[index] != query_) continue;

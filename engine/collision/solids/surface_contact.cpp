@@ -145,9 +145,9 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-constexpr int max_steps = 60, max_restarts = 2;
+constexpr int max_contact_steps = 60, max_restarts = 2;
 // Smallest worthwhile gain of a step, as a fraction of the solid's size.
-constexpr double least_gain = 1e-12;
+constexpr double least_depth_gain = 1e-12;
 // Half the interval of the gradient's central differences: a fraction of the solid's size, and its limit in
 // metres.
 constexpr double difference_fraction = 1e-5, longest_difference_m = 1e-5;
@@ -159,7 +159,7 @@ constexpr double same_face = 0.9995;
 constexpr double least_curvature = 1e-6;
 
 // Second order expansion of one face of the solid along the surface, around the parameters `at`.
-struct Face {
+struct ShapeFace {
   Vector2d at;
   double distance;
   Vector3 gradient;
@@ -185,9 +185,9 @@ class Descent {
   SurfaceSpot run() {
     evaluate_face(at_);
     reach_ = size_;
-    for (int step = 0, restarts = 0; step < max_steps; ++step) {
+    for (int step = 0, restarts = 0; step < max_contact_steps; ++step) {
       const Step next = find_step();
-      if (next.gain < least_gain * size_ || !try_step(next.offset)) {
+      if (next.gain < least_depth_gain * size_ || !try_step(next.offset)) {
         // Faces from far away may block the step. Without them a smooth descent continues.
         if (restarts++ == max_restarts || count_ == 1) break;
         drop_other_faces();
@@ -208,7 +208,7 @@ class Descent {
     const SurfacePoint point =
         evaluate(surface_, surface_.u.into_domain(at.x()), surface_.v.into_domain(at.y()));
     const DistanceSample sample = tool_.at(point.position_m);
-    Face face{at, sample.distance_m, sample.gradient, {}, {}};
+    ShapeFace face{at, sample.distance_m, sample.gradient, {}, {}};
     face.slope = {sample.gradient.dot(point.du), sample.gradient.dot(point.dv)};
     const Vector3 change_u = gradient_change(point.position_m, point.du),
                   change_v = gradient_change(point.position_m, point.dv);
@@ -230,7 +230,7 @@ class Descent {
     return (0.5 * length / difference_) * change;
   }
 
-  void store_face(const Face& face, const Vector3& point) {
+  void store_face(const ShapeFace& face, const Vector3& point) {
     better_ = face.distance < best_.distance_m;
     int index = count_;
     double nearest = same_face;
@@ -296,7 +296,7 @@ class Descent {
     const double here = best_.distance_m;
     const Vector2d scale = lengths_.cwiseInverse();
     for (int k = 0; k < count_; ++k) {
-      const Face& face = faces_[k];
+      const ShapeFace& face = faces_[k];
       const Vector2d slope = face.slope + face.curvature * (at_ - face.at);
       // No face may exceed the distance, the maximum of the faces wherever a minimum may be on an edge.
       planes[k] = {k == current_ ? 0.0 : std::min(face.value(at_) - here, 0.0), scale.cwiseProduct(slope)};
@@ -330,7 +330,7 @@ class Descent {
     evaluate_face(there);
     if (better_) {
       reach_ = std::max(reach_, 2.0 * length);
-      return before - best_.distance_m > least_gain * size_;
+      return before - best_.distance_m > least_depth_gain * size_;
     }
     lengths_ = lengths;
     reach_ = (new_face_ ? 0.7 : 0.3) * length;
@@ -343,7 +343,7 @@ class Descent {
   Vector2d at_;  // parameters of the best point
   Vector2d lengths_ = Vector2d::Ones();
   double size_ = 1.0, difference_ = 1e-6, reach_ = 1.0;
-  std::array<Face, max_faces> faces_;
+  std::array<ShapeFace, max_faces> faces_;
   std::array<double, max_faces> weights_{1.0};
   int count_ = 0, current_ = 0;
   bool better_ = false, new_face_ = false;

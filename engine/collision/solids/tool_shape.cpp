@@ -11,8 +11,6 @@ namespace spoonbill {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 using CornerValues = std::array<double, 4>;
 
 double least(const CornerValues& values) {

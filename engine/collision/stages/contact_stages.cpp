@@ -21,7 +21,7 @@ constexpr double least_bend_rad = 0.5 * std::numbers::pi / 180.0;
 
 using Steps = Eigen::Matrix<std::int64_t, 3, 1>;
 using Edge = std::array<int, 2>;
-using Face = std::array<int, 3>;
+using HullFace = std::array<int, 3>;
 
 std::vector<Steps> round_points(const std::vector<Vector3>& points_m) {
   Box box;
@@ -48,16 +48,16 @@ class HullBuilder {
 
   bool start();
   void add(int point);
-  std::vector<Face> faces() const;
+  std::vector<HullFace> faces() const;
   std::vector<Edge> edges() const;
 
  private:
   struct Plane {
-    Face face;
+    HullFace face;
     Steps normal;  // outward
   };
 
-  Steps face_normal(const Face& face) const {
+  Steps face_normal(const HullFace& face) const {
     const Steps& a = points_[face[0]];
     return (points_[face[1]] - a).cross(points_[face[2]] - a);
   }
@@ -66,7 +66,7 @@ class HullBuilder {
   std::int64_t volume(const Plane& plane, int point) const {
     return plane.normal.dot(points_[point] - points_[plane.face[0]]);
   }
-  void add_face(const Face& face) { planes_.push_back({face, face_normal(face)}); }
+  void add_face(const HullFace& face) { planes_.push_back({face, face_normal(face)}); }
   template <class Measure>
   int farthest(const Measure& measure) const;
 
@@ -95,7 +95,7 @@ bool HullBuilder::start() {
   const int d = farthest([&](int k) { return std::abs(volume(base, k)); });
   const std::int64_t height = volume(base, d);
   if (height == 0) return false;
-  const Face up = height < 0 ? Face{a, b, c} : Face{a, c, b};
+  const HullFace up = height < 0 ? HullFace{a, b, c} : HullFace{a, c, b};
   add_face(up);
   for (int k = 0; k < 3; ++k) add_face({up[(k + 1) % 3], up[k], d});
   return true;
@@ -114,8 +114,8 @@ void HullBuilder::add(int point) {
   }
 }
 
-std::vector<Face> HullBuilder::faces() const {
-  std::vector<Face> faces;
+std::vector<HullFace> HullBuilder::faces() const {
+  std::vector<HullFace> faces;
   for (const Plane& plane : planes_) faces.push_back(plane.face);
   return faces;
 }

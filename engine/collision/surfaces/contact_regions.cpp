@@ -13,19 +13,12 @@ namespace {
 
 constexpr std::size_t region_capacity = 64;
 
-// Maps a cell index across the seam of a periodic direction; returns -1 beyond an open end.
-int wrap_cell(const GridDirection& direction, int i) {
-  const int cells = static_cast<int>(direction.parameters.size()) - 1;
-  if (i >= 0 && i < cells) return i;
-  return direction.knots.is_periodic() ? (i + cells) % cells : -1;
-}
-
 }  // namespace
 
 ContactRegions::ContactRegions(const SurfaceLevels& first, const SurfaceLevels& second)
     : first_(&first), second_(&second) {
   const auto cells_around = [](const GridDirection& direction) {
-    const int cells = static_cast<int>(direction.parameters.size()) - 1;
+    const int cells = direction.cell_count();
     return direction.knots.is_periodic() ? cells : std::numeric_limits<int>::max();
   };
   around_u_ = cells_around(second.nested().grid.u);
@@ -64,8 +57,8 @@ void ContactRegions::join_neighbours(const std::vector<CellPair>& pairs, int pai
   const LevelCell& cell = pairs[pair].first;
   const Grid& grid = first_->nested().grid;
   const int step = first_->step(cell.level), here = cell_[pair];
-  const int next = wrap_cell(grid.u, cell.i + step);
-  const int columns[3] = {cell.j, wrap_cell(grid.v, cell.j + step), wrap_cell(grid.v, cell.j - step)};
+  const int next = grid.u.wrap_cell(cell.i + step);
+  const int columns[3] = {cell.j, grid.v.wrap_cell(cell.j + step), grid.v.wrap_cell(cell.j - step)};
   const auto offer = [&](int there) {
     if (paired_[there].at == group_) join(pairs, paired_[here], paired_[there]);
   };

@@ -13,11 +13,11 @@ namespace {
 
 using Matrix2 = Eigen::Matrix2d;
 
-constexpr int max_steps = 40;
+constexpr int max_polish_steps = 40;
 constexpr int max_tries = 12;
 constexpr double least_damping = 1e-9;
 // Smallest gain in metres of a step that is more than rounding.
-constexpr double least_gain_m = 1e-15;
+constexpr double least_polish_gain_m = 1e-15;
 // Smallest gain in metres that the quadratic model must predict.
 constexpr double least_promise_m = 1e-17;
 
@@ -129,7 +129,7 @@ SurfacePair nearest_pair(const PiecewiseSurface& first, const PiecewiseSurface& 
   SurfacePoint a, b;
   double distance = evaluate_at(problem.parameters, a, b);
   double damping = least_damping;
-  for (int steps = 0; steps < max_steps && distance > least_gain_m; ++steps) {
+  for (int steps = 0; steps < max_polish_steps && distance > least_polish_gain_m; ++steps) {
     const Vector3 difference = a.position_m - b.position_m;
     problem.least_promise = least_promise_m * distance;
     problem.gradient << difference.dot(a.du), difference.dot(a.dv), -difference.dot(b.du),
@@ -152,7 +152,7 @@ SurfacePair nearest_pair(const PiecewiseSurface& first, const PiecewiseSurface& 
       b = next_b;
       return true;
     });
-    if (!moved || !(distance < before - least_gain_m)) break;
+    if (!moved || !(distance < before - least_polish_gain_m)) break;
   }
   const Eigen::Vector4d& at = problem.parameters;
   return {{at[0], at[1], at[2], at[3]}, a.position_m, b.position_m};
@@ -164,7 +164,7 @@ NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point
   problem.parameters = {problem.knots[0]->into_domain(u), problem.knots[1]->into_domain(v)};
   SurfacePoint at = evaluate(surface, problem.parameters[0], problem.parameters[1]);
   double distance = (at.position_m - point).norm(), damping = least_damping;
-  for (int steps = 0; steps < max_steps && distance > least_gain_m; ++steps) {
+  for (int steps = 0; steps < max_polish_steps && distance > least_polish_gain_m; ++steps) {
     const Vector3 difference = at.position_m - point;
     problem.least_promise = least_promise_m * distance;
     problem.gradient << difference.dot(at.du), difference.dot(at.dv);
@@ -180,7 +180,7 @@ NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point
       at = there;
       return true;
     });
-    if (!moved || !(distance < before - least_gain_m)) break;
+    if (!moved || !(distance < before - least_polish_gain_m)) break;
   }
   return {problem.parameters[0], problem.parameters[1], at};
 }
@@ -251,7 +251,7 @@ DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& 
   problem.knots = {&first.u->knots(), &first.v->knots()};
   problem.least_promise = least_promise_m;
   double damping = least_damping;
-  for (int steps = 0; steps < max_steps && !(best.depth > enough_m); ++steps) {
+  for (int steps = 0; steps < max_polish_steps && !(best.depth > enough_m); ++steps) {
     problem.parameters = {best.at.u, best.at.v};
     problem.gradient << best.a.du.dot(best.normal), best.a.dv.dot(best.normal);
     problem.curvature = along(best.a, best.normal) + distance_curvature(best);
@@ -264,7 +264,7 @@ DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& 
       best = there;
       return true;
     });
-    if (!moved || !(best.depth > before + least_gain_m)) break;
+    if (!moved || !(best.depth > before + least_polish_gain_m)) break;
   }
   return {{best.at, best.a.position_m, best.b.position_m}, best.normal, best.depth};
 }

@@ -12,7 +12,7 @@ namespace spoonbill {
 
 namespace {
 
-constexpr int max_steps = 32;
+constexpr int max_separation_steps = 32;
 // Largest rounding error of a gap, as a fraction of the coordinates.
 constexpr double rounding = 1e-12;
 
@@ -89,7 +89,7 @@ bool hulls_are_apart(const ControlNet& first, const ControlNet& second) {
   Simplex simplex;
   Vector3 nearest(first.x[0] - second.x[0], first.y[0] - second.y[0], first.z[0] - second.z[0]);
   double before = std::numeric_limits<double>::infinity();
-  for (int step = 0; step < max_steps; ++step) {
+  for (int step = 0; step < max_separation_steps; ++step) {
     const Vector3 a = farthest(first, -nearest), b = farthest(second, nearest);
     // The first hull is beyond a plane across `nearest`, and the second in front of it.
     const double noise = rounding * nearest.norm() * (a.norm() + b.norm());
@@ -106,10 +106,6 @@ namespace {
 
 constexpr std::size_t pair_capacity = 1024;
 constexpr int max_depth = 40;
-
-Vector3 patch_centre(const PatchCorners& corners) {
-  return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
-}
 
 }  // namespace
 

@@ -9,7 +9,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr std::size_t contact_capacity = 64;
+constexpr std::size_t pair_contact_capacity = 64;
 // Tolerance of the nearest distance, as a fraction of the smaller surface's size or of the distance.
 constexpr double nearest_tolerance = 1e-4;
 // Number of candidates from which Newton's method looks for a touch before the whole region is searched.
@@ -19,8 +19,6 @@ constexpr std::size_t wall_seeds = 8;
 constexpr std::size_t centre_pairs = 64;
 // Number of directions from the centre in which seeds are placed.
 constexpr std::size_t seed_directions = 2;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Length of the control net along a unit direction, in metres.
 double length_along(const ControlNet& net, const Vector3& direction) {
@@ -43,9 +41,9 @@ SurfacePairCollider::SurfacePairCollider(const NestedGrid& first, const NestedGr
       cells_(first_, second_),
       regions_(first_, second_),
       search_(first_, second_) {
-  contacts_.reserve(contact_capacity);
-  seeds_.reserve(contact_capacity);
-  last_seeds_.reserve(contact_capacity);
+  contacts_.reserve(pair_contact_capacity);
+  seeds_.reserve(pair_contact_capacity);
+  last_seeds_.reserve(pair_contact_capacity);
 }
 
 PairResult SurfacePairCollider::collide(const Surface& first, const Surface& second, const PairQuery& query) {

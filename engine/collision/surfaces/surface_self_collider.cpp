@@ -134,22 +134,11 @@ bool PatchFolds::never_meets_itself(std::span<const LevelCell> cells) {
 
 namespace {
 
-constexpr std::size_t contact_capacity = 64;
+constexpr std::size_t self_contact_capacity = 64;
 // Largest number of pairs at any level but the coarsest; with more pairs, a coarser level is used.
-constexpr std::size_t fine_pair_capacity = 1 << 17;
+constexpr std::size_t self_pair_capacity = 1 << 17;
 // Number of candidates from which Newton's method looks for a touch before the whole region is searched.
-constexpr std::size_t region_seeds = 8;
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-int cell_count(const GridDirection& direction) {
-  return static_cast<int>(direction.parameters.size()) - 1;
-}
-
-int find_cell(const GridDirection& direction, double parameter) {
-  const std::vector<double>& all = direction.parameters;
-  const auto next = std::upper_bound(all.begin(), all.end(), parameter) - all.begin();
-  return std::clamp(static_cast<int>(next) - 1, 0, cell_count(direction) - 1);
-}
+constexpr std::size_t self_region_seeds = 8;
 
 bool are_same(const LevelCell& a, const LevelCell& b) {
   return a.i == b.i && a.j == b.j;
@@ -168,7 +157,7 @@ SurfaceSelfCollider::SurfaceSelfCollider(const NestedGrid& nested)
   // Each step of a descent leaves up to two node pairs on the stack, or fifteen cell pairs.
   nodes_.reserve(256);
   pending_.reserve(static_cast<std::size_t>(16 * (2 + nested.levels)));
-  contacts_.reserve(contact_capacity);
+  contacts_.reserve(self_contact_capacity);
 }
 
 SelfResult SurfaceSelfCollider::collide(const Surface& surface, const SelfQuery& query) {
@@ -209,7 +198,7 @@ SurfaceSelfCollider::Joints SurfaceSelfCollider::find_joints(bool in_u) {
   const Grid& grid = levels_.nested().grid;
   const GridDirection& direction = in_u ? grid.u : grid.v;
   if (direction.knots.is_periodic()) return {true, false, false};
-  const int last = cell_count(direction), count = in_u ? grid.columns() : grid.rows();
+  const int last = direction.cell_count(), count = in_u ? grid.columns() : grid.rows();
   const auto sample = [&](int across, int along) {
     return levels_.sample(in_u ? across * grid.columns() + along : along * grid.columns() + across);
   };
@@ -234,14 +223,14 @@ bool SurfaceSelfCollider::are_joined(const LevelCell& a, const LevelCell& b) con
     return (joints.low_pole && one == 0 && other == 0) ||
            (joints.high_pole && one == cells - step && other == cells - step);
   };
-  const int cells_u = cell_count(grid.u), cells_v = cell_count(grid.v);
+  const int cells_u = grid.u.cell_count(), cells_v = grid.v.cell_count();
   return (beside(a.i, b.i, cells_u, u_.seam) && beside(a.j, b.j, cells_v, v_.seam)) ||
          in_one_pole(a.i, b.i, cells_u, u_) || in_one_pole(a.j, b.j, cells_v, v_);
 }
 
 LevelCell SurfaceSelfCollider::cell_at(double u, double v) const {
   const NestedGrid& nested = levels_.nested();
-  return {find_cell(nested.grid.u, u), find_cell(nested.grid.v, v), nested.levels};
+  return {nested.grid.u.find_cell(u), nested.grid.v.find_cell(v), nested.levels};
 }
 
 bool SurfaceSelfCollider::NotJoinedJudge::counts(const PairParameters& at) const {
@@ -305,8 +294,8 @@ bool SurfaceSelfCollider::joined_can_meet(const CellPair& pair) {
   const auto& [a, b, region] = pair;
   const Grid& grid = levels_.nested().grid;
   const int step = levels_.step(a.level), in_u = std::abs(a.i - b.i), in_v = std::abs(a.j - b.j);
-  const bool beside_u = in_u <= step || cell_count(grid.u) - in_u <= step;
-  const bool beside_v = in_v <= step || cell_count(grid.v) - in_v <= step;
+  const bool beside_u = in_u <= step || grid.u.cell_count() - in_u <= step;
+  const bool beside_v = in_v <= step || grid.v.cell_count() - in_v <= step;
   // Cells that are joined only at a pole do not form a rectangle.
   if (!beside_u || !beside_v) return true;
   if (are_same(a, b)) return !folds_.never_meets_itself(std::array{a});
@@ -316,7 +305,7 @@ bool SurfaceSelfCollider::joined_can_meet(const CellPair& pair) {
 }
 
 void SurfaceSelfCollider::add_pair(const CellPair& pair, int level) {
-  overflow_ = pairs_.size() + 2 > (level == 0 ? cell_pair_capacity : fine_pair_capacity);
+  overflow_ = pairs_.size() + 2 > (level == 0 ? cell_pair_capacity : self_pair_capacity);
   if (overflow_) return;
   pairs_.push_back({pair.first, pair.second});
   pairs_.push_back({pair.second, pair.first});
@@ -346,7 +335,7 @@ bool SurfaceSelfCollider::is_mirror_of_earlier(const Region& region) const {
 // Tries a few candidates, which mostly succeeds at once, before searching all pairs.
 bool SurfaceSelfCollider::touches(const RegionCells& cells) {
   search_.forget_best();
-  const std::size_t seeds = cells.at_most(region_seeds);
+  const std::size_t seeds = cells.at_most(self_region_seeds);
   for (std::size_t k = 0; k < seeds; ++k) {
     search_.offer(cells.pair_centre(k, seeds));
     if (search_.best_distance_m() <= touch_tolerance_m) return true;

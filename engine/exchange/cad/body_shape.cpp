@@ -45,7 +45,7 @@ struct TrimmedSurface {
 };
 
 using Curve = opencascade::handle<Geom2d_BSplineCurve>;
-using Geometry = opencascade::handle<Geom_BSplineSurface>;
+using SplineGeometry = opencascade::handle<Geom_BSplineSurface>;
 using Polygon = std::vector<Eigen::Vector2d>;
 
 constexpr double vertex_distance_mm = 1e-7;
@@ -176,7 +176,7 @@ Result<Curve> to_curve(const TrimLoop& loop) {
   }
   const auto strip = to_occt({loop.knots, KnotVector::clamped_uniform(1, 2).value(), std::move(net)});
   if (!strip) return strip.error();
-  const Geometry& edge = strip.value();
+  const SplineGeometry& edge = strip.value();
   TColgp_Array1OfPnt2d poles(1, edge->NbUPoles());
   for (int i = 1; i <= edge->NbUPoles(); ++i) poles(i) = {edge->Pole(i, 1).X(), edge->Pole(i, 1).Y()};
   return Curve(new Geom2d_BSplineCurve(poles, edge->UKnots(), edge->UMultiplicities(), edge->UDegree()));
@@ -213,7 +213,7 @@ void add_vertex(const gp_Pnt& at, std::vector<TopoDS_Vertex>& vertices) {
 }
 
 // Adds to an edge the curve in space that matches its curve over (u, v).
-Status add_curve_in_space(const Curve& curve, const Geometry& geometry, const TopoDS_Edge& edge) {
+Status add_curve_in_space(const Curve& curve, const SplineGeometry& geometry, const TopoDS_Edge& edge) {
   Approx_CurveOnSurface approximation(new Geom2dAdaptor_Curve(curve), new GeomAdaptor_Surface(geometry),
                                       curve->FirstParameter(), curve->LastParameter(), curve_tolerance_mm);
   approximation.Perform(segment_limit, degree_limit, GeomAbs_C0, true);
@@ -228,7 +228,7 @@ Status add_curve_in_space(const Curve& curve, const Geometry& geometry, const To
   return {};
 }
 
-Result<TopoDS_Wire> make_wire(const TrimLoop& loop, const Geometry& geometry) {
+Result<TopoDS_Wire> make_wire(const TrimLoop& loop, const SplineGeometry& geometry) {
   const auto curve = to_curve(loop);
   if (!curve) return curve.error();
   const std::vector<double> ends = find_corners(curve.value());
@@ -267,7 +267,7 @@ struct Outline {
   TopoDS_Wire wire;
 };
 
-Result<std::vector<Outline>> make_outlines(const Geometry& geometry, const TrimmedSurface& part) {
+Result<std::vector<Outline>> make_outlines(const SplineGeometry& geometry, const TrimmedSurface& part) {
   std::vector<Outline> outlines;
   for (const TrimLoop& loop : part.trims) {
     Outline outline;
@@ -317,7 +317,7 @@ Result<std::vector<TrimmedSurface>> open_surface(const Surface& surface, const s
 
 // Makes a face for each outer loop, or one for the whole surface with its holes. `geometry` is the surface of
 // the part, open, and no loop leaves its domain.
-Result<std::vector<TopoDS_Face>> make_faces(const Geometry& geometry, const TrimmedSurface& part) {
+Result<std::vector<TopoDS_Face>> make_faces(const SplineGeometry& geometry, const TrimmedSurface& part) {
   const auto outlines = make_outlines(geometry, part);
   if (!outlines) return outlines.error();
   std::vector<TopoDS_Face> faces;

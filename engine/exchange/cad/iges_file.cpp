@@ -12,8 +12,8 @@
 namespace spoonbill {
 namespace {
 
-constexpr std::size_t section_column = 72, line_limit = 2000, parameter_limit = 26;
-constexpr std::size_t model_scale = 12, unit_flag = 13, unit_name = 14;  // counted from 0
+constexpr std::size_t section_column = 72, line_limit = 2000, iges_parameter_limit = 26;
+constexpr std::size_t model_scale = 12, unit_flag = 13, unit_parameter = 14;  // counted from 0
 
 // Returns the text of the lines that are marked as global.
 std::string global_text(const std::filesystem::path& file) {
@@ -107,7 +107,7 @@ std::vector<std::string> read_iges_global_parameters(const std::filesystem::path
   const std::string text = global_text(file);
   char separator = ',', terminator = ';';
   std::vector<std::string> parameters;
-  for (std::size_t k = 0; k < text.size() && parameters.size() < parameter_limit;) {
+  for (std::size_t k = 0; k < text.size() && parameters.size() < iges_parameter_limit;) {
     while (k < text.size() && text[k] == ' ') ++k;
     const std::size_t start = k;
     k += string_length(text, k);
@@ -129,10 +129,10 @@ bool declares_iges_unit(const std::filesystem::path& file) {
                                                           "2HKM", "3HMIL",  "2HUM", "2HCM", "3HUIN"};
   static constexpr std::string_view as_named = "3";
   std::vector<std::string> parameters = read_iges_global_parameters(file);
-  parameters.resize(std::max(parameters.size(), unit_name + 1));
+  parameters.resize(std::max(parameters.size(), unit_parameter + 1));
   const std::string& flag = parameters[unit_flag];
   if (!flag.empty() && flag != as_named) return std::find(flags.begin(), flags.end(), flag) != flags.end();
-  return std::find(names.begin(), names.end(), parameters[unit_name]) != names.end();
+  return std::find(names.begin(), names.end(), parameters[unit_parameter]) != names.end();
 }
 
 double iges_model_scale(const std::filesystem::path& file) {

@@ -101,7 +101,7 @@ TopoDS_Solid make_solid(const TopoDS_Shell& outside) {
   return solid;
 }
 
-bool contains(const TopoDS_Solid& solid, const TopoDS_Shell& shell) {
+bool encloses(const TopoDS_Solid& solid, const TopoDS_Shell& shell) {
   const TopExp_Explorer vertex(shell, TopAbs_VERTEX);
   if (!vertex.More()) return false;
   const gp_Pnt at = BRep_Tool::Pnt(TopoDS::Vertex(vertex.Current()));
@@ -153,7 +153,7 @@ Solids make_solids(const std::vector<ClosedShell>& shells) {
     TopoDS_Solid solid = make_solid(outside.shell);
     FaceCounts faces = outside.faces;
     for (const ClosedShell& cavity : shells) {
-      if (!cavity.is_cavity || !contains(whole, cavity.shell)) continue;
+      if (!cavity.is_cavity || !encloses(whole, cavity.shell)) continue;
       BRep_Builder().Add(solid, cavity.shell);
       add(cavity.faces, faces);
     }
@@ -172,7 +172,7 @@ struct AllFaces {
   FaceCounts counts;
 };
 
-Result<AllFaces> collect_faces(const std::vector<const CadSurface*>& parts) {
+Result<AllFaces> collect_all_faces(const std::vector<const CadSurface*>& parts) {
   AllFaces all;
   for (std::size_t k = 0; k < parts.size(); ++k) {
     CadSurface part = *parts[k];
@@ -196,7 +196,7 @@ bool are_complete(const FaceCounts& found, const FaceCounts& all) {
 }
 
 Result<JoinedFaces> join(const std::vector<const CadSurface*>& parts) {
-  const auto all = collect_faces(parts);
+  const auto all = collect_all_faces(parts);
   if (!all) return all.error();
   Solids best;
   for (const double tolerance_mm : tolerances_mm) {

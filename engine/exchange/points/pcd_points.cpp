@@ -14,7 +14,7 @@ namespace spoonbill {
 namespace {
 
 constexpr std::size_t header_lines_limit = 100;
-constexpr std::size_t field_limit = 64;
+constexpr std::size_t pcd_field_limit = 64;
 
 struct PcdField {
   std::string_view name;
@@ -23,7 +23,7 @@ struct PcdField {
   std::size_t offset = 0;  // position of the first number within a point, in bytes or, for text, in numbers
 };
 
-struct Header {
+struct PcdHeader {
   std::vector<PcdField> fields;
   std::uint64_t points = 0;
   std::string_view data;  // form of the body: "ascii", "binary" or "binary_compressed"
@@ -53,7 +53,7 @@ std::optional<NumberType> find_type(char letter, std::uint64_t size) {
 
 std::vector<std::string_view> split_words(std::string_view text) {
   std::vector<std::string_view> words;
-  for (std::string_view word = extract_word(text); !word.empty() && words.size() <= field_limit;
+  for (std::string_view word = extract_word(text); !word.empty() && words.size() <= pcd_field_limit;
        word = extract_word(text)) {
     words.push_back(word);
   }
@@ -66,10 +66,10 @@ struct HeaderLines {
   std::optional<std::uint64_t> width, height, points;
 };
 
-Result<Header> make_header(const HeaderLines& lines, std::string_view data, std::string_view body) {
-  Header header{{}, 0, data, body};
+Result<PcdHeader> make_header(const HeaderLines& lines, std::string_view data, std::string_view body) {
+  PcdHeader header{{}, 0, data, body};
   const std::size_t count = lines.fields.size();
-  if (count == 0 || count > field_limit) return Error{ErrorCode::missing, "its header names no FIELDS"};
+  if (count == 0 || count > pcd_field_limit) return Error{ErrorCode::missing, "its header names no FIELDS"};
   if (lines.sizes.size() != count || lines.types.size() != count ||
       (!lines.counts.empty() && lines.counts.size() != count)) {
     return Error{ErrorCode::inconsistent, "its header must have as many SIZE, TYPE and COUNT as FIELDS"};
@@ -99,7 +99,7 @@ Result<Header> make_header(const HeaderLines& lines, std::string_view data, std:
   return header;
 }
 
-Result<Header> read_header(std::string_view bytes) {
+Result<PcdHeader> read_pcd_header(std::string_view bytes) {
   HeaderLines lines;
   for (std::size_t line = 0; line < header_lines_limit && !bytes.empty(); ++line) {
     std::string_view rest = extract_line(bytes);
@@ -141,7 +141,7 @@ Error truncated_error(std::uint64_t point, std::uint64_t points) {
 
 // Collects all points. `number(point, field)` returns a coordinate, or nullopt where the file ends early.
 template <class Number>
-Result<PointCloud> collect_points(const Header& header, const Number& number) {
+Result<PointCloud> collect_points(const PcdHeader& header, const Number& number) {
   const std::array<int, 6> columns = find_coordinate_fields(header.fields);
   if (std::min({columns[0], columns[1], columns[2]}) < 0) {
     return Error{ErrorCode::missing, "its points have no x, y and z"};
@@ -162,7 +162,7 @@ Result<PointCloud> collect_points(const Header& header, const Number& number) {
   return std::move(collector).finish();
 }
 
-Result<PointCloud> read_text_body(Header header) {
+Result<PointCloud> read_text_body(PcdHeader header) {
   std::size_t numbers = 0;
   for (PcdField& field : header.fields) {
     field.offset = numbers;
@@ -195,7 +195,7 @@ Result<PointCloud> read_text_body(Header header) {
 constexpr bool swapped = std::endian::native == std::endian::big;
 
 // Reads numbers that are stored point by point.
-Result<PointCloud> read_binary_body(Header header) {
+Result<PointCloud> read_binary_body(PcdHeader header) {
   std::size_t stride = 0;
   for (PcdField& field : header.fields) {
     field.offset = stride;
@@ -213,7 +213,7 @@ Result<PointCloud> read_binary_body(Header header) {
 
 // Reads the compressed and the full size, then LZF data: all values of the first field, those of the second,
 // and so on.
-Result<PointCloud> read_compressed_body(Header header) {
+Result<PointCloud> read_compressed_body(PcdHeader header) {
   if (header.points > point_limit) {
     return collect_points(header, [](auto, auto) { return std::optional<double>(); });
   }
@@ -244,7 +244,7 @@ Result<PointCloud> read_compressed_body(Header header) {
 }  // namespace
 
 Result<PointCloud> parse_pcd_points(std::string_view bytes) {
-  auto header = read_header(bytes);
+  auto header = read_pcd_header(bytes);
   if (!header) return header.error();
   const std::string_view data = header->data;
   if (data == "ascii") return read_text_body(std::move(header).value());

@@ -27,7 +27,7 @@ struct Element {
 
 enum class Format { text, little, big };
 
-struct Header {
+struct PlyHeader {
   std::optional<Format> format;
   std::vector<Element> elements;
   std::string_view body;
@@ -79,7 +79,7 @@ Status read_property(std::string_view rest, std::string_view line, std::vector<E
   return {};
 }
 
-Status read_line(std::string_view line, Header& header) {
+Status read_line(std::string_view line, PlyHeader& header) {
   std::string_view rest = line;
   const std::string_view keyword = extract_word(rest);
   if (keyword == "format") {
@@ -98,8 +98,8 @@ Status read_line(std::string_view line, Header& header) {
   return {};
 }
 
-Result<Header> read_header(std::string_view bytes) {
-  Header header;
+Result<PlyHeader> read_ply_header(std::string_view bytes) {
+  PlyHeader header;
   std::string_view rest = bytes;
   if (extract_line(rest) != "ply") {
     return Error{ErrorCode::malformed, "does not begin with the word ply; it is not a PLY file"};
@@ -223,7 +223,7 @@ Result<PointCloud> read_vertices(NumberReader& numbers, const Element& element) 
 }  // namespace
 
 Result<PointCloud> parse_ply_points(std::string_view bytes) {
-  const auto header = read_header(bytes);
+  const auto header = read_ply_header(bytes);
   if (!header) return header.error();
   NumberReader numbers(header->body, *header->format);
   for (const Element& element : header->elements) {
@@ -234,7 +234,7 @@ Result<PointCloud> parse_ply_points(std::string_view bytes) {
 }
 
 std::uint64_t ply_face_count(std::string_view bytes) {
-  const auto header = read_header(bytes);
+  const auto header = read_ply_header(bytes);
   if (!header) return 0;
   for (const Element& element : header->elements) {
     if (element.name == "face") return element.rows;

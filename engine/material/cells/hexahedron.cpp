@@ -49,7 +49,7 @@ StrainRows strain_rows(const Vector3& g) {
   return rows;
 }
 
-Elasticity isotropic(double youngs_modulus_pa, double poissons_ratio) {
+Elasticity isotropic_elasticity(double youngs_modulus_pa, double poissons_ratio) {
   const double shear = youngs_modulus_pa / (2.0 * (1.0 + poissons_ratio));
   const double lambda = 2.0 * shear * poissons_ratio / (1.0 - 2.0 * poissons_ratio);
   Elasticity d = Elasticity::Zero();
@@ -136,7 +136,7 @@ CellMatrix hexahedron_stiffness(const CellCorners& corners, std::span<const Hexa
   const CentreJacobian at_centre{centre.inverse(), centre.determinant()};
   Sums sums;
   for (const HexahedronPart& part : parts) {
-    const Elasticity elasticity = isotropic(part.youngs_modulus_pa, part.poissons_ratio);
+    const Elasticity elasticity = isotropic_elasticity(part.youngs_modulus_pa, part.poissons_ratio);
     visit_points(part.low, part.high, [&](const Vector3& at, double weight) {
       add_point(corners, at_centre, at, weight, elasticity, sums);
     });

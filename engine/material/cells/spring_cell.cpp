@@ -62,7 +62,7 @@ Components fourth_power(const Vector3& direction) {
 }
 
 // Returns mu (delta_ij delta_kl + delta_ik delta_jl + delta_il delta_jk).
-Components isotropic(double shear_modulus_pa) {
+Components isotropic_components(double shear_modulus_pa) {
   Components result = Components::Zero();
   for (int c = 0; c < component_count; ++c) {
     const Component& p = components[c];
@@ -97,7 +97,7 @@ ComponentMatrix spring_components(const CellCorners& corners, double volume) {
 
 // Smallest stiffness of a spring relative to that of a cube. A corner whose diagonals vanish can snap
 // through the plane of its neighbours, and a cell without diagonals has zero-energy modes.
-constexpr double min_fraction = 0.1;
+constexpr double min_spring_fraction = 0.1;
 
 // Returns the stiffnesses closest to `start` that satisfy `matrix * k = target`. Those that would fall
 // below their minimum are set to it, round by round. A negligible ridge keeps the normal matrix regular
@@ -114,14 +114,14 @@ Stiffnesses nearest_admissible(const ComponentMatrix& matrix, const Components& 
     result = from + weight.cwiseProduct(matrix.transpose() * multiplier);
     bool settled = true;
     for (int s = 0; s < cell_spring_count; ++s) {
-      if (result[s] >= min_fraction * start[s] || weight[s] == 0.0) continue;
+      if (result[s] >= min_spring_fraction * start[s] || weight[s] == 0.0) continue;
       weight[s] = 0.0;
-      from[s] = min_fraction * start[s];
+      from[s] = min_spring_fraction * start[s];
       settled = false;
     }
     if (settled) break;
   }
-  return result.cwiseMax(min_fraction * start);
+  return result.cwiseMax(min_spring_fraction * start);
 }
 
 // Returns the tensor component with the given exponents.
@@ -145,7 +145,7 @@ CellSprings cell_springs(const CellCorners& corners, double shear_modulus_pa) {
   CellSprings result;
   result.volume_m3 = cell_volume(corners);
   const ComponentMatrix matrix = spring_components(corners, result.volume_m3);
-  const Components target = isotropic(shear_modulus_pa);
+  const Components target = isotropic_components(shear_modulus_pa);
   const Stiffnesses start = cube_stiffnesses(std::cbrt(result.volume_m3), shear_modulus_pa);
   const Stiffnesses found = nearest_admissible(matrix, target, start);
   Eigen::Map<Stiffnesses>(result.stiffness_n_per_m.data()) = found;

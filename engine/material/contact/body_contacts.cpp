@@ -13,7 +13,7 @@ namespace {
 
 // The surfaces follow their nodes through the refit and may move slightly more or less than the constrained
 // points. Closing at most half of a gap leaves a margin for that.
-constexpr ContactPace pace{0.5, 0.7};
+constexpr ContactPace body_pace{0.5, 0.7};
 
 Vector3 current_displacement(const BodyPoint& side) {
   Vector3 sum = Vector3::Zero();
@@ -93,7 +93,7 @@ void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& cons
       constraint.first.velocity_m_per_s(first) - constraint.second.velocity_m_per_s(second);
   const ContactPush push{constraint.base_m + constraint.normal.dot(apart), constraint.normal, relative,
                          1.0 / constraint.compliance};
-  const auto impulse = push.impulse(h, pace, cap, constraint.friction);
+  const auto impulse = push.impulse(h, body_pace, cap, constraint.friction);
   if (!impulse) return;
   constraint.first.push(first, *impulse);
   constraint.second.push(second, -*impulse);

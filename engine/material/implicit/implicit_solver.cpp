@@ -17,7 +17,7 @@ namespace {
 constexpr int step_limit = 4;
 // Velocity error below which a tick is solved: a nanometre per second.
 constexpr double accepted_error_m_per_s = 1e-9;
-constexpr double min_fraction = 0.1;
+constexpr double min_diagonal_fraction = 0.1;
 // Bounds of the spectral mass, relative to the body's mass.
 constexpr double min_mass_ratio = 1e-5, max_mass_ratio = 10.0;
 
@@ -102,7 +102,8 @@ void ImplicitGroundContacts::solve(const GroundContacts& ground, std::span<Groun
       slope -= impulse_changes_[c].dot(velocity_errors_[c]);
     }
     const double work = body.respond_to(impulses_ns);
-    const double fraction = work > 0.0 && slope > 0.0 ? std::clamp(slope / work, min_fraction, 1.0) : 1.0;
+    const double fraction =
+        work > 0.0 && slope > 0.0 ? std::clamp(slope / work, min_diagonal_fraction, 1.0) : 1.0;
     body.apply_response(fraction);
     for (std::size_t c = 0; c < contacts.size(); ++c)
       contacts[c].impulse_ns += fraction * impulse_changes_[c];

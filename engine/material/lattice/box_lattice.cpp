@@ -23,7 +23,7 @@ namespace {
 
 // Smallest ratio of the shortest side to the longest: cells of flatter boxes have no spring that keeps them
 // open.
-constexpr double min_thickness_ratio = 1e-4;
+constexpr double min_cell_thickness_ratio = 1e-4;
 constexpr int samples_a_side = 5;
 
 struct CellPosition {
@@ -84,7 +84,7 @@ Result<LatticeMesh> box_lattice(const ShellDistance& inside, double volume_m3,
   SPOONBILL_ASSERT(counts[0] >= 2 && counts[1] >= 2 && counts[2] >= 2);
   const Box& bounds = inside.bounds();
   const Vector3 size = bounds.high - bounds.low;
-  if (!(size.minCoeff() >= min_thickness_ratio * size.maxCoeff())) {
+  if (!(size.minCoeff() >= min_cell_thickness_ratio * size.maxCoeff())) {
     return Error{ErrorCode::degenerate,
                  "mesh: " + number_text(size.minCoeff() * 1e3) + " mm thick where it is " +
                      number_text(size.maxCoeff() * 1e3) +
@@ -215,7 +215,7 @@ Status check_thick(const ClosedSkin& skin, double volume_m3, double size_m) {
     area += triangle_area(at[t[0]], at[t[1]], at[t[2]]);
   }
   const double thickness = 2.0 * volume_m3 / area;
-  if (thickness >= min_thickness_ratio * size_m) return {};
+  if (thickness >= min_cell_thickness_ratio * size_m) return {};
   return Error{ErrorCode::degenerate,
                "surface: " + number_text(thickness * 1e3) + " mm thick where it is " +
                    number_text(size_m * 1e3) +

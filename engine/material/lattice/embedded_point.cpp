@@ -46,6 +46,12 @@ Vector3 EmbeddedPoint::rest_m(const SpringLattice& lattice) const {
   return sum;
 }
 
+Vector3 EmbeddedPoint::position_m(const SpringLattice& lattice) const {
+  Vector3 sum = Vector3::Zero();
+  for (int i = 0; i < count; ++i) sum += static_cast<double>(weight[i]) * lattice.position(node[i]);
+  return sum;
+}
+
 double EmbeddedPoint::compliance(const SpringLattice& lattice) const {
   double sum = 0.0;
   for (int i = 0; i < count; ++i) {

@@ -23,6 +23,8 @@ struct EmbeddedPoint {
   double weight_of_node(int node_index) const;
   // Position in the undeformed lattice, m.
   Vector3 rest_m(const SpringLattice& lattice) const;
+  // Position in the deformed lattice, m.
+  Vector3 position_m(const SpringLattice& lattice) const;
   // Velocity change of the point per impulse, 1/kg; 0 if all of its nodes are fixed.
   double compliance(const SpringLattice& lattice) const;
   // Mean friction of the nodes by weight, within the range of their values.

@@ -17,7 +17,7 @@ constexpr int draws_per_report = 4096;
 // than a ninetieth.
 constexpr double neighbourhood_reach = 3.0;
 // Halvings of a node's move before it is rejected, and number of passes over all nodes.
-constexpr int halvings = 4, passes = 3;
+constexpr int grid_halvings = 4, passes = 3;
 
 // Calls visit(node of the first corner, cell) for each cell.
 template <class Visit>
@@ -154,7 +154,7 @@ double apply_moves(const std::vector<Vector3>& targets, double worst, LatticeMes
       const Vector3 before = node, move = targets[static_cast<std::size_t>(n)] - before;
       if (move.isZero(0.0)) continue;
       double fraction = 1.0;
-      for (int halving = 0; halving <= halvings; ++halving, fraction *= 0.5) {
+      for (int halving = 0; halving <= grid_halvings; ++halving, fraction *= 0.5) {
         node = before + fraction * move;
         if (worst_around(mesh, mesh.grid_index(n)) >= worst) break;
         node = before;

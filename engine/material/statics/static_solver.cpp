@@ -19,7 +19,7 @@ constexpr double min_pivot = 1e-13;
 constexpr double min_load_step = 1e-3;
 // Newton steps for one load step.
 constexpr int steps_per_load = 40;
-constexpr int halvings = 12;
+constexpr int step_halvings = 12;
 // Accepted decrease of the energy, relative to the decrease that the slope predicts.
 constexpr double min_decrease = 1e-4;
 // Relative rounding error of an energy that is a sum over cells.
@@ -94,7 +94,7 @@ class Equilibrium {
                Coordinates& at) const {
     const double fall = unbalanced.dot(step), before = potential(at, loads);
     double fraction = 1.0;
-    for (int halving = 0; halving <= halvings; ++halving, fraction *= 0.5) {
+    for (int halving = 0; halving <= step_halvings; ++halving, fraction *= 0.5) {
       Coordinates next = at;
       system_->move(step, fraction, next);
       const double threshold = before + rounding * std::abs(before) - min_decrease * fraction * fall;

@@ -8,7 +8,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr int cell_axes = 24, cell_entries = 300;
+constexpr int corner_axes = 24, cell_entries = 300;
 
 Eigen::Index coordinate(const std::array<int, 8>& nodes, int cell_axis) {
   return 3 * static_cast<Eigen::Index>(nodes[static_cast<std::size_t>(cell_axis / 3)]) + cell_axis % 3;
@@ -55,7 +55,7 @@ void StaticSystem::build_pattern() {
   const auto visit = [&](const auto& receive) {
     for (std::size_t cell = 0; cell < body_->cell_count(); ++cell) {
       const std::array<int, 8>& nodes = body_->cell_nodes(cell);
-      for (int row = 0; row < cell_axes; ++row) {
+      for (int row = 0; row < corner_axes; ++row) {
         for (int column = 0; column <= row; ++column) {
           const Eigen::Index a = free_[static_cast<std::size_t>(coordinate(nodes, row))];
           const Eigen::Index b = free_[static_cast<std::size_t>(coordinate(nodes, column))];
@@ -115,7 +115,7 @@ StaticSystem::Forces StaticSystem::respond(const Coordinates& at, Tangent tangen
   for (std::size_t cell = 0; cell < body_->cell_count(); ++cell) {
     const CellResponse response = body_->respond(cell, cell_moves(cell, at), tangent);
     const std::array<int, 8>& nodes = body_->cell_nodes(cell);
-    for (int a = 0; a < cell_axes; ++a) forces.restoring[coordinate(nodes, a)] += response.force_n[a];
+    for (int a = 0; a < corner_axes; ++a) forces.restoring[coordinate(nodes, a)] += response.force_n[a];
     forces.size += response.force_n.squaredNorm();
     add(cell, response.tangent);
   }
@@ -125,7 +125,7 @@ StaticSystem::Forces StaticSystem::respond(const Coordinates& at, Tangent tangen
 
 void StaticSystem::add(std::size_t cell, const CellMatrix& tangent) {
   const Eigen::Index* index = value_index_.data() + cell * cell_entries;
-  for (int row = 0; row < cell_axes; ++row) {
+  for (int row = 0; row < corner_axes; ++row) {
     for (int column = 0; column <= row; ++column, ++index) {
       if (*index >= 0) stiffness_.valuePtr()[*index] += tangent(row, column);
     }
