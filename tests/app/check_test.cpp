@@ -14,7 +14,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Json check_of(const Workplace& place, const std::string& name) {
   const Outcome outcome = run({"check", place.text(name), "--json"});

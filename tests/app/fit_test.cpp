@@ -204,7 +204,7 @@ TEST_F(FitTest, MeshIsReadByTheChildAndItsErrorsAreColoured) {
 
 // A mesh of five million points has twice as many triangles.
 TEST_F(FitTest, AMeshOfFiveMillionPointsIsFitted) {
-  if (std::getenv("SPOONBILL_FULL") == nullptr) GTEST_SKIP() << "SPOONBILL_FULL asks for what takes long";
+  if (!is_long_run()) GTEST_SKIP() << only_in_long;
   const TriangleMesh ball = ball_mesh(1580, 3160, 0.02);
   ASSERT_GT(ball.triangles.size(), 9'900'000U);
   const Json json = json_of_fit(write("ball.ply", binary_ply(ball)), {"--control", "8x8"});

@@ -12,13 +12,7 @@
 namespace spoonbill {
 namespace {
 
-Document held_handle() {
-  Document document{"small handle", small_handle(), Json::object()};
-  document.scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
-  return document;
-}
-
-HandTarget at(double y_m, std::uint32_t buttons = 0) {
+HandTarget at_height(double y_m, std::uint32_t buttons = 0) {
   return {{Vector3(0.05, y_m, 0.0), Quaternion::Identity()}, buttons};
 }
 
@@ -37,7 +31,7 @@ class Side {
     journal_.emplace(notices_, scene);
     worker_.emplace(notices_);
     exchange_.emplace(first);
-    auto device = SteeredDevice::make(Hand{}, at(0.03)).value();
+    auto device = SteeredDevice::make(Hand{}, at_height(0.03)).value();
     mailbox_ = device->mailbox();
     side_.emplace(std::move(made), std::move(device), *exchange_, *journal_, *worker_);
   }
@@ -90,7 +84,7 @@ TEST(HapticSide, TicksStrokesAndLightCommandsAllocateNothing) {
   Side side;
   side.begin_recording(place.path("live.jsonl"));
   side.tick(2000);  // fills every buffer
-  side.aim(at(0.004));
+  side.aim(at_height(0.004));
   bool in_stroke = false;
   for (int i = 0; i < 300; ++i) {
     EXPECT_EQ(side.tick(1), 0U) << i;
@@ -103,7 +97,7 @@ TEST(HapticSide, TicksStrokesAndLightCommandsAllocateNothing) {
   side.ask(CancelStroke{});
   side.ask(ChangeView{camera_command(ViewChoice())});
   EXPECT_EQ(side.tick(50), 0U);
-  side.aim(at(0.03));
+  side.aim(at_height(0.03));
   EXPECT_EQ(side.tick(1500), 0U);  // includes a state hash
   side.ask(UndoStroke{});
   side.ask(RedoStroke{});
@@ -115,7 +109,7 @@ TEST(HapticSide, ATargetThatIsNotFiniteIsNotFollowed) {
   Side side;
   side.tick(20);
   const Vector3 before = side.frame().snapshot.tool.device.position_m;
-  HandTarget broken = at(0.0);
+  HandTarget broken = at_height(0.0);
   broken.pose.position_m.x() = std::nan("");
   side.aim(broken);
   side.tick(100);

@@ -16,12 +16,6 @@
 namespace spoonbill {
 namespace {
 
-Document held_handle() {
-  Document document{"small handle", small_handle(), Json::object()};
-  document.scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
-  return document;
-}
-
 HandTarget at(double x_m, double y_m) {
   return {{Vector3(x_m, y_m, 0.0), Quaternion::Identity()}, 0};
 }

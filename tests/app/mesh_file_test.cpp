@@ -361,7 +361,7 @@ TEST_F(MeshFileTest, TheReaderHasFourGibibytes) {
 
 // A ball of many triangles: five million in the full run, with the real limit.
 TEST_F(MeshFileTest, ManyTrianglesAreReadUpToTheLimit) {
-  const bool full = std::getenv("SPOONBILL_FULL") != nullptr;
+  const bool full = is_long_run();
   MeshReading reading = by_program();
   if (!full) reading.triangle_limit = 20'000;
   const int rings = full ? 1118 : 70;

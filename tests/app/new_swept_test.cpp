@@ -12,7 +12,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 void expect_simulable(const Workplace& place, const std::string& name) {
   const auto document = read_document(place.path(name));

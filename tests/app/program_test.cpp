@@ -43,6 +43,7 @@ TEST(StateHash, OfBundledRecordingsIsTheSameWithEveryInstructionSet) {
   if (sanitized) {
     GTEST_SKIP() << "a sanitizer learns nothing from them that the short recording does not tell";
   }
+  if (!is_full_run()) GTEST_SKIP() << only_in_full;
   for (const std::string& bundled : {bend_recording, press_recording}) expect_one_hash(bundled);
 }
 

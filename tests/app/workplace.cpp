@@ -51,6 +51,12 @@ Json json_of(const std::string& text) {
   return json ? std::move(json).value() : Json();
 }
 
+Document held_handle() {
+  Document document{"small handle", small_handle(), Json::object()};
+  document.scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
+  return document;
+}
+
 Workplace::Workplace() {
   const Document document{"small handle", small_handle(), Json::object()};
   write("model.json", json_to_page(document_to_json(document)));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/exchange/document.h"
 #include "engine/exchange/json.h"
 #include "tests/engine/exchange/sample_document.h"
 
@@ -25,6 +26,9 @@ Outcome run(const std::vector<std::string>& arguments);
 bool is_clean_failure(const Outcome& outcome);
 
 Json json_of(const std::string& text);
+
+// A small handle that one plane holds.
+Document held_handle();
 
 class Workplace {
  public:

@@ -16,10 +16,24 @@ constexpr int effort(int trials) {
   return sanitized ? (trials + 3) / 4 : trials;
 }
 
-// How many random cases a test tries: `full` where SPOONBILL_FULL is set in the environment.
-inline int random_cases(int quick, int full) {
-  return std::getenv("SPOONBILL_FULL") != nullptr ? full : effort(quick);
+// Whether cases of several seconds run too, as in tests/run --full.
+inline bool is_full_run() {
+  return std::getenv("SPOONBILL_FULL") != nullptr;
 }
+
+// Whether cases of minutes run too, as in tests/run --long random.
+inline bool is_long_run() {
+  return std::getenv("SPOONBILL_LONG") != nullptr;
+}
+
+// Number of random cases that a test tries.
+inline int random_cases(int quick, int many) {
+  return is_long_run() ? many : effort(quick);
+}
+
+// Reasons to skip a test.
+inline constexpr const char* only_in_full = "takes several seconds; runs with SPOONBILL_FULL alone";
+inline constexpr const char* only_in_long = "takes minutes; runs with SPOONBILL_LONG alone";
 
 // Said of tests that take a sanitizer a minute, and of which shorter ones meet the same code.
 inline constexpr const char* long_when_sanitized =

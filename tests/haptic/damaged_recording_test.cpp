@@ -30,7 +30,7 @@ std::string header_line() {
 }
 
 // Returns the error message for a recording with these lines after a valid header.
-std::string refusal(const std::string& lines) {
+std::string recording_refusal(const std::string& lines) {
   const auto recording = read_text(header_line() + lines);
   return recording.ok() ? "accepted" : recording.error().message;
 }
@@ -103,59 +103,60 @@ TEST(DamagedRecording, HasNoHeader) {
 
 TEST(DamagedRecording, NamesLineAndField) {
   const std::string still = "{\"tick\":0,\"ticks\":100}\n";
-  EXPECT_EQ(refusal(still + "{\"tick\":50,\"ticks\":1}\n"),
+  EXPECT_EQ(recording_refusal(still + "{\"tick\":50,\"ticks\":1}\n"),
             "a.jsonl: line 3: tick is 50, must be 100 after the lines before it");
-  EXPECT_EQ(refusal("{\"tick\":-1,\"ticks\":1}\n"),
+  EXPECT_EQ(recording_refusal("{\"tick\":-1,\"ticks\":1}\n"),
             "a.jsonl: line 2: tick is -1, must be a whole number from 0 to 10000000");
-  EXPECT_EQ(refusal("{\"tick\":0,\"ticks\":0}\n"), "a.jsonl: line 2: ticks is 0, must be 1 to 100");
-  EXPECT_EQ(refusal("{\"tick\":0,\"ticks\":101}\n"),
+  EXPECT_EQ(recording_refusal("{\"tick\":0,\"ticks\":0}\n"), "a.jsonl: line 2: ticks is 0, must be 1 to 100");
+  EXPECT_EQ(recording_refusal("{\"tick\":0,\"ticks\":101}\n"),
             "a.jsonl: line 2: ticks is 101, must be a whole number from 0 to 100");
-  EXPECT_EQ(refusal("{\"tick\":0}\n"), "a.jsonl: line 2: ticks is missing");
-  EXPECT_EQ(refusal("{\"tick\":0,\"ticks\":2,\"dx_nm\":[1]}\n"),
+  EXPECT_EQ(recording_refusal("{\"tick\":0}\n"), "a.jsonl: line 2: ticks is missing");
+  EXPECT_EQ(recording_refusal("{\"tick\":0,\"ticks\":2,\"dx_nm\":[1]}\n"),
             "a.jsonl: line 2: dx_nm is a list of 1, must be a list of 2");
-  EXPECT_EQ(refusal("{\"tick\":0,\"ticks\":1,\"dx_nm\":[1.5]}\n"),
+  EXPECT_EQ(recording_refusal("{\"tick\":0,\"ticks\":1,\"dx_nm\":[1.5]}\n"),
             "a.jsonl: line 2: dx_nm[0] is 1.5, must be a whole number within 20000000000 of zero");
   EXPECT_EQ(
-      refusal("{\"tick\":0,\"ticks\":1,\"dx_nm\":[18446744073709551615]}\n"),
+      recording_refusal("{\"tick\":0,\"ticks\":1,\"dx_nm\":[18446744073709551615]}\n"),
       "a.jsonl: line 2: dx_nm[0] is 18446744073709551615, must be a whole number within 20000000000 of zero");
-  EXPECT_EQ(refusal("{\"tick\":0,\"ticks\":1,\"dx_nm\":[99999999999999999999]}\n"),
+  EXPECT_EQ(recording_refusal("{\"tick\":0,\"ticks\":1,\"dx_nm\":[99999999999999999999]}\n"),
             "a.jsonl: line 2: dx_nm[0] is 1e+20, must be a whole number within 20000000000 of zero");
-  EXPECT_EQ(refusal("{\"tick\":0,\"ticks\":1,\"dz_nm\":[10000000001]}\n"),
+  EXPECT_EQ(recording_refusal("{\"tick\":0,\"ticks\":1,\"dz_nm\":[10000000001]}\n"),
             "a.jsonl: line 2: dz_nm[0] leads to 10000000001, must stay within 10000000000 of zero");
-  EXPECT_EQ(refusal("{\"tick\":0,\"ticks\":1,\"dx_nm\":[NaN]}\n"),
+  EXPECT_EQ(recording_refusal("{\"tick\":0,\"ticks\":1,\"dx_nm\":[NaN]}\n"),
             "a.jsonl: line 2: column 30: parsing value - invalid literal; last read: '\"dx_nm\":[N'");
-  EXPECT_EQ(refusal("{\"tick\":0,\"ticks\":1,\"dq_e9\":[[0],[0],[0],[-1000000000]]}\n"),
+  EXPECT_EQ(recording_refusal("{\"tick\":0,\"ticks\":1,\"dq_e9\":[[0],[0],[0],[-1000000000]]}\n"),
             "a.jsonl: line 2: dq_e9 leads to an orientation that is not a unit quaternion at reading 0");
-  EXPECT_EQ(refusal("{\"tick\":0,\"ticks\":1,\"dq_e9\":[[0],[0],[0]]}\n"),
+  EXPECT_EQ(recording_refusal("{\"tick\":0,\"ticks\":1,\"dq_e9\":[[0],[0],[0]]}\n"),
             "a.jsonl: line 2: dq_e9 is a list of 3, must be a list of 4");
-  EXPECT_EQ(refusal("{\"tick\":0,\"ticks\":1,\"buttons\":[-1]}\n"),
+  EXPECT_EQ(recording_refusal("{\"tick\":0,\"ticks\":1,\"buttons\":[-1]}\n"),
             "a.jsonl: line 2: buttons contains -1, must contain 32-bit whole numbers");
-  EXPECT_EQ(refusal("{\"tick\":0,\"ticks\":1,\"speed\":1}\n"),
+  EXPECT_EQ(recording_refusal("{\"tick\":0,\"ticks\":1,\"speed\":1}\n"),
             "a.jsonl: line 2: has an unknown field \"speed\"; known: tick, ticks, dx_nm, dy_nm, dz_nm, "
             "dq_e9, buttons");
-  EXPECT_EQ(refusal("[]\n"), "a.jsonl: line 2: is a list of 0, must be an object");
-  EXPECT_EQ(refusal("{\"tick\":0,\"command\":5}\n"),
+  EXPECT_EQ(recording_refusal("[]\n"), "a.jsonl: line 2: is a list of 0, must be an object");
+  EXPECT_EQ(recording_refusal("{\"tick\":0,\"command\":5}\n"),
             "a.jsonl: line 2: command is 5, must be a text in quotes");
-  EXPECT_EQ(refusal("{\"tick\":0,\"command\":\"set_tool\"}\n"), "a.jsonl: line 2: kind is missing");
-  EXPECT_EQ(refusal("{\"tick\":0,\"state_hash\":\"12\"}\n"),
+  EXPECT_EQ(recording_refusal("{\"tick\":0,\"command\":\"set_tool\"}\n"), "a.jsonl: line 2: kind is missing");
+  EXPECT_EQ(recording_refusal("{\"tick\":0,\"state_hash\":\"12\"}\n"),
             "a.jsonl: line 2: state_hash is \"12\", must be 16 hexadecimal digits");
-  EXPECT_EQ(refusal("{\"tick\":0,\"command\":\"look\"}\n{\"tick\":0,\"state_hash\":\"0000000000000000\"}\n"),
+  EXPECT_EQ(recording_refusal(
+                "{\"tick\":0,\"command\":\"look\"}\n{\"tick\":0,\"state_hash\":\"0000000000000000\"}\n"),
             "a.jsonl: line 3: state_hash comes after a command of its tick, must come before it");
-  EXPECT_EQ(refusal(still + "{\"end\":true,\"ticks\":99,\"state_hash\":\"0000000000000000\"}\n"),
+  EXPECT_EQ(recording_refusal(still + "{\"end\":true,\"ticks\":99,\"state_hash\":\"0000000000000000\"}\n"),
             "a.jsonl: line 3: ticks is 99, but the lines before it contain 100");
-  EXPECT_EQ(refusal("{\"end\":true,\"ticks\":0,\"state_hash\":\"0000000000000000\"}\n" + still),
+  EXPECT_EQ(recording_refusal("{\"end\":true,\"ticks\":0,\"state_hash\":\"0000000000000000\"}\n" + still),
             "a.jsonl: line 3: is after the end of the recording, remove it");
 }
 
 TEST(DamagedRecording, HasAbsurdSizes) {
-  EXPECT_EQ(refusal(std::string(34'000'000, ' ') + "\n"), "a.jsonl: line 2 is longer than 32 MiB");
-  EXPECT_NE(refusal(std::string(60'000, '[') + "\n").find("line 2: column 65: nested deeper"),
+  EXPECT_EQ(recording_refusal(std::string(34'000'000, ' ') + "\n"), "a.jsonl: line 2 is longer than 32 MiB");
+  EXPECT_NE(recording_refusal(std::string(60'000, '[') + "\n").find("line 2: column 65: nested deeper"),
             std::string::npos);
   std::string lines;
   for (std::uint64_t tick = 0; tick <= recording_tick_limit; tick += 100) {
     lines += "{\"tick\":" + std::to_string(tick) + ",\"ticks\":100}\n";
   }
-  EXPECT_EQ(refusal(lines), "a.jsonl: line 100002: ticks exceed the limit of 10000000 ticks");
+  EXPECT_EQ(recording_refusal(lines), "a.jsonl: line 100002: ticks exceed the limit of 10000000 ticks");
 }
 
 TEST(DamagedRecording, IsNoFile) {

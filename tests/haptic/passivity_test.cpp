@@ -21,7 +21,7 @@ namespace {
 // force and for the 2,000 ticks of a press (3.3 N * 0.5 nm * 2000), all to one side.
 constexpr double rounding_j = 3.3e-6;
 
-struct Press {
+struct WallPress {
   Hand hand;
   double depth_m = 0.0;       // that the target goes below the wall's surface
   double frequency_hz = 0.0;  // in and out again
@@ -36,8 +36,8 @@ double scaled(std::mt19937_64& random, double low, double high) {
 }
 
 // Of the ranges of virtual_device.h, within what is stable there; the damping between none and critical.
-Press random_press(std::mt19937_64& random) {
-  Press press;
+WallPress random_press(std::mt19937_64& random) {
+  WallPress press;
   Hand& hand = press.hand;
   hand.mass_kg = scaled(random, hand_mass_range_kg.low, hand_mass_range_kg.high);
   const double stiffest = std::min(hand_stiffness_range_n_per_m.high, hand.mass_kg / (tick_s * tick_s));
@@ -58,7 +58,7 @@ struct Energy {
 // Moves a hand above the wall, whose surface is at `surface_m`, into it and out again; `wall` gives the force
 // for a reading.
 template <class Wall>
-Energy press_wall(const Press& press, const Vector3& surface_m, Wall wall) {
+Energy press_wall(const WallPress& press, const Vector3& surface_m, Wall wall) {
   constexpr double clearance_m = 0.005;
   constexpr int ticks = 2000;
   HandTarget target;
@@ -88,7 +88,7 @@ TEST(Passivity, ARigidWallOfTheHighestStiffnessGivesBackNoMoreThanItTook) {
   const DeviceSpecification specification = VirtualDevice::default_specification();
   double taken_j = 0.0;
   for (int run = 0; run < 200; ++run) {
-    const Press press = random_press(random);
+    const WallPress press = random_press(random);
     CouplingState coupling;
     const Energy energy = press_wall(press, Vector3::Zero(), [&](const DeviceReading& reading) {
       const Vector3 position_m = reading.pose().position_m;
@@ -118,7 +118,7 @@ void expect_simulation_passive(double x_m, int runs, unsigned seed) {
   const DeviceSpecification specification = VirtualDevice::default_specification();
   const Vector3 surface_m(x_m, 0.0025 + 0.006, 0.0);
   for (int run = 0; run < runs; ++run) {
-    const Press press = random_press(random);
+    const WallPress press = random_press(random);
     Simulation simulation = Simulation::make(scene_to_press(), best_instruction_set()).value();
     CouplingState coupling;
     const Energy energy = press_wall(press, surface_m, [&](const DeviceReading& reading) {

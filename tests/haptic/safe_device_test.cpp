@@ -18,7 +18,7 @@ class Stub : public Device {
   Vector3 given_n = Vector3::Constant(1e9);
 };
 
-DeviceReading at_x(double x_m, std::uint32_t buttons = 0) {
+DeviceReading reading_at_x(double x_m, std::uint32_t buttons = 0) {
   return DeviceReading::from({Vector3(x_m, 0, 0), Quaternion::Identity()}, buttons);
 }
 
@@ -53,26 +53,26 @@ TEST(SafeDevice, GivesTheForceAndNeverMoreThanTheDeviceMay) {
 }
 
 TEST(SafeDevice, StandsInForADeviceThatDoesNotAnswerWithAHandThatTouchesNothing) {
-  DeviceReading far = at_x(0.01), shapeless = at_x(0.01);
+  DeviceReading far = reading_at_x(0.01), shapeless = reading_at_x(0.01);
   far.position_nm[2] = reading_limit_nm + 1;
   shapeless.orientation_e9[3] = 0;
   for (const std::optional<DeviceReading>& answer :
        {std::optional<DeviceReading>(), std::optional(far), std::optional(shapeless)}) {
     Stub stub;
     SafeDevice safe(stub);
-    stub.reading = at_x(0.02, button_main);
+    stub.reading = reading_at_x(0.02, button_main);
     engage(safe);
     ASSERT_NE(stub.given_n, Vector3::Zero());
     EXPECT_FALSE(safe.consume_proxy_reset());
     stub.reading = answer;
-    EXPECT_EQ(safe.read(), at_x(0.02, button_hover));
+    EXPECT_EQ(safe.read(), reading_at_x(0.02, button_hover));
     EXPECT_EQ(safe.give(Vector3(1, 0, 0), 0), Vector3::Zero());
     EXPECT_EQ(stub.given_n, Vector3::Zero());
     EXPECT_EQ(safe.flags(), safety_flag_no_device | safety_flag_cut);
     EXPECT_FALSE(safe.consume_proxy_reset());
 
-    stub.reading = at_x(0.03, button_main);
-    EXPECT_EQ(safe.read(), at_x(0.03, button_main));
+    stub.reading = reading_at_x(0.03, button_main);
+    EXPECT_EQ(safe.read(), reading_at_x(0.03, button_main));
     EXPECT_TRUE(safe.consume_proxy_reset());
     EXPECT_FALSE(safe.consume_proxy_reset());
     run(safe, 1.0, 100);
@@ -86,8 +86,8 @@ TEST(SafeDevice, StandsInForADeviceThatDoesNotAnswerWithAHandThatTouchesNothing)
 TEST(SafeDevice, StandsInWithWhatItWasGivenUntilTheDeviceAnswers) {
   Stub stub;
   stub.reading.reset();
-  SafeDevice safe(stub, at_x(0.05));
-  EXPECT_EQ(safe.read(), at_x(0.05, button_hover));
+  SafeDevice safe(stub, reading_at_x(0.05));
+  EXPECT_EQ(safe.read(), reading_at_x(0.05, button_hover));
   safe.give(Vector3(1, 0, 0), 0);
   EXPECT_EQ(stub.given_n, Vector3::Zero());
 }
@@ -107,7 +107,7 @@ TEST(SafeDevice, AsksForTheProxyToBeResetAfterAStall) {
 
 TEST(SafeDevice, TheWorkspaceIsWhereTheHandBeginsOrWhereItIsPut) {
   Stub stub;
-  stub.reading = at_x(5.0);
+  stub.reading = reading_at_x(5.0);
   SafeDevice safe(stub);
   engage(safe);
   EXPECT_EQ(stub.given_n, Vector3(1, 0, 0));

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "engine/simulation/simulation.h"
 #include "haptic/safe_device.h"
@@ -12,6 +11,7 @@
 #include "haptic/virtual_device.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/simulation/handle.h"
+#include "tests/haptic/random_values.h"
 
 namespace spoonbill {
 namespace {
@@ -19,24 +19,7 @@ namespace {
 constexpr std::uint32_t all_faults = safety_flag_not_finite | safety_flag_stale | safety_flag_stalled |
                                      safety_flag_buzzing | safety_flag_dead_man;
 
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-
-  double between(double low, double high) {
-    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-  }
-  // Evenly over the orders of magnitude.
-  double scaled(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
-  bool once_in(std::uint64_t count) { return engine_() % count == 0; }
-  std::uint64_t bits() { return engine_(); }
-  Vector3 direction() { return Vector3(between(-1, 1), between(-1, 1), between(-1, 1)).normalized(); }
-
- private:
-  std::mt19937_64 engine_;
-};
-
-DeviceSpecification random_specification(Random& random) {
+DeviceSpecification random_specification(RandomValues& random) {
   DeviceSpecification specification;
   specification.maximum_force_n = random.once_in(10) ? 0.0 : random.scaled(0.5, 30.0);
   specification.workspace_radius_m = random.scaled(0.05, 1.0);
@@ -51,7 +34,7 @@ DeviceSpecification random_specification(Random& random) {
 // A hand and a force that wander, jump, rest, buzz and break.
 class RandomInput {
  public:
-  explicit RandomInput(Random& random) : random_(random) {}
+  explicit RandomInput(RandomValues& random) : random_(random) {}
 
   SafetyInput next() {
     if (random_.once_in(300)) manner_ = random_.bits() % 5;
@@ -97,7 +80,7 @@ class RandomInput {
     input.stale = random_.once_in(10'000);
   }
 
-  Random& random_;
+  RandomValues& random_;
   std::uint64_t manner_ = 0;
   Vector3 position_ = Vector3::Zero();
   Vector3 velocity_ = Vector3::Zero();
@@ -110,7 +93,7 @@ bool is_fault(const DeviceSpecification& specification, const SafetyInput& input
   return input.dropped_ticks >= 25 || (specification.dead_man_buttons & ~input.buttons) != 0;
 }
 
-struct Watched {
+struct WatchedForces {
   std::uint64_t beyond_limit = 0, jumps = 0, not_cut = 0, cut_without_reason = 0, missed_resets = 0;
   std::uint64_t faults = 0, buzzes = 0, with_force = 0, limited = 0;
   Vector3 last_n = Vector3::Zero();
@@ -150,8 +133,8 @@ struct Watched {
 TEST(SafetyAtRandom, LimitsHoldWhateverHappens) {
   const auto ticks = static_cast<std::uint64_t>(random_cases(300'000, 10'000'000));
   constexpr std::uint64_t ticks_a_device = 20'000;
-  Random random(11);
-  Watched all;
+  RandomValues random(11);
+  WatchedForces all;
   for (std::uint64_t done = 0; done < ticks; done += ticks_a_device) {
     const DeviceSpecification specification = random_specification(random);
     ASSERT_TRUE(check_specification(specification).ok());
@@ -171,7 +154,7 @@ TEST(SafetyAtRandom, LimitsHoldWhateverHappens) {
   EXPECT_GT(all.limited, ticks / 1000);
 }
 
-Scene random_scene(Random& random) {
+Scene random_safety_scene(RandomValues& random) {
   Scene scene = small_handle();
   Material& material = scene.bodies[0].material;
   material.youngs_modulus_pa = random.scaled(1e4, 1e9);
@@ -189,8 +172,8 @@ Scene random_scene(Random& random) {
 }
 
 // The hand wanders over and into the handle; the thread is late now and then, and the simulation stale.
-Watched sculpt(Random& random, int ticks) {
-  auto made = Simulation::make(random_scene(random), best_instruction_set());
+WatchedForces sculpt(RandomValues& random, int ticks) {
+  auto made = Simulation::make(random_safety_scene(random), best_instruction_set());
   EXPECT_TRUE(made.ok()) << made.error().message;
   Simulation simulation = std::move(made).value();
   const double mass = random.scaled(0.02, 1.0), stiffness = random.between(50.0, 1000.0);
@@ -200,7 +183,7 @@ Watched sculpt(Random& random, int ticks) {
       VirtualDevice::make({mass, stiffness, 2.0 * std::sqrt(mass * stiffness)}, target).value();
   CouplingState coupling;
   SafetyState safety;
-  Watched watched;
+  WatchedForces watched;
   Vector3 from = target.pose.position_m, to = from;
   constexpr int stroke = 100;
   for (int k = 0; k < ticks; ++k) {
@@ -225,10 +208,10 @@ Watched sculpt(Random& random, int ticks) {
 
 TEST(SafetyAtRandom, LimitsHoldWhileSculpting) {
   const int scenes = random_cases(6, 60);
-  Random random(12);
+  RandomValues random(12);
   std::uint64_t with_force = 0;
   for (int scene = 0; scene < scenes; ++scene) {
-    const Watched watched = sculpt(random, 1500);
+    const WatchedForces watched = sculpt(random, 1500);
     watched.expect_safe();
     with_force += watched.with_force;
   }

@@ -10,7 +10,7 @@
 namespace spoonbill {
 namespace {
 
-MeshSnapshot snapshot_of(const TriangleMesh& triangles) {
+MeshSnapshot mesh_snapshot_of(const TriangleMesh& triangles) {
   MeshSnapshot mesh;
   mesh.triangles = std::make_shared<const std::vector<TriangleCorners>>(triangles.triangles);
   for (const Vector3& vertex : triangles.vertices_m) {
@@ -36,7 +36,7 @@ std::vector<Drawn> drawn(const TessellatedSurface& surface) {
 
 TEST(MeshShading, KeepsTheEdgesOfABox) {
   TessellatedSurface surface;
-  surface.update(snapshot_of(box_of_triangles({-1, -2, -3}, {1, 2, 3})));
+  surface.update(mesh_snapshot_of(box_of_triangles({-1, -2, -3}, {1, 2, 3})));
   EXPECT_TRUE(surface.is_mesh());
   EXPECT_TRUE(surface.is_closed());
   EXPECT_EQ(surface.indices().size(), 36u);
@@ -49,7 +49,7 @@ TEST(MeshShading, KeepsTheEdgesOfABox) {
 
 TEST(MeshShading, IsSmoothOnABallAndFollowsItsShape) {
   const TriangleMesh ball = ball_mesh(16, 24, 1.0);
-  MeshSnapshot mesh = snapshot_of(ball);
+  MeshSnapshot mesh = mesh_snapshot_of(ball);
   TessellatedSurface surface;
   surface.update(mesh);
   ASSERT_EQ(surface.vertex_count(), ball.vertices_m.size());

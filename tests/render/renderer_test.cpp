@@ -24,8 +24,6 @@
 namespace spoonbill {
 namespace {
 
-constexpr int width_px = 640, height_px = 360;
-
 // Two renderings of the same view agree within this in every block; see worst_block_difference().
 constexpr double tolerance = 2.0;
 
@@ -34,7 +32,7 @@ constexpr const char* font_path = "/usr/share/fonts/truetype/roboto/unhinted/Rob
 class Rendering : public ::testing::Test {
  protected:
   void SetUp() override {
-    auto context = OsmesaContext::make(width_px, height_px);
+    auto context = OsmesaContext::make(sample_width_px, sample_height_px);
     ASSERT_TRUE(context) << context.error().message;
     context_ = std::move(context).value();
     auto renderer = Renderer::make(*context_);
@@ -43,8 +41,8 @@ class Rendering : public ::testing::Test {
     snapshot_ = sample_scene({.bend_rad = 0.4});
     const Box box = drawn_bounds(snapshot_);
     settings_.ground_y_m = ground_below(box);
-    settings_.camera =
-        frame(look_from({}, StandardView::perspective), box, make_viewport(width_px, height_px, {}));
+    settings_.camera = frame(look_from({}, StandardView::perspective), box,
+                             make_viewport(sample_width_px, sample_height_px, {}));
   }
 
   Image picture() { return picture(snapshot_, settings_); }
@@ -72,11 +70,11 @@ class Rendering : public ::testing::Test {
 
 TEST_F(Rendering, ShowsALitBodyOverTheBackground) {
   const Image image = picture();
-  EXPECT_EQ(image.width, width_px);
-  EXPECT_EQ(image.height, height_px);
+  EXPECT_EQ(image.width, sample_width_px);
+  EXPECT_EQ(image.height, sample_height_px);
   std::set<int> shades;
-  for (int y = 0; y < height_px; ++y) {
-    for (int x = 0; x < width_px; ++x) {
+  for (int y = 0; y < sample_height_px; ++y) {
+    for (int x = 0; x < sample_width_px; ++x) {
       const std::uint8_t* p = image.pixel(x, y);
       EXPECT_EQ(p[3], 255);
       if (p[0] > p[2] + 25) shades.insert(p[0]);
@@ -90,14 +88,15 @@ TEST_F(Rendering, TheTopRowComesFirst) {
   settings_.overlays = {};
   settings_.overlays.tool = settings_.overlays.ground_grid = settings_.overlays.scale_bar = false;
   const Image image = picture(nothing, settings_);
-  EXPECT_LT(image.pixel(10, 2)[0] + 20, image.pixel(10, height_px - 3)[0]) << "the floor is the brighter end";
+  EXPECT_LT(image.pixel(10, 2)[0] + 20, image.pixel(10, sample_height_px - 3)[0])
+      << "the floor is the brighter end";
 }
 
 TEST_F(Rendering, TheSameSnapshotGivesTheSamePixels) {
   const Image first = picture();
   EXPECT_EQ(first, picture());
 
-  auto context = OsmesaContext::make(width_px, height_px);
+  auto context = OsmesaContext::make(sample_width_px, sample_height_px);
   ASSERT_TRUE(context);
   auto other = Renderer::make(*context.value());
   ASSERT_TRUE(other);
@@ -140,7 +139,7 @@ TEST_F(Rendering, EveryOverlayShows) {
 
 // A bar on ground that the body hides is drawn all the same.
 TEST_F(Rendering, TheScaleBarShowsBeforeABody) {
-  const Viewport viewport = make_viewport(width_px, height_px, {});
+  const Viewport viewport = make_viewport(sample_width_px, sample_height_px, {});
   settings_.overlays = Overlays{};
   settings_.overlays.scale_bar = false;
   const auto covered_bar = [&]() -> std::optional<Eigen::Vector2d> {
@@ -200,7 +199,7 @@ TEST_F(Rendering, AStageOutsideTheBodyIsDrawnWhole) {
   const Image shell = picture();
   settings_.stages = nullptr;
   const Image without = picture();
-  const auto centre = project(settings_.camera, make_viewport(width_px, height_px, {}), far);
+  const auto centre = project(settings_.camera, make_viewport(sample_width_px, sample_height_px, {}), far);
   ASSERT_TRUE(centre);
   const int x = static_cast<int>(centre->x()), y = static_cast<int>(centre->y());
   int redder = 0;
@@ -248,7 +247,7 @@ TEST_F(Rendering, FourSamplesSmoothTheEdges) {
     int steps = 0;
     for (int x = 250; x < 300; ++x) {
       int largest = 0;
-      for (int y = 1; y < height_px; ++y) {
+      for (int y = 1; y < sample_height_px; ++y) {
         largest = std::max(largest, std::abs(image.pixel(x, y)[2] - image.pixel(x, y - 1)[2]));
       }
       steps += largest;
@@ -279,7 +278,7 @@ TEST_F(Rendering, TheInterfaceDrawsText) {
   ImGuiContext* interface = ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
-  io.DisplaySize = {width_px, height_px};
+  io.DisplaySize = {sample_width_px, sample_height_px};
   const auto fonts = add_interface_fonts(*io.Fonts, font_path, 15.0f, 19.0f);
   ASSERT_TRUE(fonts);
   renderer_->upload_fonts(*io.Fonts);

@@ -16,6 +16,8 @@ struct SampleSceneOptions {
   int along = 60, across = 8, through = 4;  // lattice nodes
 };
 
+inline constexpr int sample_width_px = 640, sample_height_px = 360;
+
 // 100 x 12 x 5 mm, its lower side at y = 0, its axis along x, the first third fixed.
 Snapshot sample_scene(const SampleSceneOptions& options = {});
 

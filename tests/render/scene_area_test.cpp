@@ -10,14 +10,14 @@ namespace {
 
 constexpr int width = 1280, height = 720;
 
-ViewSettings framed(const Snapshot& snapshot) {
+ViewSettings framed_scene(const Snapshot& snapshot) {
   ViewSettings settings;
   settings.camera = frame(look_from({}, StandardView::perspective), drawn_bounds(snapshot),
                           make_viewport(width, height, settings.panel_px));
   return settings;
 }
 
-std::vector<TessellatedSurface> tessellated(const Snapshot& snapshot) {
+std::vector<TessellatedSurface> tessellated_bodies(const Snapshot& snapshot) {
   std::vector<TessellatedSurface> surfaces(1);
   const SurfaceSnapshot& surface = snapshot.bodies[0].surface;
   EXPECT_TRUE(surfaces[0].update(surface, choose_sampling_level(surface, 6000.0, {})).ok());
@@ -25,7 +25,8 @@ std::vector<TessellatedSurface> tessellated(const Snapshot& snapshot) {
 }
 
 std::vector<PixelArea> areas_of(const Snapshot& snapshot, const ViewSettings& settings) {
-  return scene_area(snapshot, settings, make_frame_view(settings, width, height), tessellated(snapshot));
+  return scene_area(snapshot, settings, make_frame_view(settings, width, height),
+                    tessellated_bodies(snapshot));
 }
 
 bool holds(const std::vector<PixelArea>& areas, double x, double y) {
@@ -42,10 +43,10 @@ int pixels(const std::vector<PixelArea>& areas) {
 
 TEST(SceneArea, HoldsEveryCornerOfTheBodyWithRoomForMarks) {
   const Snapshot snapshot = sample_scene({.bend_rad = 0.8});
-  const ViewSettings settings = framed(snapshot);
+  const ViewSettings settings = framed_scene(snapshot);
   const auto areas = areas_of(snapshot, settings);
   const Viewport viewport = make_viewport(width, height, settings.panel_px);
-  const auto surfaces = tessellated(snapshot);
+  const auto surfaces = tessellated_bodies(snapshot);
   const GridSamples<float>& at = surfaces[0].samples();
   for (std::size_t i = 0; i < at.x.size(); ++i) {
     const auto pixel = project(settings.camera, viewport, {at.x[i], at.y[i], at.z[i]});
@@ -60,7 +61,7 @@ TEST(SceneArea, HoldsEveryCornerOfTheBodyWithRoomForMarks) {
 
 TEST(SceneArea, LeavesOutWhatABentBodyLeavesFree) {
   const Snapshot snapshot = sample_scene({.bend_rad = 0.8});
-  const auto areas = areas_of(snapshot, framed(snapshot));
+  const auto areas = areas_of(snapshot, framed_scene(snapshot));
   int left = width, right = 0, bottom = height, top = 0;
   for (const PixelArea& area : areas) {
     EXPECT_FALSE(area.empty());
@@ -78,7 +79,7 @@ TEST(SceneArea, LeavesOutWhatABentBodyLeavesFree) {
 
 TEST(SceneArea, HoldsTheStageThatIsShown) {
   const Snapshot snapshot = sample_scene();
-  ViewSettings settings = framed(snapshot);
+  ViewSettings settings = framed_scene(snapshot);
   settings.overlays.tool = settings.overlays.force = false;
   auto stages = std::make_shared<ContactStages>();
   const Vector3 high = snapshot.tool.proxy.position_m + Vector3(0.0, 0.02, 0.0);
@@ -97,7 +98,7 @@ TEST(SceneArea, HoldsTheStageThatIsShown) {
 
 TEST(SceneArea, IsTheWholePictureWhereTheBodyReachesBehindTheEye) {
   const Snapshot snapshot = sample_scene();
-  ViewSettings settings = framed(snapshot);
+  ViewSettings settings = framed_scene(snapshot);
   settings.camera.distance_m = 0.02;
   EXPECT_EQ(pixels(areas_of(snapshot, settings)), width * height);
 }

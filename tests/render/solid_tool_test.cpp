@@ -20,7 +20,6 @@
 namespace spoonbill {
 namespace {
 
-constexpr int width_px = 640, height_px = 360;
 const Vector3 half_m(0.004, 0.003, 0.010);
 
 Snapshot scene_with(ToolSolid solid, const Pose& pose = {}) {
@@ -64,8 +63,8 @@ struct Changed {
 
 Changed difference(const Image& without, const Image& with) {
   Changed changed;
-  for (int y = 0; y < height_px; ++y) {
-    for (int x = 0; x < width_px; ++x) {
+  for (int y = 0; y < sample_height_px; ++y) {
+    for (int x = 0; x < sample_width_px; ++x) {
       const std::uint8_t *a = without.pixel(x, y), *b = with.pixel(x, y);
       const int most = std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
       if (most <= 2) continue;
@@ -81,7 +80,7 @@ Changed difference(const Image& without, const Image& with) {
 class SolidToolPicture : public ::testing::Test {
  protected:
   void SetUp() override {
-    auto context = OsmesaContext::make(width_px, height_px);
+    auto context = OsmesaContext::make(sample_width_px, sample_height_px);
     ASSERT_TRUE(context) << context.error().message;
     context_ = std::move(context).value();
     auto renderer = Renderer::make(*context_);
@@ -109,9 +108,9 @@ class SolidToolPicture : public ::testing::Test {
 };
 
 // Where the corners of a box at a frame appear.
-Changed projected(const Box& box, const ToolFrame& frame) {
+Changed projected_tool(const Box& box, const ToolFrame& frame) {
   const ViewSettings settings = plain_view();
-  const Viewport viewport = make_viewport(width_px, height_px, settings.panel_px);
+  const Viewport viewport = make_viewport(sample_width_px, sample_height_px, settings.panel_px);
   Changed bounds;
   for (int i = 0; i < 8; ++i) {
     const auto pixel = project(settings.camera, viewport, frame.origin_m + frame.axes * box.corner(i));
@@ -131,7 +130,7 @@ TEST_F(SolidToolPicture, ABoxFillsItsProjectionAndIsBlue) {
   for (const Pose& pose : {upright, oblique}) {
     const Snapshot snapshot = scene_with(ImplicitShape(BoxShape{half_m}), pose);
     const Changed seen = tool_pixels(snapshot);
-    expect_same_bounds(seen, projected({-half_m, half_m}, tool_frame(snapshot)));
+    expect_same_bounds(seen, projected_tool({-half_m, half_m}, tool_frame(snapshot)));
     EXPECT_GT(seen.count, 300);
     EXPECT_GT(seen.bluer, 0.98 * seen.count);
   }
@@ -215,14 +214,14 @@ TEST_F(SolidToolPicture, ASoftMeshIsDrawnWhereItsVerticesAre) {
   Snapshot nothing = snapshot;
   nothing.bodies.clear();
   const Changed seen = difference(picture(nothing, settings), picture(snapshot, settings));
-  expect_same_bounds(seen, projected(box, frame));
+  expect_same_bounds(seen, projected_tool(box, frame));
   EXPECT_GT(seen.count, 300);
   // As it moves, so does its picture.
   for (float& y : snapshot.bodies[0].mesh.y) y += 0.01F;
   ToolFrame higher = frame;
   higher.origin_m.y() += 0.01;
   expect_same_bounds(difference(picture(nothing, settings), picture(snapshot, settings)),
-                     projected(box, higher));
+                     projected_tool(box, higher));
 }
 
 TEST_F(SolidToolPicture, ASoftToolShowsNothingBesideItsBody) {
@@ -241,12 +240,13 @@ TEST_F(SolidToolPicture, FollowsAnotherBody) {
 TEST(SolidTool, SamplesAreTakenAllOverIt) {
   const Snapshot snapshot = scene_with(ImplicitShape(BoxShape{{0.002, 0.002, 0.060}}), oblique);
   const ViewSettings settings = plain_view();
-  const auto areas = scene_area(snapshot, settings, make_frame_view(settings, width_px, height_px), {});
-  const Viewport viewport = make_viewport(width_px, height_px, settings.panel_px);
+  const auto areas =
+      scene_area(snapshot, settings, make_frame_view(settings, sample_width_px, sample_height_px), {});
+  const Viewport viewport = make_viewport(sample_width_px, sample_height_px, settings.panel_px);
   const ToolFrame frame = tool_frame(snapshot);
   for (const double z : {-0.060, 0.060}) {
     const auto pixel = project(settings.camera, viewport, frame.origin_m + frame.axes.col(2) * z);
-    const double x = pixel->x(), y = height_px - pixel->y();
+    const double x = pixel->x(), y = sample_height_px - pixel->y();
     EXPECT_TRUE(std::any_of(areas.begin(), areas.end(), [&](const PixelArea& a) {
       return x >= a.x && x <= a.x + a.width && y >= a.y && y <= a.y + a.height;
     })) << z;

@@ -11,14 +11,10 @@
 #include "engine/bspline/surface.h"
 #include "render/tessellation/tessellated_surface.h"
 #include "tests/render/sample_scene.h"
+#include "tests/render/tessellated.h"
 
 namespace spoonbill {
 namespace {
-
-Vector3 vertex(const TessellatedSurface& surface, std::uint32_t i) {
-  const auto& s = surface.samples();
-  return {s.x[i], s.y[i], s.z[i]};
-}
 
 // Vertices within a tenth of a micrometre count as one, as they do for the eye: a pole is a row of them.
 std::vector<std::uint32_t> merged_by_place(const TessellatedSurface& surface) {
@@ -43,13 +39,6 @@ std::map<std::pair<std::uint32_t, std::uint32_t>, int> directed_edges(const Tess
     for (int i = 0; i < 3; ++i) ++edges[{corner[i], corner[(i + 1) % 3]}];
   }
   return edges;
-}
-
-TessellatedSurface tessellated(const SurfaceSnapshot& surface, double pixels_per_metre) {
-  TessellatedSurface result;
-  const Status status = result.update(surface, choose_sampling_level(surface, pixels_per_metre, {}));
-  EXPECT_TRUE(status.ok()) << status.error().message;
-  return result;
 }
 
 TEST(Tessellation, ATubeWithPolesIsWatertight) {

@@ -94,7 +94,7 @@ Vector3 corner(const ToolMesh& mesh, std::size_t index) {
 
 // Vertices in one place count as one: those along an edge of the solid are doubled, a pole is a row of them.
 // Single precision tells places in these solids apart to a hundredth of a micrometre.
-std::map<std::pair<int, int>, int> directed_edges(const ToolMesh& mesh) {
+std::map<std::pair<int, int>, int> directed_tool_edges(const ToolMesh& mesh) {
   std::map<std::tuple<long, long, long>, int> places;
   const auto place_of = [&](std::size_t index) {
     const Vector3 at = corner(mesh, index) / 1e-8;
@@ -122,7 +122,7 @@ double volume_m3(const ToolMesh& mesh) {
 
 TEST(ToolMesh, IsClosed) {
   for (const NamedSolid& each : all_solids()) {
-    const auto edges = directed_edges(mesh_of(each.solid));
+    const auto edges = directed_tool_edges(mesh_of(each.solid));
     ASSERT_FALSE(edges.empty()) << each.name;
     for (const auto& [edge, count] : edges) {
       const auto other_way = edges.find({edge.second, edge.first});

@@ -13,6 +13,7 @@
 #include "render/tessellation/tessellated_surface.h"
 #include "tests/engine/trims/loops.h"
 #include "tests/render/sample_scene.h"
+#include "tests/render/tessellated.h"
 
 namespace spoonbill {
 namespace {
@@ -29,17 +30,6 @@ std::shared_ptr<const TrimmedArea> hole_in(const SurfaceSnapshot& surface, doubl
   }
   const TrimLoop loop = make_polygon_loop(surface.u, surface.v, points).value();
   return std::make_shared<const TrimmedArea>(TrimmedArea::make(surface.u, surface.v, {loop}).value());
-}
-
-TessellatedSurface tessellated(const SurfaceSnapshot& surface) {
-  TessellatedSurface result;
-  const Status status = result.update(surface, choose_sampling_level(surface, 4000.0, {}));
-  EXPECT_TRUE(status.ok()) << status.error().message;
-  return result;
-}
-
-Vector3 vertex(const TessellatedSurface& surface, std::uint32_t i) {
-  return {surface.samples().x[i], surface.samples().y[i], surface.samples().z[i]};
 }
 
 double area_m2(const TessellatedSurface& surface) {
@@ -60,9 +50,9 @@ TEST(TrimmedTessellation, TrianglesFaceOutwardUpToTheRim) {
       if (mirrored) {
         for (float& z : snapshot.z) z = -z;
       }
-      const double whole_m2 = area_m2(tessellated(snapshot));
+      const double whole_m2 = area_m2(tessellated(snapshot, 4000.0));
       snapshot.trim = hole_in(snapshot, turns);
-      const TessellatedSurface surface = tessellated(snapshot);
+      const TessellatedSurface surface = tessellated(snapshot, 4000.0);
       EXPECT_FALSE(surface.is_closed()) << "its inside can be seen";
       EXPECT_TRUE(surface.is_trimmed());
       EXPECT_LT(area_m2(surface), 0.98 * whole_m2);
@@ -89,7 +79,7 @@ TEST(TrimmedTessellation, HasOneRimAndNoGapElsewhere) {
   SurfaceSnapshot snapshot = sample_scene({.bend_rad = 0.5}).bodies[0].surface;
   for (const double turns : {0.5, 0.02}) {
     snapshot.trim = hole_in(snapshot, turns);
-    const TessellatedSurface surface = tessellated(snapshot);
+    const TessellatedSurface surface = tessellated(snapshot, 4000.0);
     std::map<std::array<long, 3>, int> places;
     const auto place = [&](std::uint32_t i) {
       const auto& s = surface.samples();

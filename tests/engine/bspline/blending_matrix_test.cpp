@@ -153,7 +153,7 @@ TEST(PseudoInverse, RefitsFiftySamplesToTheControlPointsTheyCameFrom) {
   EXPECT_LT((pseudo_inverse(knots, parameters).value() * samples - controls).cwiseAbs().maxCoeff(), 1e-14);
 }
 
-void expect_refused(const KnotVector& knots, const std::vector<double>& parameters, ErrorCode code) {
+void expect_inverse_refused(const KnotVector& knots, const std::vector<double>& parameters, ErrorCode code) {
   const auto inverse = pseudo_inverse(knots, parameters);
   ASSERT_FALSE(inverse.ok());
   EXPECT_EQ(inverse.error().code, code) << inverse.error().message;
@@ -167,20 +167,20 @@ TEST(PseudoInverse, RefusesThePeriodicTraps) {
       if (degree % 2 == 1) {
         for (double& u : parameters) u += 0.5 / controls;
       }
-      expect_refused(knots, parameters, ErrorCode::degenerate);
+      expect_inverse_refused(knots, parameters, ErrorCode::degenerate);
     }
   }
 }
 
 TEST(PseudoInverse, RefusesTooFewSamples) {
   const auto knots = KnotVector::clamped_uniform(3, 8).value();
-  expect_refused(knots, uniform_parameters(knots, 7), ErrorCode::too_few);
-  expect_refused(knots, {}, ErrorCode::too_few);
+  expect_inverse_refused(knots, uniform_parameters(knots, 7), ErrorCode::too_few);
+  expect_inverse_refused(knots, {}, ErrorCode::too_few);
 }
 
 TEST(PseudoInverse, RefusesSamplesThatRepeat) {
   const auto knots = KnotVector::clamped_uniform(1, 4).value();
-  expect_refused(knots, {0, 0, 0.4, 0.4, 1, 1}, ErrorCode::too_few);
+  expect_inverse_refused(knots, {0, 0, 0.4, 0.4, 1, 1}, ErrorCode::too_few);
 }
 
 TEST(SchoenbergWhitney, NamesTheControlPointInAGap) {
@@ -198,7 +198,7 @@ TEST(SchoenbergWhitney, NamesTheControlPointInAGap) {
             "control point 10 of 20 has no sample of its own between 0.4117647058823529 and "
             "0.6470588235294118; add "
             "samples there");
-  expect_refused(knots, parameters, ErrorCode::too_few);
+  expect_inverse_refused(knots, parameters, ErrorCode::too_few);
 }
 
 TEST(SchoenbergWhitney, NamesTheControlPointInAPeriodicGap) {

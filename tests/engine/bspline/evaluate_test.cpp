@@ -46,7 +46,7 @@ Grid random_grid(Random& random, const Surface& surface, int rows, int columns) 
 }
 
 template <class Real>
-void expect_same(const GridSamples<Real>& a, const GridSamples<Real>& b) {
+void expect_same_samples(const GridSamples<Real>& a, const GridSamples<Real>& b) {
   EXPECT_EQ(a.x, b.x);
   EXPECT_EQ(a.y, b.y);
   EXPECT_EQ(a.z, b.z);
@@ -87,7 +87,7 @@ void expect_same_bits_on_every_set(std::uint64_t seed) {
     const auto baseline = samples_of<Real>(surface, grid, InstructionSet::baseline);
     for (const InstructionSet set : available_instruction_sets()) {
       SCOPED_TRACE(std::string(name_of(set)) + ", " + std::to_string(columns) + " columns");
-      expect_same(baseline, samples_of<Real>(surface, grid, set));
+      expect_same_samples(baseline, samples_of<Real>(surface, grid, set));
     }
   }
 }
@@ -195,7 +195,7 @@ TEST(GridEvaluator, KeepsNothingFromTheSurfaceBefore) {
   for (const Surface* surface : {&tube, &sheet, &tube}) {
     evaluator.points_and_normals(surface->net.x.data(), surface->net.y.data(), surface->net.z.data(),
                                  samples);
-    expect_same(samples, samples_of<double>(*surface, grid, best_instruction_set()));
+    expect_same_samples(samples, samples_of<double>(*surface, grid, best_instruction_set()));
   }
 }
 

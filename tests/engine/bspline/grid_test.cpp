@@ -36,8 +36,8 @@ TEST(Grid, HoldsTheMatricesOfBothDirections) {
   EXPECT_EQ(grid.v.second_derivatives.values, blending_matrix(v, grid.v.parameters, 2).values);
 }
 
-void expect_refused(std::vector<double> u_parameters, std::vector<double> v_parameters,
-                    const std::string& part) {
+void expect_grid_refused(std::vector<double> u_parameters, std::vector<double> v_parameters,
+                         const std::string& part) {
   const auto knots = KnotVector::clamped_uniform(3, 6).value();
   const auto grid = make_grid(knots, knots, std::move(u_parameters), std::move(v_parameters));
   ASSERT_FALSE(grid.ok()) << "accepted, though it should be refused with: " << part;
@@ -45,14 +45,15 @@ void expect_refused(std::vector<double> u_parameters, std::vector<double> v_para
 }
 
 TEST(Grid, RefusesBadParametersByName) {
-  expect_refused({0, 1}, {}, "direction v: 0 parameters are too few");
-  expect_refused({0.5}, {0, 1}, "direction u: 1 parameters are too few");
-  expect_refused({0, 0.5, 0.5, 1}, {0, 1},
-                 "direction u: parameter 2 (0.5) is not greater than parameter 1 (0.5)");
-  expect_refused({0, 1}, {0, 0.5, 0.4},
-                 "direction v: parameter 2 (0.4) is not greater than parameter 1 (0.5)");
-  expect_refused({0, 1.5}, {0, 1}, "direction u: parameter 1 (1.5) is outside the domain 0 to 1");
-  expect_refused({0, 1}, {std::numeric_limits<double>::quiet_NaN(), 1}, "direction v: parameter 0 (nan)");
+  expect_grid_refused({0, 1}, {}, "direction v: 0 parameters are too few");
+  expect_grid_refused({0.5}, {0, 1}, "direction u: 1 parameters are too few");
+  expect_grid_refused({0, 0.5, 0.5, 1}, {0, 1},
+                      "direction u: parameter 2 (0.5) is not greater than parameter 1 (0.5)");
+  expect_grid_refused({0, 1}, {0, 0.5, 0.4},
+                      "direction v: parameter 2 (0.4) is not greater than parameter 1 (0.5)");
+  expect_grid_refused({0, 1.5}, {0, 1}, "direction u: parameter 1 (1.5) is outside the domain 0 to 1");
+  expect_grid_refused({0, 1}, {std::numeric_limits<double>::quiet_NaN(), 1},
+                      "direction v: parameter 0 (nan)");
 }
 
 TEST(Grid, NestedLevelsAreRowsOfTheFinest) {

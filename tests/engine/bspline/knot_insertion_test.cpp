@@ -10,7 +10,7 @@
 namespace spoonbill {
 namespace {
 
-double largest_difference(Random& random, const Surface& a, const Surface& b) {
+double largest_distance(Random& random, const Surface& a, const Surface& b) {
   double largest = 0.0;
   for (int sample = 0; sample < 60; ++sample) {
     const double u = random.uniform(a.u.domain_start(), a.u.domain_end());
@@ -25,7 +25,7 @@ int count_of(const KnotVector& knots, double knot) {
 }
 
 // Coordinates below 1 m; knot insertion only takes weighted means of them.
-constexpr double same_surface = 1e-14;
+constexpr double insertion_rounding = 1e-14;
 
 TEST(KnotInsertion, KeepsTheSurface) {
   Random random(8);
@@ -40,7 +40,7 @@ TEST(KnotInsertion, KeepsTheSurface) {
     const KnotVector& finer_knots = direction == Direction::u ? finer->u : finer->v;
     EXPECT_EQ(finer_knots.control_point_count(), knots.control_point_count() + multiplicity);
     EXPECT_EQ(count_of(finer_knots, knot), multiplicity);
-    EXPECT_LT(largest_difference(random, surface, finer.value()), same_surface);
+    EXPECT_LT(largest_distance(random, surface, finer.value()), insertion_rounding);
   }
 }
 
@@ -54,7 +54,7 @@ TEST(KnotInsertion, RaisesExistingKnots) {
     if (!surface.v.is_periodic() && knot == breaks.front()) continue;
     const auto finer = insert_knot(surface, Direction::v, knot, surface.v.degree());
     ASSERT_TRUE(finer.ok()) << finer.error().message;
-    EXPECT_LT(largest_difference(random, surface, finer.value()), same_surface);
+    EXPECT_LT(largest_distance(random, surface, finer.value()), insertion_rounding);
     // A knot as multiple as the degree pins the surface to control points.
     const BasisFunctions basis = basis_functions(finer->v, knot);
     EXPECT_NEAR(basis.values[0][0], 1.0, 1e-15);

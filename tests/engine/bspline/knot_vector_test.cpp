@@ -9,7 +9,6 @@ namespace spoonbill {
 namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // `part` is empty where the code alone identifies the fault.
 void expect_refused(const Result<KnotVector>& result, ErrorCode code, const std::string& part = "") {
@@ -40,10 +39,10 @@ TEST(KnotVector, RefusesTooFewKnotsOrControlPoints) {
 TEST(KnotVector, RefusesKnotsThatAreNotFinite) {
   expect_refused(KnotVector::open(1, {0, 0, not_a_number, 1, 1}), ErrorCode::out_of_range,
                  "knot 2 (nan) is not a finite number");
-  expect_refused(KnotVector::open(1, {-infinity, 0, 0.5, 1, 1}), ErrorCode::out_of_range,
-                 "knot 0 (-inf) is not a finite number");
-  expect_refused(KnotVector::periodic(2, {0, 1, infinity}), ErrorCode::out_of_range,
-                 "knot 2 (inf) is not a finite number");
+  expect_refused(KnotVector::open(1, {-std::numeric_limits<double>::infinity(), 0, 0.5, 1, 1}),
+                 ErrorCode::out_of_range, "knot 0 (-inf) is not a finite number");
+  expect_refused(KnotVector::periodic(2, {0, 1, std::numeric_limits<double>::infinity()}),
+                 ErrorCode::out_of_range, "knot 2 (inf) is not a finite number");
   expect_refused(KnotVector::open(1, {-1e308, -1e308, 1e308, 1e308}), ErrorCode::degenerate);
 }
 
@@ -119,7 +118,7 @@ TEST(KnotVector, BringsParametersIntoTheDomain) {
   EXPECT_EQ(periodic.into_domain(2.25), 0.25);
   EXPECT_EQ(periodic.into_domain(-0.25), 0.75);
   EXPECT_EQ(periodic.into_domain(-1e-30), 0);
-  EXPECT_EQ(periodic.into_domain(infinity), 0);
+  EXPECT_EQ(periodic.into_domain(std::numeric_limits<double>::infinity()), 0);
   EXPECT_EQ(periodic.into_domain(not_a_number), 0);
 }
 

@@ -14,7 +14,7 @@ constexpr double same_point = 1e-13;
 
 // Compares b at (u, v) with a at `in_a` of them.
 template <class InA>
-void expect_same(Random& random, const Surface& a, const Surface& b, const InA& in_a) {
+void expect_same_surface(Random& random, const Surface& a, const Surface& b, const InA& in_a) {
   for (int sample = 0; sample < 30; ++sample) {
     const double u = random.uniform(b.u.domain_start(), b.u.domain_end());
     const double v = random.uniform(b.v.domain_start(), b.v.domain_end());
@@ -28,10 +28,10 @@ TEST(Reparameterise, RunsBackwards) {
   for (int repeat = 0; repeat < 200; ++repeat) {
     const Surface surface = random_surface(random);
     const Surface back_u = reversed(surface, Direction::u), back_v = reversed(surface, Direction::v);
-    expect_same(random, surface, back_u, [&](double u, double v) {
+    expect_same_surface(random, surface, back_u, [&](double u, double v) {
       return std::pair(surface.u.domain_start() + (surface.u.domain_end() - u), v);
     });
-    expect_same(random, surface, back_v, [&](double u, double v) {
+    expect_same_surface(random, surface, back_v, [&](double u, double v) {
       return std::pair(u, surface.v.domain_start() + (surface.v.domain_end() - v));
     });
   }
@@ -41,7 +41,8 @@ TEST(Reparameterise, ExchangesUAndV) {
   Random random(62);
   for (int repeat = 0; repeat < 50; ++repeat) {
     const Surface surface = random_surface(random);
-    expect_same(random, surface, exchanged(surface), [](double u, double v) { return std::pair(v, u); });
+    expect_same_surface(random, surface, exchanged(surface),
+                        [](double u, double v) { return std::pair(v, u); });
   }
 }
 
@@ -59,7 +60,7 @@ TEST(Reparameterise, MovesTheSeam) {
     ASSERT_TRUE(moved.ok()) << moved.error().message;
     EXPECT_EQ(moved->u.domain_start(), start);
     EXPECT_EQ(moved->u.domain_end(), surface.u.domain_end());
-    expect_same(random, surface, moved.value(), [&](double u, double v) {
+    expect_same_surface(random, surface, moved.value(), [&](double u, double v) {
       return std::pair(surface.u.into_domain(u - start + surface.u.into_domain(seam)), v);
     });
   }
@@ -72,8 +73,8 @@ TEST(Reparameterise, StretchesTheDomain) {
     const auto stretched = with_domain(surface, Direction::v, -2.0, 3.0);
     ASSERT_TRUE(stretched.ok());
     const double start = surface.v.domain_start(), length = surface.v.domain_end() - start;
-    expect_same(random, surface, stretched.value(),
-                [&](double u, double v) { return std::pair(u, start + (v + 2.0) / 5.0 * length); });
+    expect_same_surface(random, surface, stretched.value(),
+                        [&](double u, double v) { return std::pair(u, start + (v + 2.0) / 5.0 * length); });
   }
   Random other(65);
   EXPECT_FALSE(with_domain(random_surface(other), Direction::u, 1.0, 1.0).ok());

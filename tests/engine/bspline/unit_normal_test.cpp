@@ -11,7 +11,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr int around = 12, along = 9;
+constexpr int tube_around = 12, tube_along = 9;
 
 double angle_between(const Vector3& a, const Vector3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -31,7 +31,7 @@ TEST(UnitNormal, IsTheProductOfTheTangents) {
 }
 
 TEST(UnitNormal, SmoothPolesHaveOneNormal) {
-  const Surface tube = ellipsoid_tube(around, along);
+  const Surface tube = ellipsoid_tube(tube_around, tube_along);
   for (const Surface& surface : {tube, transposed(tube)}) {
     const bool poles_in_v = surface.u.is_periodic();
     const double sign = poles_in_v ? 1.0 : -1.0;
@@ -66,9 +66,9 @@ void expect_limits(const Surface& surface, bool poles_in_v) {
 TEST(UnitNormal, PolesAreTheLimitFromInside) {
   Random random(15);
   for (int repeat = 0; repeat < 20; ++repeat) {
-    Surface tube = ellipsoid_tube(around, along, {0.3, -0.2, 0.1});
-    for (int i = 0; i < around; ++i) {
-      for (int j = 1; j < along - 1; ++j) {
+    Surface tube = ellipsoid_tube(tube_around, tube_along, {0.3, -0.2, 0.1});
+    for (int i = 0; i < tube_around; ++i) {
+      for (int j = 1; j < tube_along - 1; ++j) {
         const Vector3 jitter(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
         tube.net.set_point(i, j, tube.net.point(i, j) + 0.001 * jitter);
       }
@@ -80,9 +80,9 @@ TEST(UnitNormal, PolesAreTheLimitFromInside) {
 
 TEST(UnitNormal, RingsThatCoincideToSinglePrecisionArePoles) {
   Random random(16);
-  Surface tube = ellipsoid_tube(around, along);
-  for (int i = 0; i < around; ++i) {
-    for (const int j : {0, along - 1}) {
+  Surface tube = ellipsoid_tube(tube_around, tube_along);
+  for (int i = 0; i < tube_around; ++i) {
+    for (const int j : {0, tube_along - 1}) {
       const Vector3 jitter(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
       tube.net.set_point(i, j, tube.net.point(i, j) + 1e-9 * jitter);
     }
@@ -96,8 +96,8 @@ TEST(UnitNormal, RingsThatCoincideToSinglePrecisionArePoles) {
 }
 
 TEST(UnitNormal, PolesWhereTwoRingsCoincideAreStillPoles) {
-  Surface tube = ellipsoid_tube(around, along);
-  for (int i = 0; i < around; ++i) tube.net.set_point(i, 1, tube.net.point(0, 0));
+  Surface tube = ellipsoid_tube(tube_around, tube_along);
+  for (int i = 0; i < tube_around; ++i) tube.net.set_point(i, 1, tube.net.point(0, 0));
   for (int step = 0; step < 20; ++step) {
     const double u = (step + 0.2) / 20;
     const Vector3 normal = unit_normal(tube, u, 0.0);

@@ -5,7 +5,7 @@
 namespace spoonbill {
 namespace {
 
-std::string refusal(std::string_view text) {
+std::string text_refusal(std::string_view text) {
   const auto json = parse_json(text, "x.json");
   return json.ok() ? "accepted" : json.error().message;
 }
@@ -17,17 +17,18 @@ ErrorCode refusal_code(std::string_view text) {
 }
 
 TEST(Json, SaysWhereTheTextIsWrong) {
-  EXPECT_EQ(refusal("{\"a\": 1,\n \"b\": nan}"),
+  EXPECT_EQ(text_refusal("{\"a\": 1,\n \"b\": nan}"),
             "x.json: line 2, column 8: parsing value - invalid literal; last read: '\"b\": na'");
-  EXPECT_EQ(refusal("{\"a\": 1"), "x.json: column 8: parsing object - unexpected end of input; expected '}'");
-  EXPECT_EQ(refusal("hello"), "x.json: column 1: parsing value - invalid literal; last read: 'h'");
+  EXPECT_EQ(text_refusal("{\"a\": 1"),
+            "x.json: column 8: parsing object - unexpected end of input; expected '}'");
+  EXPECT_EQ(text_refusal("hello"), "x.json: column 1: parsing value - invalid literal; last read: 'h'");
 }
 
 TEST(Json, RefusesWhatIsNotStrict) {
   for (const char* text :
        {"", " ", "NaN", "[Infinity]", "[-Infinity]", "[1e999]", "{\"a\":1}x", "{'a':1}", "[1,]", "// c",
         "[01]", "[.5]", "[1.]", "\"\x01\"", "\"\xff\"", "[+1]", "{\"a\" 1}"}) {
-    const std::string message = refusal(text);
+    const std::string message = text_refusal(text);
     EXPECT_TRUE(message.starts_with("x.json: column ")) << text << " -> " << message;
     EXPECT_EQ(message.find('\n'), std::string::npos);
   }
@@ -35,21 +36,21 @@ TEST(Json, RefusesWhatIsNotStrict) {
 
 TEST(Json, RefusesWhatFollowsAZeroByte) {
   using std::string_view_literals::operator""sv;
-  EXPECT_EQ(refusal("{\"a\": 1}\0"sv), "x.json: column 9: a zero byte, which is not JSON");
-  EXPECT_EQ(refusal("{\"a\":\n1}\n\0garbage {[["sv),
+  EXPECT_EQ(text_refusal("{\"a\": 1}\0"sv), "x.json: column 9: a zero byte, which is not JSON");
+  EXPECT_EQ(text_refusal("{\"a\":\n1}\n\0garbage {[["sv),
             "x.json: line 3, column 1: a zero byte, which is not JSON");
-  EXPECT_NE(refusal("{\0\"a\": 1}"sv), "accepted");
+  EXPECT_NE(text_refusal("{\0\"a\": 1}"sv), "accepted");
 }
 
 TEST(Json, RefusesAFieldGivenTwice) {
-  EXPECT_EQ(refusal("{\"a\": 1, \"b\": {\"c\": 1, \"c\": 2}}"),
+  EXPECT_EQ(text_refusal("{\"a\": 1, \"b\": {\"c\": 1, \"c\": 2}}"),
             "x.json: column 26: field \"c\" is given twice");
   EXPECT_EQ(refusal_code("{\"a\": 1, \"a\": 2}"), ErrorCode::duplicate);
 }
 
 TEST(Json, LimitsNestingAndSize) {
-  EXPECT_EQ(refusal(std::string(64, '[') + std::string(64, ']')), "accepted");
-  EXPECT_EQ(refusal(std::string(65, '[') + std::string(65, ']')),
+  EXPECT_EQ(text_refusal(std::string(64, '[') + std::string(64, ']')), "accepted");
+  EXPECT_EQ(text_refusal(std::string(65, '[') + std::string(65, ']')),
             "x.json: column 65: nested deeper than 64 levels");
   EXPECT_EQ(refusal_code(std::string(5'000'000, '[')), ErrorCode::too_many);
   std::string many = "[0";

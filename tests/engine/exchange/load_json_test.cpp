@@ -26,7 +26,7 @@ Document loaded_document() {
   return document;
 }
 
-std::string refusal(const std::function<void(Json&)>& spoil) {
+std::string load_refusal(const std::function<void(Json&)>& spoil) {
   Json json = document_to_json(loaded_document());
   spoil(json);
   const auto read = document_from_json(json, "sample.json");
@@ -74,7 +74,7 @@ TEST(LoadJson, ADocumentWithoutLoadsIsAsItWas) {
 
 TEST(LoadJson, NamesWhatIsWrong) {
   const auto load = [](std::size_t at, const char* field, const Json& value) {
-    return refusal([&](Json& j) { j["body"]["loads"][at][field] = value; });
+    return load_refusal([&](Json& j) { j["body"]["loads"][at][field] = value; });
   };
   EXPECT_EQ(load(0, "kind", "weight"),
             "sample.json: body.loads[0].kind is \"weight\", must be pressure or force or point");
@@ -95,7 +95,7 @@ TEST(LoadJson, NamesWhatIsWrong) {
 
 TEST(LoadJson, NamesWhatIsWrongWithARegion) {
   const auto region = [](const char* field, const Json& value) {
-    return refusal([&](Json& j) { j["body"]["supports"][0]["region"][field] = value; });
+    return load_refusal([&](Json& j) { j["body"]["supports"][0]["region"][field] = value; });
   };
   EXPECT_EQ(region("along", {0.5, 1.5}),
             "sample.json: body.supports[0].region.along is a list of 2, must be two numbers from 0 to 1");
@@ -117,7 +117,7 @@ TEST(LoadJson, NamesWhatIsWrongWithARegion) {
 
 TEST(LoadJson, NamesWhatIsWrongWithAMotionOrTheGround) {
   const auto motion = [](const char* field, const Json& value) {
-    return refusal([&](Json& j) { j["body"]["supports"][1]["motion"][field] = value; });
+    return load_refusal([&](Json& j) { j["body"]["supports"][1]["motion"][field] = value; });
   };
   EXPECT_EQ(motion("kind", "jump"),
             "sample.json: body.supports[1].motion.kind is \"jump\", must be ramp or oscillation");
@@ -125,17 +125,18 @@ TEST(LoadJson, NamesWhatIsWrongWithAMotionOrTheGround) {
             "sample.json: body.supports[1].motion.duration_s is 0, must be 0.01 to 3600");
   EXPECT_EQ(motion("way_mm", {900, 900, 0}),
             "sample.json: body.supports[1].motion.way_mm must be no longer than 1000");
-  const std::string too_fast = refusal([](Json& j) {
+  const std::string too_fast = load_refusal([](Json& j) {
     j["body"]["supports"][1]["motion"]["way_mm"] = {900, 0, 0};
     j["body"]["supports"][1]["motion"]["duration_s"] = 0.01;
   });
   EXPECT_EQ(too_fast.substr(0, 45), "sample.json: body.supports[1] motion reaches ");
   EXPECT_NE(too_fast.find("m/s, must stay below 5; shorten the displacement or allow more time"),
             std::string::npos);
-  EXPECT_EQ(refusal([](Json& j) { j["ground"]["friction"] = -0.1; }),
+  EXPECT_EQ(load_refusal([](Json& j) { j["ground"]["friction"] = -0.1; }),
             "sample.json: ground.friction is -0.1, must be 0 to 5");
-  EXPECT_EQ(refusal([](Json& j) { j["ground"].erase("normal"); }), "sample.json: ground.normal is missing");
-  EXPECT_EQ(refusal([](Json& j) { j["body"]["loads"] = std::vector<int>(65, 1); }),
+  EXPECT_EQ(load_refusal([](Json& j) { j["ground"].erase("normal"); }),
+            "sample.json: ground.normal is missing");
+  EXPECT_EQ(load_refusal([](Json& j) { j["body"]["loads"] = std::vector<int>(65, 1); }),
             "sample.json: body.loads is a list of 65, must be a list of 0 to 64");
 }
 

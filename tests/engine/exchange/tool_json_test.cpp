@@ -8,7 +8,7 @@
 namespace spoonbill {
 namespace {
 
-MeshSolid tetrahedron() {
+MeshSolid mesh_tetrahedron() {
   TriangleMesh mesh;
   mesh.vertices_m = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0, 0, 1.0 / 300.0}};
   mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
@@ -26,7 +26,7 @@ std::vector<ToolSolid> every_solid() {
           ImplicitShape(TorusShape{0.006, 0.002}),
           ImplicitShape(HalfSpaceShape{}),
           ImplicitShape(SuperquadricShape{{0.006, 0.004, 0.006}, 0.5, 1.5}),
-          tetrahedron(),
+          mesh_tetrahedron(),
           SurfaceSolid{std::move(surface)}};
 }
 
@@ -49,7 +49,7 @@ std::string read_and_written(const std::string& text) {
   return read.ok() ? page(read.value()) : "";
 }
 
-std::string refusal(const std::function<void(Json&)>& change) {
+std::string tool_refusal(const std::function<void(Json&)>& change) {
   Json json = document_to_json(with_tool(ImplicitShape(BoxShape{})));
   change(json);
   const auto read = document_from_json(json, "sample.json");
@@ -68,7 +68,7 @@ TEST(ToolJson, KeepsEverySolid) {
 TEST(ToolJson, KeepsASoftOne) {
   const Material clay = sample_document().scene.bodies[0].material;
   const SoftTool soft{clay, {300, {}}, {Vector3(0, 0.001, 0), -Vector3::UnitY()}};
-  for (const ToolSolid& solid : {every_solid().back(), ToolSolid(tetrahedron())}) {
+  for (const ToolSolid& solid : {every_solid().back(), ToolSolid(mesh_tetrahedron())}) {
     const std::string text = page(with_tool(solid, soft));
     EXPECT_NE(text.find("\"grip\""), std::string::npos);
     EXPECT_EQ(read_and_written(text), text);
@@ -86,29 +86,29 @@ TEST(ToolJson, KeepsASolidThatIsNotInTheHand) {
 }
 
 TEST(ToolJson, NamesWhatIsWrong) {
-  EXPECT_EQ(refusal([](Json& j) { j["tool"].erase("solid"); }), "sample.json: tool.solid is missing");
-  EXPECT_EQ(refusal([](Json& j) { j["tool"]["solid"]["shape"] = "blob"; }),
+  EXPECT_EQ(tool_refusal([](Json& j) { j["tool"].erase("solid"); }), "sample.json: tool.solid is missing");
+  EXPECT_EQ(tool_refusal([](Json& j) { j["tool"]["solid"]["shape"] = "blob"; }),
             "sample.json: tool.solid.shape is \"blob\", must be sphere or ellipsoid or cylinder or "
             "capsule or box or cone or torus or half_space or superquadric or mesh or surface");
-  EXPECT_EQ(refusal([](Json& j) { j["tool"]["solid"]["half_extents_mm"][1] = -4; }),
+  EXPECT_EQ(tool_refusal([](Json& j) { j["tool"]["solid"]["half_extents_mm"][1] = -4; }),
             "sample.json: tool.solid.half_extents_mm[1] is -4, must be 0.01 to 500");
-  EXPECT_EQ(refusal([](Json& j) {
+  EXPECT_EQ(tool_refusal([](Json& j) {
               j["tool"]["solid"] = {{"shape", "torus"}, {"ring_radius_mm", 2}, {"tube_radius_mm", 3}};
             }).substr(0, 18),
             "sample.json: tool ");
-  EXPECT_EQ(refusal([](Json& j) {
+  EXPECT_EQ(tool_refusal([](Json& j) {
               j["tool"]["solid"] = {{"shape", "mesh"},
                                     {"vertices_mm", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}},
                                     {"triangles", {{0, 1, 3}}}};
             }),
             "sample.json: tool.solid.triangles[0] must be 3 indices into vertices_mm, from 0");
-  EXPECT_EQ(refusal([](Json& j) {
+  EXPECT_EQ(tool_refusal([](Json& j) {
               j["tool"]["solid"] = {{"shape", "mesh"},
                                     {"vertices_mm", {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}},
                                     {"triangles", {{0, 1, 2}}}};
             }).substr(0, 23),
             "sample.json: tool.solid");
-  EXPECT_EQ(refusal([](Json& j) {
+  EXPECT_EQ(tool_refusal([](Json& j) {
               j["tool"]["soft"] = {{"material", 3}};
             }).substr(0, 30),
             "sample.json: tool.soft.materia");
@@ -118,7 +118,7 @@ TEST(ToolJson, NamesWhatIsWrongWithASoftMesh) {
   const Material clay = sample_document().scene.bodies[0].material;
   const SoftTool soft{clay, {300, {}}, {Vector3(0, 0.001, 0), -Vector3::UnitY()}};
   const auto refused = [&](const std::function<void(Json&)>& change) {
-    Json json = document_to_json(with_tool(tetrahedron(), soft));
+    Json json = document_to_json(with_tool(mesh_tetrahedron(), soft));
     change(json["tool"]);
     const auto read = document_from_json(json, "sample.json");
     return read.ok() ? "accepted" : read.error().message;

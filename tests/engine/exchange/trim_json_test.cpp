@@ -17,7 +17,7 @@ Document trimmed_document() {
   return read_document(documents / "version-2.json").value();
 }
 
-std::string refusal(const std::function<void(Json&)>& change) {
+std::string trim_refusal(const std::function<void(Json&)>& change) {
   Json json = document_to_json(trimmed_document());
   change(json["other_bodies"][0]["surface"]["trims"]);
   const auto read = document_from_json(json, "plate.json");
@@ -43,31 +43,31 @@ TEST(TrimJson, AnUntrimmedSurfaceHasNoSuchField) {
 
 TEST(TrimJson, RefusesWhatIsNoLoop) {
   const std::string place = "plate.json: other_bodies[0].surface.trims";
-  EXPECT_EQ(refusal([](Json& trims) { trims[0]["control_points_uv"].erase(1); }),
+  EXPECT_EQ(trim_refusal([](Json& trims) { trims[0]["control_points_uv"].erase(1); }),
             place + "[0].control_points_uv is a list of 4, must be a list of 5");
-  EXPECT_EQ(refusal([](Json& trims) {
+  EXPECT_EQ(trim_refusal([](Json& trims) {
               trims[0]["control_points_uv"][2] = {1, "2"};
             }),
             place + "[0].control_points_uv[2] must be 2 numbers from -10000000 to 10000000");
-  EXPECT_EQ(refusal([](Json& trims) { trims[1].erase("knots"); }), place + "[1].knots is missing");
-  EXPECT_EQ(refusal([](Json& trims) { trims[1]["colour"] = 1; }),
+  EXPECT_EQ(trim_refusal([](Json& trims) { trims[1].erase("knots"); }), place + "[1].knots is missing");
+  EXPECT_EQ(trim_refusal([](Json& trims) { trims[1]["colour"] = 1; }),
             place + "[1] has an unknown field \"colour\"; known: degree, periodic, knots, control_points_uv");
-  EXPECT_EQ(refusal([](Json& trims) {
+  EXPECT_EQ(trim_refusal([](Json& trims) {
               trims[0]["control_points_uv"][2] = {3.5, 0.95};
             }),
             place +
                 "[0] a trim loop runs from u = 0.125 to 3.5, outside the surface's domain of 0 to 3; bring "
                 "it inside");
-  EXPECT_EQ(refusal([](Json& trims) { trims.push_back(trims[0]); }),
+  EXPECT_EQ(trim_refusal([](Json& trims) { trims.push_back(trims[0]); }),
             place + " are invalid: trim loop 0 coincides with another; remove one of them");
-  EXPECT_EQ(refusal([](Json& trims) {
+  EXPECT_EQ(trim_refusal([](Json& trims) {
               Json& points = trims[1]["control_points_uv"];
               std::reverse(points.begin(), points.end());
             }),
             place +
                 " are invalid: trim loop 1 and trim loop 0 keep different parts; outer loops must run "
                 "counter-clockwise and holes clockwise");
-  EXPECT_EQ(refusal([](Json& trims) { trims = 1; }), place + " is 1, must be a list of 0 to 1000");
+  EXPECT_EQ(trim_refusal([](Json& trims) { trims = 1; }), place + " is 1, must be a list of 0 to 1000");
 }
 
 // What version 1 held, written by version 2: every byte but that of the version.

@@ -199,7 +199,8 @@ TriangleMesh bowl_mesh() {
 TEST(FitScan, HandleAtAThinRimIsBridgedTheRightWayRound) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const TriangleMesh bowl = bowl_mesh();
-  for (const double slope : {-0.5, 0.5, 1.4}) {
+  const std::vector<double> all = {0.5, -0.5, 1.4}, one = {0.5};
+  for (const double slope : is_full_run() ? all : one) {
     TriangleMesh rod = ball_mesh(30, 30, 1.0);
     const Vector3 along(std::cos(slope), 0.0, std::sin(slope)), across(-along.z(), 0.0, along.x());
     for (Vector3& vertex : rod.vertices_m) {

@@ -11,7 +11,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // Exact surface x = u, y = v, z = a u^2 + b v^2 over -1 to 1. The Bezier coefficients of t^2 are 1, -1, 1.
 Surface paraboloid(double a, double b) {

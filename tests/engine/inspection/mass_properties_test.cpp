@@ -14,7 +14,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // Solid r^2 = (h^2 - z^2)(1 + c z) about the y axis, with volume 4/3 pi h^3 and its centre c h^2 / 5 above
 // the origin.

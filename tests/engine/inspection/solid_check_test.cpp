@@ -10,7 +10,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 SolidCheck checked(const TriangleMesh& mesh, double error_m = 0.0) {
   const auto check = check_solid(mesh, {}, error_m);

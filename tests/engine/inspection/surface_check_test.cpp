@@ -14,7 +14,7 @@ namespace {
 
 using Vector2 = Eigen::Vector2d;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 bool is_clean(const SurfaceCheck& check) {
   return check.surface_defects.empty() && check.self_intersections.empty() &&

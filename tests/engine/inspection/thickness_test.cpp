@@ -12,7 +12,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 // Both walls are accurate to the fit's tolerance of 0.01 mm.
 constexpr double tolerance_m = 2e-5;
 

@@ -44,4 +44,15 @@ void plain_substep(SpringLattice& lattice, float h_s, const Vector3& g) {
   kernels.drift(view, drift);
 }
 
+Momentum momentum_of(const SpringLattice& lattice) {
+  Momentum momentum;
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    const Vector3 own = static_cast<double>(lattice.mass(n)) * lattice.velocity(n);
+    momentum.sum += own;
+    momentum.size += own.norm();
+    momentum.energy_j += 0.5 * own.dot(lattice.velocity(n));
+  }
+  return momentum;
+}
+
 }  // namespace spoonbill

@@ -18,4 +18,11 @@ void take_forces(SpringLattice& lattice, float tau_s);
 // One substep without any tool: forces, kick, drift.
 void plain_substep(SpringLattice& lattice, float h_s, const Vector3& gravity_m_per_s2 = Vector3::Zero());
 
+struct Momentum {
+  Vector3 sum = Vector3::Zero();
+  double size = 0.0;  // the sum of m |v|
+  double energy_j = 0.0;
+};
+Momentum momentum_of(const SpringLattice& lattice);
+
 }  // namespace spoonbill

@@ -14,10 +14,10 @@
 namespace spoonbill {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // A plane at height `y_m` from -0.05 to 0.05 m in x and z, facing up or down.
-Surface plane(double y_m, bool up) {
+Surface level_plane(double y_m, bool up) {
   Surface surface;
   surface.u = surface.v = KnotVector::clamped_uniform(1, 2).value();
   surface.net = ControlNet(2, 2);
@@ -60,7 +60,7 @@ Surface side(double radius_m, double low_m, double high_m) {
 
 TEST(RoundPart, ADiscEndsInAPoleAndKeepsItsArea) {
   for (const bool up : {true, false}) {
-    const Surface sheet = plane(0.02, up);
+    const Surface sheet = level_plane(0.02, up);
     const auto disc = untrimmed(sheet, {circle(sheet, 0.03, false, {0.01, -0.005})}, 1e-6);
     ASSERT_TRUE(disc) << disc.error().message;
     EXPECT_LE(disc->deviation_m, 1e-6);
@@ -76,7 +76,7 @@ TEST(RoundPart, ADiscEndsInAPoleAndKeepsItsArea) {
 
 // An eccentric hole's edge is met exactly too.
 TEST(RoundPart, ARingRunsFromItsEdgeToItsHole) {
-  const Surface sheet = plane(0.0, true);
+  const Surface sheet = level_plane(0.0, true);
   const auto ring = untrimmed(
       sheet, {circle(sheet, 0.01, true, {0.008, 0.0}), circle(sheet, 0.04, false, {0.0, 0.0})}, 1e-6);
   ASSERT_TRUE(ring) << ring.error().message;
@@ -93,7 +93,7 @@ TEST(RoundPart, ARingRunsFromItsEdgeToItsHole) {
 
 // A drum as in CAD systems: its side, and a plane at each end trimmed by a circle.
 TEST(RoundPart, ADrumOfThreeFacesBecomesOneClosedBody) {
-  const Surface top = plane(0.03, true), bottom = plane(-0.01, false);
+  const Surface top = level_plane(0.03, true), bottom = level_plane(-0.01, false);
   const auto lid = untrimmed(top, {circle(top, 0.02, false)}, 2e-6);
   const auto base = untrimmed(bottom, {circle(bottom, 0.02, false)}, 2e-6);
   ASSERT_TRUE(lid && base);
@@ -107,7 +107,7 @@ TEST(RoundPart, ADrumOfThreeFacesBecomesOneClosedBody) {
 }
 
 TEST(RoundPart, CornersAndLinesThatMeetAnEdgeTwiceAreRefused) {
-  const Surface sheet = plane(0.0, true);
+  const Surface sheet = level_plane(0.0, true);
   const auto square =
       make_polygon_loop(sheet.u, sheet.v, {{0.2, 0.2}, {0.8, 0.2}, {0.8, 0.8}, {0.2, 0.8}}).value();
   EXPECT_FALSE(untrimmed(sheet, {square, circle(sheet, 0.01, true)}, 1e-6));

@@ -17,18 +17,18 @@ namespace {
 
 using std::numbers::pi;
 
-struct Profile {
+struct TubeProfile {
   double radius, along;
 };
 
 // A profile turned about the z axis, with poles at ends of zero radius.
-Surface turned_profile(const std::function<Profile(double)>& profile, int along, double shift_z = 0.0) {
+Surface turned_profile(const std::function<TubeProfile(double)>& profile, int along, double shift_z = 0.0) {
   const auto u = KnotVector::periodic_uniform(3, 24).value();
   const auto v = KnotVector::clamped_uniform(3, along).value();
   PointGrid points{uniform_parameters_without_seam(u, 72), uniform_parameters(v, 4 * along), {}};
   for (const double a : points.u) {
     for (const double b : points.v) {
-      const Profile at = profile(b);
+      const TubeProfile at = profile(b);
       points.points_m.emplace_back(at.radius * std::cos(2 * pi * a), at.radius * std::sin(2 * pi * a),
                                    at.along + shift_z);
     }
@@ -36,10 +36,10 @@ Surface turned_profile(const std::function<Profile(double)>& profile, int along,
   return fit_grid(u, v, points, {false, false, true, true}).value();
 }
 
-Surface ball(double radius, double z) {
+Surface ball_at(double radius, double z) {
   return turned_profile(
       [&](double t) {
-        return Profile{radius * std::sin(pi * t), -radius * std::cos(pi * t)};
+        return TubeProfile{radius * std::sin(pi * t), -radius * std::cos(pi * t)};
       },
       24, z);
 }
@@ -51,19 +51,19 @@ Surface capsule(double radius, double half_length, double z) {
       [&](double t) {
         const double way = t * whole;
         if (way < quarter) {
-          return Profile{radius * std::sin(way / radius), -half_length - radius * std::cos(way / radius)};
+          return TubeProfile{radius * std::sin(way / radius), -half_length - radius * std::cos(way / radius)};
         }
         if (way > whole - quarter) {
           const double left = (whole - way) / radius;
-          return Profile{radius * std::sin(left), half_length + radius * std::cos(left)};
+          return TubeProfile{radius * std::sin(left), half_length + radius * std::cos(left)};
         }
-        return Profile{radius, way - quarter - half_length};
+        return TubeProfile{radius, way - quarter - half_length};
       },
       40, z);
 }
 
-Surface pipe(double radius, double length) {
-  return turned_profile([&](double t) { return Profile{radius, t * length}; }, 8);
+Surface straight_pipe(double radius, double length) {
+  return turned_profile([&](double t) { return TubeProfile{radius, t * length}; }, 8);
 }
 
 JoinRequest c2() {
@@ -71,7 +71,7 @@ JoinRequest c2() {
 }
 
 TEST(TubeEnds, KnowsRingsFromPoles) {
-  const Surface closed = ball(0.02, 0.0), open = pipe(0.01, 0.05);
+  const Surface closed = ball_at(0.02, 0.0), open = straight_pipe(0.01, 0.05);
   EXPECT_TRUE(is_tube(closed));
   EXPECT_TRUE(is_pole(closed, Side::v_start));
   EXPECT_TRUE(is_pole(closed, Side::v_end));
@@ -85,7 +85,7 @@ TEST(TubeEnds, KnowsRingsFromPoles) {
 
 TEST(TubeEnds, ARoundCapIsHalfAnEllipsoid) {
   for (const Side side : {Side::v_start, Side::v_end}) {
-    const auto capped = add_cap(pipe(0.01, 0.05), side, 0.006, c2());
+    const auto capped = add_cap(straight_pipe(0.01, 0.05), side, 0.006, c2());
     ASSERT_TRUE(capped.ok()) << capped.error().message;
     EXPECT_LE(capped->deviation_m, 5e-5);
     EXPECT_TRUE(is_pole(capped->surface, side));
@@ -102,7 +102,7 @@ TEST(TubeEnds, ARoundCapIsHalfAnEllipsoid) {
 }
 
 TEST(TubeEnds, AFlatCapMeetsTheSidesAtAnEdge) {
-  const auto capped = add_cap(pipe(0.01, 0.05), Side::v_end, 0.0, c2());
+  const auto capped = add_cap(straight_pipe(0.01, 0.05), Side::v_end, 0.0, c2());
   ASSERT_TRUE(capped.ok()) << capped.error().message;
   EXPECT_LT(capped->deviation_m, 1e-12);
   const Surface& surface = capped->surface;
@@ -121,11 +121,11 @@ TEST(TubeEnds, OpensAPoleWhereTheSidesRunStraight) {
   EXPECT_TRUE(is_pole(opened.value(), Side::v_start));
   const auto narrow = open_pole(capsule(0.01, 0.03, 0.0), Side::v_end, 0.005);
   EXPECT_NEAR(tube_end(narrow.value(), Side::v_end).radius_m, 0.005, 3e-4);
-  EXPECT_FALSE(open_pole(pipe(0.01, 0.05), Side::v_end, 1.0).ok());
+  EXPECT_FALSE(open_pole(straight_pipe(0.01, 0.05), Side::v_end, 1.0).ok());
 }
 
 TEST(TubeEnds, ClosedBodiesAreBridgedAtTheirNearestPoles) {
-  const Surface rod = capsule(0.008, 0.03, 0.0), head = ball(0.02, 0.07);
+  const Surface rod = capsule(0.008, 0.03, 0.0), head = ball_at(0.02, 0.07);
   const auto merged = merge({rod, head}, {});
   ASSERT_TRUE(merged.ok()) << merged.error().message;
   ASSERT_EQ(merged->joints.size(), 1u);
@@ -145,7 +145,7 @@ TEST(TubeEnds, ClosedBodiesAreBridgedAtTheirNearestPoles) {
 }
 
 TEST(TubeEnds, AWasherIsCappedFlatAlone) {
-  const Surface washer = turned_profile([](double t) { return Profile{0.01 + 0.02 * t, 0.0}; }, 8);
+  const Surface washer = turned_profile([](double t) { return TubeProfile{0.01 + 0.02 * t, 0.0}; }, 8);
   const auto refused = add_cap(washer, Side::v_start, 0.003, c2());
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().code, ErrorCode::degenerate) << refused.error().message;

@@ -9,6 +9,8 @@
 
 namespace spoonbill {
 
+inline constexpr double shape_tolerance_m = 1e-5;
+
 // The volume inside and the area, by Gauss quadrature over the polynomial pieces: the volume exactly.
 double volume_m3(const Surface& surface);
 double area_m2(const Surface& surface);

@@ -11,9 +11,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-constexpr double tolerance_m = 1e-5;
-
+using std::numbers::pi;
 // How a box or plate is rounded: along its axis it is a rounded rectangle, and an end is what is within the
 // rounding of that outline made smaller by it.
 struct Rounded {
@@ -45,10 +43,10 @@ void expect_box(const FittedShape& shape, const Rounded& box, double most_uneven
   const double area = perimeter * length + 2.0 * (perimeter * arc - 2.0 * pi * arc_first) +
                       2.0 * (a - perimeter * r + pi * r * r);
   const auto distance = [&](const Vector3& p) { return box_distance(p, box); };
-  EXPECT_LE(shape.deviation_m, tolerance_m);
+  EXPECT_LE(shape.deviation_m, shape_tolerance_m);
   EXPECT_LE(shape.surface.net.columns, 60);
-  EXPECT_LE(largest_distance_m(shape.surface, distance), tolerance_m);
-  EXPECT_NEAR(volume_m3(shape.surface), volume, tolerance_m * area);
+  EXPECT_LE(largest_distance_m(shape.surface, distance), shape_tolerance_m);
+  EXPECT_NEAR(volume_m3(shape.surface), volume, shape_tolerance_m * area);
   EXPECT_NEAR(area_m2(shape.surface), area, 1e-3 * area);
   EXPECT_GT(least_outward(shape.surface, distance), 0.9);
   EXPECT_FALSE(is_self_intersecting(shape.surface, true));
@@ -124,7 +122,7 @@ TEST(Plate, MayBeLong) {
   PlateSize size{1.0, 0.01, 0.002};
   size.corner_m = default_corner_m(size);
   const FittedShape plate = fitted(plate_shape(size));
-  EXPECT_LE(plate.deviation_m, tolerance_m);
+  EXPECT_LE(plate.deviation_m, shape_tolerance_m);
   EXPECT_LT(plate.surface.net.size(), 3000U);
 }
 

@@ -10,9 +10,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-constexpr double tolerance_m = 1e-5;
-
+using std::numbers::pi;
 double cylinder_distance(const Vector3& p, const CylinderSize& size) {
   const double r = size.rounding_m;
   const double out = std::hypot(p.x(), p.z()) - (size.radius_m - r);
@@ -24,8 +22,8 @@ double cylinder_distance(const Vector3& p, const CylinderSize& size) {
 // area; and as smooth as these are, its area differs by the tolerance times the mean curvature, here below a
 // thousandth.
 void expect_sound(const FittedShape& shape, double volume, double area) {
-  EXPECT_LE(shape.deviation_m, tolerance_m);
-  EXPECT_NEAR(volume_m3(shape.surface), volume, tolerance_m * area);
+  EXPECT_LE(shape.deviation_m, shape_tolerance_m);
+  EXPECT_NEAR(volume_m3(shape.surface), volume, shape_tolerance_m * area);
   EXPECT_NEAR(area_m2(shape.surface), area, 1e-3 * area);
   EXPECT_FALSE(is_self_intersecting(shape.surface, true));
   EXPECT_LT(seam_jump(shape.surface), 1e-3);
@@ -35,7 +33,7 @@ TEST(Sphere, IsRound) {
   const FittedShape sphere = fitted(sphere_shape(0.04));
   const auto distance = [](const Vector3& p) { return p.norm() - 0.04; };
   expect_sound(sphere, 4.0 / 3.0 * pi * std::pow(0.04, 3), 4.0 * pi * 0.04 * 0.04);
-  EXPECT_LE(largest_distance_m(sphere.surface, distance), tolerance_m);
+  EXPECT_LE(largest_distance_m(sphere.surface, distance), shape_tolerance_m);
   EXPECT_GT(least_outward(sphere.surface, distance), 0.9999);
   const Evenness even = evenness(sphere.surface);
   EXPECT_LT(even.along, 1.01);
@@ -60,7 +58,7 @@ TEST(Sphere, DeviationIsThatOfTheSurface) {
 TEST(Sphere, AnySizeWithinTheRange) {
   for (const double radius : {1e-4, 1.0, 10.0}) {
     const FittedShape sphere = fitted(sphere_shape(radius));
-    EXPECT_LE(sphere.deviation_m, tolerance_m);
+    EXPECT_LE(sphere.deviation_m, shape_tolerance_m);
   }
   for (const double radius : {0.0, -0.01, 9e-5, 11.0, std::nan(""), HUGE_VAL}) {
     const auto refused = sphere_shape(radius);
@@ -84,7 +82,7 @@ TEST(Cylinder, IsACylinderWithRoundedEdges) {
                         2.0 * (2.0 * pi * c * 0.5 * pi * r + 2.0 * pi * r * r);
     expect_sound(cylinder, volume, area);
     EXPECT_LE(cylinder.surface.net.rows * cylinder.surface.net.columns, 1000);
-    EXPECT_LE(largest_distance_m(cylinder.surface, distance), tolerance_m);
+    EXPECT_LE(largest_distance_m(cylinder.surface, distance), shape_tolerance_m);
     EXPECT_GT(least_outward(cylinder.surface, distance), 0.95);
     const Evenness even = evenness(cylinder.surface);
     EXPECT_LT(even.along, 1.5);
@@ -122,9 +120,9 @@ TEST(Cone, IsAConeWithRoundedEdgeAndTip) {
   for (const ConeSize& size : {ConeSize{0.03, 0.06, 0.0, 0.003}, ConeSize{0.03, 0.01, 0.0, 0.001}}) {
     const FittedShape cone = fitted(cone_shape(size));
     const auto distance = [&](const Vector3& p) { return cone_distance(p, size); };
-    EXPECT_LE(cone.deviation_m, tolerance_m);
+    EXPECT_LE(cone.deviation_m, shape_tolerance_m);
     EXPECT_LE(cone.surface.net.rows * cone.surface.net.columns, 800);
-    EXPECT_LE(largest_distance_m(cone.surface, distance), tolerance_m);
+    EXPECT_LE(largest_distance_m(cone.surface, distance), shape_tolerance_m);
     EXPECT_GT(least_outward(cone.surface, distance), 0.95);
     EXPECT_FALSE(is_self_intersecting(cone.surface, true));
     // Below the sharp cone by what the roundings take.
@@ -153,7 +151,7 @@ TEST(Torus, IsATorus) {
     return std::hypot(std::hypot(p.x(), p.z()) - 0.04, p.y()) - 0.01;
   };
   expect_sound(torus, 2.0 * pi * pi * 0.04 * 0.01 * 0.01, 4.0 * pi * pi * 0.04 * 0.01);
-  EXPECT_LE(largest_distance_m(torus.surface, distance), tolerance_m);
+  EXPECT_LE(largest_distance_m(torus.surface, distance), shape_tolerance_m);
   EXPECT_GT(least_outward(torus.surface, distance), 0.999);
   EXPECT_TRUE(torus.surface.u.is_periodic() && torus.surface.v.is_periodic());
 }

@@ -8,7 +8,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 std::vector<Vector3> circle(int count) {
   std::vector<Vector3> points;

@@ -12,15 +12,13 @@
 namespace spoonbill {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-constexpr double tolerance_m = 1e-5;
-
+using std::numbers::pi;
 SmoothCurve curve_through(const std::vector<Vector3>& points) {
   return SmoothCurve::through(points, false).value();
 }
 
 void expect_closed(const FittedShape& shape) {
-  EXPECT_LE(shape.deviation_m, tolerance_m);
+  EXPECT_LE(shape.deviation_m, shape_tolerance_m);
   EXPECT_FALSE(is_self_intersecting(shape.surface, true));
   EXPECT_LT(seam_jump(shape.surface), 1e-3);
   const Status closed = check_closed_tube(shape.surface);
@@ -35,10 +33,11 @@ TEST(Tube, StraightIsACapsule) {
   const auto distance = [](const Vector3& p) {
     return (p - Vector3(std::clamp(p.x(), -0.03, 0.03), 0.01, 0.0)).norm() - 0.005;
   };
-  EXPECT_LE(largest_distance_m(tube.surface, distance), tolerance_m);
+  EXPECT_LE(largest_distance_m(tube.surface, distance), shape_tolerance_m);
   EXPECT_GT(least_outward(tube.surface, distance), 0.999);
   const double area = 2.0 * pi * 0.005 * 0.06 + 4.0 * pi * 0.005 * 0.005;
-  EXPECT_NEAR(volume_m3(tube.surface), pi * 0.005 * 0.005 * (0.06 + 4.0 / 3.0 * 0.005), tolerance_m * area);
+  EXPECT_NEAR(volume_m3(tube.surface), pi * 0.005 * 0.005 * (0.06 + 4.0 / 3.0 * 0.005),
+              shape_tolerance_m * area);
   EXPECT_LT(evenness(tube.surface).along, 1.05);
 }
 
@@ -73,14 +72,14 @@ TEST(Tube, BentIsRoundAboutItsLine) {
       largest = std::max(largest, std::abs(distance(position(tube.surface, u, v))));
     }
   }
-  EXPECT_LE(largest, tolerance_m);
+  EXPECT_LE(largest, shape_tolerance_m);
   // Pappus, for a line that bends: section times length, and the ball of both ends.
   double length = 0.0;
   for (int k = 0; k < 20000; ++k) {
     length += (line.at(line.end() * (k + 1) / 20000) - line.at(line.end() * k / 20000)).norm();
   }
   const double volume = pi * 0.004 * 0.004 * (length + 4.0 / 3.0 * 0.004);
-  EXPECT_NEAR(volume_m3(tube.surface), volume, tolerance_m * 2.0 * pi * 0.004 * length);
+  EXPECT_NEAR(volume_m3(tube.surface), volume, shape_tolerance_m * 2.0 * pi * 0.004 * length);
 }
 
 TEST(Tube, MayBeFlat) {
@@ -93,8 +92,8 @@ TEST(Tube, MayBeFlat) {
     highest = std::max(highest, point.y());
     widest = std::max(widest, point.z());
   }
-  EXPECT_NEAR(highest, 0.003, tolerance_m);
-  EXPECT_NEAR(widest, 0.01, tolerance_m);
+  EXPECT_NEAR(highest, 0.003, shape_tolerance_m);
+  EXPECT_NEAR(widest, 0.01, shape_tolerance_m);
 }
 
 TEST(Tube, RefusesABendThatIsTooSharp) {
@@ -120,7 +119,7 @@ TEST(Lathe, OfAHalfCircleIsASphereWhicheverWayItRuns) {
     const FittedShape ball = fitted(lathe_shape(profile));
     expect_closed(ball);
     const auto distance = [](const Vector3& p) { return p.norm() - 0.03; };
-    EXPECT_LE(largest_distance_m(ball.surface, distance), 1.01 * tolerance_m);
+    EXPECT_LE(largest_distance_m(ball.surface, distance), 1.01 * shape_tolerance_m);
     EXPECT_GT(least_outward(ball.surface, distance), 0.999);
     std::reverse(profile.begin(), profile.end());
   }
@@ -176,7 +175,7 @@ TEST(Loft, ThroughEqualRingsIsATubeWithCaps) {
   const auto distance = [](const Vector3& p) {
     return (p - Vector3(std::clamp(p.x(), 0.0, 0.05), 0.0, 0.0)).norm() - 0.01;
   };
-  EXPECT_LE(largest_distance_m(tube.surface, distance), tolerance_m + 3e-6);
+  EXPECT_LE(largest_distance_m(tube.surface, distance), shape_tolerance_m + 3e-6);
   EXPECT_GT(least_outward(tube.surface, distance), 0.99);
 }
 
@@ -184,7 +183,7 @@ TEST(Loft, MayEndInPointsOrStayOpen) {
   LoftSections spindle;
   spindle.sections_m = {{{-0.03, 0, 0}}, ring(0.01, 0.008, 0.0, 40), {{0.03, 0, 0}}};
   const FittedShape body = fitted(loft_shape(spindle));
-  EXPECT_LE(body.deviation_m, tolerance_m);
+  EXPECT_LE(body.deviation_m, shape_tolerance_m);
   EXPECT_GT(volume_m3(body.surface), 0.0);
   EXPECT_TRUE(check_closed_tube(body.surface).ok());
 
@@ -193,7 +192,7 @@ TEST(Loft, MayEndInPointsOrStayOpen) {
   pipe.caps = false;
   const FittedShape open = fitted(loft_shape(pipe));
   EXPECT_FALSE(check_closed_tube(open.surface).ok());
-  EXPECT_NEAR(position(open.surface, 0.0, 1.0).x(), 0.05, tolerance_m);
+  EXPECT_NEAR(position(open.surface, 0.0, 1.0).x(), 0.05, shape_tolerance_m);
 }
 
 TEST(Loft, OfOpenSectionsIsASheet) {
@@ -206,7 +205,7 @@ TEST(Loft, OfOpenSectionsIsASheet) {
     sections.sections_m.push_back(line);
   }
   const FittedShape sheet = fitted(loft_shape(sections));
-  EXPECT_LE(sheet.deviation_m, tolerance_m);
+  EXPECT_LE(sheet.deviation_m, shape_tolerance_m);
   EXPECT_FALSE(sheet.surface.u.is_periodic() || sheet.surface.v.is_periodic());
   // Straight along every section: the area is the width times the length of the line across.
   const double width = 0.09, length = area_m2(sheet.surface) / width;

@@ -21,7 +21,7 @@ BodyState state_of(const Body& body) {
   return make_body_state(body, {}, InstructionSet::baseline).value();
 }
 
-double depth_of(const Impact& impact) {
+double depth_between_bodies(const Impact& impact) {
   return depth_between(impact.body(0).mapping().current(), impact.body(1).mapping().current());
 }
 
@@ -34,7 +34,7 @@ TEST(Bodies, ThatCollideKeepTheirMomentum) {
   int touching = 0;
   for (int tick = 0; tick < 400; ++tick) {
     touching += impact.tick() ? 1 : 0;
-    if (tick % 5 == 0) deepest = std::max(deepest, depth_of(impact));
+    if (tick % 5 == 0) deepest = std::max(deepest, depth_between_bodies(impact));
   }
   EXPECT_GT(touching, 50);
   EXPECT_FALSE(impact.tick()) << "they have parted";
@@ -48,9 +48,9 @@ TEST(Bodies, ThatCollideKeepTheirMomentum) {
 
 TEST(Bodies, ThatBeginInEachOtherPart) {
   Impact impact(state_of(pebble({0, 0, 0}, 400)), state_of(pebble({0.0, 0.0215, 0.0}, 400)));
-  EXPECT_GT(depth_of(impact), 0.5e-3) << "they begin in each other";
+  EXPECT_GT(depth_between_bodies(impact), 0.5e-3) << "they begin in each other";
   for (int tick = 0; tick < 100; ++tick) impact.tick();
-  EXPECT_LT(depth_of(impact), 0.1e-3);
+  EXPECT_LT(depth_between_bodies(impact), 0.1e-3);
   EXPECT_LT(impact.momentum_of(0).y(), 0.0);
   EXPECT_GT(impact.momentum_of(1).y(), 0.0);
 }
@@ -64,10 +64,6 @@ Scene stacked_handles() {
   scene.bodies.push_back(std::move(upper));
   scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
   return scene;
-}
-
-double lowest(const Surface& surface) {
-  return *std::min_element(surface.net.y.begin(), surface.net.y.end());
 }
 
 // The frame is that of the surface, and the weighted positions of the nodes give the point.

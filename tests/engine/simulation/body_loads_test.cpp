@@ -20,8 +20,6 @@ Material rubber(double youngs_modulus_pa, double poissons_ratio) {
   return material;
 }
 
-const BodyRegion start{{0.0, 0.0}}, end{{1.0, 1.0}};
-
 Support still(const BodyRegion& region) {
   return {region, {}};
 }
@@ -50,8 +48,8 @@ TEST(BodyLoads, AForceOnTheEndStretchesABar) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     const double youngs = stepping == Stepping::springs ? 2e4 : 5e6, area = 0.01 * 0.01, share = 2e-3;
     LoadedBlock bar({0.01, 0.01, 0.06}, {4, 4, 19}, rubber(youngs, 0.3), stepping);
-    bar.load({ForceLoad{end, Vector3(0, 0, share * youngs * area)}});
-    bar.support({still(start)});
+    bar.load({ForceLoad{block_end, Vector3(0, 0, share * youngs * area)}});
+    bar.support({still(block_start)});
     for (int tick = 0; tick < 1500; ++tick) bar.tick(100.0);
     const double strain = (bar.slice_m(14) - bar.slice_m(4)).z() / (0.06 * 10.0 / 18.0);
     EXPECT_NEAR(strain / share, 1.0, 5e-3);
@@ -63,8 +61,8 @@ TEST(BodyLoads, AForceOnTheEndStretchesABar) {
 TEST(BodyLoads, AForceSharedByVolumeIsAWeight) {
   LoadedBlock loaded({0.01, 0.01, 0.04}, {4, 4, 13}, rubber(2e4, 0.3), Stepping::springs);
   LoadedBlock hanging({0.01, 0.01, 0.04}, {4, 4, 13}, rubber(2e4, 0.3), Stepping::springs);
-  loaded.support({still(start)});
-  hanging.support({still(start)});
+  loaded.support({still(block_start)});
+  hanging.support({still(block_start)});
   const Vector3 gravity_m_per_s2(0, 0, 3.0);
   loaded.load({ForceLoad{{}, loaded.lattice.mass_kg() * gravity_m_per_s2, ForceDistribution::volume}});
   for (int tick = 0; tick < 800; ++tick) {
@@ -108,10 +106,10 @@ TEST(BodyLoads, ACantileverSettlesToItsStaticRest) {
     LoadedBlock beam({0.012, 0.012, 0.048}, springs ? std::array{5, 5, 17} : std::array{4, 4, 13}, material,
                      stepping);
     const double unit = material.youngs_modulus_pa * 1e-8;
-    const std::vector<Load> list = {ForceLoad{end, Vector3(5 * unit, unit, 0)},
+    const std::vector<Load> list = {ForceLoad{block_end, Vector3(5 * unit, unit, 0)},
                                     PressureLoad{{{0.5, 1.0}}, 1e4 * unit}};
     beam.load(list);
-    beam.support({still(start)});
+    beam.support({still(block_start)});
     const Vector3 gravity_m_per_s2(springs ? 1.0 : 100.0, 0, 0);
     for (int tick = 0; tick < 3000; ++tick) beam.tick(30.0, gravity_m_per_s2);
     const LatticeMesh& mesh = springs ? beam.lattice.mesh() : beam.core->mesh();

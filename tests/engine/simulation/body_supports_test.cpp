@@ -14,8 +14,6 @@
 namespace spoonbill {
 namespace {
 
-const BodyRegion start{{0.0, 0.0}}, end{{1.0, 1.0}};
-
 Support ramp(const BodyRegion& region, const Vector3& displacement_m, double duration_s) {
   return {region, SupportMotion{MotionKind::ramp, displacement_m, duration_s}};
 }
@@ -69,7 +67,7 @@ TEST(BodySupports, APulledEndBearsWhatABarSays) {
     Material material = elastic_material(youngs, 0.0, 1000.0);
     material.damping_ratio = 0.3;
     LoadedBlock bar({0.01, 0.01, length}, {4, 4, 19}, material, stepping);
-    bar.support({{start, {}}, ramp(end, Vector3(0, 0, way), 0.3)});
+    bar.support({{block_start, {}}, ramp(block_end, Vector3(0, 0, way), 0.3)});
     for (int tick = 0; tick < 1500; ++tick) bar.tick(100.0);
     const double expected = youngs * area * way / length;
     const double allowed = stepping == Stepping::springs ? 0.01 : 3e-4;
@@ -125,7 +123,7 @@ TEST(BodySupports, HoldWhatTheBlockHasNoNodeFor) {
 // A motion faster than the lattice's waves would invert cells; the support lags instead.
 TEST(BodySupports, WaitsForALatticeThatItWouldOutrun) {
   LoadedBlock body({0.012, 0.012, 0.04}, {4, 4, 11}, elastic_material(2e3, 0.3, 1000.0), Stepping::springs);
-  body.support({{start, {}}, ramp(end, Vector3(0, 0, 0.02), 0.01)});
+  body.support({{block_start, {}}, ramp(block_end, Vector3(0, 0, 0.02), 0.01)});
   for (int tick = 0; tick < 10; ++tick) body.tick(5.0);
   EXPECT_LT(body.slice_m(10).z(), 0.01);
   EXPECT_GT(body.slice_m(10).z(), 0.0);
@@ -157,8 +155,6 @@ Scene moved_handle() {
   scene.tool.iterations = 2;
   return scene;
 }
-
-const ToolInput far_away = above(0.03, 0.2);
 
 TEST(BodySupports, MoveTheSkin) {
   Scene scene = moved_handle();

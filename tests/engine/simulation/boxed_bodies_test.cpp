@@ -17,7 +17,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double ring_m = 0.02, tube_m = 0.005, tool_radius_m = 0.004;
+constexpr double body_ring_m = 0.02, body_tube_m = 0.005, tool_radius_m = 0.004;
 
 // Torus about y, its tube round to 5 %. It has few control points, which a tick moves quickly.
 Surface ring() {
@@ -26,9 +26,9 @@ Surface ring() {
   const auto turn = [](int index, int count) { return 2.0 * std::numbers::pi * index / count; };
   for (int i = 0; i < around; ++i) {
     for (int j = 0; j < along; ++j) {
-      const double out = ring_m + tube_m * std::cos(turn(j, along));
+      const double out = body_ring_m + body_tube_m * std::cos(turn(j, along));
       net.set_point(i, j,
-                    {out * std::cos(turn(i, around)), tube_m * std::sin(turn(j, along)),
+                    {out * std::cos(turn(i, around)), body_tube_m * std::sin(turn(j, along)),
                      -out * std::sin(turn(i, around))});
     }
   }
@@ -43,7 +43,7 @@ Scene held_ring(double flatness = 1.0) {
   body.surface = ring();
   for (double& y : body.surface.net.y) y *= flatness;
   body.lattice = {800, {}};
-  scene.planes = {{Vector3(-ring_m, 0.0, 0.0), Vector3::UnitX()}};
+  scene.planes = {{Vector3(-body_ring_m, 0.0, 0.0), Vector3::UnitX()}};
   scene.tool.radius_m = tool_radius_m;
   return scene;
 }
@@ -97,7 +97,8 @@ TEST(BoxedBody, WithSharpEdgesKeepsStillUntouched) {
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < along; ++j) {
       const double angle = 2.0 * std::numbers::pi * j / along;
-      const double out = ring_m + (i < 2 ? tube_m : -tube_m), up = i == 0 || i == 3 ? tube_m : -tube_m;
+      const double out = body_ring_m + (i < 2 ? body_tube_m : -body_tube_m),
+                   up = i == 0 || i == 3 ? body_tube_m : -body_tube_m;
       net.set_point(i, j, {out * std::cos(angle), up, -out * std::sin(angle)});
     }
   }
@@ -119,7 +120,7 @@ TEST(BoxedBody, IsDentedAndKeepsItsDent) {
   for (int tick = 0; tick < 900; ++tick) {
     const double displacement_m = tick < 400 ? 0.004 * tick / 400.0 : tick < 500 ? 0.004 : -0.02;
     const double force =
-        simulation.advance(above(ring_m, tube_m + tool_radius_m - displacement_m)).force_n.norm();
+        simulation.advance(above(body_ring_m, body_tube_m + tool_radius_m - displacement_m)).force_n.norm();
     if (tick < 500) largest_n = std::max(largest_n, force);
   }
   EXPECT_GT(largest_n, 0.0);
@@ -130,10 +131,10 @@ TEST(BoxedBody, IsDentedAndKeepsItsDent) {
 
 TEST(BoxedBody, TickAllocatesNothing) {
   Simulation simulation = simulate(held_ring());
-  const double touch_m = tube_m + tool_radius_m;
-  for (int tick = 0; tick < 5; ++tick) simulation.advance(above(ring_m, touch_m - 1e-4 * tick));
+  const double touch_m = body_tube_m + tool_radius_m;
+  for (int tick = 0; tick < 5; ++tick) simulation.advance(above(body_ring_m, touch_m - 1e-4 * tick));
   const std::size_t before = allocation_count();
-  for (int tick = 0; tick < 20; ++tick) simulation.advance(above(ring_m, touch_m - 1e-4 * tick));
+  for (int tick = 0; tick < 20; ++tick) simulation.advance(above(body_ring_m, touch_m - 1e-4 * tick));
   EXPECT_EQ(allocation_count(), before);
 }
 
@@ -147,10 +148,10 @@ TEST(BoxedBody, RestsOnTheGround) {
     scene.bodies[0].material.youngs_modulus_pa = youngs_modulus_pa;
     scene.sculpting.gravity_m_per_s2 = {0.0, -9.81, 0.0};
     scene.sculpting.damping_per_s = 20.0;
-    scene.ground = Ground{{0.0, -tube_m, 0.0}, Vector3::UnitY(), 0.5};
+    scene.ground = Ground{{0.0, -body_tube_m, 0.0}, Vector3::UnitY(), 0.5};
     Simulation simulation = simulate(scene);
     for (int tick = 0; tick < 500; ++tick) simulation.advance(above(0.0, 0.1));
-    EXPECT_NEAR(lowest_m(simulation), -tube_m, 0.1 * tube_m) << youngs_modulus_pa;
+    EXPECT_NEAR(lowest_m(simulation), -body_tube_m, 0.1 * body_tube_m) << youngs_modulus_pa;
   }
 }
 

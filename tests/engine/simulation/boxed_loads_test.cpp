@@ -19,7 +19,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double ring_m = 0.03, tube_m = 0.01;
 
 // Ring about y: `around` runs about y and `along` about the tube.

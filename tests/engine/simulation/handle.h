@@ -12,5 +12,6 @@ Simulation simulate(const Scene& scene, InstructionSet set = InstructionSet::bas
 
 // Returns the input of a rigid hand at a position over the handle's centre line.
 ToolInput above(double x_m, double y_m, bool gripping = false);
+inline const ToolInput far_away = above(0.03, 0.2);
 
 }  // namespace spoonbill

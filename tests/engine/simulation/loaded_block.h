@@ -13,6 +13,8 @@ namespace spoonbill {
 // Selects the solver: springs, or the implicit solver.
 enum class Stepping { springs, implicitly };
 
+inline const BodyRegion block_start{{0.0, 0.0}}, block_end{{1.0, 1.0}};
+
 class LoadedBlock {
  public:
   // Puts a corner at the origin; a region's `along` runs along z. Damping lets the block come to rest.

@@ -31,7 +31,7 @@ MaterialRegion far_half_of(const Material& material) {
 }
 
 // Handle that is fixed at both ends.
-Scene held_handle(const Material& own, const std::vector<MaterialRegion>& regions) {
+Scene handle_with_regions(const Material& own, const std::vector<MaterialRegion>& regions) {
   Scene scene = small_handle();
   scene.bodies[0].material = own;
   scene.bodies[0].regions = regions;
@@ -44,7 +44,7 @@ Scene held_handle(const Material& own, const std::vector<MaterialRegion>& region
 
 TEST(MaterialRegions, WhatStepsABodyIsChosenByAllOfThem) {
   const auto implicit_nodes = [](const Material& own, const Material& other) {
-    Simulation simulation = simulate(held_handle(own, {far_half_of(other)}));
+    Simulation simulation = simulate(handle_with_regions(own, {far_half_of(other)}));
     Snapshot snapshot;
     simulation.write_snapshot(snapshot);
     return snapshot.bodies[0].material.implicit_nodes;
@@ -59,8 +59,8 @@ TEST(MaterialRegions, WhatStepsABodyIsChosenByAllOfThem) {
 TEST(MaterialRegions, AreSoftenedAlike) {
   const Material clay = small_handle().bodies[0].material;
   Simulation simulation =
-      simulate(held_handle(clay, {far_half_of(elastic("wood", 100.0 * clay.youngs_modulus_pa))}));
-  Simulation alone = simulate(held_handle(elastic("wood", 1e9), {}));
+      simulate(handle_with_regions(clay, {far_half_of(elastic("wood", 100.0 * clay.youngs_modulus_pa))}));
+  Simulation alone = simulate(handle_with_regions(elastic("wood", 1e9), {}));
   Snapshot snapshot;
   for (int tick = 0; tick < 20; ++tick) simulation.advance(above(0.03, 0.02));
   simulation.write_snapshot(snapshot);
@@ -74,7 +74,7 @@ TEST(MaterialRegions, AreSoftenedAlike) {
 
 TEST(MaterialRegions, TheSofterHalfIsDentedDeeper) {
   const auto dent_m = [](double x_m, const Material& near, const Material& far) {
-    Simulation simulation = simulate(held_handle(near, {far_half_of(far)}));
+    Simulation simulation = simulate(handle_with_regions(near, {far_half_of(far)}));
     Reaction reaction;
     for (int tick = 0; tick < 400; ++tick) {
       ToolInput input = above(x_m, 0.0085 - 2e-3 * std::min(1.0, tick / 200.0));
@@ -126,7 +126,7 @@ TEST(MaterialRegions, AToolSticksToOneHalfAndSlidesOnTheOther) {
   MaterialRegion rough;
   rough.region.along = {0.5, 1.0};
   rough.friction = 3.0;
-  const Scene scene = held_handle(elastic("rubber", 1e5, 0.02), {rough});
+  const Scene scene = handle_with_regions(elastic("rubber", 1e5, 0.02), {rough});
   Simulation smooth_side = simulate(scene), rough_side = simulate(scene);
   const double slid = slip_m(smooth_side, 0.02), stuck = slip_m(rough_side, 0.04);
   EXPECT_GT(slid, 0.4e-3);
@@ -139,7 +139,7 @@ TEST(MaterialRegions, ADraggedToolFeelsTheFrictionOfTheRegion) {
   MaterialRegion rough;
   rough.region.along = {0.5, 1.0};
   rough.friction = 0.5;
-  Simulation simulation = simulate(held_handle(elastic("rubber", 1e5, 0.1), {rough}));
+  Simulation simulation = simulate(handle_with_regions(elastic("rubber", 1e5, 0.1), {rough}));
   for (int tick = 0; tick < 200; ++tick) simulation.advance(above(0.015, 0.0095 - 1e-5 * tick));
   // Moving back and forth over the same points cancels the inclination of the bent surface.
   double drag[2] = {}, push[2] = {};
@@ -159,7 +159,8 @@ TEST(MaterialRegions, ADraggedToolFeelsTheFrictionOfTheRegion) {
 }
 
 TEST(MaterialRegions, ANewMaterialIsOfTheRestOfTheBody) {
-  Simulation simulation = simulate(held_handle(elastic("gel", 1e4), {far_half_of(elastic("rubber", 1e5))}));
+  Simulation simulation =
+      simulate(handle_with_regions(elastic("gel", 1e4), {far_half_of(elastic("rubber", 1e5))}));
   ASSERT_TRUE(simulation.apply(SetMaterial{elastic("other", 3e4, 0.7)}).ok());
   const LatticeMaterials& materials = simulation.lattice().materials();
   ASSERT_EQ(materials.materials.size(), 2u);
@@ -169,7 +170,7 @@ TEST(MaterialRegions, ANewMaterialIsOfTheRestOfTheBody) {
   Material cork = elastic("cork", 1e4);
   cork.poissons_ratio = 0.0;
   Simulation clay =
-      simulate(held_handle(small_handle().bodies[0].material, {far_half_of(elastic("gel", 1e4))}));
+      simulate(handle_with_regions(small_handle().bodies[0].material, {far_half_of(elastic("gel", 1e4))}));
   EXPECT_FALSE(clay.apply(SetMaterial{[&] {
                      Material plastic_cork = cork;
                      plastic_cork.plastic = true;
@@ -183,7 +184,7 @@ TEST(MaterialRegions, ANewMaterialIsOfTheRestOfTheBody) {
 // Materials belong to the cells: a bent body that keeps its shape keeps them.
 TEST(MaterialRegions, StayWhereTheyAreWhenAShapeIsKept) {
   const Material clay = small_handle().bodies[0].material;
-  Simulation simulation = simulate(held_handle(clay, {far_half_of(elastic("rubber", 1e5))}));
+  Simulation simulation = simulate(handle_with_regions(clay, {far_half_of(elastic("rubber", 1e5))}));
   for (int tick = 0; tick < 300; ++tick) simulation.advance(above(0.02, 0.0095 - 1e-5 * tick));
   const std::vector<std::uint8_t> before = simulation.lattice().materials().material_index;
   ASSERT_TRUE(simulation.apply(KeepShape{}).ok());
@@ -191,7 +192,7 @@ TEST(MaterialRegions, StayWhereTheyAreWhenAShapeIsKept) {
 }
 
 TEST(MaterialRegions, WrongOnesAreRefused) {
-  Scene scene = held_handle(elastic("gel", 1e4), {far_half_of(elastic("rubber", 1e5))});
+  Scene scene = handle_with_regions(elastic("gel", 1e4), {far_half_of(elastic("rubber", 1e5))});
   scene.bodies[0].regions[0].region.along = {0.9, 0.1};
   EXPECT_EQ(Simulation::make(scene, InstructionSet::baseline).error().message,
             "regions[0].along is [0.9, 0.1], must run from the lower to the higher");
@@ -204,8 +205,8 @@ TEST(MaterialRegions, WrongOnesAreRefused) {
 
 // Hexahedra achieve the requested elasticity, because they pass the patch test in any shape.
 TEST(MaterialRegions, WhatABodyAchievesIsReportedOfWhatStepsIt) {
-  Simulation wood = simulate(held_handle(elastic("gel", 1e4), {far_half_of(elastic("wood", 1e9))}));
-  Simulation gel = simulate(held_handle(elastic("gel", 1e4), {}));
+  Simulation wood = simulate(handle_with_regions(elastic("gel", 1e4), {far_half_of(elastic("wood", 1e9))}));
+  Simulation gel = simulate(handle_with_regions(elastic("gel", 1e4), {}));
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(wood.report().youngs_modulus_ratio[axis], 1.0, 1e-9);
     EXPECT_NEAR(wood.report().poissons_ratio[axis], 0.4, 1e-9);
@@ -242,7 +243,7 @@ TEST(MaterialRegions, NoStrokeBlowsThemUp) {
     const double from = random.uniform(0.0, 1.0), to_share = from + random.uniform(0.3, 0.9);
     skin.region.around = {from, to_share - std::floor(to_share)};
     skin.friction = random.uniform(0.0, 2.0);
-    Scene scene = held_handle(random_material(random, plainly_elastic), {half, skin});
+    Scene scene = handle_with_regions(random_material(random, plainly_elastic), {half, skin});
     scene.planes.pop_back();
     scene.tool.action = random.integer(0, 1) == 0 ? ToolAction::push : ToolAction::pull;
     scene.tool.iterations = random.integer(1, 8);
@@ -269,7 +270,8 @@ TEST(MaterialRegions, TicksAllocateNothing) {
   const Material clay = small_handle().bodies[0].material;
   for (const double youngs : {1e4, 1e9}) {
     for (const Material& own : {clay, elastic("rubber", 1e5)}) {
-      Simulation simulation = simulate(held_handle(own, {far_half_of(elastic("other", youngs, 0.5))}));
+      Simulation simulation =
+          simulate(handle_with_regions(own, {far_half_of(elastic("other", youngs, 0.5))}));
       simulation.advance(above(0.03, 0.02));
       const std::size_t before = allocation_count();
       for (int tick = 0; tick < 100; ++tick) simulation.advance(above(0.03, 0.0095 - 2e-5 * tick));
@@ -287,7 +289,7 @@ TEST(MaterialRegions, EveryInstructionSetGivesTheSameBits) {
   for (const Material& other : {elastic("gel", 1e4), elastic("wood", 1e9)}) {
     for (const Material& own : {clay, elastic("rubber", 1e5)}) {
       const auto hash_of = [&](InstructionSet set) {
-        Simulation simulation = simulate(held_handle(own, {far_half_of(other), rough}), set);
+        Simulation simulation = simulate(handle_with_regions(own, {far_half_of(other), rough}), set);
         for (int tick = 0; tick < 100; ++tick) {
           simulation.advance(above(0.025 + 1e-4 * tick, 0.0085 - 2e-5 * tick));
         }

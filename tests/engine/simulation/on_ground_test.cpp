@@ -18,7 +18,7 @@ namespace spoonbill {
 namespace {
 
 constexpr double g_m_per_s2 = 9.81;
-constexpr double degree = std::numbers::pi / 180.0;
+constexpr double degree_rad = std::numbers::pi / 180.0;
 
 // Block with its flat side at y = 0, on a ground from whose normal gravity deviates.
 class Incline {
@@ -89,21 +89,21 @@ double coulomb(double angle_rad, double friction) {
 TEST(OnGround, ABlockSlidesDownAnInclineAsCoulombSays) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     for (const double friction : {0.0, 0.2, 0.4}) {
-      Incline incline(30.0 * degree, friction, stepping);
+      Incline incline(30.0 * degree_rad, friction, stepping);
       const double allowed = stepping == Stepping::springs ? 0.01 : 1e-3;
-      EXPECT_NEAR(acceleration(incline) / coulomb(30.0 * degree, friction), 1.0, allowed) << friction;
+      EXPECT_NEAR(acceleration(incline) / coulomb(30.0 * degree_rad, friction), 1.0, allowed) << friction;
       EXPECT_LT(incline.deepest_m(), 5e-6);  // a thousandth of a cell
     }
   }
 }
 
-constexpr double friction_angle = 32.0 * degree;
+constexpr double friction_angle = 32.0 * degree_rad;
 
 // The sudden weight makes the block oscillate and slip slightly at first. Afterwards it sticks, except for
 // the rounding of its velocities.
 TEST(OnGround, ABlockSticksBelowTheAngleOfFriction) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
-    for (const double angle : {0.8 * friction_angle, friction_angle - degree}) {
+    for (const double angle : {0.8 * friction_angle, friction_angle - degree_rad}) {
       Incline incline(angle, std::tan(friction_angle), stepping);
       for (int tick = 0; tick < 500; ++tick) incline.tick();
       const double settled = incline.mean(false).x();
@@ -112,7 +112,7 @@ TEST(OnGround, ABlockSticksBelowTheAngleOfFriction) {
         incline.tick();
         force += incline.ground_force_n() / 1000.0;
       }
-      EXPECT_NEAR(incline.mean(false).x(), settled, 1e-8) << "in a second, at " << angle / degree;
+      EXPECT_NEAR(incline.mean(false).x(), settled, 1e-8) << "in a second, at " << angle / degree_rad;
       EXPECT_NEAR(force.x() / (-incline.weight_n() * std::sin(angle)), 1.0, 1e-3);
       EXPECT_NEAR(force.y() / (incline.weight_n() * std::cos(angle)), 1.0, 1e-3);
     }
@@ -121,10 +121,10 @@ TEST(OnGround, ABlockSticksBelowTheAngleOfFriction) {
 
 TEST(OnGround, ABlockSlidesBeyondTheAngleOfFriction) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
-    for (const double angle : {friction_angle + degree, 1.2 * friction_angle}) {
+    for (const double angle : {friction_angle + degree_rad, 1.2 * friction_angle}) {
       Incline incline(angle, std::tan(friction_angle), stepping);
       const double expected = coulomb(angle, std::tan(friction_angle));
-      EXPECT_NEAR(acceleration(incline) / expected, 1.0, 0.02) << angle / degree;
+      EXPECT_NEAR(acceleration(incline) / expected, 1.0, 0.02) << angle / degree_rad;
     }
   }
 }
@@ -167,8 +167,6 @@ Scene falling_handle(double youngs_modulus_pa) {
   scene.tool.iterations = 1;
   return scene;
 }
-
-const ToolInput far_away = above(0.03, 0.2);
 
 double highest_of_skin(const Simulation& simulation) {
   const Surface& surface = simulation.surface();

@@ -60,7 +60,7 @@ TEST(MappingResidual, IsWhereOneNodeMoves) {
   EXPECT_LT((place - mesh.nodes[static_cast<std::size_t>(node)]).norm(), 2.0 * mesh.mean_edge());
 }
 
-void press(Simulation& simulation, double to_y_m, int ticks) {
+void press_slowly(Simulation& simulation, double to_y_m, int ticks) {
   for (int t = 0; t <= ticks; ++t) {
     simulation.advance(above(0.03, 0.004 + (to_y_m - 0.004) * static_cast<double>(t) / ticks));
   }
@@ -80,7 +80,7 @@ double shown_residual_m(Simulation& simulation) {
   return snapshot.bodies.front().residual.largest_m;
 }
 
-double largest_difference(const Surface& one, const Surface& other) {
+double largest_difference_in_place(const Surface& one, const Surface& other) {
   double largest = 0.0;
   for (int a = 0; a < 48; ++a) {
     for (int b = 0; b <= 60; ++b) {
@@ -93,21 +93,21 @@ double largest_difference(const Surface& one, const Surface& other) {
 
 TEST(RefineKnots, KeepsTheShapeAndFollowsBetterThere) {
   Simulation plain = simulate(pointed_scene());
-  press(plain, 0.0015, 300);
+  press_slowly(plain, 0.0015, 300);
   const double left_m = shown_residual_m(plain);
   EXPECT_GT(left_m, 2e-5);
 
   Simulation refined = simulate(pointed_scene());
   for (int k = 1; k <= 3; ++k) {
-    press(refined, 0.0024 - 1e-4 * k, 100);
+    press_slowly(refined, 0.0024 - 1e-4 * k, 100);
     const Surface before = refined.surface();
     ASSERT_TRUE(refined.apply(RefineKnots{}).ok());
     EXPECT_EQ(refined.surface().net.rows, before.net.rows + 1);
     EXPECT_EQ(refined.surface().net.columns, before.net.columns + 1);
     EXPECT_EQ(refined.scene().bodies[0].surface.net.rows, before.net.rows + 1);
-    EXPECT_LT(largest_difference(refined.surface(), before), 1e-12);
+    EXPECT_LT(largest_difference_in_place(refined.surface(), before), 1e-12);
   }
-  press(refined, 0.0015, 300);
+  press_slowly(refined, 0.0015, 300);
   EXPECT_LT(shown_residual_m(refined), 0.8 * left_m);
 }
 
@@ -160,7 +160,7 @@ TEST(BodyMapping, FollowsKnotsOfEveryMultiplicity) {
   }
   Simulation simulation = simulate(scene);
   for (int tick = 0; tick < 200; ++tick) simulation.advance(above(0.03, 0.012 - 4e-5 * tick));
-  EXPECT_GT(largest_difference(simulation.surface(), surface), 1e-4);
+  EXPECT_GT(largest_difference_in_place(simulation.surface(), surface), 1e-4);
   EXPECT_LT(shown_residual_m(simulation), 1e-3);
 }
 

@@ -17,9 +17,9 @@
 namespace spoonbill {
 namespace {
 
-constexpr double arm_m = 0.04, bend_radius_m = 0.005, thick_m = 0.006;
+constexpr double arm_m = 0.04, bend_radius_m = 0.005, arm_thick_m = 0.006;
 // distance between the arms
-constexpr double gap_m = 2.0 * bend_radius_m - thick_m;
+constexpr double bend_gap_m = 2.0 * bend_radius_m - arm_thick_m;
 
 struct Station {
   Vector3 centre, along;
@@ -42,7 +42,7 @@ Body hairpin() {
   ControlNet net(around, along);
   for (int j = 0; j < along; ++j) {
     const Station at = hairpin_station(length * std::clamp((j - 1.0) / (along - 3.0), 0.0, 1.0));
-    const double radius = j == 0 || j == along - 1 ? 0.0 : 0.5 * thick_m;
+    const double radius = j == 0 || j == along - 1 ? 0.0 : 0.5 * arm_thick_m;
     const Vector3 side = at.along.cross(Vector3::UnitZ());
     for (int i = 0; i < around; ++i) {
       const double angle = -2.0 * std::numbers::pi * i / around;
@@ -202,7 +202,7 @@ TEST(SelfContact, PassesAPushOnWithinOneBody) {
     allocations += allocation_count() - allocated;
     ASSERT_TRUE(reaction.force_n.allFinite());
     EXPECT_EQ(reaction.flags & tick_flag_contact_overflow, 0u);
-    double& strongest = 1e-5 * tick < gap_m ? before : after;
+    double& strongest = 1e-5 * tick < bend_gap_m ? before : after;
     strongest = std::max(strongest, reaction.force_n.norm());
     if (tick % 20 == 0) deepest = std::max(deepest, depth_in_itself(simulation.surface()));
   }

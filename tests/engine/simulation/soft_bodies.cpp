@@ -31,4 +31,8 @@ double depth_between(const Surface& first, const Surface& second) {
   return deepest;
 }
 
+double lowest(const Surface& surface) {
+  return *std::min_element(surface.net.y.begin(), surface.net.y.end());
+}
+
 }  // namespace spoonbill

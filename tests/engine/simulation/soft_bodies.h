@@ -13,4 +13,7 @@ Material silicone();
 // the test.
 double depth_between(const Surface& first, const Surface& second);
 
+// The least height of a control point.
+double lowest(const Surface& surface);
+
 }  // namespace spoonbill

@@ -34,7 +34,7 @@ TriangleMesh ball() {
   return ball_mesh(10, 16, 0.006);
 }
 
-Scene held_handle(const Tool& tool) {
+Scene held_soft_handle(const Tool& tool) {
   Scene scene = small_handle();
   scene.bodies[0].material = silicone();
   scene.tool = tool;
@@ -160,12 +160,8 @@ TEST(SoftMesh, ComesToRestOnItsEdge) {
   EXPECT_LT(deepest, mesh_depth_limit_cells * cell) << deepest / cell;
 }
 
-double lowest(const Surface& surface) {
-  return *std::min_element(surface.net.y.begin(), surface.net.y.end());
-}
-
 TEST(SoftMesh, GivesWayAndReturns) {
-  Simulation simulation = simulate(held_handle(soft_tool(ball(), flesh(300))));
+  Simulation simulation = simulate(held_soft_handle(soft_tool(ball(), flesh(300))));
   const double before = lowest(simulation.surface());
   constexpr double start = 0.0095;
   simulation.advance(above(0.018, start));
@@ -207,7 +203,7 @@ TEST(SoftMesh, GivesWayAndReturns) {
 }
 
 TEST(SoftMesh, FollowsATurnOfTheHandAsARigidOneDoes) {
-  Simulation simulation = simulate(held_handle(soft_tool(ball(), flesh(300))));
+  Simulation simulation = simulate(held_soft_handle(soft_tool(ball(), flesh(300))));
   const Quaternion turn(Eigen::AngleAxisd(0.6, Vector3(1, 2, -1).normalized()));
   const Vector3 place(0.03, 0.04, 0.01);
   simulation.advance({{place, turn}, false, 0.0});
@@ -223,12 +219,12 @@ TEST(SoftMesh, FollowsATurnOfTheHandAsARigidOneDoes) {
 }
 
 TEST(SoftMesh, IsExchangedHashedAndLeftOutOfUndo) {
-  Simulation simulation = simulate(held_handle(Tool{}));
+  Simulation simulation = simulate(held_soft_handle(Tool{}));
   const Tool tool = soft_tool(ball(), flesh(300));
   ASSERT_TRUE(simulation.apply(SetTool{tool}).ok());
   for (int tick = 0; tick < 200; ++tick) simulation.advance(above(0.05, 0.0095 - 1e-5 * tick));
   EXPECT_EQ(simulation.shape().lattices.size(), 1u);
-  Simulation again = simulate(held_handle(Tool{}));
+  Simulation again = simulate(held_soft_handle(Tool{}));
   ASSERT_TRUE(again.apply(SetTool{tool}).ok());
   for (int tick = 0; tick < 200; ++tick) again.advance(above(0.05, 0.0095 - 1e-5 * tick));
   EXPECT_EQ(again.state_hash(), simulation.state_hash());
@@ -246,7 +242,7 @@ TEST(SoftMesh, IsExchangedHashedAndLeftOutOfUndo) {
 
 // All instruction sets give the same bits.
 TEST(SoftMesh, IsTheSameOnEveryInstructionSet) {
-  const Scene scene = held_handle(soft_tool(ball(), flesh(300)));
+  const Scene scene = held_soft_handle(soft_tool(ball(), flesh(300)));
   Simulation plain = simulate(scene), best = simulate(scene, best_instruction_set());
   for (int tick = 0; tick < 150; ++tick) {
     plain.advance(above(0.05, 0.0095 - 2e-5 * tick));
@@ -256,7 +252,7 @@ TEST(SoftMesh, IsTheSameOnEveryInstructionSet) {
 }
 
 TEST(SoftMesh, AllocatesNothingInATick) {
-  Simulation simulation = simulate(held_handle(soft_tool(ball(), flesh(300))));
+  Simulation simulation = simulate(held_soft_handle(soft_tool(ball(), flesh(300))));
   Snapshot snapshot;
   simulation.advance(above(0.05, 0.0095));
   simulation.write_snapshot(snapshot);
@@ -268,7 +264,7 @@ TEST(SoftMesh, AllocatesNothingInATick) {
 
 TEST(SoftMesh, IsRefusedWhereItCannotBe) {
   const auto refusal = [](const Tool& tool) {
-    const auto made = Simulation::make(held_handle(tool), InstructionSet::baseline);
+    const auto made = Simulation::make(held_soft_handle(tool), InstructionSet::baseline);
     return made.ok() ? Error(ErrorCode::internal, "") : made.error();
   };
   const auto expect = [&](const Tool& tool, ErrorCode code, const char* field) {

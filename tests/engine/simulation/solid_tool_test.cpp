@@ -41,10 +41,6 @@ Scene held_handle(const Tool& tool) {
   return scene;
 }
 
-double lowest(const Surface& surface) {
-  return *std::min_element(surface.net.y.begin(), surface.net.y.end());
-}
-
 // Lowers the tool onto the handle. Returns the mean force over the last hundred ticks, because the light free
 // end vibrates under the tool.
 Reaction press(Simulation& simulation, double from_m, double to_m, int ticks = 300, double x_m = 0.05) {

@@ -25,7 +25,7 @@ Material stiff_material(double youngs_modulus_pa) {
 }
 
 // Handle that is fixed behind x = 10 mm.
-Scene held_handle(double youngs_modulus_pa) {
+Scene held_stiff_handle(double youngs_modulus_pa) {
   Scene scene = small_handle();
   scene.bodies[0].material = stiff_material(youngs_modulus_pa);
   scene.planes.push_back({Vector3(plane_x_m, 0, 0), Vector3::UnitX()});
@@ -83,7 +83,7 @@ double sinking_at_rest_m(const Scene& scene, double force_n) {
 TEST(StiffBodies, BendUnderTheHandAsTheStaticSolverSays) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const double youngs : {2e9, 5e7}) {
-    const Scene scene = held_handle(youngs);
+    const Scene scene = held_stiff_handle(youngs);
     Simulation simulation = simulate(scene);
     Reaction reaction;
     // The hand moves 2 mm beyond the touch into the handle and waits.
@@ -126,7 +126,7 @@ TEST(StiffBodies, KeepTheShapeInWhichTheyAreCast) {
 TEST(StiffBodies, NoHandBlowsThemUp) {
   for (const double youngs : {2e6, 2e9, 193e9}) {
     if (sanitized && youngs != 2e9) continue;
-    Scene scene = held_handle(youngs);
+    Scene scene = held_stiff_handle(youngs);
     scene.planes.clear();
     Simulation simulation = simulate(scene);
     for (int tick = 0; tick < 1000; ++tick) {

@@ -11,6 +11,8 @@ namespace spoonbill {
 
 KnotVector open_domain(double start, double end);
 KnotVector periodic_domain(double start, double end);
+inline const KnotVector open_u = open_domain(0.0, 2.0), open_v = open_domain(-1.0, 1.0),
+                        periodic_u = periodic_domain(0.0, 1.0);
 
 // Counter-clockwise; run backwards it bounds a hole.
 std::vector<Eigen::Vector2d> rectangle(double low_u, double low_v, double high_u, double high_v);

@@ -14,10 +14,6 @@
 namespace spoonbill {
 namespace {
 
-const KnotVector open_u = open_domain(0.0, 2.0);
-const KnotVector open_v = open_domain(-1.0, 1.0);
-const KnotVector around = periodic_domain(0.0, 1.0);
-
 void expect_refused(const Result<TrimLoop>& loop, ErrorCode code) {
   ASSERT_FALSE(loop.ok());
   EXPECT_EQ(loop.error().code, code) << loop.error().message;
@@ -82,14 +78,14 @@ TEST(TrimLoop, RefusesWhatBoundsNothing) {
   expect_refused(make_polygon_loop(open_u, open_v, {{0, 0}, {1, 0}, {1, std::nan("")}}),
                  ErrorCode::out_of_range);
   expect_refused(make_polygon_loop(open_u, open_v, {{0, 0}, {HUGE_VAL, 0}, {1, 1}}), ErrorCode::out_of_range);
-  expect_refused(make_polygon_loop(around, open_v, {{0, 0}, {1.1, 0}, {1, 1}}), ErrorCode::out_of_range);
+  expect_refused(make_polygon_loop(periodic_u, open_v, {{0, 0}, {1.1, 0}, {1, 1}}), ErrorCode::out_of_range);
 }
 
 TEST(TrimLoop, RefusesCurvesThatAreOpen) {
   const auto knots = KnotVector::clamped_uniform(1, 3).value();
   const auto open = make_trim_loop(open_u, open_v, knots, {0, 1, 1}, {0, 0, 1});
   expect_refused(open, ErrorCode::mismatch);
-  const auto once = make_trim_loop(around, open_v, knots, {0, 0.5, 1}, {0, 0, 0});
+  const auto once = make_trim_loop(periodic_u, open_v, knots, {0, 0.5, 1}, {0, 0, 0});
   expect_refused(once, ErrorCode::unsupported);
   EXPECT_FALSE(make_trim_loop(open_u, open_v, knots, {0, 1, 1, 0}, {0, 0, 1, 0}).ok());
 }
@@ -153,12 +149,12 @@ TEST(TrimLoop, FollowsASurfaceRunThroughOtherwise) {
 
 TEST(TrimLoop, StaysWithinAPeriodOfTheDomainWhenTheSeamMoves) {
   for (const double middle : {0.05, 0.5, 0.95}) {
-    const TrimLoop loop = round_loop(around, open_v, {middle, 0.0}, 0.2, 6, true);
+    const TrimLoop loop = round_loop(periodic_u, open_v, {middle, 0.0}, 0.2, 6, true);
     for (const double seam : {0.0, 0.1, 0.5, 0.99}) {
-      const TrimLoop moved = with_seam_at(loop, Direction::u, around, seam);
+      const TrimLoop moved = with_seam_at(loop, Direction::u, periodic_u, seam);
       const Eigen::Vector2d gone = position(moved, 0.3) - position(loop, 0.3);
       EXPECT_NEAR(gone.x() + seam, std::round(gone.x() + seam), 1e-14);
-      EXPECT_TRUE(make_trim_loop(around, open_v, moved.knots, moved.u, moved.v).ok());
+      EXPECT_TRUE(make_trim_loop(periodic_u, open_v, moved.knots, moved.u, moved.v).ok());
     }
   }
 }

@@ -8,13 +8,10 @@
 
 #include "loops.h"
 #include "tests/engine/allocations.h"
+#include "tests/engine/trims/loops.h"
 
 namespace spoonbill {
 namespace {
-
-const KnotVector open_u = open_domain(0.0, 2.0);
-const KnotVector open_v = open_domain(-1.0, 1.0);
-const KnotVector around = periodic_domain(0.0, 1.0);
 
 TrimmedArea area_of(const KnotVector& u, const KnotVector& v, const std::vector<TrimLoop>& loops) {
   auto area = TrimmedArea::make(u, v, loops);
@@ -85,8 +82,8 @@ TEST(TrimmedArea, TheEndsOfTheDomainBelongToWhatLiesBesideThem) {
 
 TEST(TrimmedArea, AHoleAcrossTheSeamIsOneHole) {
   for (const double middle : {0.0, 0.06, 0.94, 1.0, 1.06}) {
-    const TrimLoop hole = round_loop(around, open_v, {middle, 0.0}, 0.1, 8, true);
-    const TrimmedArea area = area_of(around, open_v, {hole});
+    const TrimLoop hole = round_loop(periodic_u, open_v, {middle, 0.0}, 0.1, 8, true);
+    const TrimmedArea area = area_of(periodic_u, open_v, {hole});
     for (const double offset : {-0.05, 0.0, 0.05}) {
       for (const double turns : {-1.0, 0.0, 1.0}) {
         EXPECT_FALSE(area.contains(middle + offset + turns, 0.01)) << middle << " " << offset;
@@ -94,7 +91,7 @@ TEST(TrimmedArea, AHoleAcrossTheSeamIsOneHole) {
     }
     EXPECT_TRUE(area.contains(middle + 0.12, 0.0));
     EXPECT_TRUE(area.contains(middle - 0.12, 0.0));
-    EXPECT_NEAR(counted_share(area, around, open_v, 1000), 1.0 - round_loop_area(0.1, 8) / 2.0, 1e-4);
+    EXPECT_NEAR(counted_share(area, periodic_u, open_v, 1000), 1.0 - round_loop_area(0.1, 8) / 2.0, 1e-4);
   }
 }
 
@@ -103,23 +100,23 @@ TEST(TrimmedArea, ALoopOfOnePeriodKeepsABandWithoutAGap) {
     // Rounding at the seam neither tears nor turns it.
     for (const double rounding : {-1e-8, 0.0, 1e-8}) {
       const TrimLoop band =
-          polygon_loop(around, open_v, rectangle(start, -0.5, start + 1.0 + rounding, 0.25));
-      const TrimmedArea area = area_of(around, open_v, {band});
+          polygon_loop(periodic_u, open_v, rectangle(start, -0.5, start + 1.0 + rounding, 0.25));
+      const TrimmedArea area = area_of(periodic_u, open_v, {band});
       EXPECT_NEAR(area.remaining_fraction(), 0.75 / 2.0, 1e-7);
-      EXPECT_EQ(counted_share(area, around, open_v, 200), 0.375);
+      EXPECT_EQ(counted_share(area, periodic_u, open_v, 200), 0.375);
     }
   }
 }
 
 TEST(TrimmedArea, OnATorusLoopsCrossBothSeams) {
-  const TrimLoop hole = polygon_loop(around, around, backwards(rectangle(0.9, -0.2, 1.1, 0.1)));
-  const TrimmedArea area = area_of(around, around, {hole});
+  const TrimLoop hole = polygon_loop(periodic_u, periodic_u, backwards(rectangle(0.9, -0.2, 1.1, 0.1)));
+  const TrimmedArea area = area_of(periodic_u, periodic_u, {hole});
   EXPECT_FALSE(area.contains(0.05, 0.05));
   EXPECT_FALSE(area.contains(0.95, 0.05));
   EXPECT_FALSE(area.contains(0.95, 0.85));
   EXPECT_FALSE(area.contains(0.05, 0.85));
   EXPECT_TRUE(area.contains(0.5, 0.05));
-  EXPECT_NEAR(counted_share(area, around, around, 200), 1.0 - 0.06, 1e-12);
+  EXPECT_NEAR(counted_share(area, periodic_u, periodic_u, 200), 1.0 - 0.06, 1e-12);
 }
 
 TEST(TrimmedArea, RefusesLoopsThatContradictEachOther) {

@@ -34,7 +34,7 @@ Eigen::Vector2d parameters_at(const Surface& surface, double x_m, double z_m) {
 }
 
 // A flat sheet of clay, held at one end, with a round hole in its middle.
-Scene sheet(bool with_hole, Vector3* centre_m = nullptr) {
+Scene sheet_scene(bool with_hole, Vector3* centre_m = nullptr) {
   Scene scene = small_handle();
   Body& body = scene.bodies[0];
   body.surface = flat_sheet(side_m, side_m);
@@ -86,18 +86,18 @@ Descent come_down(const Scene& scene, const Vector3& over_m, double to_m) {
 
 TEST(TrimmedBody, ASphereFallsThroughAHoleWithoutForce) {
   Vector3 middle;
-  const Scene pierced = sheet(true, &middle);
+  const Scene pierced = sheet_scene(true, &middle);
   const Descent through = come_down(pierced, middle, -from_m);
   EXPECT_FALSE(through.touched);
   EXPECT_EQ(through.largest_n, 0.0);
-  const Descent whole = come_down(sheet(false), middle, 0.005);
+  const Descent whole = come_down(sheet_scene(false), middle, 0.005);
   EXPECT_TRUE(whole.touched);
   EXPECT_GT(whole.largest_n, 0.01);
 }
 
 TEST(TrimmedBody, ASphereIsFeltBesideAHoleWhereItTouches) {
   Vector3 middle;
-  const Scene pierced = sheet(true, &middle);
+  const Scene pierced = sheet_scene(true, &middle);
   const Vector3 beside = middle + Vector3(0.5 * hole_radius_m + 0.012, 0.0, 0.0);
   const Descent on_sheet = come_down(pierced, beside, 0.005);
   EXPECT_GT(on_sheet.largest_n, 0.01);
@@ -111,7 +111,7 @@ TEST(TrimmedBody, ASphereIsFeltBesideAHoleWhereItTouches) {
 
 TEST(TrimmedBody, ATickAllocatesNothing) {
   Vector3 middle;
-  Simulation simulation = simulate(sheet(true, &middle));
+  Simulation simulation = simulate(sheet_scene(true, &middle));
   ToolInput hand;
   hand.pose.position_m = middle + Vector3(0.0, tool_radius_m - 0.0005, 0.0085);
   simulation.advance(hand);
@@ -126,7 +126,7 @@ TEST(TrimmedBody, ATickAllocatesNothing) {
 }
 
 TEST(TrimmedBody, IsRefusedWithLoopsThatDoNotFit) {
-  Scene scene = sheet(true);
+  Scene scene = sheet_scene(true);
   scene.bodies[0].trims.push_back(scene.bodies[0].trims[0]);
   const auto simulation = Simulation::make(scene, InstructionSet::baseline);
   ASSERT_FALSE(simulation.ok());
@@ -135,7 +135,7 @@ TEST(TrimmedBody, IsRefusedWithLoopsThatDoNotFit) {
 
 TEST(TrimmedBody, TrimsStayWhenKnotsAreAdded) {
   Vector3 middle;
-  Simulation simulation = simulate(sheet(true, &middle));
+  Simulation simulation = simulate(sheet_scene(true, &middle));
   // Where there is something to follow.
   ToolInput hand;
   for (int tick = 0; tick < 100; ++tick) {
@@ -157,7 +157,7 @@ TEST(TrimmedBody, TrimsStayWhenKnotsAreAdded) {
 }
 
 TEST(TrimmedBody, KeptAreaShareIsThatOfTheMetres) {
-  const Scene pierced = sheet(true);
+  const Scene pierced = sheet_scene(true);
   const Body& body = pierced.bodies[0];
   const double hole_m2 = 0.5 * 200 * hole_radius_m * hole_radius_m * std::sin(2.0 * std::numbers::pi / 200);
   // Triangles of a flat sheet are exact where their corners are.

@@ -8,13 +8,10 @@
 #include "engine/bspline/grid.h"
 #include "engine/bspline/trimmed_area.h"
 #include "loops.h"
+#include "tests/engine/trims/loops.h"
 
 namespace spoonbill {
 namespace {
-
-const KnotVector open_u = open_domain(0.0, 2.0);
-const KnotVector open_v = open_domain(-1.0, 1.0);
-const KnotVector around = periodic_domain(0.0, 1.0);
 
 // (u, v) of a vertex. A sample on a seam that the grid leaves out is taken on the side of the triangle.
 struct Vertices {
@@ -142,20 +139,23 @@ TEST(TrimmedGrid, TakesLoopsThatLieOnGridLines) {
 TEST(TrimmedGrid, ClosesOverSeams) {
   for (const double middle : {0.0, 0.47, 0.97}) {
     const TrimmedArea tube =
-        TrimmedArea::make(around, open_v, {round_loop(around, open_v, {middle, 0.2}, 0.2, 6, true)}).value();
-    expect_covers(grid_of(around, open_v, 7, 5), tube, 1.0);
-    const TrimmedArea torus =
-        TrimmedArea::make(around, around, {round_loop(around, around, {middle, middle}, 0.2, 6, true)})
+        TrimmedArea::make(periodic_u, open_v, {round_loop(periodic_u, open_v, {middle, 0.2}, 0.2, 6, true)})
             .value();
-    expect_covers(grid_of(around, around, 7, 6), torus, 1.0);
+    expect_covers(grid_of(periodic_u, open_v, 7, 5), tube, 1.0);
+    const TrimmedArea torus =
+        TrimmedArea::make(periodic_u, periodic_u,
+                          {round_loop(periodic_u, periodic_u, {middle, middle}, 0.2, 6, true)})
+            .value();
+    expect_covers(grid_of(periodic_u, periodic_u, 7, 6), torus, 1.0);
   }
   // A grid that has the seam twice.
   const TrimmedArea tube =
-      TrimmedArea::make(around, open_v, {polygon_loop(around, open_v, rectangle(0.3, -0.5, 1.3, 0.3))})
+      TrimmedArea::make(periodic_u, open_v,
+                        {polygon_loop(periodic_u, open_v, rectangle(0.3, -0.5, 1.3, 0.3))})
           .value();
-  expect_covers(grid_of(around, open_v, 7, 5), tube, 1.0);
+  expect_covers(grid_of(periodic_u, open_v, 7, 5), tube, 1.0);
   const Grid twice =
-      make_grid(around, open_v, uniform_parameters(around, 8), uniform_parameters(open_v, 5)).value();
+      make_grid(periodic_u, open_v, uniform_parameters(periodic_u, 8), uniform_parameters(open_v, 5)).value();
   double covered = 0.0;
   const TrimmedGrid trimmed = trim_grid(twice.u, twice.v, tube);
   for (const Triangle& triangle : triangles_of(twice, trimmed)) covered += std::abs(triangle.area());

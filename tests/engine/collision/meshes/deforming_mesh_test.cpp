@@ -15,10 +15,6 @@
 namespace spoonbill {
 namespace {
 
-int points(int few) {
-  return random_cases(few, 50 * few);
-}
-
 // Bent, stretched and turned, without passing through itself.
 TriangleMesh bent(TriangleMesh mesh, double much) {
   for (Vector3& vertex : mesh.vertices_m) {
@@ -28,13 +24,13 @@ TriangleMesh bent(TriangleMesh mesh, double much) {
   return mesh;
 }
 
-std::vector<TriangleMesh> solids() {
+std::vector<TriangleMesh> deforming_solids() {
   return {box_of_triangles({-0.5, -0.7, -0.9}, {0.5, 0.7, 0.9}), ball_mesh(12, 20, 0.9),
           torus_mesh(24, 12, 0.8, 0.35)};
 }
 
 // Every second one where mistakes of sign hide: near a vertex, an edge or a face.
-Vector3 point_about(Random& random, const TriangleMesh& mesh, int index) {
+Vector3 point_near(Random& random, const TriangleMesh& mesh, int index) {
   if (index % 2 == 0) return random_point(random, 1.5);
   const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(
       random.integer(0, static_cast<int>(mesh.triangles.size()) - 1))];
@@ -47,14 +43,14 @@ Vector3 point_about(Random& random, const TriangleMesh& mesh, int index) {
 
 TEST(DeformingMesh, TellsTheNearestPointAndTheSideOfItAsBruteForceDoes) {
   Random random(5);
-  for (const TriangleMesh& rest : solids()) {
+  for (const TriangleMesh& rest : deforming_solids()) {
     DeformingMesh mesh(rest);
     for (const double much : {0.0, 1.0}) {
       const TriangleMesh now = bent(rest, much);
       mesh.mutable_vertices_m() = now.vertices_m;
       mesh.refit();
-      for (int p = 0; p < points(300); ++p) {
-        const Vector3 point = point_about(random, now, p);
+      for (int p = 0; p < random_point_count(300); ++p) {
+        const Vector3 point = point_near(random, now, p);
         const double distance = brute_distance(now, point);
         const auto nearest = mesh.nearest(point, 10.0);
         ASSERT_TRUE(nearest);
@@ -100,7 +96,7 @@ double volume_of(const TriangleMesh& mesh) {
 }
 
 TEST(MeshRefinement, KeepsTheShapeAndShortensEveryEdge) {
-  for (const TriangleMesh& mesh : solids()) {
+  for (const TriangleMesh& mesh : deforming_solids()) {
     for (const double longest : {0.4, 0.11}) {
       const TriangleMesh fine = refine_edges(mesh, longest, 100000).value();
       double found = 0.0;

@@ -16,10 +16,6 @@
 namespace spoonbill {
 namespace {
 
-int points(int few) {
-  return random_cases(few, 50 * few);
-}
-
 // Every second point near the surface, where mistakes of sign hide.
 Vector3 point_about(Random& random, const TriangleMesh& mesh, int index) {
   if (index % 2 == 0) return random_point(random, 1.8);
@@ -55,7 +51,7 @@ TriangleMesh hourglass() {
   return mesh;
 }
 
-std::vector<NamedMesh> solids() {
+std::vector<NamedMesh> named_solids() {
   return {{"box", box_of_triangles({-0.5, -0.7, -0.9}, {0.5, 0.7, 0.9})},
           {"ball", ball_mesh(12, 20, 0.9)},
           {"torus", torus_mesh(24, 12, 0.8, 0.35)},
@@ -69,11 +65,11 @@ std::vector<NamedMesh> solids() {
 }
 
 TEST(MeshDistance, AgreesWithAllTrianglesAndWithRays) {
-  for (const NamedMesh& solid : solids()) {
+  for (const NamedMesh& solid : named_solids()) {
     SCOPED_TRACE(solid.name);
     const MeshDistance distance(cleaned(soup(solid.mesh)));
     Random random(17);
-    for (int k = 0; k < points(400); ++k) {
+    for (int k = 0; k < random_point_count(400); ++k) {
       const Vector3 at = point_about(random, solid.mesh, k);
       const double expected = brute_distance(solid.mesh, at);
       const double found = distance.at(at).distance_m;
@@ -90,7 +86,7 @@ TEST(MeshDistance, OfABoxIsTheClosedForm) {
   const Vector3 half(0.5, 0.7, 0.9);
   const MeshDistance distance(cleaned(turned(box_of_triangles(-half, half))));
   Random random(4);
-  for (int k = 0; k < points(2000); ++k) {
+  for (int k = 0; k < random_point_count(2000); ++k) {
     const Vector3 at = random_point(random, 1.5);
     const Vector3 beyond = at.cwiseAbs() - half;
     const double expected = beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0);
@@ -101,7 +97,7 @@ TEST(MeshDistance, OfABoxIsTheClosedForm) {
 }
 
 std::vector<NamedMesh> everything() {
-  std::vector<NamedMesh> all = solids();
+  std::vector<NamedMesh> all = named_solids();
   all.push_back({"sheet", sheet_mesh(8, 0.4)});
   all.push_back({"moebius strip", moebius_strip(30)});
   all.push_back({"ball with a hole", with_hole(ball_mesh(12, 20, 0.9))});
@@ -124,7 +120,7 @@ TEST(MeshDistance, ChangesByNoMoreThanTheWayMoved) {
     SCOPED_TRACE(shape.name);
     const MeshDistance distance(cleaned(shape.mesh), 0.04);
     Random random(29);
-    for (int k = 0; k < points(1000); ++k) {
+    for (int k = 0; k < random_point_count(1000); ++k) {
       const Vector3 a = point_about(random, shape.mesh, k);
       const Vector3 b = a + random_point(random, k % 3 == 0 ? 1.0 : k % 3 == 1 ? 0.05 : 1e-4);
       const double change = std::abs(distance.at(a).distance_m - distance.at(b).distance_m);
@@ -143,7 +139,7 @@ TEST(MeshDistance, TheGradientLeadsToTheSurface) {
         clean.report.sheets == 0 && shape.name.find("overlapping") == std::string::npos;
     const MeshDistance distance(clean, 0.04);
     Random random(31);
-    for (int k = 0; k < points(300); ++k) {
+    for (int k = 0; k < random_point_count(300); ++k) {
       const Vector3 a = point_about(random, shape.mesh, k);
       const DistanceSample sample = distance.at(a);
       ASSERT_NEAR(sample.gradient.norm(), 1.0, 1e-12);
@@ -168,7 +164,7 @@ TEST(MeshDistance, AFilledHoleIsAsSolidAsTheRest) {
   const TriangleMesh ball = ball_mesh(12, 20, 0.9);
   const MeshDistance whole(cleaned(ball)), holed(cleaned(with_hole(ball)));
   Random random(6);
-  for (int k = 0; k < points(500); ++k) {
+  for (int k = 0; k < random_point_count(500); ++k) {
     const Vector3 at = random_point(random, 1.2);
     // A fan over one square of the ball lies within its bulge.
     ASSERT_NEAR(holed.at(at).distance_m, whole.at(at).distance_m, 0.03);
@@ -215,7 +211,7 @@ TEST(MeshDistance, KnowsWhatIsConvex) {
   const TriangleMesh ball = ball_mesh(12, 20, 0.9);
   const MeshDistance distance(cleaned(ball));
   Random random(11);
-  for (int k = 0; k < points(1000); ++k) {
+  for (int k = 0; k < random_point_count(1000); ++k) {
     const Vector3 a = point_about(random, ball, k), b = random_point(random, 1.5);
     const DistanceSample sample = distance.at(a);
     // The ball's corners lie within rounding of their neighbours' planes.
@@ -237,7 +233,7 @@ TEST(MeshDistance, TheWindingNumberIsThatOfAllTriangles) {
       mesh.triangles[k] = given.triangles[tree.order()[k]];
     const WindingNumber winding(mesh.vertices_m, mesh.triangles, tree);
     Random random(2);
-    for (int k = 0; k < points(400); ++k) {
+    for (int k = 0; k < random_point_count(400); ++k) {
       const Vector3 at = point_about(random, mesh, k);
       double sum = 0.0;
       for (const auto& [a, b, c] : mesh.triangles) {

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+
+#include "tests/engine/effort.h"
 
 namespace spoonbill {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 std::uint32_t number(int index) {
   return static_cast<std::uint32_t>(index);
@@ -206,6 +209,10 @@ bool brute_inside(const TriangleMesh& mesh, const Vector3& point, Random& random
 Vector3 random_point(Random& random, double extent_m) {
   const double x = random.uniform(-extent_m, extent_m), y = random.uniform(-extent_m, extent_m);
   return {x, y, random.uniform(-extent_m, extent_m)};
+}
+
+int random_point_count(int few) {
+  return random_cases(few, 50 * few);
 }
 
 }  // namespace spoonbill

@@ -31,5 +31,7 @@ double brute_distance(const TriangleMesh& mesh, const Vector3& point);
 bool brute_inside(const TriangleMesh& mesh, const Vector3& point, Random& random);
 
 Vector3 random_point(Random& random, double extent_m);
+// Fifty times as many where every case is asked for.
+int random_point_count(int few);
 
 }  // namespace spoonbill

@@ -11,7 +11,7 @@ namespace {
 
 const Triangle base = {Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)};
 
-struct Case {
+struct TriangleCase {
   const char* name;
   Triangle triangle;
 };
@@ -29,7 +29,7 @@ bool meets(const Triangle& a, const Triangle& b, double slack = 0.0) {
 }
 
 TEST(Triangles, MeetWhereTheyCrossOrTouch) {
-  const Case cases[] = {
+  const TriangleCase cases[] = {
       {"through the middle", {Vector3(.25, .25, -1), Vector3(.25, .25, 1), Vector3(2, 2, 0)}},
       {"over an edge", {Vector3(.5, -.5, -1), Vector3(.5, -.5, 1), Vector3(.5, .1, 0)}},
       {"coplanar, crossing", {Vector3(.2, .2, 0), Vector3(1.2, .2, 0), Vector3(.2, 1.2, 0)}},
@@ -39,17 +39,17 @@ TEST(Triangles, MeetWhereTheyCrossOrTouch) {
       {"a corner on the face", {Vector3(.25, .25, 0), Vector3(.25, .25, 1), Vector3(.5, .25, 1)}},
       {"a corner on an edge", {Vector3(.5, .5, 0), Vector3(1, 1, 1), Vector3(1, .5, 1)}},
   };
-  for (const Case& one : cases) EXPECT_TRUE(meets(base, one.triangle)) << one.name;
+  for (const TriangleCase& one : cases) EXPECT_TRUE(meets(base, one.triangle)) << one.name;
 }
 
 TEST(Triangles, DoNotMeetWhereTheyAreApart) {
-  const Case cases[] = {
+  const TriangleCase cases[] = {
       {"beyond an edge", {Vector3(2, 2, -1), Vector3(2, 2, 1), Vector3(3, 3, 0)}},
       {"a copy above", {Vector3(0, 0, 1e-6), Vector3(1, 0, 1e-6), Vector3(0, 1, 1e-6)}},
       {"coplanar, beyond", {Vector3(.6, .6, 0), Vector3(1, .6, 0), Vector3(.6, 1, 0)}},
       {"a corner lifted", {Vector3(.25, .25, 1e-9), Vector3(.25, .25, 1), Vector3(.5, .25, 1)}},
   };
-  for (const Case& one : cases) EXPECT_FALSE(meets(base, one.triangle)) << one.name;
+  for (const TriangleCase& one : cases) EXPECT_FALSE(meets(base, one.triangle)) << one.name;
 }
 
 TEST(Triangles, MeetWithinTheirSlack) {

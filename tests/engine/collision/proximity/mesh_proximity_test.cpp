@@ -10,6 +10,7 @@
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/collision/meshes/mesh_shapes.h"
+#include "tests/engine/collision/solids/implicit/support_function.h"
 #include "tests/engine/effort.h"
 
 namespace spoonbill {
@@ -22,11 +23,6 @@ int trials(int few) {
 TriangleMesh moved(TriangleMesh mesh, const Quaternion& turn, const Vector3& shift) {
   for (Vector3& vertex : mesh.vertices_m) vertex = turn * vertex + shift;
   return mesh;
-}
-
-Quaternion random_turn(Random& random) {
-  const Vector3 axis = random_point(random, 1.0);
-  return Quaternion(Eigen::AngleAxisd(random.uniform(0.0, 3.0), axis.normalized()));
 }
 
 std::vector<int> each_its_own(std::size_t vertices) {
@@ -87,7 +83,7 @@ class BruteSurface {
   std::vector<Sample> samples_;
 };
 
-struct Scene {
+struct EllipsoidScene {
   Surface surface = ellipsoid_tube(12, 12);
   NestedGrid nested = make_nested_grid(surface.u, surface.v, 1).value();
 };
@@ -103,7 +99,7 @@ TriangleMesh placed_mesh(Random& random, int trial) {
 
 TEST(MeshProximity, FindsEverySampleThatIsNear) {
   Random random(11);
-  const Scene scene;
+  const EllipsoidScene scene;
   constexpr double margin = 1e-3;
   int found = 0;
   for (int trial = 0; trial < trials(12); ++trial) {
@@ -142,7 +138,7 @@ TEST(MeshProximity, FindsEverySampleThatIsNear) {
 
 TEST(MeshProximity, FindsEveryVertexThatIsNear) {
   Random random(12);
-  const Scene scene;
+  const EllipsoidScene scene;
   const BruteSurface brute(scene.surface);
   constexpr double margin = 1e-3;
   int found = 0;
@@ -175,7 +171,7 @@ TEST(MeshProximity, FindsEveryVertexThatIsNear) {
 }
 
 TEST(MeshProximity, TellsTheDeepestOfAPatch) {
-  const Scene scene;
+  const EllipsoidScene scene;
   const TriangleMesh ball = ball_mesh(30, 40, 0.01, {0.0, 0.0195, 0.0});
   const DeformingMesh mesh(ball);
   MeshProximity all(scene.nested, each_its_own(ball.vertices_m.size()));
@@ -193,7 +189,7 @@ TEST(MeshProximity, TellsTheDeepestOfAPatch) {
 }
 
 TEST(MeshProximity, AllocatesNothing) {
-  const Scene scene;
+  const EllipsoidScene scene;
   const TriangleMesh ball = ball_mesh(30, 40, 0.01, {0.0, 0.0195, 0.0});
   const DeformingMesh mesh(ball);
   MeshProximity proximity(scene.nested, each_its_own(ball.vertices_m.size()));

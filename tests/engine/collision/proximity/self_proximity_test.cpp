@@ -12,47 +12,47 @@
 namespace spoonbill {
 namespace {
 
-constexpr double ring_m = 0.02, tube_m = 0.005, cell_m = 0.002, margin_m = 0.5 * cell_m;
-constexpr int around = 12, along = 24;
+constexpr double torus_ring_m = 0.02, torus_tube_m = 0.005, cell_m = 0.002, proximity_margin_m = 0.5 * cell_m;
+constexpr int torus_around = 12, torus_along = 24;
 
-// A torus about y, u around its tube, v along it from a control point, of `along`, on. `squeeze` is the share
-// of the middle line's width along x that is left.
+// A torus about y, u around its tube, v along it from a control point, of `torus_along`, on. `squeeze` is the
+// share of the middle line's width along x that is left.
 Surface torus(int first, double squeeze = 1.0) {
-  ControlNet net(around, along);
+  ControlNet net(torus_around, torus_along);
   const auto turn = [](int index, int count) { return 2.0 * std::numbers::pi * index / count; };
-  for (int i = 0; i < around; ++i) {
-    for (int j = 0; j < along; ++j) {
-      const double angle = turn(j + first, along), out = tube_m * std::cos(turn(i, around));
-      const Vector3 middle(squeeze * ring_m * std::cos(angle), 0.0, -ring_m * std::sin(angle));
+  for (int i = 0; i < torus_around; ++i) {
+    for (int j = 0; j < torus_along; ++j) {
+      const double angle = turn(j + first, torus_along), out = torus_tube_m * std::cos(turn(i, torus_around));
+      const Vector3 middle(squeeze * torus_ring_m * std::cos(angle), 0.0, -torus_ring_m * std::sin(angle));
       net.set_point(i, j,
-                    middle + Vector3(out * std::cos(angle), -tube_m * std::sin(turn(i, around)),
+                    middle + Vector3(out * std::cos(angle), -torus_tube_m * std::sin(turn(i, torus_around)),
                                      -out * std::sin(angle)));
     }
   }
-  return make_surface(KnotVector::periodic_uniform(3, around).value(),
-                      KnotVector::periodic_uniform(3, along).value(), std::move(net))
+  return make_surface(KnotVector::periodic_uniform(3, torus_around).value(),
+                      KnotVector::periodic_uniform(3, torus_along).value(), std::move(net))
       .value();
 }
 
-NestedGrid grid_of(const Surface& surface) {
+NestedGrid nested_grid_of(const Surface& surface) {
   return make_nested_grid(surface.u, surface.v, 1).value();
 }
 
 TEST(RestPairs, OfARingAreNeighboursOverTheSeamAsElsewhere) {
   const Surface ring = torus(0);
-  const RestPairs pairs(grid_of(ring).grid, ring, cell_m);
+  const RestPairs pairs(nested_grid_of(ring).grid, ring, cell_m);
   const auto can_meet = [&](double u, double v, double other_u, double beyond) {
     return pairs.can_meet(ring.u.into_domain(u), ring.v.into_domain(v), ring.u.into_domain(other_u),
                           ring.v.into_domain(v + beyond));
   };
-  const double element = (ring.v.domain_end() - ring.v.domain_start()) / along;
+  const double element = (ring.v.domain_end() - ring.v.domain_start()) / torus_along;
   int meet = 0, pairs_seen = 0;
-  for (int i = 0; i < around; ++i) {
-    for (int k = 0; k < around; ++k) {
-      for (int apart = 0; apart <= along / 2; ++apart) {
+  for (int i = 0; i < torus_around; ++i) {
+    for (int k = 0; k < torus_around; ++k) {
+      for (int apart = 0; apart <= torus_along / 2; ++apart) {
         const double u = ring.u.domain_start() + (i + 0.5) * element, other_u = u + (k - i) * element;
         const bool expected = can_meet(u, ring.v.domain_start() + 0.5 * element, other_u, apart * element);
-        for (int j = 1; j < along; ++j) {
+        for (int j = 1; j < torus_along; ++j) {
           const double v = ring.v.domain_start() + (j + 0.5) * element;
           EXPECT_EQ(can_meet(u, v, other_u, apart * element), expected) << i << ", " << k << ", " << apart;
         }
@@ -68,9 +68,9 @@ TEST(RestPairs, OfARingAreNeighboursOverTheSeamAsElsewhere) {
 // Of each sample in contact, in order.
 std::vector<double> gaps_m(int first, double squeeze) {
   const Surface rest = torus(first), now = torus(first, squeeze);
-  const NestedGrid nested = grid_of(rest);
+  const NestedGrid nested = nested_grid_of(rest);
   SelfProximity proximity(nested, rest, cell_m);
-  proximity.find(now, margin_m);
+  proximity.find(now, proximity_margin_m);
   EXPECT_FALSE(proximity.overflow());
   std::vector<double> gaps;
   for (const NearPoint& near : proximity.points()) {
@@ -82,18 +82,18 @@ std::vector<double> gaps_m(int first, double squeeze) {
 
 TEST(SelfProximity, OfARingAtRestIsNone) {
   const Surface ring = torus(0);
-  const NestedGrid nested = grid_of(ring);
+  const NestedGrid nested = nested_grid_of(ring);
   SelfProximity proximity(nested, ring, cell_m);
-  proximity.find(ring, margin_m);
+  proximity.find(ring, proximity_margin_m);
   EXPECT_TRUE(proximity.points().empty());
   EXPECT_TRUE(proximity.is_clear());
 }
 
 // The walls of its hole: where the seam of v is, and where it is not.
 TEST(SelfProximity, OfARingPressedTogetherIsAlikeOverTheSeam) {
-  for (const double gap_m : {0.4 * margin_m, -0.4 * margin_m}) {
-    const double squeeze = (tube_m + 0.5 * gap_m) / ring_m;
-    const std::vector<double> beside = gaps_m(along / 4, squeeze), over = gaps_m(0, squeeze);
+  for (const double gap_m : {0.4 * proximity_margin_m, -0.4 * proximity_margin_m}) {
+    const double squeeze = (torus_tube_m + 0.5 * gap_m) / torus_ring_m;
+    const std::vector<double> beside = gaps_m(torus_along / 4, squeeze), over = gaps_m(0, squeeze);
     EXPECT_GT(beside.size(), 10u);
     ASSERT_EQ(over.size(), beside.size()) << gap_m;
     for (std::size_t k = 0; k < over.size(); ++k) EXPECT_NEAR(over[k], beside[k], 1e-9) << gap_m;

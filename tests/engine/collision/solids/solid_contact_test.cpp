@@ -12,7 +12,7 @@
 namespace spoonbill {
 namespace {
 
-struct Case {
+struct SolidCase {
   Surface surface;
   ImplicitShape shape;
   Pose pose;
@@ -20,12 +20,12 @@ struct Case {
   bool closed = false;
 };
 
-struct Answer {
+struct SolidAnswer {
   CollisionResult result;
   double size;
 };
 
-Answer ask(const Case& contact, int levels = 2) {
+SolidAnswer ask(const SolidCase& contact, int levels = 2) {
   const NestedGrid nested = make_nested_grid(contact.surface.u, contact.surface.v, levels).value();
   SurfaceCollider collider(nested);
   EXPECT_TRUE(check_implicit_shape(contact.shape).ok());
@@ -36,8 +36,8 @@ Answer ask(const Case& contact, int levels = 2) {
           std::isfinite(bounds.size()) ? bounds.size() : 0.1};
 }
 
-void expect_contact(const Case& contact, double depth, const Vector3& normal) {
-  const Answer answer = ask(contact);
+void expect_contact(const SolidCase& contact, double depth, const Vector3& normal) {
+  const SolidAnswer answer = ask(contact);
   ASSERT_TRUE(answer.result.found);
   EXPECT_FALSE(answer.result.overflow);
   EXPECT_NEAR(answer.result.nearest.depth_m, depth, 1e-6 * answer.size);
@@ -66,7 +66,7 @@ TEST(SolidContact, SphereInABowl) {
   expect_contact({bowl, SphereShape{0.02}, {{0.0, 0.0185, 0.0}, {}}}, 0.0015, Vector3::UnitY());
   const double height = 0.04, square = (height - 0.5 / bend) / bend;
   const double ring = std::sqrt(square + (bend * square - height) * (bend * square - height));
-  const Answer answer = ask({bowl, SphereShape{0.03}, {{0.0, height, 0.0}, {}}});
+  const SolidAnswer answer = ask({bowl, SphereShape{0.03}, {{0.0, height, 0.0}, {}}});
   EXPECT_NEAR(answer.result.nearest.depth_m, 0.03 - ring, 1e-6 * answer.size);
   const Vector3 at = answer.result.nearest.point_m, normal(-2.0 * bend * at.x(), 1.0, -2.0 * bend * at.z());
   EXPECT_NEAR(at.x() * at.x() + at.z() * at.z(), square, 1e-8);
@@ -81,7 +81,7 @@ TEST(SolidContact, CylinderInAGutter) {
                  Vector3::UnitY());
   const double height = 0.04, square = (height - 0.5 / bend) / bend;
   const double line = std::sqrt(square + (bend * square - height) * (bend * square - height));
-  const Answer answer = ask({gutter, CylinderShape{0.03, 0.05}, {{0.0, height, 0.0}, along_z}});
+  const SolidAnswer answer = ask({gutter, CylinderShape{0.03, 0.05}, {{0.0, height, 0.0}, along_z}});
   EXPECT_NEAR(answer.result.nearest.depth_m, 0.03 - line, 1e-6 * answer.size);
 }
 
@@ -173,7 +173,7 @@ TEST(SolidContact, ConvexSolidsAboveAPlaneAreAsHighAsTheirSupport) {
 }
 
 TEST(SolidContact, TangentsSpanThePlane) {
-  const Answer answer =
+  const SolidAnswer answer =
       ask({quadric_sheet(0.08, 20.0, 5.0, 14), SphereShape{0.02}, {{0.03, 0.03, 0.01}, {}}});
   const SurfaceContact& at = answer.result.nearest;
   const SurfacePoint point = evaluate(quadric_sheet(0.08, 20.0, 5.0, 14), at.u, at.v);

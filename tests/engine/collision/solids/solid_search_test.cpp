@@ -50,11 +50,6 @@ KnotVector random_knots_to_degree_5(Random& random) {
   return random_knots(random, degree, kinds[random.integer(0, 2)]);
 }
 
-Quaternion random_turn(Random& random) {
-  const Vector3 axis = random_direction(random);
-  return Quaternion(Eigen::AngleAxisd(random.uniform(0.0, 3.1), axis));
-}
-
 // A pose that brings a random point of the surface near or into the solid.
 Pose pose_near_contact(Random& random, const Surface& surface, const Box& bounds) {
   const double u = random.uniform(surface.u.domain_start(), surface.u.domain_end());
@@ -152,8 +147,8 @@ TEST(SolidSearch, ANeedleBetweenSamplesIsFound) {
   }
 }
 
-CollisionResult ask(const Surface& surface, const ImplicitShape& shape, const Pose& pose, bool closed,
-                    double margin_m = 0.0) {
+CollisionResult search(const Surface& surface, const ImplicitShape& shape, const Pose& pose, bool closed,
+                       double margin_m = 0.0) {
   const NestedGrid nested = make_nested_grid(surface.u, surface.v, 2).value();
   SurfaceCollider collider(nested);
   const auto solid = make_signed_distance(shape);
@@ -167,12 +162,12 @@ TEST(SolidSearch, AToolFarLargerThanTheModelIsFound) {
   double top = 0.0;
   for (int k = 0; k < 1000000; ++k) top = std::max(top, position(body, 1e-6 * k, 0.5).y());
   const CollisionResult pressed =
-      ask(body, BoxShape{Vector3::Constant(0.5)}, {{0.1, top + 0.499, 0.2}, Quaternion::Identity()}, true);
+      search(body, BoxShape{Vector3::Constant(0.5)}, {{0.1, top + 0.499, 0.2}, Quaternion::Identity()}, true);
   ASSERT_TRUE(pressed.found);
   EXPECT_NEAR(pressed.nearest.depth_m, 0.001, 1e-9);
   EXPECT_GT(pressed.nearest.normal.y(), 0.99);
   EXPECT_FALSE(
-      ask(body, BoxShape{Vector3::Constant(0.5)}, {{0.1, top + 0.501, 0.2}, Quaternion::Identity()}, true)
+      search(body, BoxShape{Vector3::Constant(0.5)}, {{0.1, top + 0.501, 0.2}, Quaternion::Identity()}, true)
           .found);
 }
 
@@ -188,7 +183,7 @@ TEST(SolidSearch, AToolWhollyInsideIsFoundWithItsWayOut) {
     for (int trial = 0; trial < 10; ++trial) {
       const Quaternion turn = random_turn(random);
       const Pose pose{{0.03 * random.uniform(-1.0, 1.0), 0.0005 * trial, 0.006}, turn};
-      const CollisionResult result = ask(tube, shape, pose, true);
+      const CollisionResult result = search(tube, shape, pose, true);
       ASSERT_TRUE(result.found) << shape.index();
       const SurfaceContact& wall = result.nearest;
       // Behind the wall's plane the solid reaches as far as its support says.
@@ -196,7 +191,7 @@ TEST(SolidSearch, AToolWhollyInsideIsFoundWithItsWayOut) {
           wall.normal.dot(wall.point_m - pose.position_m) + support(shape, turn.conjugate() * -wall.normal);
       EXPECT_NEAR(wall.depth_m, behind, 2e-7) << shape.index();
       EXPECT_GT(wall.depth_m, 0.02 - 0.015) << shape.index();
-      EXPECT_FALSE(ask(tube, shape, pose, false).found) << shape.index();
+      EXPECT_FALSE(search(tube, shape, pose, false).found) << shape.index();
     }
   }
 }
@@ -205,11 +200,12 @@ TEST(SolidSearch, TouchingAnEdgeAPoleOrByATangentIsFound) {
   const Surface sheet = quadric_sheet(0.1, 0.0, 0.0, 8);
   const Quaternion none = Quaternion::Identity();
   // Over the sheet's edge and its corner.
-  const CollisionResult edge = ask(sheet, CapsuleShape{0.01, 0.02}, {{0.1 + 0.0099, 0.0, 0.03}, none}, false);
+  const CollisionResult edge =
+      search(sheet, CapsuleShape{0.01, 0.02}, {{0.1 + 0.0099, 0.0, 0.03}, none}, false);
   ASSERT_TRUE(edge.found);
   EXPECT_NEAR(edge.nearest.depth_m, 1e-4, 1e-9);
   const CollisionResult corner =
-      ask(sheet, SphereShape{0.01}, {{0.1 + 0.0069, 0.0, 0.1 + 0.0069}, none}, false);
+      search(sheet, SphereShape{0.01}, {{0.1 + 0.0069, 0.0, 0.1 + 0.0069}, none}, false);
   ASSERT_TRUE(corner.found);
   EXPECT_NEAR(corner.nearest.depth_m, 0.01 - 0.0069 * std::sqrt(2.0), 1e-9);
   // A pole, where all of u is one point.
@@ -217,7 +213,7 @@ TEST(SolidSearch, TouchingAnEdgeAPoleOrByATangentIsFound) {
     const Surface tube = ellipsoid_tube(12, 12), body = turned ? transposed(tube) : tube;
     // With its directions exchanged, its normals point inwards.
     const CollisionResult pole =
-        ask(body, BoxShape{Vector3::Constant(0.01)}, {{0.0, 0.0, 0.05 + 0.0095}, none}, !turned);
+        search(body, BoxShape{Vector3::Constant(0.01)}, {{0.0, 0.0, 0.05 + 0.0095}, none}, !turned);
     ASSERT_TRUE(pole.found);
     EXPECT_NEAR(pole.nearest.depth_m, 5e-4, 1e-9);
     const SurfaceContact& at = pole.nearest;
@@ -229,7 +225,8 @@ TEST(SolidSearch, TouchingAnEdgeAPoleOrByATangentIsFound) {
   }
   // Tangent, a hair in and a hair out.
   for (const double gap : {-2e-6, 3e-6}) {
-    EXPECT_EQ(ask(sheet, CylinderShape{0.01, 0.02}, {{0.0, 0.02 + gap, 0.0}, none}, false).found, gap < 0.0);
+    EXPECT_EQ(search(sheet, CylinderShape{0.01, 0.02}, {{0.0, 0.02 + gap, 0.0}, none}, false).found,
+              gap < 0.0);
   }
 }
 

@@ -18,7 +18,7 @@ std::vector<Vector3> points_of(const ControlNet& net) {
   return points;
 }
 
-double size_of(const std::vector<Vector3>& points) {
+double largest_extent(const std::vector<Vector3>& points) {
   Vector3 low = points[0], high = points[0];
   for (const Vector3& point : points) {
     low = low.cwiseMin(point);
@@ -27,7 +27,7 @@ double size_of(const std::vector<Vector3>& points) {
   return (high - low).maxCoeff();
 }
 
-double volume_of(const HullFacets& hull, const std::vector<Vector3>& points) {
+double hull_volume(const HullFacets& hull, const std::vector<Vector3>& points) {
   double six_volumes = 0.0;
   for (const auto& [a, b, c] : hull.triangles) six_volumes += points[a].dot(points[b].cross(points[c]));
   return six_volumes / 6.0;
@@ -49,7 +49,7 @@ void expect_closed(const HullFacets& hull) {
 
 // As far along any direction as the points themselves: the hull is neither too small nor too large.
 void expect_farthest(Random& random, const HullFacets& hull, const std::vector<Vector3>& points) {
-  const double step = size_of(points) * 0x1p-20;
+  const double step = largest_extent(points) * 0x1p-20;
   for (int k = 0; k < 200; ++k) {
     const Vector3 direction =
         Vector3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
@@ -89,7 +89,7 @@ TEST(HullFacets, OfALatticeInACubeAreTheCube) {
   for (int k = 0; k < 125; ++k) points.emplace_back(0.25 * (k / 25), 0.25 * (k / 5 % 5), 0.25 * (k % 5));
   const HullFacets hull = hull_facets(points);
   expect_closed(hull);
-  EXPECT_NEAR(volume_of(hull, points), 1.0, 1e-12);
+  EXPECT_NEAR(hull_volume(hull, points), 1.0, 1e-12);
   double length = 0.0;
   for (const auto& [a, b] : hull.edges) length += (points[a] - points[b]).norm();
   EXPECT_NEAR(length, 12.0, 1e-12) << "no edge within a side";

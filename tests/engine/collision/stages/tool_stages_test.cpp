@@ -14,7 +14,7 @@
 namespace spoonbill {
 namespace {
 
-struct Case {
+struct StagesCase {
   Surface surface;
   NestedGrid nested;
   std::shared_ptr<const SignedDistance> solid;
@@ -24,10 +24,10 @@ struct Case {
 };
 
 // A sphere or a box that touches the surface, or comes within the margin.
-Case touching_case(Random& random) {
+StagesCase touching_case(Random& random) {
   const Surface surface = random_surface(random);
-  Case made{surface, make_nested_grid(surface.u, surface.v, finest_stage_level).value(), nullptr, {}, 0.0,
-            {}};
+  StagesCase made{
+      surface, make_nested_grid(surface.u, surface.v, finest_stage_level).value(), nullptr, {}, 0.0, {}};
   const Vector3 at = position(made.surface, random.uniform(0.0, 1.0), random.uniform(0.0, 1.0));
   const Vector3 aside(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1));
   made.margin_m = random.integer(0, 1) == 0 ? 0.0 : 0.01;
@@ -49,7 +49,7 @@ int step_of(const LevelCell& cell) {
 }
 
 template <class Visit>
-void visit_points(const Case& made, const LevelCell& cell, int side, const Visit& visit) {
+void visit_points(const StagesCase& made, const LevelCell& cell, int side, const Visit& visit) {
   const auto& u = made.nested.grid.u.parameters;
   const auto& v = made.nested.grid.v.parameters;
   const int step = step_of(cell);
@@ -61,7 +61,7 @@ void visit_points(const Case& made, const LevelCell& cell, int side, const Visit
   }
 }
 
-bool holds(const Case& made, const LevelCell& cell, const SurfaceContact& contact) {
+bool holds(const StagesCase& made, const LevelCell& cell, const SurfaceContact& contact) {
   const auto& u = made.nested.grid.u.parameters;
   const auto& v = made.nested.grid.v.parameters;
   const int step = step_of(cell);
@@ -83,7 +83,7 @@ class ToolStagesOfRandomSurfaces : public ::testing::Test {
 };
 
 TEST_F(ToolStagesOfRandomSurfaces, SpheresHoldTheirPatches) {
-  for_cases([](const Case& made) {
+  for_cases([](const StagesCase& made) {
     ASSERT_FALSE(made.stages.spheres.empty());
     for (const StageSphere& sphere : made.stages.spheres) {
       double farthest = 0.0;
@@ -98,7 +98,7 @@ TEST_F(ToolStagesOfRandomSurfaces, SpheresHoldTheirPatches) {
 // Whatever was not looked at again has no point within the margin.
 TEST_F(ToolStagesOfRandomSurfaces, WhatIsDroppedDoesNotMeetTheTool) {
   int dropped = 0;
-  for_cases([&](const Case& made) {
+  for_cases([&](const StagesCase& made) {
     std::vector<StageSphere> coarsest;
     for (const StageSphere& sphere : made.stages.spheres) {
       if (sphere.cell.level == 0) coarsest.push_back(sphere);
@@ -125,7 +125,7 @@ TEST_F(ToolStagesOfRandomSurfaces, WhatIsDroppedDoesNotMeetTheTool) {
 }
 
 TEST_F(ToolStagesOfRandomSurfaces, WhatIsKeptIsRefined) {
-  for_cases([](const Case& made) {
+  for_cases([](const StagesCase& made) {
     int kept[finest_stage_level + 1] = {}, visited[finest_stage_level + 1] = {};
     for (const StageSphere& sphere : made.stages.spheres) {
       ++visited[sphere.cell.level];
@@ -137,7 +137,7 @@ TEST_F(ToolStagesOfRandomSurfaces, WhatIsKeptIsRefined) {
 }
 
 TEST_F(ToolStagesOfRandomSurfaces, ContactsLieInTrianglesAndKeptSpheresOfEachLevel) {
-  for_cases([](const Case& made) {
+  for_cases([](const StagesCase& made) {
     ASSERT_FALSE(made.stages.contacts.empty());
     for (const StageContact& contact : made.stages.contacts) {
       const auto& triangles = made.stages.triangles;
@@ -163,7 +163,7 @@ TEST_F(ToolStagesOfRandomSurfaces, ContactsLieInTrianglesAndKeptSpheresOfEachLev
 // A cell with a point in the tool has a triangle; a triangle is no farther from the tool than its cell's
 // surface may be, and than the smallest part that it was cut to.
 TEST_F(ToolStagesOfRandomSurfaces, TrianglesAreThoseThatMeetTheTool) {
-  for_cases([](const Case& made) {
+  for_cases([](const StagesCase& made) {
     const auto& triangles = made.stages.triangles;
     for (const StageSphere& sphere : made.stages.spheres) {
       if (sphere.cell.level < finest_stage_level || !sphere.kept) continue;

@@ -12,7 +12,7 @@ KnotVector knots_of(Random& random) {
   return random_knots(random, degree, random.integer(0, 2) == 0 ? KnotKind::periodic : KnotKind::clamped);
 }
 
-Vector3 random_direction(Random& random) {
+Vector3 pair_direction(Random& random) {
   for (;;) {
     const Vector3 v(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     if (v.norm() > 0.1 && v.norm() < 1.0) return v.normalized();
@@ -33,7 +33,7 @@ Vector3 folded(const Vector3& point) {
   return point.x() < 0.0 ? point : Vector3(-point.x(), 0.05 - 0.2 * point.y(), point.z());
 }
 
-Surface surface_of(Random& random, std::string& kind) {
+Surface any_surface(Random& random, std::string& kind) {
   Surface surface = random_surface(random, knots_of(random), knots_of(random));
   switch (random.integer(0, 3)) {
     case 0:
@@ -55,7 +55,7 @@ Surface surface_of(Random& random, std::string& kind) {
       surface.net.set_point(i, j, surface.net.point(i, j) + Vector3(0, random.uniform(1, 3), 0));
     }
   }
-  const Eigen::AngleAxisd turn(random.uniform(0, 6.28), random_direction(random));
+  const Eigen::AngleAxisd turn(random.uniform(0, 6.28), pair_direction(random));
   change_points(surface, [&](const Vector3& p) -> Vector3 { return turn * p; });
   return surface;
 }
@@ -68,10 +68,10 @@ void move(Surface& surface, const Vector3& by) {
 
 RandomPair random_pair(Random& random, double apart_m) {
   std::string kind;
-  Surface first = surface_of(random, kind);
+  Surface first = any_surface(random, kind);
   kind += " and ";
-  Surface second = surface_of(random, kind);
-  move(second, random.uniform(0, apart_m) * random_direction(random));
+  Surface second = any_surface(random, kind);
+  move(second, random.uniform(0, apart_m) * pair_direction(random));
   return {std::move(first), std::move(second), std::move(kind)};
 }
 

@@ -16,8 +16,8 @@ struct Ball {
   double radius;
 };
 
-Ball ball(const Surface& surface, double u0, double u1, double v0, double v1, double speed_u,
-          double speed_v) {
+Ball ball_over(const Surface& surface, double u0, double u1, double v0, double v1, double speed_u,
+               double speed_v) {
   return {u0,
           u1,
           v0,
@@ -30,7 +30,8 @@ Ball ball(const Surface& surface, double u0, double u1, double v0, double v1, do
 
 // The longest of degree (P[i+1] - P[i]) / (knot[i+degree+1] - knot[i+1]) along u, over the control points of
 // one element.
-double longest_by_u(const KnotVector& u, const KnotVector& v, int span_u, int span_v, const auto& point) {
+double longest_step_by_u(const KnotVector& u, const KnotVector& v, int span_u, int span_v,
+                         const auto& point) {
   const std::vector<double>& knots = u.extended_knots();
   double longest = 0.0;
   for (int a = 0; a < u.degree(); ++a) {
@@ -51,11 +52,11 @@ std::vector<Ball> balls_of(const Surface& surface) {
     for (std::size_t j = 0; j + 1 < vs.size(); ++j) {
       const int span_u = surface.u.find_span(0.5 * (us[i] + us[i + 1]));
       const int span_v = surface.v.find_span(0.5 * (vs[j] + vs[j + 1]));
-      const double speed_u = longest_by_u(surface.u, surface.v, span_u, span_v,
-                                          [&](int a, int b) { return surface.net.point(a, b); });
-      const double speed_v = longest_by_u(surface.v, surface.u, span_v, span_u,
-                                          [&](int a, int b) { return surface.net.point(b, a); });
-      balls.push_back(ball(surface, us[i], us[i + 1], vs[j], vs[j + 1], speed_u, speed_v));
+      const double speed_u = longest_step_by_u(surface.u, surface.v, span_u, span_v,
+                                               [&](int a, int b) { return surface.net.point(a, b); });
+      const double speed_v = longest_step_by_u(surface.v, surface.u, span_v, span_u,
+                                               [&](int a, int b) { return surface.net.point(b, a); });
+      balls.push_back(ball_over(surface, us[i], us[i + 1], vs[j], vs[j + 1], speed_u, speed_v));
     }
   }
   return balls;
@@ -63,7 +64,7 @@ std::vector<Ball> balls_of(const Surface& surface) {
 
 std::array<Ball, 2> halves(const Surface& surface, const Ball& of) {
   const auto part = [&](double u0, double u1, double v0, double v1) {
-    return ball(surface, u0, u1, v0, v1, of.speed_u, of.speed_v);
+    return ball_over(surface, u0, u1, v0, v1, of.speed_u, of.speed_v);
   };
   const double u = 0.5 * (of.u0 + of.u1), v = 0.5 * (of.v0 + of.v1);
   if ((of.u1 - of.u0) * of.speed_u > (of.v1 - of.v0) * of.speed_v) {

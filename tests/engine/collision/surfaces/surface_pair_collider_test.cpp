@@ -14,14 +14,12 @@
 namespace spoonbill {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-struct Answer {
+struct PairAnswer {
   PairResult result;
   std::vector<PairContact> contacts;
 };
 
-Answer collide(const Surface& first, const Surface& second, const PairQuery& query, int levels = 2) {
+PairAnswer collide(const Surface& first, const Surface& second, const PairQuery& query, int levels = 2) {
   const NestedGrid a = make_nested_grid(first.u, first.v, levels).value();
   const NestedGrid b = make_nested_grid(second.u, second.v, levels).value();
   SurfacePairCollider collider(a, b);
@@ -64,7 +62,7 @@ constexpr double exact_normal = 1e-7;
 TEST(SurfacePair, AParaboloidReachesThroughAPlaneByItsVertex) {
   const Surface plane = paraboloid(0, 0, 0);
   for (const double depth : {1e-5, 1e-3, 0.02, 0.3}) {
-    const Answer answer = collide(paraboloid(0.9, 0.7, -depth), plane, {});
+    const PairAnswer answer = collide(paraboloid(0.9, 0.7, -depth), plane, {});
     ASSERT_EQ(answer.contacts.size(), 1u) << depth;
     const PairContact& contact = answer.contacts[0];
     EXPECT_NEAR(contact.depth_m, depth, exact_m);
@@ -76,7 +74,7 @@ TEST(SurfacePair, AParaboloidReachesThroughAPlaneByItsVertex) {
 
 TEST(SurfacePair, CrossedCylindersMeetOnTheirRidges) {
   const double depth = 0.01;
-  const Answer answer = collide(paraboloid(0.8, 0, -depth), paraboloid(0, -0.6, 0), {});
+  const PairAnswer answer = collide(paraboloid(0.8, 0, -depth), paraboloid(0, -0.6, 0), {});
   ASSERT_EQ(answer.contacts.size(), 1u);
   EXPECT_NEAR(answer.contacts[0].depth_m, depth, exact_m);
   EXPECT_LT((answer.contacts[0].normal - Vector3(0, 0, 1)).norm(), exact_normal);
@@ -84,7 +82,7 @@ TEST(SurfacePair, CrossedCylindersMeetOnTheirRidges) {
 
 TEST(SurfacePair, ADeeperBowlTouchesAShallowOneAtTheBottom) {
   const double depth = 0.004;
-  const Answer answer = collide(paraboloid(2, 2, -depth), paraboloid(0.5, 0.5, 0), {});
+  const PairAnswer answer = collide(paraboloid(2, 2, -depth), paraboloid(0.5, 0.5, 0), {});
   ASSERT_EQ(answer.contacts.size(), 1u);
   EXPECT_NEAR(answer.contacts[0].depth_m, depth, exact_m);
 }
@@ -98,14 +96,14 @@ TEST(SurfacePair, TouchingPlanesAndVerticesCount) {
 
 TEST(SurfacePair, KnowsHowFarApartTheyAre) {
   PairQuery query;
-  query.reach_m = infinity;
-  const Answer answer = collide(paraboloid(0.9, 0.7, 0.25), paraboloid(-0.4, -0.3, 0), query);
+  query.reach_m = std::numeric_limits<double>::infinity();
+  const PairAnswer answer = collide(paraboloid(0.9, 0.7, 0.25), paraboloid(-0.4, -0.3, 0), query);
   EXPECT_FALSE(answer.result.touching);
   EXPECT_NEAR(answer.result.distance_m, 0.25, exact_m);
   EXPECT_LT((answer.result.nearest.first_m - Vector3(0, 0, 0.25)).norm(), 1e-6);
   query.reach_m = 0.2;
   EXPECT_EQ(collide(paraboloid(0.9, 0.7, 0.25), paraboloid(-0.4, -0.3, 0), query).result.distance_m,
-            infinity);
+            std::numeric_limits<double>::infinity());
 }
 
 TEST(SurfacePair, TwoDentsAreTwoRegions) {
@@ -121,7 +119,7 @@ TEST(SurfacePair, TwoDentsAreTwoRegions) {
   Surface plane = paraboloid(0, 0, 0);
   for (double& x : plane.net.x) x *= 10;
   for (double& y : plane.net.y) y *= 10;
-  const Answer answer = collide(make_surface(along, across, net).value(), plane, {}, 3);
+  const PairAnswer answer = collide(make_surface(along, across, net).value(), plane, {}, 3);
   ASSERT_EQ(answer.contacts.size(), 2u);
   for (const PairContact& contact : answer.contacts) {
     // At its peak, a uniform quadratic basis function is 3/4 in each direction.
@@ -136,11 +134,11 @@ TEST(SurfacePair, ABoxInABoxLeavesByTheNearestWall) {
   query.first_closed = query.second_closed = true;
   const Surface outer = box({0.5, 0.4, 0.3}, Vector3::Zero());
   const Surface inner = box({0.1, 0.1, 0.1}, {0.35, 0, 0.02});
-  const Answer answer = collide(inner, outer, query);
+  const PairAnswer answer = collide(inner, outer, query);
   ASSERT_TRUE(answer.result.touching && answer.result.contained);
   EXPECT_NEAR(answer.contacts[0].depth_m, 0.05 + 0.2, 1e-6);
   EXPECT_LT((answer.contacts[0].normal - Vector3(1, 0, 0)).norm(), 1e-6);
-  const Answer swapped = collide(outer, inner, query);
+  const PairAnswer swapped = collide(outer, inner, query);
   ASSERT_TRUE(swapped.result.contained);
   EXPECT_LT((swapped.contacts[0].normal + Vector3(1, 0, 0)).norm(), 1e-6);
   // Surfaces that bound nothing hold nothing.
@@ -159,11 +157,11 @@ TEST(SurfacePair, ATinyBodyInAFineOneLeavesByTheNearestWall) {
     for (double& value : *values) value /= 900.0;
   }
   move(inner, {0.0, 0.0, 0.004});
-  const Answer answer = collide(inner, outer, query);
+  const PairAnswer answer = collide(inner, outer, query);
   ASSERT_TRUE(answer.result.contained);
   EXPECT_FALSE(answer.result.overflow);
   // Out by the wall that dense samples of the outer body say is nearest.
-  double nearest = infinity;
+  double nearest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 400; ++i) {
     for (int j = 0; j <= 400; ++j) {
       nearest = std::min(nearest, (position(outer, i / 400.0, j / 400.0) - Vector3(0, 0, 0.004)).norm());
@@ -176,11 +174,11 @@ TEST(SurfacePair, ATinyBodyInAFineOneLeavesByTheNearestWall) {
 TEST(SurfacePair, PolesMeet) {
   PairQuery query;
   query.first_closed = query.second_closed = true;
-  query.reach_m = infinity;
+  query.reach_m = std::numeric_limits<double>::infinity();
   // The poles lie 0.05 from the centres.
   const Surface first = ellipsoid_tube(10, 8);
   EXPECT_NEAR(collide(ellipsoid_tube(9, 7, {0, 0, 0.1001}), first, query).result.distance_m, 1e-4, exact_m);
-  const Answer answer = collide(ellipsoid_tube(9, 7, {0, 0, 0.0999}), first, query);
+  const PairAnswer answer = collide(ellipsoid_tube(9, 7, {0, 0, 0.0999}), first, query);
   ASSERT_EQ(answer.contacts.size(), 1u);
   EXPECT_NEAR(answer.contacts[0].depth_m, 1e-4, exact_m);
   EXPECT_LT((answer.contacts[0].normal - Vector3(0, 0, 1)).norm(), 1e-5);
@@ -242,7 +240,7 @@ TEST(SurfacePair, CoincidentSheetsAreOneRegionAndNothingOverflows) {
       net.set_point(i, j, {0.1 * i, 0.1 * std::sin(0.3 * i) * std::cos(0.2 * j), 0.1 * j});
   }
   const Surface sheet = make_surface(knots, knots, net).value();
-  const Answer answer = collide(sheet, sheet, {}, 3);
+  const PairAnswer answer = collide(sheet, sheet, {}, 3);
   EXPECT_TRUE(answer.result.touching);
   EXPECT_FALSE(answer.result.overflow);
   ASSERT_EQ(answer.contacts.size(), 1u);
@@ -257,7 +255,7 @@ TEST(SurfacePair, AllocatesNothing) {
   const std::size_t before = allocation_count();
   collider.collide(first, second, {});
   PairQuery far;
-  far.reach_m = infinity;
+  far.reach_m = std::numeric_limits<double>::infinity();
   collider.collide(first, second, far);
   EXPECT_EQ(allocation_count(), before);
 }
@@ -273,7 +271,7 @@ TEST(SurfacePair, NoCommonPointIsMissed) {
                       random.uniform(surface.v.domain_start(), surface.v.domain_end()));
     };
     move(pair.second, somewhere(pair.first) - somewhere(pair.second));
-    const Answer answer = collide(pair.first, pair.second, {}, 1);
+    const PairAnswer answer = collide(pair.first, pair.second, {}, 1);
     if (!answer.result.touching) ++missed[pair.kind];
   }
   for (const auto& [kind, count] : missed) ADD_FAILURE() << count << " missed, " << kind;
@@ -291,8 +289,8 @@ TEST(SurfacePair, AgreesWithDenseSamplesWhereTheyAreApart) {
     if (!(bounds.low_m > 0.0)) continue;
     ++apart;
     PairQuery query;
-    query.reach_m = infinity;
-    const Answer answer = collide(pair.first, pair.second, query, 1);
+    query.reach_m = std::numeric_limits<double>::infinity();
+    const PairAnswer answer = collide(pair.first, pair.second, query, 1);
     EXPECT_FALSE(answer.result.overflow) << trial << ' ' << pair.kind;
     EXPECT_FALSE(answer.result.touching) << trial << ' ' << pair.kind;
     EXPECT_GE(answer.result.distance_m, bounds.low_m) << trial << ' ' << pair.kind;

@@ -18,12 +18,12 @@
 namespace spoonbill {
 namespace {
 
-struct Answer {
+struct SelfAnswer {
   SelfResult result;
   std::vector<PairContact> contacts;
 };
 
-Answer collide(const Surface& surface, bool closed = false, int levels = 2) {
+SelfAnswer collide_with_itself(const Surface& surface, bool closed = false, int levels = 2) {
   const NestedGrid nested = make_nested_grid(surface.u, surface.v, levels).value();
   SurfaceSelfCollider collider(nested);
   const SelfResult result = collider.collide(surface, {closed});
@@ -82,18 +82,20 @@ Surface figure_eight() {
 }
 
 TEST(SurfaceSelf, SheetsAreClearOfThemselves) {
-  EXPECT_FALSE(collide(quadric_sheet(1.0, 0.0, 0.0, 6)).result.touching) << "flat";
-  EXPECT_FALSE(collide(quadric_sheet(1.0, 0.8, -0.6, 6)).result.touching) << "a saddle";
-  EXPECT_FALSE(collide(quadric_sheet(1.0, 0.8, 0.6, 3), false, 0).result.touching) << "one element";
+  EXPECT_FALSE(collide_with_itself(quadric_sheet(1.0, 0.0, 0.0, 6)).result.touching) << "flat";
+  EXPECT_FALSE(collide_with_itself(quadric_sheet(1.0, 0.8, -0.6, 6)).result.touching) << "a saddle";
+  EXPECT_FALSE(collide_with_itself(quadric_sheet(1.0, 0.8, 0.6, 3), false, 0).result.touching)
+      << "one element";
 }
 
 TEST(SurfaceSelf, SeamsAndPolesAreNoContact) {
   for (const int levels : {0, 1, 2, 3}) {
-    EXPECT_FALSE(collide(ellipsoid_tube(12, 12), true, levels).result.touching) << levels;
-    EXPECT_FALSE(collide(transposed(ellipsoid_tube(9, 14)), false, levels).result.touching) << levels;
+    EXPECT_FALSE(collide_with_itself(ellipsoid_tube(12, 12), true, levels).result.touching) << levels;
+    EXPECT_FALSE(collide_with_itself(transposed(ellipsoid_tube(9, 14)), false, levels).result.touching)
+        << levels;
   }
-  EXPECT_FALSE(collide(round_tube(0.02, 0.1)).result.touching);
-  EXPECT_FALSE(collide(round_torus(0.05, 0.02), true, 1).result.touching);
+  EXPECT_FALSE(collide_with_itself(round_tube(0.02, 0.1)).result.touching);
+  EXPECT_FALSE(collide_with_itself(round_torus(0.05, 0.02), true, 1).result.touching);
 }
 
 // Open knots whose ends lie on each other are a seam as well.
@@ -105,14 +107,15 @@ TEST(SurfaceSelf, ATubeClosedByItsEndsIsNoContact) {
     curve.emplace_back(std::cos(angle), 0.0, std::sin(angle));
   }
   curve[8] = curve[0];
-  EXPECT_FALSE(collide(drawn_out(knots, curve)).result.touching);
+  EXPECT_FALSE(collide_with_itself(drawn_out(knots, curve)).result.touching);
   curve[0] = {1.6, 0, -0.4};
   curve[8] = {1.5, 0, 0.2};
-  EXPECT_TRUE(collide(drawn_out(knots, curve)).result.touching) << "one end passed through the other";
+  EXPECT_TRUE(collide_with_itself(drawn_out(knots, curve)).result.touching)
+      << "one end passed through the other";
 }
 
 TEST(SurfaceSelf, ALoopCrossesWhereTheClosedFormSays) {
-  const Answer answer = collide(looped_sheet());
+  const SelfAnswer answer = collide_with_itself(looped_sheet());
   ASSERT_EQ(answer.contacts.size(), 1u);
   const PairContact& contact = answer.contacts[0];
   const bool swapped = contact.first.u0 > 0.0;
@@ -134,7 +137,7 @@ TEST(SurfaceSelf, ALoopCrossesWhereTheClosedFormSays) {
 // The walls are flat where they are deepest, so that the depth is the gap to rounding.
 TEST(SurfaceSelf, APressedTubeIsAsDeepInItselfAsItsWallsHavePassed) {
   for (const double depth : {0.05, 0.01, 1e-3}) {
-    const Answer answer = collide(pressed_tube(-10.0 * depth), true);
+    const SelfAnswer answer = collide_with_itself(pressed_tube(-10.0 * depth), true);
     ASSERT_EQ(answer.contacts.size(), 2u) << "it crosses itself on the left and on the right";
     for (const PairContact& contact : answer.contacts) {
       EXPECT_NEAR(contact.depth_m, depth, 1e-9);
@@ -145,12 +148,12 @@ TEST(SurfaceSelf, APressedTubeIsAsDeepInItselfAsItsWallsHavePassed) {
 }
 
 TEST(SurfaceSelf, ATubeWhoseWallsTouchIsInContactAndOneWithAGapIsNot) {
-  EXPECT_TRUE(collide(pressed_tube(0.0), true).result.touching);
-  EXPECT_FALSE(collide(pressed_tube(5e-5), true).result.touching) << "five micrometres apart";
+  EXPECT_TRUE(collide_with_itself(pressed_tube(0.0), true).result.touching);
+  EXPECT_FALSE(collide_with_itself(pressed_tube(5e-5), true).result.touching) << "five micrometres apart";
 }
 
 TEST(SurfaceSelf, AFigureOfEightCrossesInItsMiddle) {
-  const Answer answer = collide(figure_eight());
+  const SelfAnswer answer = collide_with_itself(figure_eight());
   ASSERT_EQ(answer.contacts.size(), 1u);
   const PairContact& contact = answer.contacts[0];
   const bool swapped = contact.first.u0 > 0.4;
@@ -171,7 +174,8 @@ TEST(SurfaceSelf, ACrossingInTheSeamIsOneContact) {
     const double angle = 2.0 * std::numbers::pi * (k + 2) / eight_points;
     curve.emplace_back(std::sin(angle), 0.0, 0.5 * std::sin(2.0 * angle));
   }
-  EXPECT_EQ(collide(drawn_out(KnotVector::periodic_uniform(3, eight_points).value(), curve)).contacts.size(),
+  EXPECT_EQ(collide_with_itself(drawn_out(KnotVector::periodic_uniform(3, eight_points).value(), curve))
+                .contacts.size(),
             1u);
 }
 

@@ -24,6 +24,7 @@
 #include "engine/inspection/surface_check.h"
 #include "tests/engine/bspline/tube.h"
 #include "tests/engine/exchange/cad/cad_surfaces.h"
+#include "tests/engine/exchange/cad/occt_shapes.h"
 #include "tests/engine/exchange/sample_document.h"
 
 namespace spoonbill {
@@ -161,14 +162,6 @@ TEST_F(CadRoundTrip, StepFilesHoldOnlyAscii) {
   ASSERT_TRUE(content);
   for (const char letter : content->text) EXPECT_GE(letter, 0);
   EXPECT_NE(content->text.find("L\\X2\\00F6\\X0\\ffel"), std::string::npos);
-}
-
-template <class Reader>
-TopoDS_Shape shape_in(const std::filesystem::path& file) {
-  Reader reader;
-  EXPECT_EQ(reader.ReadFile(file.c_str()), IFSelect_RetDone);
-  reader.TransferRoots();
-  return reader.OneShape();
 }
 
 TEST_F(CadRoundTrip, BodiesThatCloseAreValidSolidsOfTheirVolume) {

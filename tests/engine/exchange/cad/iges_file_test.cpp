@@ -84,7 +84,7 @@ std::string sheet_at(double x) {
          left + ",20.,3.," + right + ",20.,0.,0.,1.,0.,1.";
 }
 
-struct Found {
+struct FoundInIges {
   std::vector<CadSurface> surfaces;
   CadModel model;
   std::string refusal;
@@ -94,10 +94,10 @@ class IgesFile : public testing::Test {
  protected:
   static void SetUpTestSuite() { prepare_occt(); }
 
-  Found read(const std::string& text) const {
+  FoundInIges read(const std::string& text) const {
     CadReading reading;
     reading.format = FileFormat::iges;
-    Found found;
+    FoundInIges found;
     auto model = read_cad(folder_.write("a.igs", text), reading,
                           [&](CadSurface part) { found.surfaces.push_back(std::move(part)); });
     if (!model) found.refusal = model.error().message;
@@ -118,7 +118,7 @@ class IgesFile : public testing::Test {
 };
 
 TEST_F(IgesFile, WhatIsWholeIsRead) {
-  const Found found = read(iges_text({{128, sheet_at(0)}, {128, sheet_at(20)}}));
+  const FoundInIges found = read(iges_text({{128, sheet_at(0)}, {128, sheet_at(20)}}));
   EXPECT_EQ(found.refusal, "");
   EXPECT_EQ(found.surfaces.size(), 2u);
   EXPECT_TRUE(found.model.notes.empty());
@@ -129,7 +129,7 @@ TEST_F(IgesFile, WhatIsCutShortIsRefused) {
   ASSERT_EQ(read(text).surfaces.size(), 6u);
   constexpr std::size_t cuts = 60;
   for (std::size_t k = 1; k < cuts; ++k) {
-    const Found found = read(text.substr(0, text.size() * k / cuts));
+    const FoundInIges found = read(text.substr(0, text.size() * k / cuts));
     EXPECT_NE(found.refusal, "") << k;
     EXPECT_TRUE(found.surfaces.empty()) << k;
   }
@@ -162,7 +162,7 @@ TEST_F(IgesFile, AnEntityWhoseParametersLieBeyondTheEndIsRefused) {
 TEST_F(IgesFile, ABareSurfaceThatIsDamagedIsMissed) {
   std::string damaged = sheet_at(20);
   damaged[0] = '5';  // asks for more control points than there are
-  const Found found = read(iges_text({{128, sheet_at(0)}, {128, damaged}}));
+  const FoundInIges found = read(iges_text({{128, sheet_at(0)}, {128, damaged}}));
   EXPECT_EQ(found.surfaces.size(), 1u);
   EXPECT_EQ(found.model.notes,
             std::vector<std::string>{
@@ -170,7 +170,7 @@ TEST_F(IgesFile, ABareSurfaceThatIsDamagedIsMissed) {
 }
 
 TEST_F(IgesFile, APlacedPartThatIsNotReadIsMissed) {
-  const Found found = read(iges_text(
+  const FoundInIges found = read(iges_text(
       {{128, sheet_at(0), 0, 1}, {308, "0,4Hpart,1,1"}, {408, "3,100.,0.,0.,1."}, {408, "3,200.,0.,0.,2."}}));
   EXPECT_EQ(found.surfaces.size(), 1u);
   EXPECT_EQ(
@@ -190,7 +190,7 @@ TEST_F(IgesFile, AnEntryOfTheDirectoryThatIsDamagedIsRefused) {
 }
 
 TEST_F(IgesFile, ACurveThatIsDamagedIsTold) {
-  const Found found = read(iges_text({{128, sheet_at(0)}, {142, "1,99,0,1,1"}}));
+  const FoundInIges found = read(iges_text({{128, sheet_at(0)}, {142, "1,99,0,1,1"}}));
   EXPECT_EQ(found.surfaces.size(), 1u);
   EXPECT_EQ(found.model.notes,
             std::vector<std::string>{
@@ -200,16 +200,16 @@ TEST_F(IgesFile, ACurveThatIsDamagedIsTold) {
 TEST_F(IgesFile, AMatrixThatStretchesIsTold) {
   const std::string stretch = "2.,0.,0.,100.,0.,1.,0.,0.,0.,0.,1.,0.",
                     turn = "0.,-1.,0.,9.,1.,0.,0.,0.,0.,0.,1.,0.";
-  const Found turned = read(iges_text({{128, sheet_at(0), 2}, {124, turn}}));
+  const FoundInIges turned = read(iges_text({{128, sheet_at(0), 2}, {124, turn}}));
   EXPECT_TRUE(turned.model.notes.empty());
-  const Found found = read(iges_text({{128, sheet_at(0), 2}, {124, stretch}}));
+  const FoundInIges found = read(iges_text({{128, sheet_at(0), 2}, {124, stretch}}));
   ASSERT_EQ(found.model.notes.size(), 1u);
   EXPECT_NE(found.model.notes[0].find("placements that scale, stretch or mirror: 1, which are not read"),
             std::string::npos);
 }
 
 TEST_F(IgesFile, WhatIsFarAwayIsLeftOut) {
-  const Found found = read(iges_text({{128, sheet_at(0)}, {128, sheet_at(200000)}}));
+  const FoundInIges found = read(iges_text({{128, sheet_at(0)}, {128, sheet_at(200000)}}));
   EXPECT_EQ(found.surfaces.size(), 1u);
   ASSERT_EQ(found.model.notes.size(), 1u);
   EXPECT_NE(found.model.notes[0].find("is skipped: is more than 100 m from the origin"), std::string::npos)
@@ -217,7 +217,7 @@ TEST_F(IgesFile, WhatIsFarAwayIsLeftOut) {
 }
 
 TEST_F(IgesFile, TheScaleOfAModelIsTold) {
-  const Found found = read(iges_text({{128, sheet_at(0)}}, "0.5,2,2HMM"));
+  const FoundInIges found = read(iges_text({{128, sheet_at(0)}}, "0.5,2,2HMM"));
   ASSERT_EQ(found.model.notes.size(), 1u);
   EXPECT_NE(found.model.notes[0].find("a model of scale 0.5, which is not applied"), std::string::npos);
   for (const char* same : {"1.,2,2HMM", "1,2,2HMM", "1.D0,2,2HMM", ",2,2HMM"}) {
@@ -226,7 +226,7 @@ TEST_F(IgesFile, TheScaleOfAModelIsTold) {
 }
 
 TEST_F(IgesFile, AFlagOfNoUnitIsMillimetres) {
-  const Found found = read(iges_text({{128, sheet_at(0)}}, "1.,99,2HMM"));
+  const FoundInIges found = read(iges_text({{128, sheet_at(0)}}, "1.,99,2HMM"));
   EXPECT_EQ(found.refusal, "");
   ASSERT_EQ(found.surfaces.size(), 1u);
   EXPECT_FALSE(found.model.unit_declared);

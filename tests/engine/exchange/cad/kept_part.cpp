@@ -7,7 +7,7 @@
 
 namespace spoonbill {
 
-NearestPoint::NearestPoint(const CadSurface& part)
+NearestKeptPoint::NearestKeptPoint(const CadSurface& part)
     : surface_(part.surface), area_(TrimmedArea::make(part.surface.u, part.surface.v, part.trims).value()) {
   const Surface& surface = part.surface;
   for (const double u : uniform_parameters(surface.u, 33)) {
@@ -17,7 +17,7 @@ NearestPoint::NearestPoint(const CadSurface& part)
   }
 }
 
-double NearestPoint::distance_m(const Vector3& from) const {
+double NearestKeptPoint::distance_m(const Vector3& from) const {
   std::vector<const Sample*> best;
   for (const Sample& sample : grid_) best.push_back(&sample);
   std::partial_sort(best.begin(), best.begin() + 4, best.end(), [&](const Sample* a, const Sample* b) {
@@ -28,7 +28,7 @@ double NearestPoint::distance_m(const Vector3& from) const {
   return least;
 }
 
-double NearestPoint::polished(const Sample& start, const Vector3& from) const {
+double NearestKeptPoint::polished(const Sample& start, const Vector3& from) const {
   double u = start.u, v = start.v, least = 1e30;
   for (int step = 0; step < 20; ++step) {
     const SurfacePoint at = evaluate(surface_, u, v);
@@ -43,7 +43,7 @@ double NearestPoint::polished(const Sample& start, const Vector3& from) const {
   return least;
 }
 
-bool NearestPoint::is_kept(double u, double v) const {
+bool NearestKeptPoint::is_kept(double u, double v) const {
   const double du = 1e-5 * (surface_.u.domain_end() - surface_.u.domain_start());
   const double dv = 1e-5 * (surface_.v.domain_end() - surface_.v.domain_start());
   return area_.contains(u, v) || area_.contains(u + du, v) || area_.contains(u - du, v) ||

@@ -10,9 +10,9 @@ namespace spoonbill {
 
 // The distance of a point from the kept part of a surface: the nearest of a grid, followed by Gauss-Newton
 // steps.
-class NearestPoint {
+class NearestKeptPoint {
  public:
-  explicit NearestPoint(const CadSurface& part);
+  explicit NearestKeptPoint(const CadSurface& part);
 
   double distance_m(const Vector3& from) const;
 

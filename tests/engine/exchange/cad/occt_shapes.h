@@ -1,6 +1,10 @@
 // Shapes that OpenCASCADE's own builders make, in millimetres.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <IFSelect_ReturnStatus.hxx>
+#include <TopAbs_ShapeEnum.hxx>
 #include <TopoDS_Shape.hxx>
 #include <filesystem>
 #include <string>
@@ -26,5 +30,16 @@ std::vector<NamedShape> single_faces();
 
 // What comes in of a STEP file that OpenCASCADE writes into the folder. prepare_occt() must have been called.
 CadModel read_through_step(const TopoDS_Shape& shape, const std::filesystem::path& folder);
+
+int count_of(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind);
+
+// By OpenCASCADE's own reader of STEP or IGES.
+template <class Reader>
+TopoDS_Shape shape_in(const std::filesystem::path& file) {
+  Reader reader;
+  EXPECT_EQ(reader.ReadFile(file.c_str()), IFSelect_RetDone);
+  reader.TransferRoots();
+  return reader.OneShape();
+}
 
 }  // namespace spoonbill

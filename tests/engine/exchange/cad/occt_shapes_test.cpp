@@ -33,7 +33,7 @@ namespace {
 constexpr double tolerance_m = 1e-5;
 // OpenCASCADE writes coordinates of 100 mm to about 1e-12 mm, and some curved faces of IGES to its own 1e-4
 // mm.
-constexpr double file_tolerance_m = 2e-7;
+constexpr double shape_file_tolerance_m = 2e-7;
 
 Vector3 metres(const gp_Pnt& point) {
   return 1e-3 * Vector3(point.X(), point.Y(), point.Z());
@@ -87,17 +87,17 @@ struct ReadBack {
 void expect_same_shape(const TopoDS_Shape& shape, const ReadBack& back) {
   ASSERT_FALSE(back.surfaces.empty());
   EXPECT_LE(back.deviation_m, tolerance_m);
-  std::vector<NearestPoint> surfaces;
+  std::vector<NearestKeptPoint> surfaces;
   for (const CadSurface& part : back.surfaces) surfaces.emplace_back(part);
   double farthest = 0.0;
   const auto points = points_on(shape);
   EXPECT_GT(points.size(), 10u);
   for (const Vector3& point : points) {
     double least = 1e30;
-    for (const NearestPoint& surface : surfaces) least = std::min(least, surface.distance_m(point));
+    for (const NearestKeptPoint& surface : surfaces) least = std::min(least, surface.distance_m(point));
     farthest = std::max(farthest, least);
   }
-  EXPECT_LE(farthest, back.deviation_m + file_tolerance_m);
+  EXPECT_LE(farthest, back.deviation_m + shape_file_tolerance_m);
 
   // What is kept lies on the shape, all of it and no more.
   double area = 0.0;
@@ -111,7 +111,7 @@ void expect_same_shape(const TopoDS_Shape& shape, const ReadBack& back) {
         const Vector3 at = 1e3 * position(part.surface, u, v);
         const BRepExtrema_DistShapeShape distance(
             BRepBuilderAPI_MakeVertex(gp_Pnt(at.x(), at.y(), at.z())).Shape(), shape);
-        EXPECT_LE(1e-3 * distance.Value(), part.deviation_m + file_tolerance_m);
+        EXPECT_LE(1e-3 * distance.Value(), part.deviation_m + shape_file_tolerance_m);
       }
     }
   }

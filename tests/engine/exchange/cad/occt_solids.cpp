@@ -48,11 +48,11 @@ gp_Ax2 at_height(double z) {
   return {gp_Pnt(0, 0, z), gp_Dir(0, 0, 1)};
 }
 
-TopoDS_Wire circle(double z, double radius) {
+TopoDS_Wire circle_at(double z, double radius) {
   return BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(gp_Circ(at_height(z), radius)));
 }
 
-TopoDS_Wire ellipse(double z, double major, double minor) {
+TopoDS_Wire ellipse_at(double z, double major, double minor) {
   return BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(gp_Elips(at_height(z), major, minor)));
 }
 
@@ -117,7 +117,7 @@ TopoDS_Shape stretched(const TopoDS_Shape& shape, double x, double y, double z) 
   return BRepBuilderAPI_GTransform(shape, stretch, true).Shape();
 }
 
-TopoDS_Shape moved(const TopoDS_Shape& shape, const gp_Trsf& motion) {
+TopoDS_Shape transformed(const TopoDS_Shape& shape, const gp_Trsf& motion) {
   return BRepBuilderAPI_Transform(shape, motion, true).Shape();
 }
 
@@ -134,7 +134,7 @@ gp_Trsf mirror() {
 }
 
 TopoDS_Shape disc(double radius) {
-  return BRepBuilderAPI_MakeFace(circle(0, radius)).Shape();
+  return BRepBuilderAPI_MakeFace(circle_at(0, radius)).Shape();
 }
 
 TopoDS_Shape bottle_profile_turned() {
@@ -169,14 +169,15 @@ void add_primitives(std::vector<NamedShape>& all) {
   all.push_back({"torus as NURBS", as_nurbs(BRepPrimAPI_MakeTorus(30, 8).Shape())});
   all.push_back({"ellipsoid", stretched(BRepPrimAPI_MakeSphere(10).Shape(), 1.0, 0.6, 2.0)});
   all.push_back({"stretched torus", stretched(BRepPrimAPI_MakeTorus(30, 8).Shape(), 1.3, 0.8, 1.0)});
-  all.push_back({"turned cone", moved(BRepPrimAPI_MakeCone(10, 4, 30).Shape(), turn())});
-  all.push_back({"mirrored wedge", moved(BRepPrimAPI_MakeWedge(30, 20, 10, 12).Shape(), mirror())});
+  all.push_back({"turned cone", transformed(BRepPrimAPI_MakeCone(10, 4, 30).Shape(), turn())});
+  all.push_back({"mirrored wedge", transformed(BRepPrimAPI_MakeWedge(30, 20, 10, 12).Shape(), mirror())});
 }
 
 void add_sweeps(std::vector<NamedShape>& all) {
   all.push_back(
       {"prism of an ellipse",
-       BRepPrimAPI_MakePrism(BRepBuilderAPI_MakeFace(ellipse(0, 12, 5)).Shape(), gp_Vec(3, 4, 30)).Shape()});
+       BRepPrimAPI_MakePrism(BRepBuilderAPI_MakeFace(ellipse_at(0, 12, 5)).Shape(), gp_Vec(3, 4, 30))
+           .Shape()});
   all.push_back({"prism of a spline",
                  BRepPrimAPI_MakePrism(
                      spline_edge({gp_Pnt(0, 0, 0), gp_Pnt(10, 8, 0), gp_Pnt(20, -3, 0), gp_Pnt(35, 5, 0)}),
@@ -186,8 +187,8 @@ void add_sweeps(std::vector<NamedShape>& all) {
                  BRepPrimAPI_MakeRevol(disc(5), gp_Ax1(gp_Pnt(20, 0, 0), gp_Dir(0, 1, 0)), 2.0).Shape()});
   all.push_back({"bottle", bottle_profile_turned()});
   all.push_back({"pipe", pipe_along_spline()});
-  all.push_back({"smooth loft", loft({circle(0, 10), ellipse(20, 14, 8), circle(45, 6)}, false)});
-  all.push_back({"ruled loft", loft({circle(0, 10), ellipse(20, 14, 8), circle(45, 6)}, true)});
+  all.push_back({"smooth loft", loft({circle_at(0, 10), ellipse_at(20, 14, 8), circle_at(45, 6)}, false)});
+  all.push_back({"ruled loft", loft({circle_at(0, 10), ellipse_at(20, 14, 8), circle_at(45, 6)}, true)});
   all.push_back({"loft of squares", loft({square(0, 10), square(15, 14), square(40, 7)}, false)});
   all.push_back({"ruled loft of squares", loft({square(0, 10), square(30, 5)}, true)});
 }
@@ -252,6 +253,12 @@ CadModel read_through_step(const TopoDS_Shape& shape, const std::filesystem::pat
   if (!model) return {};
   model->surfaces = std::move(surfaces);
   return std::move(model).value();
+}
+
+int count_of(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind) {
+  int count = 0;
+  for (TopExp_Explorer each(shape, kind); each.More(); each.Next()) ++count;
+  return count;
 }
 
 }  // namespace spoonbill

@@ -5,7 +5,6 @@
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRep_Builder.hxx>
 #include <GProp_GProps.hxx>
-#include <TopExp_Explorer.hxx>
 #include <TopoDS_Compound.hxx>
 #include <cmath>
 #include <map>
@@ -33,12 +32,6 @@ Measures measures_of(const TopoDS_Shape& shape) {
   BRepGProp::VolumeProperties(shape, volume, 1e-6);
   BRepGProp::SurfaceProperties(shape, area, 1e-6);
   return {volume.Mass() * cubic_mm, area.Mass() * square_mm};
-}
-
-int count_of(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind) {
-  int count = 0;
-  for (TopExp_Explorer each(shape, kind); each.More(); each.Next()) ++count;
-  return count;
 }
 
 // Each edge is in two triangles, once each way round.

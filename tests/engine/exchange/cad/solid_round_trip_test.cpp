@@ -7,7 +7,6 @@
 #include <GProp_GProps.hxx>
 #include <IGESControl_Reader.hxx>
 #include <STEPControl_Reader.hxx>
-#include <TopExp_Explorer.hxx>
 #include <cmath>
 
 #include "engine/exchange/cad/cad.h"
@@ -20,24 +19,10 @@ namespace {
 // A hundredth of a millimetre on the faces of parts of 10 to 40 mm.
 constexpr double volume_share = 2e-3;
 
-int count_of(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind) {
-  int count = 0;
-  for (TopExp_Explorer each(shape, kind); each.More(); each.Next()) ++count;
-  return count;
-}
-
 double volume_mm3(const TopoDS_Shape& shape) {
   GProp_GProps properties;
   BRepGProp::VolumeProperties(shape, properties, 1e-6);
   return properties.Mass();
-}
-
-template <class Reader>
-TopoDS_Shape shape_in(const std::filesystem::path& file) {
-  Reader reader;
-  EXPECT_EQ(reader.ReadFile(file.c_str()), IFSelect_RetDone);
-  reader.TransferRoots();
-  return reader.OneShape();
 }
 
 class SolidRoundTrip : public testing::Test {

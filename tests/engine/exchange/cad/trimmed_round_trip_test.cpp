@@ -21,7 +21,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double tolerance_m = 1e-7;
+constexpr double trimmed_tolerance_m = 1e-7;
 
 CadSurface named(const std::string& name, Surface surface) {
   CadSurface part;
@@ -89,7 +89,7 @@ class TrimmedRoundTrip : public testing::TestWithParam<FileFormat> {
 
 // Points of the part lie on what came back, and the other way round.
 void expect_covered(const CadSurface& part, const std::vector<CadSurface>& by) {
-  std::vector<NearestPoint> nearest(by.begin(), by.end());
+  std::vector<NearestKeptPoint> nearest(by.begin(), by.end());
   const auto kept = TrimmedArea::make(part.surface.u, part.surface.v, part.trims).value();
   int points = 0;
   for (const double u : uniform_parameters(part.surface.u, 24)) {
@@ -97,10 +97,10 @@ void expect_covered(const CadSurface& part, const std::vector<CadSurface>& by) {
       if (!kept.contains(u, v)) continue;
       ++points;
       double least = 1e30;
-      for (const NearestPoint& other : nearest) {
+      for (const NearestKeptPoint& other : nearest) {
         least = std::min(least, other.distance_m(position(part.surface, u, v)));
       }
-      EXPECT_LT(least, tolerance_m) << u << " " << v;
+      EXPECT_LT(least, trimmed_tolerance_m) << u << " " << v;
     }
   }
   EXPECT_GT(points, 20);

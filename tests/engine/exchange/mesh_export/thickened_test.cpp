@@ -10,7 +10,7 @@
 namespace spoonbill {
 namespace {
 
-std::size_t unmatched_edges(const TriangleMesh& mesh) {
+std::size_t unbalanced_edges(const TriangleMesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
   for (const TriangleCorners& corners : mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -49,7 +49,7 @@ TEST(Thickened, APlateIsABoxWithoutAnOpenEdge) {
   plate.triangles = {{0, 1, 2}, {0, 2, 3}};
   const auto shell = thicken_mesh(plate, 0.003);
   ASSERT_TRUE(shell) << shell.error().message;
-  EXPECT_EQ(unmatched_edges(shell.value()), 0U);
+  EXPECT_EQ(unbalanced_edges(shell.value()), 0U);
   EXPECT_EQ(shell->triangles.size(), 12U);
   EXPECT_NEAR(enclosed_volume_m3(shell.value()), 0.1 * 0.06 * 0.003, 1e-15);
 }
@@ -60,7 +60,7 @@ TEST(Thickened, ACurvedShellHasItsVolume) {
   constexpr double angle = std::numbers::pi / 2.0, radius_m = 0.05, thickness_m = 0.004, length_m = 0.03;
   const auto shell = thicken_mesh(cylinder(radius_m, length_m, angle, 180, 4), thickness_m);
   ASSERT_TRUE(shell) << shell.error().message;
-  EXPECT_EQ(unmatched_edges(shell.value()), 0U);
+  EXPECT_EQ(unbalanced_edges(shell.value()), 0U);
   const double inner_m = radius_m - thickness_m;
   const double volume = 0.5 * angle * (radius_m * radius_m - inner_m * inner_m) * length_m;
   EXPECT_NEAR(enclosed_volume_m3(shell.value()) / volume, 1.0, 4e-4);

@@ -12,28 +12,28 @@
 namespace spoonbill {
 namespace {
 
-constexpr double length_m = 0.08, radius_m = 0.006;
-constexpr int around = 16;
+constexpr double length_m = 0.08, bar_radius_m = 0.006;
+constexpr int bar_around = 16;
 
 // A round bar along x; u turns from +y to +z and its ends are flat poles.
-Surface bar() {
+Surface round_bar() {
   const std::vector<double> stations = {0.0, 0.0, 0.0, 0.01, 0.02, 0.04, 0.06, 0.07, 0.08, 0.08, 0.08};
   const int along = static_cast<int>(stations.size());
   // The limit curve of a periodic uniform cubic on n points of a circle lies inside by (2 + cos(2 pi / n))
   // / 3.
-  const double outside = 3.0 / (2.0 + std::cos(2.0 * std::numbers::pi / around));
-  ControlNet net(around, along);
-  for (int i = 0; i < around; ++i) {
+  const double outside = 3.0 / (2.0 + std::cos(2.0 * std::numbers::pi / bar_around));
+  ControlNet net(bar_around, along);
+  for (int i = 0; i < bar_around; ++i) {
     // So that u = 0 is at +y: B_i begins at knot i, and is at its largest at knot i + 2.
-    const double angle = 2.0 * std::numbers::pi * (i + 2) / around;
+    const double angle = 2.0 * std::numbers::pi * (i + 2) / bar_around;
     for (int j = 0; j < along; ++j) {
       const bool pole = j == 0 || j == along - 1;
-      const double radius = pole ? 0.0 : outside * radius_m;
+      const double radius = pole ? 0.0 : outside * bar_radius_m;
       net.set_point(
           i, j, {stations[static_cast<std::size_t>(j)], radius * std::cos(angle), radius * std::sin(angle)});
     }
   }
-  return make_surface(KnotVector::periodic_uniform(3, around).value(),
+  return make_surface(KnotVector::periodic_uniform(3, bar_around).value(),
                       KnotVector::clamped_uniform(3, along).value(), net)
       .value();
 }
@@ -41,7 +41,7 @@ Surface bar() {
 LatticeMesh bar_lattice(std::array<int, 3> counts) {
   LatticeRequest request;
   request.counts = counts;
-  Result<LatticeMesh> mesh = tube_lattice(bar(), request);
+  Result<LatticeMesh> mesh = tube_lattice(round_bar(), request);
   EXPECT_TRUE(mesh.ok()) << mesh.error().message;
   return std::move(mesh).value();
 }
@@ -85,8 +85,8 @@ void expect_places_of_a_bar(const std::vector<Vector3>& points, const std::vecto
     EXPECT_NEAR(place.along, point.x() / length_m, 0.01);
     // Rings of 24 chords lie inside the circle by less than 1 % of its radius; depths of a cell are means of
     // its corners', which bend by as much again.
-    EXPECT_NEAR(place.depth_m, radius_m - from_axis, (of_cells ? 0.05 : 0.012) * radius_m);
-    if (from_axis < 1e-3 * radius_m) return;
+    EXPECT_NEAR(place.depth_m, bar_radius_m - from_axis, (of_cells ? 0.05 : 0.012) * bar_radius_m);
+    if (from_axis < 1e-3 * bar_radius_m) return;
     const double angle = std::atan2(point.z(), point.y()) / (2.0 * std::numbers::pi);
     // Nodes inside follow the block's lines and not the radii.
     EXPECT_LT(apart(place.around, angle < 0.0 ? angle + 1.0 : angle), 0.02)

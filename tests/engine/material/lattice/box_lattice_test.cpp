@@ -20,7 +20,7 @@ ShellDistance shell_of(const TriangleMesh& mesh) {
   return ShellDistance(mesh.vertices_m, mesh.triangles, ShellDistance::Kind::solid);
 }
 
-SpringLattice make_body_lattice(const LatticeMesh& mesh) {
+SpringLattice make_springs(const LatticeMesh& mesh) {
   return SpringLattice::make(mesh, material, material.youngs_modulus_pa, InstructionSet::baseline).value();
 }
 
@@ -29,8 +29,7 @@ TEST(BoxLattice, OfABoxIsAWholeBlock) {
   const double volume = 0.03 * 0.02 * 0.04;
   const LatticeMesh mesh = box_lattice(shell_of(box), volume, box.vertices_m, {4, 3, 5}).value();
   for (const double share : mesh.cell_fractions) EXPECT_NEAR(share, 1.0, 1e-12);
-  const SpringLattice lattice = make_body_lattice(mesh),
-                      whole = block({0.03, 0.02, 0.04}, {4, 3, 5}, material);
+  const SpringLattice lattice = make_springs(mesh), whole = block({0.03, 0.02, 0.04}, {4, 3, 5}, material);
   EXPECT_NEAR(lattice.mass_kg(), 1100.0 * volume, 1e-12);
   for (int n = 0; n < mesh.node_count(); ++n) {
     EXPECT_NEAR(lattice.mass(n) / whole.mass(n), 1.0, 1e-6);
@@ -42,8 +41,7 @@ TEST(BoxLattice, WeighsWhatTheSolidWeighsAndIsNoFasterForItsParts) {
   const TriangleMesh ball = ball_mesh(40, 60, 0.02);
   const double volume = 4.0 / 3.0 * std::numbers::pi * 0.02 * 0.02 * 0.02;
   const LatticeMesh mesh = box_lattice(shell_of(ball), volume, ball.vertices_m, {9, 9, 9}).value();
-  const SpringLattice lattice = make_body_lattice(mesh),
-                      whole = block({0.04, 0.04, 0.04}, {9, 9, 9}, material);
+  const SpringLattice lattice = make_springs(mesh), whole = block({0.04, 0.04, 0.04}, {9, 9, 9}, material);
   EXPECT_NEAR(lattice.mass_kg() / (1100.0 * volume), 1.0, 1e-12);
   double sum = 0.0;
   Vector3 middle = Vector3::Zero();
@@ -71,7 +69,7 @@ TEST(BoxLattice, EmbedsPointsWhereTheyAre) {
   Random random(3);
   const TriangleMesh box = box_of_triangles({-0.01, 0.0, 0.005}, {0.02, 0.02, 0.045});
   const LatticeMesh mesh = box_lattice(shell_of(box), 2.4e-5, box.vertices_m, {4, 3, 5}).value();
-  SpringLattice lattice = make_body_lattice(mesh);
+  SpringLattice lattice = make_springs(mesh);
   Eigen::Matrix3d turn;
   turn << 0.1, 0.02, -0.03, 0.01, -0.05, 0.04, 0.03, 0.02, 0.07;
   const Vector3 shift(0.004, -0.002, 0.001);

@@ -14,12 +14,12 @@ constexpr int around = 24, along = 32, stations = 400;
 
 }  // namespace
 
-Surface revolved(const std::function<MeridianPoint(double)>& meridian, double lean_m) {
+Surface revolved(const std::function<MeridianPlace(double)>& meridian, double lean_m) {
   const KnotVector knots = KnotVector::clamped_uniform(3, along).value();
   const std::vector<double> samples = uniform_parameters(knots, 8 * along);
   Eigen::MatrixXd points(static_cast<Eigen::Index>(samples.size()), 2);
   for (std::size_t s = 0; s < samples.size(); ++s) {
-    const MeridianPoint point = meridian(samples[s]);
+    const MeridianPlace point = meridian(samples[s]);
     points.row(static_cast<Eigen::Index>(s)) << point.radius_m, point.height_m;
   }
   const Eigen::MatrixXd control = pseudo_inverse(knots, samples).value() * points;
@@ -42,7 +42,7 @@ Surface revolved(const std::function<MeridianPoint(double)>& meridian, double le
 Surface round_ball(double radius_m) {
   return revolved([=](double share) {
     const double angle = std::numbers::pi * share;
-    return MeridianPoint{radius_m * std::sin(angle), -radius_m * std::cos(angle)};
+    return MeridianPlace{radius_m * std::sin(angle), -radius_m * std::cos(angle)};
   });
 }
 

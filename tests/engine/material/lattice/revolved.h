@@ -8,14 +8,14 @@
 
 namespace spoonbill {
 
-struct MeridianPoint {
+struct MeridianPlace {
   double radius_m, height_m;
 };
 
 // A tube whose poles are the ends of the meridian, given over a share from 0, the lower pole, to 1; smooth
 // pieces of least squares over 32 control points. Its middle line leans over x by `lean_m` at the height of
 // the upper pole, as the square of the height over the lower one.
-Surface revolved(const std::function<MeridianPoint(double)>& meridian, double lean_m = 0.0);
+Surface revolved(const std::function<MeridianPlace(double)>& meridian, double lean_m = 0.0);
 
 // A sphere about the origin, to 1e-4 of its radius.
 Surface round_ball(double radius_m);

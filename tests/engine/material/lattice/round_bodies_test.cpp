@@ -16,17 +16,17 @@
 namespace spoonbill {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // A tube along z; at the share of its length, half its width over x and half its thickness over y. Rings are
 // superellipses. The rings beside the poles lie in their planes, so that the ends are smooth.
-struct Profile {
+struct BodyProfile {
   double length_m;
   double exponent;
   std::function<double(double)> half_width_m, half_thickness_m;
 };
 
-Surface tube_of(const Profile& profile, int around = 16, int along = 20) {
+Surface tube_of(const BodyProfile& profile, int around = 16, int along = 20) {
   const KnotVector knots = KnotVector::clamped_uniform(3, along).value();
   ControlNet net(around, along);
   for (int i = 0; i < around; ++i) {
@@ -52,21 +52,21 @@ double arch(double share) {
   return std::sqrt(std::max(0.0, 1.0 - std::pow(2.0 * share - 1.0, 2)));
 }
 
-Profile sphere() {
+BodyProfile sphere() {
   const auto half = [](double share) { return 0.03 * arch(share); };
   return {0.06, 2.0, half, half};
 }
-Profile egg() {
+BodyProfile egg() {
   const auto half = [](double share) { return 0.022 * arch(share) * (1.15 - 0.3 * share); };
   return {0.058, 2.0, half, half};
 }
-Profile pear() {
+BodyProfile pear_profile() {
   const auto half = [](double share) {
     return 0.03 * arch(share) * (share < 0.5 ? 1.0 : 1.0 - 0.55 * std::pow(std::sin(pi * (share - 0.5)), 2));
   };
   return {0.09, 2.0, half, half};
 }
-Profile rounded_box() {
+BodyProfile rounded_box() {
   const auto end = [](double share) {
     return std::pow(1.0 - std::pow(std::abs(2.0 * share - 1.0), 8.0), 0.125);
   };
@@ -74,7 +74,7 @@ Profile rounded_box() {
           [end](double share) { return 0.01 * end(share); }};
 }
 // A handle of 12 x 9 mm that goes over into an end of 36 x 2 mm.
-Profile spoon() {
+BodyProfile spoon() {
   const auto blend = [](double share) {
     const double t = std::clamp((share - 0.5) / 0.2, 0.0, 1.0);
     return t * t * (3.0 - 2.0 * t);
@@ -89,11 +89,12 @@ Profile spoon() {
 TEST(RoundBodies, HavePositiveCells) {
   struct Case {
     const char* name;
-    Profile profile;
+    BodyProfile profile;
     double worst_jacobian;
   };
-  for (const Case& of : {Case{"sphere", sphere(), 0.05}, Case{"egg", egg(), 0.05}, Case{"pear", pear(), 0.01},
-                         Case{"rounded box", rounded_box(), 0.3}, Case{"spoon", spoon(), 0.05}}) {
+  for (const Case& of :
+       {Case{"sphere", sphere(), 0.05}, Case{"egg", egg(), 0.05}, Case{"pear", pear_profile(), 0.01},
+        Case{"rounded box", rounded_box(), 0.3}, Case{"spoon", spoon(), 0.05}}) {
     for (const int budget : {2000, 4000, 8000}) {
       if (sanitized && budget > 2000) continue;
       const Result<LatticeMesh> mesh = tube_lattice(tube_of(of.profile), {budget, {}});

@@ -20,9 +20,9 @@
 namespace spoonbill {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
-LatticeMesh make_body_lattice(const Surface& surface, double thickness_m, const LatticeRequest& request) {
+LatticeMesh make_shell_lattice(const Surface& surface, double thickness_m, const LatticeRequest& request) {
   Result<LatticeMesh> mesh = shell_lattice(surface, thickness_m, request);
   EXPECT_TRUE(mesh.ok()) << mesh.error().message;
   return std::move(mesh).value();
@@ -33,7 +33,7 @@ double mass_of(const LatticeMesh& mesh, double density_kg_per_m3) {
   return SpringLattice::make(mesh, material, 1e5, InstructionSet::baseline).value().mass_kg();
 }
 
-std::string refusal(const Surface& surface, double thickness_m) {
+std::string shell_refusal(const Surface& surface, double thickness_m) {
   const Result<LatticeMesh> mesh = shell_lattice(surface, thickness_m, {});
   return mesh.ok() ? "accepted" : mesh.error().message;
 }
@@ -53,7 +53,7 @@ TEST(ShellLattice, BowlHasTheVolumeOfTheShell) {
   for (const bool pole_at_end : {false, true}) {
     const Surface bowl = spherical_bowl(radius, opening, pole_at_end);
     for (const int budget : {500, 2000, 8000}) {
-      const LatticeMesh mesh = make_body_lattice(bowl, thickness, {budget, {}});
+      const LatticeMesh mesh = make_shell_lattice(bowl, thickness, {budget, {}});
       EXPECT_FALSE(mesh.closed);
       EXPECT_LE(mesh.node_count(), budget);
       EXPECT_GT(mesh.node_count(), budget / 2);
@@ -70,25 +70,25 @@ TEST(ShellLattice, BowlHasTheVolumeOfTheShell) {
   }
   // To first order: area times thickness; what is left is the thickness over the radius.
   const double area = 2.0 * pi * radius * radius * (1.0 - std::cos(opening));
-  EXPECT_NEAR(mass_of(make_body_lattice(spherical_bowl(radius, opening), thickness, {}), density) /
+  EXPECT_NEAR(mass_of(make_shell_lattice(spherical_bowl(radius, opening), thickness, {}), density) /
                   (density * area * thickness),
               1.0, thickness / radius);
 }
 
 TEST(ShellLattice, CellsOfABudgetAreNearlyCubes) {
-  const LatticeMesh mesh = make_body_lattice(spherical_bowl(0.03, pi / 3.0), 0.002, {2000, {}});
+  const LatticeMesh mesh = make_shell_lattice(spherical_bowl(0.03, pi / 3.0), 0.002, {2000, {}});
   EXPECT_EQ(mesh.count[1], 2) << "one layer";
   const double pitch = 2.0 * 0.03 * pi / 3.0 / (mesh.count[0] - 1);
   EXPECT_NEAR(pitch / 0.002, 1.0, 0.35);
-  EXPECT_GT(make_body_lattice(spherical_bowl(0.03, pi / 3.0), 0.004, {8000, {}}).count[1], 2)
+  EXPECT_GT(make_shell_lattice(spherical_bowl(0.03, pi / 3.0), 0.004, {8000, {}}).count[1], 2)
       << "more by budget";
-  const LatticeMesh given = make_body_lattice(flat_sheet(0.06, 0.04), 0.002, {2000, {{13, 4, 9}}});
+  const LatticeMesh given = make_shell_lattice(flat_sheet(0.06, 0.04), 0.002, {2000, {{13, 4, 9}}});
   EXPECT_EQ(given.count, (std::array{13, 4, 9}));
 }
 
 TEST(ShellLattice, SheetIsABlockBehindItsNormals) {
   for (const bool up : {true, false}) {
-    const LatticeMesh mesh = make_body_lattice(flat_sheet(0.06, 0.04, up), 0.003, {2000, {}});
+    const LatticeMesh mesh = make_shell_lattice(flat_sheet(0.06, 0.04, up), 0.003, {2000, {}});
     EXPECT_NEAR(mass_of(mesh, 1000.0), 1000.0 * 0.06 * 0.04 * 0.003, 1e-12);
     for (int n = 0; n < mesh.node_count(); ++n) {
       const double depth = 0.003 * mesh.grid_index(n)[1] / (mesh.count[1] - 1);
@@ -102,7 +102,7 @@ TEST(ShellLattice, RingIsClosed) {
   constexpr double radius = 0.02, height = 0.015, thickness = 0.002;
   const double inner = radius - thickness, volume = pi * height * (radius * radius - inner * inner);
   for (const Surface& ring : {open_ring(radius, height), open_ring_around_v(radius, height)}) {
-    const LatticeMesh mesh = make_body_lattice(ring, thickness, {2000, {}});
+    const LatticeMesh mesh = make_shell_lattice(ring, thickness, {2000, {}});
     EXPECT_TRUE(mesh.closed);
     EXPECT_GT(mesh.count[0], 2 * mesh.count[2]) << "i runs around";
     EXPECT_NEAR(mass_of(mesh, 1000.0) / (1000.0 * volume), 1.0, 1e-4);
@@ -120,16 +120,16 @@ TEST(ShellLattice, RingIsClosed) {
 
 TEST(ShellLattice, RefusesWhatIsNoShell) {
   const Surface sheet = flat_sheet(0.06, 0.04), bowl = spherical_bowl(0.03, pi / 3.0);
-  EXPECT_EQ(refusal(sheet, -0.002), "shell_thickness_mm is -2, must be 0.01 to 100");
-  EXPECT_EQ(refusal(sheet, 0.0), "shell_thickness_mm is 0, must be 0.01 to 100");
-  EXPECT_EQ(refusal(sheet, std::nan("")), "shell_thickness_mm is nan, must be 0.01 to 100");
-  EXPECT_EQ(refusal(sheet, std::numeric_limits<double>::infinity()),
+  EXPECT_EQ(shell_refusal(sheet, -0.002), "shell_thickness_mm is -2, must be 0.01 to 100");
+  EXPECT_EQ(shell_refusal(sheet, 0.0), "shell_thickness_mm is 0, must be 0.01 to 100");
+  EXPECT_EQ(shell_refusal(sheet, std::nan("")), "shell_thickness_mm is nan, must be 0.01 to 100");
+  EXPECT_EQ(shell_refusal(sheet, std::numeric_limits<double>::infinity()),
             "shell_thickness_mm is inf, must be 0.01 to 100");
-  const std::string thick = refusal(bowl, 0.031);
+  const std::string thick = shell_refusal(bowl, 0.031);
   EXPECT_EQ(thick.substr(0, 71), "shell_thickness_mm: 31 mm folds over where the surface is curved; use l");
   EXPECT_NE(thick.find("use less than 2"), std::string::npos) << thick;
   EXPECT_EQ(refusal_code(bowl, 0.09), ErrorCode::self_intersecting) << "beyond the centre too";
-  EXPECT_EQ(refusal(bowl, 0.02), "accepted");
+  EXPECT_EQ(shell_refusal(bowl, 0.02), "accepted");
   EXPECT_EQ(refusal_code(ellipsoid_tube(12, 12, {0, 0, 0}), 0.002), ErrorCode::unsupported);
   EXPECT_EQ(refusal_code(open_ring(0.02, 0.01), 0.002, {2000, {{3, 2, 4}}}), ErrorCode::out_of_range);
   EXPECT_EQ(refusal_code(sheet, 0.002, {2000, {{1, 2, 4}}}), ErrorCode::out_of_range);
@@ -143,7 +143,7 @@ TEST(ShellLattice, RefusesWhatIsNoShell) {
 // shear adds: (6/5) P L / G t.
 TEST(ShellLattice, SheetBendsAsAPlate) {
   constexpr double length = 0.06, width = 0.03, thickness = 0.002, youngs = 2e9, poisson = 0.35, force = 0.5;
-  const LatticeMesh mesh = make_body_lattice(flat_sheet(length, width), thickness, {2000, {}});
+  const LatticeMesh mesh = make_shell_lattice(flat_sheet(length, width), thickness, {2000, {}});
   const StaticBody body =
       StaticBody::make(mesh, elastic_material(youngs, poisson, 1000.0), CellKind::hexahedra).value();
   std::vector<FixedAxis> held;
@@ -176,7 +176,7 @@ TEST(ShellLattice, SheetBendsAsAPlate) {
 
 // A ring of 64 cells, its seam between two of them.
 LatticeMesh round_ring(double radius_m, double height_m, double thickness_m) {
-  return make_body_lattice(open_ring(radius_m, height_m), thickness_m, {2000, {{65, 3, 4}}});
+  return make_shell_lattice(open_ring(radius_m, height_m), thickness_m, {2000, {{65, 3, 4}}});
 }
 
 // How far the nodes of the outer face in the middle of the height have gone out.
@@ -287,7 +287,7 @@ TEST(ShellLattice, SpringsOfARingKnowNoSeam) {
 
 // The implicit method settles to the static answer, pushed at the seam as elsewhere.
 TEST(ShellLattice, ImplicitRingKnowsNoSeam) {
-  const LatticeMesh mesh = make_body_lattice(open_ring(0.02, 0.006), 0.002, {2000, {{25, 2, 3}}});
+  const LatticeMesh mesh = make_shell_lattice(open_ring(0.02, 0.006), 0.002, {2000, {{25, 2, 3}}});
   Material material = elastic_material(1e7, 0.3, 1000.0);
   material.damping_ratio = 0.05;
   const auto pushed_in = [&](int at, bool at_twin) {

@@ -9,11 +9,11 @@
 namespace spoonbill {
 namespace {
 
-constexpr int around = 32, along = 24;
+constexpr int shell_around = 32, shell_along = 24;
 
 // A closed uniform cubic lies inside its control points by this much: (2 + cos of a step) / 3.
 double control_radius(double radius) {
-  return radius * 3.0 / (2.0 + std::cos(2.0 * std::numbers::pi / around));
+  return radius * 3.0 / (2.0 + std::cos(2.0 * std::numbers::pi / shell_around));
 }
 
 }  // namespace
@@ -36,8 +36,8 @@ Surface flat_sheet(double a_m, double b_m, bool up) {
 }
 
 Surface spherical_bowl(double radius_m, double opening_rad, bool pole_at_end) {
-  const KnotVector knots = KnotVector::clamped_uniform(3, along).value();
-  const std::vector<double> samples = uniform_parameters(knots, 8 * along);
+  const KnotVector knots = KnotVector::clamped_uniform(3, shell_along).value();
+  const std::vector<double> samples = uniform_parameters(knots, 8 * shell_along);
   const Eigen::MatrixXd inverse = pseudo_inverse(knots, samples).value();
   Eigen::MatrixXd arc(static_cast<Eigen::Index>(samples.size()), 2);
   for (std::size_t s = 0; s < samples.size(); ++s) {
@@ -45,24 +45,24 @@ Surface spherical_bowl(double radius_m, double opening_rad, bool pole_at_end) {
     arc.row(static_cast<Eigen::Index>(s)) << radius_m * std::sin(angle), -radius_m * std::cos(angle);
   }
   const Eigen::MatrixXd control = inverse * arc;
-  ControlNet net(around, along);
-  for (int i = 0; i < around; ++i) {
-    const double turn = 2.0 * std::numbers::pi * i / around * (pole_at_end ? 1.0 : -1.0);
-    for (int j = 0; j < along; ++j) {
-      const bool pole = j == (pole_at_end ? along - 1 : 0);
+  ControlNet net(shell_around, shell_along);
+  for (int i = 0; i < shell_around; ++i) {
+    const double turn = 2.0 * std::numbers::pi * i / shell_around * (pole_at_end ? 1.0 : -1.0);
+    for (int j = 0; j < shell_along; ++j) {
+      const bool pole = j == (pole_at_end ? shell_along - 1 : 0);
       const double radius = pole ? 0.0 : control_radius(control(j, 0));
       net.set_point(i, j, {radius * std::cos(turn), control(j, 1), radius * std::sin(turn)});
     }
   }
-  return make_surface(KnotVector::periodic_uniform(3, around).value(), knots, net).value();
+  return make_surface(KnotVector::periodic_uniform(3, shell_around).value(), knots, net).value();
 }
 
 Surface open_ring(double radius_m, double height_m, double seam_turn) {
   const KnotVector knots = KnotVector::clamped_uniform(3, 6).value();
-  ControlNet net(around, 6);
-  for (int i = 0; i < around; ++i) {
+  ControlNet net(shell_around, 6);
+  for (int i = 0; i < shell_around; ++i) {
     // A control point counts most two knots on.
-    const double angle = -2.0 * std::numbers::pi * ((i + 2.0) / around + seam_turn);
+    const double angle = -2.0 * std::numbers::pi * ((i + 2.0) / shell_around + seam_turn);
     for (int j = 0; j < 6; ++j) {
       const double share = (knots.knots()[j + 1] + knots.knots()[j + 2] + knots.knots()[j + 3]) / 3;
       net.set_point(i, j,
@@ -70,7 +70,7 @@ Surface open_ring(double radius_m, double height_m, double seam_turn) {
                      control_radius(radius_m) * std::sin(angle)});
     }
   }
-  return make_surface(KnotVector::periodic_uniform(3, around).value(), knots, net).value();
+  return make_surface(KnotVector::periodic_uniform(3, shell_around).value(), knots, net).value();
 }
 
 Surface open_ring_around_v(double radius_m, double height_m) {

@@ -16,7 +16,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // Half a hollow ball, its mouth up: from the pole below along the outside, round the rim and down the inside.
 // `rim` is the share of the meridian that reaches the rim.
@@ -26,42 +26,42 @@ Surface walled_bowl(double radius_m, double wall_m, double rim) {
     constexpr double turn = 0.05;  // of the meridian, for each half of the rim
     if (share > rim - turn && share < rim + turn) {
       const double angle = 0.5 * pi * (share - rim) / turn;
-      return MeridianPoint{middle - edge * std::sin(angle), edge * std::cos(angle)};
+      return MeridianPlace{middle - edge * std::sin(angle), edge * std::cos(angle)};
     }
     const bool outside = share < rim;
     const double along = outside ? share / (rim - turn) : (1.0 - share) / (1.0 - rim - turn);
     const double out = outside ? radius_m : radius_m - wall_m;
-    return MeridianPoint{out * std::sin(0.5 * pi * along), -out * std::cos(0.5 * pi * along)};
+    return MeridianPlace{out * std::sin(0.5 * pi * along), -out * std::cos(0.5 * pi * along)};
   });
 }
 
-constexpr double ring_m = 0.04, tube_m = 0.01;
+constexpr double round_ring_m = 0.04, round_tube_m = 0.01;
 
 // Of the middles of its tube's circles.
 Vector3 middle_of_ring(const Vector3& at) {
-  return ring_m * Vector3(at.x(), 0.0, at.z()).normalized();
+  return round_ring_m * Vector3(at.x(), 0.0, at.z()).normalized();
 }
 
 TEST(SolidLattice, OfARingHasItsVolumeAndKnowsWhereItsNodesLie) {
-  const Surface ring = round_torus(ring_m, tube_m);
+  const Surface ring = round_torus(round_ring_m, round_tube_m);
   const LatticeMesh mesh = solid_lattice(ring, {4000, {}}).value();
   // Chords of 80 and more a turn, in both directions.
-  EXPECT_NEAR(filled_m3(mesh) / (2.0 * pi * pi * ring_m * tube_m * tube_m), 1.0, 0.005);
+  EXPECT_NEAR(filled_m3(mesh) / (2.0 * pi * pi * round_ring_m * round_tube_m * round_tube_m), 1.0, 0.005);
   const std::vector<BodyCoordinates> places = find_node_coordinates(mesh);
   int inside = 0;
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
     const Vector3& at = mesh.nodes[n];
     const Vector3 middle = middle_of_ring(at);
-    const double depth = tube_m - (at - middle).norm();
+    const double depth = round_tube_m - (at - middle).norm();
     if (mesh.node_locations[n] == NodeLocation::outside_body) {
       EXPECT_FALSE(contains({}, places[n])) << n;
       continue;
     }
     EXPECT_TRUE(contains({}, places[n])) << n;
-    EXPECT_NEAR(places[n].depth_m, std::max(0.0, depth), 0.02 * tube_m);
-    if (depth < 0.0 || depth > 0.8 * tube_m) continue;
+    EXPECT_NEAR(places[n].depth_m, std::max(0.0, depth), 0.02 * round_tube_m);
+    if (depth < 0.0 || depth > 0.8 * round_tube_m) continue;
     ++inside;
-    const Vector3 nearest = middle + tube_m * (at - middle).normalized();
+    const Vector3 nearest = middle + round_tube_m * (at - middle).normalized();
     // Half the diagonal of a cell of the samples: 160 and 180 a turn.
     EXPECT_LT((position(ring, places[n].around, places[n].along) - nearest).norm(), 0.0012);
   }
@@ -70,7 +70,7 @@ TEST(SolidLattice, OfARingHasItsVolumeAndKnowsWhereItsNodesLie) {
 
 // Over the seams as elsewhere, and of a cell whose corners lie on both sides of the tube.
 TEST(SolidLattice, OfARingKnowsWhereItsCellsLie) {
-  const Surface ring = round_torus(ring_m, tube_m);
+  const Surface ring = round_torus(round_ring_m, round_tube_m);
   const LatticeMesh mesh = solid_lattice(ring, {4000, {}}).value();
   const std::vector<BodyCoordinates> places = find_cell_coordinates(mesh);
   int filled = 0;
@@ -79,11 +79,11 @@ TEST(SolidLattice, OfARingKnowsWhereItsCellsLie) {
       for (int j = 0; j + 1 < mesh.count[1]; ++j) {
         const Vector3 at = trilinear(mesh.cell(i, j, k), 0.5, 0.5, 0.5), middle = middle_of_ring(at);
         const BodyCoordinates& place = places[mesh.cell_index(i, j, k)];
-        const double depth = tube_m - (at - middle).norm();
-        EXPECT_NEAR(place.depth_m, std::max(0.0, depth), 0.02 * tube_m);
-        if (!mesh.is_filled(i, j, k) || depth > 0.8 * tube_m) continue;
+        const double depth = round_tube_m - (at - middle).norm();
+        EXPECT_NEAR(place.depth_m, std::max(0.0, depth), 0.02 * round_tube_m);
+        if (!mesh.is_filled(i, j, k) || depth > 0.8 * round_tube_m) continue;
         ++filled;
-        const Vector3 nearest = middle + tube_m * (at - middle).normalized();
+        const Vector3 nearest = middle + round_tube_m * (at - middle).normalized();
         // Half the diagonal of a cell of the samples, as above.
         EXPECT_LT((position(ring, place.around, place.along) - nearest).norm(), 0.0012) << i << j << k;
       }
@@ -123,7 +123,7 @@ TEST(SolidLattice, ARegionWithoutSurfaceNodesHasNoFriction) {
   MaterialRegion spot;
   spot.region.along = spot.region.around = {0.0, 1e-9};
   spot.friction = 0.9;
-  const LatticeMesh mesh = solid_lattice(round_torus(ring_m, 0.97 * tube_m), {400, {}}).value();
+  const LatticeMesh mesh = solid_lattice(round_torus(round_ring_m, 0.97 * round_tube_m), {400, {}}).value();
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
     ASSERT_FALSE(mesh.along[n] <= 1e-9 && mesh.turns[n] <= 1e-9) << "the spot is empty";
   }

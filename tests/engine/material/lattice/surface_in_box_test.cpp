@@ -12,7 +12,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double ring_m = 0.02;
+constexpr double box_ring_m = 0.02;
 
 // A ring about y of this section: corners, m outwards from the ring and upwards, clockwise.
 Surface edged_ring(const std::vector<std::array<double, 2>>& section) {
@@ -23,7 +23,7 @@ Surface edged_ring(const std::vector<std::array<double, 2>>& section) {
     const auto [out, up] = section[static_cast<std::size_t>(i)];
     for (int j = 0; j < along; ++j) {
       const double angle = 2.0 * std::numbers::pi * j / along;
-      net.set_point(i, j, {(ring_m + out) * std::cos(angle), up, -(ring_m + out) * std::sin(angle)});
+      net.set_point(i, j, {(box_ring_m + out) * std::cos(angle), up, -(box_ring_m + out) * std::sin(angle)});
     }
   }
   return make_surface(KnotVector::periodic_uniform(1, around).value(),
@@ -44,8 +44,8 @@ bool is_slender(const Surface& surface) {
 
 // Cells of 2 to 2.5 mm.
 TEST(SurfaceInBox, IsSlenderWhereItsSidesAreNearerThanTwoCells) {
-  EXPECT_FALSE(is_slender(round_torus(ring_m, 0.005)));
-  EXPECT_TRUE(is_slender(round_torus(ring_m, 0.0015)));
+  EXPECT_FALSE(is_slender(round_torus(box_ring_m, 0.005)));
+  EXPECT_TRUE(is_slender(round_torus(box_ring_m, 0.0015)));
   EXPECT_TRUE(is_slender(boxed_ring(0.01, 0.003)));
   EXPECT_TRUE(is_slender(boxed_ring(0.003, 0.01)));
 }

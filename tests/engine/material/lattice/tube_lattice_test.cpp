@@ -10,7 +10,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double coil_radius_m = 0.03, rise_m = 0.02, radius_m = 0.004;
+constexpr double coil_radius_m = 0.03, rise_m = 0.02, coil_tube_radius_m = 0.004;
 
 // A round bar along a helix about y that rises rise_m in each turn; its ends are poles.
 Surface coil(double turn_rad) {
@@ -21,7 +21,7 @@ Surface coil(double turn_rad) {
     const double angle = turn_rad * std::clamp((j - 1.0) / (along - 3.0), 0.0, 1.0);
     const Vector3 out(std::cos(angle), 0.0, std::sin(angle));
     const Vector3 centre = coil_radius_m * out + rise_m * angle / (2.0 * std::numbers::pi) * Vector3::UnitY();
-    const double radius = j == 0 || j == along - 1 ? 0.0 : radius_m;
+    const double radius = j == 0 || j == along - 1 ? 0.0 : coil_tube_radius_m;
     for (int i = 0; i < around; ++i) {
       const double around_bar = 2.0 * std::numbers::pi * i / around;
       net.set_point(i, j,
@@ -41,7 +41,7 @@ TEST(TubeLattice, FillsCoilsOfAnyTurn) {
     ASSERT_TRUE(mesh.ok()) << degrees << " degrees: " << mesh.error().message;
     if (degrees < 90.0) continue;
     const double length = std::hypot(coil_radius_m * turn, rise_m * turn / (2.0 * std::numbers::pi));
-    const double bar = std::numbers::pi * radius_m * radius_m * length;
+    const double bar = std::numbers::pi * coil_tube_radius_m * coil_tube_radius_m * length;
     // The control points lie outside the bar by 9 % of its cross section, and cells cut its round corners:
     // chords of a ring of ten or so nodes.
     EXPECT_NEAR(volume_of(mesh.value()) / bar, 0.8, 0.15) << degrees << " degrees";

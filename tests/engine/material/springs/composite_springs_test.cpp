@@ -15,8 +15,8 @@
 namespace spoonbill {
 namespace {
 
-SpringLattice make_body_lattice(const LatticeMesh& mesh, const LatticeMaterials& materials,
-                                InstructionSet set = InstructionSet::baseline) {
+SpringLattice make_composite_springs(const LatticeMesh& mesh, const LatticeMaterials& materials,
+                                     InstructionSet set = InstructionSet::baseline) {
   Result<SpringLattice> lattice =
       SpringLattice::make(mesh, materials, materials.own().youngs_modulus_pa, set);
   EXPECT_TRUE(lattice.ok()) << lattice.error().message;
@@ -24,7 +24,7 @@ SpringLattice make_body_lattice(const LatticeMesh& mesh, const LatticeMaterials&
 }
 
 // A bar along z of 4 x 4 x 24 cells of 3 mm.
-const LatticeMesh& bar() {
+const LatticeMesh& long_bar() {
   static const LatticeMesh mesh = box_mesh({0.012, 0.012, 0.072}, {5, 5, 25});
   return mesh;
 }
@@ -53,14 +53,14 @@ double strain_between(const SpringLattice& lattice, int from, int to) {
 
 // Held at z = 0 and drawn at the other end by an even stress, until it rests.
 SpringLattice drawn_bar(const LatticeMaterials& materials, double stress_pa) {
-  SpringLattice lattice = make_body_lattice(bar(), materials);
-  std::vector<std::uint8_t> held(static_cast<std::size_t>(bar().node_count()), 0);
+  SpringLattice lattice = make_composite_springs(long_bar(), materials);
+  std::vector<std::uint8_t> held(static_cast<std::size_t>(long_bar().node_count()), 0);
   std::fill_n(held.begin(), 25, std::uint8_t{1});
   lattice.fix_nodes(held);
   for (int i = 0; i < 5; ++i) {
     for (int j = 0; j < 5; ++j) {
       const double area = 9e-6 * (i % 4 == 0 ? 0.5 : 1.0) * (j % 4 == 0 ? 0.5 : 1.0);
-      lattice.set_node_force(bar().index(i, j, 24), {0.0, 0.0, stress_pa * area});
+      lattice.set_node_force(long_bar().index(i, j, 24), {0.0, 0.0, stress_pa * area});
     }
   }
   RelaxSettings settings;
@@ -74,9 +74,9 @@ SpringLattice drawn_bar(const LatticeMaterials& materials, double stress_pa) {
 
 // Away from the ends and from where they meet, each half is strained by the stress over its own modulus.
 TEST(CompositeSprings, InSeriesEachHalfStretchesByItsOwnModulus) {
-  const SpringLattice lattice = drawn_bar(
-      composite(bar(), elastic_material(4e3, 0.3, 1000.0), elastic_material(1.2e4, 0.4, 1000.0), in_far_half),
-      20.0);
+  const SpringLattice lattice = drawn_bar(composite(long_bar(), elastic_material(4e3, 0.3, 1000.0),
+                                                    elastic_material(1.2e4, 0.4, 1000.0), in_far_half),
+                                          20.0);
   // Strains of 5e-3 and of the squares that springs add to them.
   EXPECT_NEAR(strain_between(lattice, 4, 9) / (20.0 / 4e3), 1.0, 0.01);
   EXPECT_NEAR(strain_between(lattice, 15, 21) / (20.0 / 1.2e4), 1.0, 0.01);
@@ -84,27 +84,11 @@ TEST(CompositeSprings, InSeriesEachHalfStretchesByItsOwnModulus) {
 
 // Of one Poisson's ratio, the mean by area: a quarter of the bar is ten times as stiff.
 TEST(CompositeSprings, InParallelABarStretchesAsVoigtSays) {
-  const SpringLattice lattice = drawn_bar(
-      composite(bar(), elastic_material(3e3, 0.35, 1000.0), elastic_material(3e4, 0.35, 1000.0), in_middle),
-      20.0);
+  const SpringLattice lattice = drawn_bar(composite(long_bar(), elastic_material(3e3, 0.35, 1000.0),
+                                                    elastic_material(3e4, 0.35, 1000.0), in_middle),
+                                          20.0);
   const double expected = 20.0 / (0.75 * 3e3 + 0.25 * 3e4);
   EXPECT_NEAR(strain_between(lattice, 9, 15) / expected, 1.0, 0.01);
-}
-
-struct Momentum {
-  Vector3 sum = Vector3::Zero();
-  double size = 0.0, energy_j = 0.0;
-};
-
-Momentum momentum_of(const SpringLattice& lattice) {
-  Momentum momentum;
-  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
-    const Vector3 own = static_cast<double>(lattice.mass(n)) * lattice.velocity(n);
-    momentum.sum += own;
-    momentum.size += own.norm();
-    momentum.energy_j += 0.5 * own.dot(lattice.velocity(n));
-  }
-  return momentum;
 }
 
 void shake(SpringLattice& lattice, double speed_m_per_s, unsigned seed) {
@@ -138,7 +122,7 @@ const LatticeMesh& small_block() {
 
 TEST(CompositeSprings, KeepTheirMomentum) {
   const DenormalsFlushed flushed;
-  SpringLattice lattice = make_body_lattice(small_block(), all_different(small_block()));
+  SpringLattice lattice = make_composite_springs(small_block(), all_different(small_block()));
   EXPECT_TRUE(lattice.is_damped_further());
   shake(lattice, 0.05, 5);
   const Momentum before = momentum_of(lattice);
@@ -151,7 +135,7 @@ TEST(CompositeSprings, KeepTheirMomentum) {
 
 // A body that moves and turns as a whole is not damped.
 TEST(CompositeSprings, RigidMotionsAreNotDampedFurther) {
-  SpringLattice lattice = make_body_lattice(small_block(), all_different(small_block()));
+  SpringLattice lattice = make_composite_springs(small_block(), all_different(small_block()));
   const Vector3 velocity(0.3, -0.2, 0.1), spin(2.0, 1.0, -3.0);
   for (int n = 0; n < lattice.mesh().node_count(); ++n) {
     lattice.set_velocity(n, velocity + spin.cross(lattice.position(n)));
@@ -189,10 +173,11 @@ TEST(CompositeSprings, EachMaterialIsDampedByItsOwnRatio) {
     Material first = elastic_material(4e3, 0.3, 1000.0), second = elastic_material(4e3, 0.3, 1000.0);
     first.damping_ratio = first_ratio;
     second.damping_ratio = second_ratio;
-    SpringLattice lattice = make_body_lattice(bar(), composite(bar(), first, second, in_far_half));
+    SpringLattice lattice =
+        make_composite_springs(long_bar(), composite(long_bar(), first, second, in_far_half));
     Random random(9);
-    for (int n = 0; n < bar().node_count(); ++n) {
-      const double z = bar().nodes[static_cast<std::size_t>(n)].z();
+    for (int n = 0; n < long_bar().node_count(); ++n) {
+      const double z = long_bar().nodes[static_cast<std::size_t>(n)].z();
       const bool in_half = of_second ? z > 0.048 : z < 0.024;
       const Vector3 v(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
       if (in_half) lattice.set_velocity(n, 1e-3 * v);
@@ -219,13 +204,14 @@ TEST(CompositeSprings, OnlyThePlasticHalfKeepsItsLength) {
   clay.yield_strain = 0.005;
   clay.flow_rate_per_s = 50.0;
   clay.damping_ratio = rubber.damping_ratio = 0.1;
-  SpringLattice lattice = make_body_lattice(bar(), composite(bar(), clay, rubber, in_far_half));
-  std::vector<std::uint8_t> held(static_cast<std::size_t>(bar().node_count()), 0);
+  SpringLattice lattice =
+      make_composite_springs(long_bar(), composite(long_bar(), clay, rubber, in_far_half));
+  std::vector<std::uint8_t> held(static_cast<std::size_t>(long_bar().node_count()), 0);
   std::fill_n(held.begin(), 25, std::uint8_t{1});
   std::fill_n(held.end() - 25, 25, std::uint8_t{1});
   lattice.fix_nodes(held);
-  for (int n = 0; n < bar().node_count(); ++n) {
-    const Vector3& at = bar().nodes[static_cast<std::size_t>(n)];
+  for (int n = 0; n < long_bar().node_count(); ++n) {
+    const Vector3& at = long_bar().nodes[static_cast<std::size_t>(n)];
     lattice.set_displacement(n, {0.0, 0.0, 0.05 * at.z()});
   }
   RelaxSettings settings;
@@ -250,13 +236,13 @@ TEST(CompositeSprings, OnlyTheGelCreeps) {
   gel.relaxing_fraction = 0.5;
   gel.relaxation_time_s = 0.2;
   gel.damping_ratio = rubber.damping_ratio = 0.1;
-  SpringLattice lattice = make_body_lattice(bar(), composite(bar(), gel, rubber, in_far_half));
-  std::vector<std::uint8_t> held(static_cast<std::size_t>(bar().node_count()), 0);
+  SpringLattice lattice = make_composite_springs(long_bar(), composite(long_bar(), gel, rubber, in_far_half));
+  std::vector<std::uint8_t> held(static_cast<std::size_t>(long_bar().node_count()), 0);
   std::fill_n(held.begin(), 25, std::uint8_t{1});
   std::fill_n(held.end() - 25, 25, std::uint8_t{1});
   lattice.fix_nodes(held);
-  for (int n = 0; n < bar().node_count(); ++n) {
-    lattice.set_displacement(n, {0.0, 0.0, 0.02 * bar().nodes[static_cast<std::size_t>(n)].z()});
+  for (int n = 0; n < long_bar().node_count(); ++n) {
+    lattice.set_displacement(n, {0.0, 0.0, 0.02 * long_bar().nodes[static_cast<std::size_t>(n)].z()});
   }
   RelaxSettings settings;
   settings.damping_per_s = 60.0;
@@ -275,7 +261,7 @@ TEST(CompositeSprings, StayStableHoweverTheyAreDamped) {
                  second = elastic_material(2e4 * softer, 0.4, 1000.0);
         first.damping_ratio = first_ratio;
         second.damping_ratio = second_ratio;
-        SpringLattice lattice = make_body_lattice(
+        SpringLattice lattice = make_composite_springs(
             small_block(),
             composite(small_block(), first, second, [](const Vector3& at) { return at.x() > 0.006; }));
         shake(lattice, 1e-3, 3);
@@ -294,7 +280,7 @@ TEST(CompositeSprings, StayStableHoweverTheyAreDamped) {
 
 TEST(CompositeSprings, EveryInstructionSetGivesTheSameBits) {
   const auto shape_after = [&](InstructionSet set) {
-    SpringLattice lattice = make_body_lattice(small_block(), all_different(small_block()), set);
+    SpringLattice lattice = make_composite_springs(small_block(), all_different(small_block()), set);
     shake(lattice, 0.3, 7);
     RelaxSettings settings;
     for (; settings.tick < 100; ++settings.tick) relax(std::array{RelaxedLattice{&lattice}}, settings, {});
@@ -312,7 +298,7 @@ TEST(CompositeSprings, OneMaterialBehavesAsByItself) {
   LatticeMaterials twice =
       composite(small_block(), material, material, [](const Vector3& at) { return at.x() > 0.006; });
   const auto shape_of = [&](const LatticeMaterials& materials) {
-    SpringLattice lattice = make_body_lattice(small_block(), materials);
+    SpringLattice lattice = make_composite_springs(small_block(), materials);
     shake(lattice, 0.1, 7);
     RelaxSettings settings;
     for (; settings.tick < 50; ++settings.tick) relax(std::array{RelaxedLattice{&lattice}}, settings, {});
@@ -324,7 +310,7 @@ TEST(CompositeSprings, OneMaterialBehavesAsByItself) {
 }
 
 TEST(CompositeSprings, StepsAllocateNothing) {
-  SpringLattice lattice = make_body_lattice(small_block(), all_different(small_block()));
+  SpringLattice lattice = make_composite_springs(small_block(), all_different(small_block()));
   shake(lattice, 0.1, 7);
   RelaxSettings settings;
   const std::array lattices{RelaxedLattice{&lattice}};
@@ -346,7 +332,8 @@ TEST(CompositeSprings, ABlockSlidesByTheFrictionsOfItsBase) {
     MaterialRegion middle;
     middle.region.along = {0.3, 0.7};
     middle.friction = rough;
-    SpringLattice lattice = make_body_lattice(mesh, lattice_materials(mesh, smooth, {&middle, 1}).value());
+    SpringLattice lattice =
+        make_composite_springs(mesh, lattice_materials(mesh, smooth, {&middle, 1}).value());
     ContactConstraints contacts(35);
     for (int n = 0; n < mesh.node_count(); ++n) {
       if (mesh.nodes[static_cast<std::size_t>(n)].y() > 1e-9) continue;

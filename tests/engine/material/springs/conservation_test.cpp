@@ -16,20 +16,6 @@ namespace {
 
 constexpr int ticks = 100000;
 
-struct Momentum {
-  Vector3 sum = Vector3::Zero();
-  double size = 0.0;  // the sum of m |v|
-};
-
-Momentum momentum_of(const SpringLattice& lattice) {
-  Momentum momentum;
-  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
-    momentum.sum += lattice.mass(n) * lattice.velocity(n);
-    momentum.size += lattice.mass(n) * lattice.velocity(n).norm();
-  }
-  return momentum;
-}
-
 // T + V - h/2 v . grad V, which a kick and a drift of h keep where forces are linear, as v^2 + w^2 x^2 - h
 // w^2 x v shows; the energy itself swings by w h / 2 within a period. Of the same springs in double.
 struct Energies {

@@ -12,7 +12,7 @@ double across(const Vector3& n) {
   return std::hypot(n.x(), n.z());
 }
 
-struct Support {
+struct SupportFunction {
   const Vector3& n;
 
   double operator()(const SphereShape& s) const { return s.radius_m; }
@@ -67,7 +67,7 @@ Found climb(const ImplicitShape& shape, const Vector3& point, Found best) {
 }  // namespace
 
 double support(const ImplicitShape& shape, const Vector3& direction) {
-  return std::visit(Support{direction}, shape);
+  return std::visit(SupportFunction{direction}, shape);
 }
 
 double distance_by_support(const ImplicitShape& shape, const Vector3& point) {
@@ -123,6 +123,11 @@ ImplicitShape random_convex_shape(Random& random, int kind) {
     default:
       return SuperquadricShape{{a, b, c}, e1, e2};
   }
+}
+
+Quaternion random_turn(Random& random) {
+  const Vector3 axis = random_direction(random);
+  return Quaternion(Eigen::AngleAxisd(random.uniform(0.0, 3.1), axis));
 }
 
 }  // namespace spoonbill

@@ -21,5 +21,7 @@ inline constexpr int convex_shape_kinds = 7;
 // Any of unit length, or within the unit cube.
 Vector3 random_direction(Random& random);
 Vector3 random_in_cube(Random& random);
+// About any axis, by less than half a turn.
+Quaternion random_turn(Random& random);
 
 }  // namespace spoonbill
