@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/assets_folder.h"
+#include "engine/base/assert.h"
 #include "engine/base/geometry.h"
 #include "engine/base/text.h"
 #include "engine/exchange/cad_model.h"
@@ -87,8 +88,11 @@ SizedStockShape size_stock_shape(std::size_t kind, const std::vector<double>& m)
       return {ConeSize{m[0], m[1], 0.0, m[2]}};
     case 4:
       return {PlateSize{m[0], m[1], m[2], m[3]}};
-    default:
+    case 5:
       return {SheetSize{m[0], m[1]}, m[2]};
+    default:
+      SPOONBILL_ASSERT(!"a row of all_stock_shapes() without a case");
+      return {SphereSize{m[0]}};
   }
 }
 

@@ -70,7 +70,7 @@ Scene random_stroke_scene(RandomValues& random, const std::vector<Material>& bun
     scene.planes.push_back({Vector3(random.between(0.005, 0.04), 0, 0), Vector3::UnitX()});
   }
   scene.tool.kind = random.once_in(3) ? ToolKind::point : ToolKind::sphere;
-  scene.tool.action = static_cast<ToolAction>(random.bits() % 3);
+  scene.tool.action = static_cast<ToolAction>(random.bits() % tool_actions.size());
   scene.tool.radius_m = random.scaled(0.001, 0.05);
   scene.tool.iterations = static_cast<int>(1 + random.bits() % 8);
   scene.sculpting.damping_per_s = random.once_in(4) ? 0.0 : random.between(0.0, 100.0);

@@ -164,7 +164,7 @@ Scene random_safety_scene(RandomValues& random) {
   material.plastic = random.once_in(2);
   scene.planes.push_back({Vector3(random.between(0.01, 0.04), 0, 0), Vector3::UnitX()});
   scene.tool.kind = random.once_in(3) ? ToolKind::point : ToolKind::sphere;
-  scene.tool.action = static_cast<ToolAction>(random.bits() % 3);
+  scene.tool.action = static_cast<ToolAction>(random.bits() % tool_actions.size());
   scene.tool.radius_m = random.between(0.003, 0.008);
   scene.tool.iterations = 1 + static_cast<int>(random.bits() % 8);
   scene.sculpting.force_scale = random.scaled(0.1, 1e4);

@@ -252,7 +252,7 @@ TEST(Simulation, NoSettingBlowsItUp) {
     const double carried = 0.1 * material.youngs_modulus_pa / (material.density_kg_per_m3 * 0.06);
     scene.sculpting.gravity_m_per_s2 = {0.0, -std::min(20.0, random.uniform(0.0, 1.0) * carried), 0.0};
     scene.tool.kind = random.integer(0, 3) == 0 ? ToolKind::point : ToolKind::sphere;
-    scene.tool.action = static_cast<ToolAction>(random.integer(0, 2));
+    scene.tool.action = static_cast<ToolAction>(random.integer(0, static_cast<int>(tool_actions.size()) - 1));
     scene.tool.radius_m = random.uniform(0.0, 0.03);
     scene.tool.iterations = random.integer(1, 8);
     scene.planes.push_back({Vector3(0.015, 0, 0), Vector3::UnitX()});
