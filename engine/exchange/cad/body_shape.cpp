@@ -49,7 +49,8 @@ using SplineGeometry = opencascade::handle<Geom_BSplineSurface>;
 using Polygon = std::vector<Eigen::Vector2d>;
 
 constexpr double vertex_distance_mm = 1e-7;
-// Distance of edge curves in space from those over (u, v): the target, and the limit, which kinks may reach.
+// Distance between an edge's curve in space and its curve over (u, v): the target, and the limit, which kinks
+// may reach.
 constexpr double curve_tolerance_mm = 1e-6, curve_error_limit_mm = 1e-2;
 constexpr double corner_sine = 1e-4;
 constexpr int degree_limit = 14, segment_limit = 1000;
@@ -202,7 +203,8 @@ std::vector<double> find_corners(const Curve& curve) {
   return ends;
 }
 
-// Appends the vertex at a point; one that exists there is repeated, since a loop may return along a seam.
+// Appends the vertex at a point. If a vertex already exists there, it is appended once more, since a loop may
+// return along a seam.
 void add_vertex(const gp_Pnt& at, std::vector<TopoDS_Vertex>& vertices) {
   for (const TopoDS_Vertex& vertex : vertices) {
     if (BRep_Tool::Pnt(vertex).Distance(at) > vertex_distance_mm) continue;
@@ -281,7 +283,7 @@ Result<std::vector<Outline>> make_outlines(const SplineGeometry& geometry, const
   return outlines;
 }
 
-// Returns the index of the smallest outer loop around a hole; -1 where the hole is in the whole surface.
+// Returns the index of the smallest outer loop around a hole; -1 if the hole is in the whole surface.
 int find_owner(const Outline& hole, const std::vector<Outline>& outlines) {
   int owner = -1;
   for (std::size_t k = 0; k < outlines.size(); ++k) {
@@ -293,7 +295,7 @@ int find_owner(const Outline& hole, const std::vector<Outline>& outlines) {
   return owner;
 }
 
-// Returns true where the surface closes: both directions are periodic, or one is and the other ends in poles.
+// Returns true if the surface closes: both directions are periodic, or one is and the other ends in poles.
 bool is_closed_surface(const Surface& surface) {
   const ControlNet& net = surface.net;
   const bool u = surface.u.is_periodic(), v = surface.v.is_periodic();
@@ -316,7 +318,7 @@ Result<std::vector<TrimmedSurface>> open_surface(const Surface& surface, const s
 }
 
 // Makes a face for each outer loop, or one for the whole surface with its holes. `geometry` is the surface of
-// the part, open, and no loop leaves its domain.
+// the part. It is open, and no loop leaves its domain.
 Result<std::vector<TopoDS_Face>> make_faces(const SplineGeometry& geometry, const TrimmedSurface& part) {
   const auto outlines = make_outlines(geometry, part);
   if (!outlines) return outlines.error();
@@ -355,7 +357,8 @@ TopoDS_Shape make_compound(const std::vector<TopoDS_Face>& faces) {
   return compound;
 }
 
-// Sews the faces of a surface that was divided into one shell with shared edges; null where they do not meet.
+// Sews the faces of a divided surface into one shell with shared edges. Returns a null shape if they do not
+// meet.
 TopoDS_Shape sew(const std::vector<TopoDS_Face>& faces) {
   BRepBuilderAPI_Sewing sewing(sewing_tolerance_mm);
   for (const TopoDS_Face& face : faces) sewing.Add(face);
