@@ -245,11 +245,12 @@ Result<TopoDS_Wire> make_wire(const TrimLoop& loop, const SplineGeometry& geomet
     piece->Segment(ends[k], ends[k + 1]);
     BRepBuilderAPI_MakeEdge edge(piece, geometry, vertices[k], vertices[(k + 1) % vertices.size()], ends[k],
                                  ends[k + 1]);
-    if (!edge.IsDone()) return Error{ErrorCode::unsupported, "OpenCASCADE makes no edge of a trim loop"};
+    if (!edge.IsDone())
+      return Error{ErrorCode::unsupported, "OpenCASCADE cannot make an edge from a trim loop"};
     if (Status added = add_curve_in_space(piece, geometry, edge.Edge()); !added) return added.error();
     wire.Add(edge.Edge());
   }
-  if (!wire.IsDone()) return Error{ErrorCode::unsupported, "OpenCASCADE makes no wire of a trim loop"};
+  if (!wire.IsDone()) return Error{ErrorCode::unsupported, "OpenCASCADE cannot make a wire from a trim loop"};
   return wire.Wire();
 }
 
@@ -328,7 +329,7 @@ Result<std::vector<TopoDS_Face>> make_faces(const SplineGeometry& geometry, cons
       if (hole.area < 0.0 && find_owner(hole, outlines.value()) == owner) maker.Add(hole.wire);
     }
     if (!maker.IsDone())
-      return Error{ErrorCode::unsupported, "OpenCASCADE cannot make a face of the trim loops"};
+      return Error{ErrorCode::unsupported, "OpenCASCADE cannot make a face from the trim loops"};
     faces.push_back(maker.Face());
     return {};
   };
@@ -404,7 +405,7 @@ Result<BodyShape> build_checked_shape(const CadSurface& part) {
   if (!made) return made.error();
   const TopoDS_Shape& shape = made.value();
   if (!BRepCheck_Analyzer(shape).IsValid()) {
-    return Error{ErrorCode::unsupported, "OpenCASCADE finds its face invalid"};
+    return Error{ErrorCode::unsupported, "OpenCASCADE rejects the surface's face as invalid"};
   }
   if (!part.solid.empty()) return BodyShape{shape, false};
   if (shape.ShapeType() == TopAbs_SHELL && shape.Closed()) {

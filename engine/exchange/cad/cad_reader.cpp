@@ -380,11 +380,12 @@ Result<CadModel> read_cad(const std::filesystem::path& file, const CadReading& r
     return read(file, reading, sink, progress);
   } catch (const Standard_Failure& failure) {
     return Error{ErrorCode::unsupported,
-                 std::string("OpenCASCADE fails on it (") + failure.DynamicType()->Name() + ")"};
+                 std::string("OpenCASCADE failed to read the file (") + failure.DynamicType()->Name() + ")"};
   } catch (const std::bad_alloc&) {
     return Error{ErrorCode::too_many, bad_allocation};
   } catch (const std::exception& exception) {
-    return Error{ErrorCode::unsupported, std::string("OpenCASCADE fails on it (") + exception.what() + ")"};
+    return Error{ErrorCode::unsupported,
+                 std::string("OpenCASCADE failed to read the file (") + exception.what() + ")"};
   }
 }
 

@@ -284,7 +284,7 @@ Result<CadFileContent> write_step(const CadModel& model, const CadWriting& writi
   writer.SetColorMode(false);
   writer.SetLayerMode(false);
   if (!writer.Transfer(document)) {
-    return Error{ErrorCode::unsupported, "OpenCASCADE makes no STEP file of it"};
+    return Error{ErrorCode::unsupported, "OpenCASCADE cannot convert the model to a STEP file"};
   }
   const auto step = opencascade::handle<StepData_StepModel>::DownCast(writer.Writer().WS()->Model());
   fill_header(step);
@@ -349,7 +349,8 @@ Status add_body(IGESControl_Writer& writer, const WrittenBody& body) {
                      : type == untrimmed ? add_surface(writer, body.surface->surface)
                                          : add_faces(writer, body.shape);
   if (!added) {
-    return Error{ErrorCode::unsupported, "'" + body.name + "': OpenCASCADE makes no IGES entity of it"};
+    return Error{ErrorCode::unsupported,
+                 "'" + body.name + "': OpenCASCADE cannot convert the body to an IGES entity"};
   }
   name_entities(writer.Model(), before, type, body.name);
   return {};
@@ -397,8 +398,8 @@ Result<CadFileContent> write_cad(const CadModel& model, const CadWriting& writin
     return writing.format == FileFormat::step ? write_step(model, writing, progress)
                                               : write_iges(model, progress);
   } catch (const Standard_Failure& failure) {
-    return Error{ErrorCode::unsupported,
-                 std::string("OpenCASCADE fails on it (") + failure.DynamicType()->Name() + ")"};
+    return Error{ErrorCode::unsupported, std::string("OpenCASCADE failed to write the model (") +
+                                             failure.DynamicType()->Name() + ")"};
   } catch (const std::bad_alloc&) {
     return Error{ErrorCode::too_many, bad_allocation};
   }

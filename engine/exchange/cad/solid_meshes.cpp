@@ -428,7 +428,7 @@ Result<CadSolids> mesh_solids(const CadModel& model, const SolidMeshing& meshing
     return mesh_all_solids(model, meshing, progress);
   } catch (const Standard_Failure& failure) {
     return Error{ErrorCode::unsupported,
-                 std::string("OpenCASCADE fails on it (") + failure.DynamicType()->Name() + ")"};
+                 std::string("OpenCASCADE failed to mesh the model (") + failure.DynamicType()->Name() + ")"};
   }
 }
 

@@ -271,12 +271,13 @@ class Archive {
 
   // Passes the bytes of the packed archive on.
   Status send_to(const ByteSink& sink) {
-    if (zip_source_open(source_) != 0) return Error{ErrorCode::unwritable, "cannot be packed"};
+    if (zip_source_open(source_) != 0)
+      return Error{ErrorCode::unwritable, "the ZIP archive cannot be read back"};
     std::string part(std::size_t{1} << 20, '\0');
     Status status;
     for (;;) {
       const zip_int64_t count = zip_source_read(source_, part.data(), part.size());
-      if (count < 0) status = Error{ErrorCode::unwritable, "cannot be packed"};
+      if (count < 0) status = Error{ErrorCode::unwritable, "the ZIP archive cannot be read back"};
       if (count <= 0) break;
       status = sink(std::string_view(part).substr(0, static_cast<std::size_t>(count)));
       if (!status.ok()) break;
@@ -298,7 +299,8 @@ Status write_three_mf(const std::vector<NamedMesh>& meshes, const ByteSink& sink
   Archive archive;
   if (!archive.add("[Content_Types].xml", types) || !archive.add("_rels/.rels", relations) ||
       !archive.add("3D/3dmodel.model", model) || !archive.pack(stop_check)) {
-    return stop_check.status().ok() ? Error{ErrorCode::unwritable, "cannot be packed"} : stop_check.status();
+    return stop_check.status().ok() ? Error{ErrorCode::unwritable, "the ZIP archive cannot be written"}
+                                    : stop_check.status();
   }
   return archive.send_to(sink);
 }
