@@ -85,7 +85,7 @@ Result<PlyHeader> read_ply_header(std::istream& stream) {
       header.elements.back().properties.push_back(property);
     }
   }
-  return Error{ErrorCode::malformed, "its header has no end within 64 KiB; it is cut or no PLY file"};
+  return Error{ErrorCode::malformed, "its header has no end within 64 KiB; it is cut or not a PLY file"};
 }
 
 bool skip(std::istream& stream, std::uint64_t numbers) {

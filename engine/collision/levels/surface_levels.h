@@ -78,8 +78,7 @@ class SurfaceBounds {
   std::vector<double> second_uu_, second_vv_;
   std::uint64_t stamp_ = 1;
   std::vector<std::uint64_t> column_at_,
-      // generation of the last update, by unrolled column and by element_v
-      element_at_;
+      element_at_;                        // stamp of the last update, by unrolled column and by element_v
   std::vector<double> row_[3][3];         // working memory: row i of the unrolled net is at index i mod 3
   std::vector<double> low_[3], high_[3];  // per control column
   std::vector<Box> row_boxes_;            // per control row

@@ -37,8 +37,8 @@ NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point
 // Result of deepest_pair().
 struct DeepestPair {
   SurfacePair pair;
-  Vector3 normal = Vector3::UnitY();  // of the second surface, on the side given by `outside`
-  double depth_m = 0.0;               // negative if the point is in front
+  Vector3 normal = Vector3::UnitY();  // unit normal of the second surface, on the side given by `outside`
+  double depth_m = 0.0;  // depth of the first surface's point behind the second; negative in front of it
 };
 
 // Returns the depth in metres of a point of the first surface behind the second, measured at the nearest

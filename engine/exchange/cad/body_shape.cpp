@@ -220,7 +220,7 @@ Status add_curve_in_space(const Curve& curve, const SplineGeometry& geometry, co
                                       curve->FirstParameter(), curve->LastParameter(), curve_tolerance_mm);
   approximation.Perform(segment_limit, degree_limit, GeomAbs_C0, true);
   if (!approximation.HasResult() || !(approximation.MaxError3d() <= curve_error_limit_mm)) {
-    return Error{ErrorCode::unsupported, "OpenCASCADE finds no curve in space for a trim loop"};
+    return Error{ErrorCode::unsupported, "OpenCASCADE cannot find a curve in space for a trim loop"};
   }
   const BRep_Builder builder;
   builder.UpdateEdge(edge, approximation.Curve3d(), std::max(vertex_distance_mm, approximation.MaxError3d()));
@@ -245,8 +245,9 @@ Result<TopoDS_Wire> make_wire(const TrimLoop& loop, const SplineGeometry& geomet
     piece->Segment(ends[k], ends[k + 1]);
     BRepBuilderAPI_MakeEdge edge(piece, geometry, vertices[k], vertices[(k + 1) % vertices.size()], ends[k],
                                  ends[k + 1]);
-    if (!edge.IsDone())
+    if (!edge.IsDone()) {
       return Error{ErrorCode::unsupported, "OpenCASCADE cannot make an edge from a trim loop"};
+    }
     if (Status added = add_curve_in_space(piece, geometry, edge.Edge()); !added) return added.error();
     wire.Add(edge.Edge());
   }

@@ -125,7 +125,7 @@ int face_count(const TopoDS_Shape& shape) {
 
 std::string describe_open_shell(const CadSurface& surface, const BodyShape& body) {
   if (surface.trims.empty()) {
-    return "' closes, but OpenCASCADE finds no solid in it; an open shell is written";
+    return "' closes, but OpenCASCADE cannot make a solid of it; an open shell is written";
   }
   const int faces = face_count(body.shape);
   return "' would close, but is trimmed; an open shell of what is left is written" +

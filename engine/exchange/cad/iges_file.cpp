@@ -64,8 +64,7 @@ struct LineCounts {
   int null_entities = 0;
   long farthest = 0;  // last line of parameters that an entity refers to
   std::optional<long>
-      // first line of an entity's parameters, from the first of the entity's two directory lines
-      parameters_of_next;
+      parameters_of_next;  // first line of parameters, from the first of an entity's two lines
 };
 
 void add_directory_line(const std::string& line, LineCounts& lines) {

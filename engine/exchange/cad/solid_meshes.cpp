@@ -386,7 +386,7 @@ class SolidMesher {
     auto found = mesh_shape(joined.shape, remaining_, joined.gap_m);
     if (!found) return found.error().in("'" + name + "'");
     if (!found.value() || !has_same_volume(found.value().value(), solid)) {
-      result_.notes.push_back("OpenCASCADE finds no watertight mesh of '" + name + "'");
+      result_.notes.push_back("OpenCASCADE cannot make a watertight mesh of '" + name + "'");
       result_.loose.insert(result_.loose.end(), solid.places.begin(), solid.places.end());
       return {};
     }

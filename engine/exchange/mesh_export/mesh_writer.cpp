@@ -271,13 +271,12 @@ class Archive {
 
   // Passes the bytes of the packed archive on.
   Status send_to(const ByteSink& sink) {
-    if (zip_source_open(source_) != 0)
-      return Error{ErrorCode::unwritable, "the ZIP archive cannot be read back"};
+    if (zip_source_open(source_) != 0) return Error{ErrorCode::unwritable, "the ZIP archive cannot be read"};
     std::string part(std::size_t{1} << 20, '\0');
     Status status;
     for (;;) {
       const zip_int64_t count = zip_source_read(source_, part.data(), part.size());
-      if (count < 0) status = Error{ErrorCode::unwritable, "the ZIP archive cannot be read back"};
+      if (count < 0) status = Error{ErrorCode::unwritable, "the ZIP archive cannot be read"};
       if (count <= 0) break;
       status = sink(std::string_view(part).substr(0, static_cast<std::size_t>(count)));
       if (!status.ok()) break;

@@ -87,7 +87,7 @@ Result<PcdHeader> make_header(const HeaderLines& lines, std::string_view data, s
   }
   const auto is_empty = [](const PcdField& field) { return field.count == 0; };
   if (std::all_of(header.fields.begin(), header.fields.end(), is_empty)) {
-    return Error{ErrorCode::too_few, "its fields hold nothing: each COUNT is 0"};
+    return Error{ErrorCode::too_few, "its fields are empty: each COUNT is 0"};
   }
   if (lines.points) {
     header.points = *lines.points;
@@ -113,7 +113,7 @@ Result<PcdHeader> read_pcd_header(std::string_view bytes) {
     if (keyword == "POINTS") lines.points = parse_count(extract_word(rest));
     if (keyword == "DATA") return make_header(lines, extract_word(rest), bytes);
   }
-  return Error{ErrorCode::malformed, "its header has no DATA line; it is cut or no PCD file"};
+  return Error{ErrorCode::malformed, "its header has no DATA line; it is cut or not a PCD file"};
 }
 
 // Returns the indices of the fields x, y, z, normal_x, normal_y and normal_z; -1 for missing ones.

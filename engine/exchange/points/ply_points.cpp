@@ -108,12 +108,12 @@ Result<PlyHeader> read_ply_header(std::string_view bytes) {
     const std::string_view line = extract_line(rest);
     if (line == "end_header") {
       header.body = rest;
-      if (!header.format) return Error{ErrorCode::unsupported, "its header names no known format"};
+      if (!header.format) return Error{ErrorCode::unsupported, "its header does not name a known format"};
       return header;
     }
     if (Status read = read_line(line, header); !read) return read.error();
   }
-  return Error{ErrorCode::malformed, "its header has no end within 64 KiB; it is cut or no PLY file"};
+  return Error{ErrorCode::malformed, "its header has no end within 64 KiB; it is cut or not a PLY file"};
 }
 
 // Returns the indices of the properties x, y, z, nx, ny and nz; -1 for missing ones.
