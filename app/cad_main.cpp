@@ -124,7 +124,7 @@ void answer_write(const std::vector<std::string>& arguments, std::ostream& out) 
   write_frame(out, FrameKind::ending, json_to_line(ending));
 }
 
-// Sends one frame per solid, then the indices of the surfaces that are in none.
+// Sends one frame per solid, then the indices of the surfaces that are in no solid.
 void answer_solids(const SolidMeshing& meshing, std::ostream& out) {
   const auto model = read_model(std::cin);
   if (!model) return write_failure(out, model.error().message);

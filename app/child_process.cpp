@@ -77,7 +77,7 @@ Result<ChildOutput> ChildOutput::start(const std::vector<std::string>& arguments
                                        std::chrono::milliseconds patience, int input) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) {
-    return Error{ErrorCode::unavailable, "no pipe is left to read a child process"};
+    return Error{ErrorCode::unavailable, "cannot create a pipe to read the child process's output"};
   }
   const pid_t process = start_process(arguments, input, ends[1]);
   close(ends[1]);

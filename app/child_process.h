@@ -15,14 +15,15 @@
 namespace spoonbill {
 
 // Starts `arguments[0]`, searched in PATH unless it contains a slash. `input` becomes its standard input and
-// `output` its standard output; a negative one stands for /dev/null, where standard error always goes.
-// Returns -1 if the program cannot be started. Pipe ends that the child must not inherit need O_CLOEXEC.
+// `output` its standard output; a negative descriptor stands for /dev/null, to which standard error always
+// goes. Returns -1 if the program cannot be started. Pipe ends that the child must not inherit need
+// O_CLOEXEC.
 pid_t start_process(const std::vector<std::string>& arguments, int input, int output);
 
 // Waits until the process ends. Returns its state as waitpid() does.
 int wait_for_process(pid_t process);
 
-// How a child process ended.
+// Describes how a child process ended.
 struct ChildEnd {
   int exit_code = 0;         // valid when no signal ended the process
   int signal = 0;            // 0 for none
@@ -35,7 +36,8 @@ class ChildOutput {
   static constexpr std::size_t memory_limit = std::size_t{4} << 30;  // address space of the child, in bytes
 
   // Starts the child. `patience` limits both its wall-clock time and its processor time. `input` becomes its
-  // standard input; none if negative. Returns an error if no pipe is left or the program cannot be started.
+  // standard input; a negative one gives it none. Returns an error if no pipe can be created or the program
+  // cannot be started.
   static Result<ChildOutput> start(const std::vector<std::string>& arguments,
                                    std::chrono::milliseconds patience, int input = -1);
 
@@ -43,8 +45,8 @@ class ChildOutput {
   ChildOutput& operator=(ChildOutput&&) = delete;
   ~ChildOutput();  // kills a child that still runs
 
-  // Reads exactly `bytes` bytes. Calls `gives_up` every 50 ms meanwhile. Returns false if the output ends
-  // earlier, the time is over, or `gives_up` returns true.
+  // Reads exactly `bytes` bytes. Calls `gives_up` every 50 ms while it waits. Returns false if the output
+  // ends earlier, the time is over, or `gives_up` returns true.
   bool read(void* to, std::size_t bytes, const std::function<bool()>& gives_up = {});
 
   // Waits for the child to end, and kills it when the time is over.

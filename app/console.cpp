@@ -8,7 +8,7 @@ std::string one_line(const std::string& text) {
   std::string line = text.substr(0, text.find('\n'));
   for (std::size_t k = 0; k < line.size(); ++k) {
     const auto letter = static_cast<unsigned char>(line[k]);
-    // U+0080 to U+009F in UTF-8, which some terminals obey.
+    // Control characters U+0080 to U+009F in UTF-8, which some terminals obey.
     const bool is_wide_control =
         letter == 0xc2 && k + 1 < line.size() && static_cast<unsigned char>(line[k + 1]) < 0xa0;
     if (letter < ' ' || letter == 127) line[k] = '?';

@@ -33,8 +33,8 @@ struct DeviceSpecification {
   // Time for the force to ramp from zero to full. The short default suits the virtual device, which cannot
   // hurt anybody; use 2 s for real hardware.
   double ramp_time_s = 0.2;
-  // Above the 700 N/s that a hand at maximum speed produces at maximum stiffness, so that only jumps are
-  // limited.
+  // Limit on the change of the force. It is above the 700 N/s that a hand at maximum speed produces at
+  // maximum stiffness, so that only jumps are limited.
   double maximum_force_rate_n_per_s = 1000.0;
   double maximum_speed_m_per_s = 1.0;  // the force fades above this speed and is zero at twice this
   std::uint32_t dead_man_buttons = 0;  // buttons that must all be pressed for any force; 0: none
@@ -98,8 +98,8 @@ class Device {
   // Constant during the life of the device; passes check_specification().
   virtual const DeviceSpecification& specification() const = 0;
 
-  // Returns the reading for this tick; called once a tick. Empty if there is no current reading: the device
-  // is disconnected, has stopped itself or answers too late. It may recover.
+  // Returns the reading for this tick; called once per tick. Returns nothing if there is no current reading:
+  // the device is disconnected, has stopped itself or answers too late. It may recover.
   virtual std::optional<DeviceReading> read() = 0;
 
   // Sets the force on the hand until the next tick, at most the maximum of the specification.

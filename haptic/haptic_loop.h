@@ -29,7 +29,8 @@ class DurationHistogram {
   // Adds a duration. Negative durations count as zero.
   void add(std::int64_t duration_ns) noexcept;
 
-  // Returns the duration that `fraction` (0 to 1) of the added ones do not exceed, within 1/16; 0 if empty.
+  // Returns the duration that `fraction` (0 to 1) of the added durations do not exceed, within 1/16; 0 if
+  // empty.
   double quantile_s(double fraction) const noexcept;
 
   double mean_s() const noexcept;

@@ -1,7 +1,7 @@
 // Recordings: the input of every tick, with the document that the session started from.
 //
-// A recording is a text file with one JSON value a line, so that ordinary tools can read, cut and compare it,
-// and a crash damages only the last line.
+// A recording is a text file with one JSON value per line, so that ordinary tools can read, cut and compare
+// it, and a crash damages only the last line.
 //
 //   {"spoonbill_recording":1,"tick_s":0.001,"device":{...},"document":{...}}        line 1; device: see below
 //   {"tick":0,"state_hash":"0123456789abcdef"}                                      every 1,000 ticks
@@ -67,8 +67,8 @@ struct Checkpoint {
 
 struct Recording {
   RecordingHeader header;
-  std::vector<DeviceReading> readings;  // one a tick
-  std::vector<TimedCommand> commands;   // in order; those at readings.size() follow the last tick
+  std::vector<DeviceReading> readings;  // one per tick
+  std::vector<TimedCommand> commands;   // in order; commands at tick readings.size() follow the last tick
   std::vector<Checkpoint> checkpoints;
   std::optional<Checkpoint> end;  // empty if the recording is truncated
   std::string notice;             // one line for the user; empty if the recording is complete
@@ -80,8 +80,8 @@ struct Recording {
 Result<Recording> read_recording(const std::filesystem::path& file);
 Result<Recording> read_recording(std::istream& in, const std::string& source);
 
-// Writes a recording while it happens. Each complete line is passed to the operating system at once, so that
-// a killed program loses at most 100 ticks.
+// Writes a recording while the session runs. Each complete line is passed to the operating system at once, so
+// that a killed program loses at most 100 ticks.
 //
 // One owner, never the haptic thread: writing may block. After an error every later call returns the same
 // error.

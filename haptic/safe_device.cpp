@@ -106,8 +106,8 @@ Vector3 limit_change(const Vector3& from_n, const Vector3& to_n, const DeviceSpe
   return clamp_norm(from_n + clamp_norm(step_n, maximum_n), specification.maximum_force_n);
 }
 
-// Returns whether the force oscillates too often. A swing counts if it exceeds the quiet force and is opposed
-// to the previous one.
+// Returns whether the force oscillates too often. A swing counts if it exceeds the quiet force and its
+// direction is opposed to the previous swing.
 bool is_buzzing(SafetyState& state, const DeviceSpecification& specification, const Vector3& force_n) {
   state.slow_force_n += slow_weight * (force_n - state.slow_force_n);
   state.swings *= swing_memory;

@@ -1,5 +1,5 @@
 // The safety chain between the force that the coupling requests and the hand, which no fault of the program
-// may hurt.
+// may injure.
 //
 // SafeDevice is the only code that sets the force of a device, both live and in lock-step, so no force
 // reaches a hand unchecked. make_safe() applies these steps in every tick:
@@ -43,7 +43,7 @@ enum SafetyFlag : std::uint32_t {
   safety_flag_fast = 1u << 9,
   safety_flag_outside = 1u << 10,
   safety_flag_change_limited = 1u << 11,
-  // Another fault, which stays set like those above.
+  // Another fault, which stays set like the faults above.
   safety_flag_no_device = 1u << 12,
 };
 
@@ -127,7 +127,7 @@ class SafeDevice {
   Vector3 give(SafetyInput input);
 
   Device* device_;
-  DeviceSpecification limits_;  // those of the device, except for the radius of the workspace
+  DeviceSpecification limits_;  // limits of the device, except for the radius of the workspace
   std::optional<Vector3> workspace_centre_m_;
   DeviceReading reading_;  // last valid reading
   bool answers_ = true;

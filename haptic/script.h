@@ -54,7 +54,7 @@ struct Script {
 
   std::uint64_t tick_count() const { return motions.empty() ? 0 : motions.back().end; }
 
-  // Returns the target of the hand at the end of a tick; after the last tick, the final target.
+  // Returns the target of the hand at the end of a tick; for ticks after the last one, the final target.
   HandTarget target_at(std::uint64_t tick) const;
 };
 

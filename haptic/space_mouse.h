@@ -54,7 +54,7 @@ class SpaceMouse : public InputSource {
   SpaceMouseMotion motion_;
 };
 
-// Rate control: the displacement of the cap sets the speed of the target.
+// Settings of rate control: the displacement of the cap sets the speed of the target.
 struct Steering {
   double speed_m_per_s = 0.1;        // at full displacement
   double turn_rate_rad_per_s = 1.5;  // at full displacement

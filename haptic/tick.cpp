@@ -11,10 +11,11 @@ namespace {
 // and below the jitter of nodes that gain and lose contact.
 constexpr double force_filter_weight = 0.5;
 
-// Delay of the force, in seconds: that of the filter plus half the tick during which it is constant.
+// Delay of the force, in seconds: the delay of the filter plus half of the tick during which the force is
+// constant.
 constexpr double force_lag_s = ((1.0 - force_filter_weight) / force_filter_weight + 0.5) * tick_s;
 
-// Factor on the smallest damping that keeps the coupling passive.
+// Factor by which the damping exceeds the smallest damping that keeps the coupling passive.
 constexpr double damping_reserve = 2.0;
 
 // Force scale below which no force reaches the hand, and the hand moves the tool rigidly.

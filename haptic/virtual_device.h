@@ -79,7 +79,7 @@ class VirtualDevice : public Device {
   Vector3 force_n_ = Vector3::Zero();
 };
 
-// A device that returns recorded readings, one a tick, and ignores the force.
+// A device that returns recorded readings, one per tick, and ignores the force.
 class PlaybackDevice : public Device {
  public:
   // The readings must outlive the device.
@@ -87,8 +87,8 @@ class PlaybackDevice : public Device {
 
   const DeviceSpecification& specification() const override { return specification_; }
 
-  // Returns the next reading, and the last one again once all have been returned; the default reading if
-  // there are none.
+  // Returns the next reading; once all have been returned, the last reading again; if there are no readings,
+  // the default reading.
   std::optional<DeviceReading> read() override;
   void set_force(const Vector3& force_n) override;
 
@@ -119,7 +119,8 @@ class TargetMailbox {
   TripleBuffer<HandTarget> targets_;
 };
 
-// Interpolates targets that arrive sixty times a second to one a tick, so that the hand moves smoothly.
+// Interpolates targets that arrive sixty times a second to one target per tick, so that the hand moves
+// smoothly.
 class TargetFollower {
  public:
   // Number of ticks in which a new target is reached, about one frame.

@@ -65,7 +65,7 @@ Viewport make_viewport(int width_px, int height_px, const Rectangle& panel_px) {
   } else {
     viewport.free_px.width = left;
   }
-  // A panel may cover the whole window. The minimum width keeps the projection defined.
+  // A panel may cover the whole window. This minimum width keeps the projection defined.
   viewport.free_px.width = std::max(viewport.free_px.width, 1.0);
   return viewport;
 }

@@ -32,8 +32,8 @@ struct Viewport {
   Rectangle free_px;
 };
 
-// Returns the viewport of a window with a panel at its left or right edge. An empty panel leaves the whole
-// window free.
+// Returns the viewport of a window with a panel at its left or right edge. If `panel_px` is empty, the whole
+// window is free.
 Viewport make_viewport(int width_px, int height_px, const Rectangle& panel_px);
 
 // Returns the camera turned to a standard view, with the same target, distance and lens.

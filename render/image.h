@@ -37,8 +37,8 @@ struct Image {
 // Flips the picture vertically in place, for pixels from GL, which stores the bottom row first.
 void flip_rows(Image& image);
 
-// Encodes pictures as PNG files, reusing its working memory. Use one encoder a thread. The same picture gives
-// the same bytes on one machine and the same pixels on all.
+// Encodes pictures as PNG files, reusing its working memory. Use one encoder per thread. The same picture
+// gives the same bytes on one machine and the same pixels on all.
 class PngEncoder {
  public:
   PngEncoder();

@@ -10,8 +10,8 @@ namespace spoonbill {
 
 namespace {
 
-// A late frame adds 2, a punctual one subtracts 1. The quality is lowered if more than a third of the frames
-// are late for a while.
+// A late frame adds 2 to the count of late frames, a punctual frame subtracts 1. The quality is lowered if
+// more than a third of the frames are late for a while.
 constexpr int late_weight = 2;
 constexpr int late_limit = 12;
 
@@ -63,7 +63,7 @@ void FrameBudget::add_frame(double took_s) {
 void FrameBudget::consider_raising(double took_s) {
   if (quality_ == FrameQuality::full) return;
   const bool spare = took_s <= spare_fraction[static_cast<std::size_t>(quality_)] * frame_s_;
-  // One slow frame among many is weak evidence, but it cancels several fast ones.
+  // Number of fast frames that one slow frame cancels: a single slow frame among many is only weak evidence.
   constexpr int slow_frame_penalty = 10;
   spare_frames_ = spare ? spare_frames_ + 1 : std::max(0, spare_frames_ - slow_frame_penalty);
   if (spare_frames_ < patience_frames_) return;

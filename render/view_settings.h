@@ -1,5 +1,5 @@
-// How a snapshot is drawn: plain data, set by the panel, a recording or a test. None of it changes the
-// simulation.
+// Settings of how a snapshot is drawn: plain data, set by the panel, a recording or a test. They do not
+// change the simulation.
 #pragma once
 
 #include <memory>
@@ -44,7 +44,7 @@ struct ViewSettings {
 
   Vector3 toward_key_light = Vector3(-0.42, 0.80, 0.43);  // any length; raised above the horizon when drawn
   bool shadow = true;
-  int samples = 4;          // samples a pixel, 0 or 4
+  int samples = 4;          // samples per pixel, 0 or 4
   double detail = 1.0;      // fineness of the tessellation; 0.5 doubles edge lengths and chord errors
   bool keep_level = true;   // lets the tessellation stay slightly too fine or coarse, to avoid flicker
   double ground_y_m = 0.0;  // see ground_below()

@@ -149,7 +149,7 @@ ContactSide surface_side(const SurfaceContact& contact) {
   return {contact.point_m, SurfaceParameters{contact.u, contact.v, {}}, {}};
 }
 
-// Returns a contact of a mesh with a body, which separate along the surface's normal.
+// Returns a contact of a mesh with a body. The two separate along the surface's normal.
 ModelContact make_contact(const ToolShape& tool, const SurfaceContact& at, bool mesh_is_a) {
   ModelContact contact{surface_side(at), mesh_side(tool, at.point_m), -at.normal, at.depth_m, at.tangent_u,
                        at.tangent_v};
@@ -184,8 +184,8 @@ Result<CollisionAnswer> collide_mesh(const SignedDistance& mesh, const Pose& mes
     side.parameters->range = region.range;
   }
   answer.complete = answer.complete && !collider.regions_overflow();
-  // A mesh without contact regions is inside the body. One that is inside and also touches has the depth of
-  // the deepest point overall.
+  // A mesh without contact regions is inside the body. A mesh that is inside and also touches has the depth
+  // of the deepest point overall.
   answer.contained = answer.contacts.empty();
   if (answer.contained) {
     answer.contacts.push_back(nearest);

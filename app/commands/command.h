@@ -40,11 +40,12 @@ CommandEntry add_read_points(OptionSet root);
 // --json: prints one JSON object and nothing else on standard output.
 void add_json_option(OptionSet parser, bool& json);
 
-// --out: the document to write. Any ending but .json is wrong use, which protects files of other formats.
+// --out: the document to write. An ending other than .json is wrong use; this protects files of other
+// formats.
 CommandOption add_document_output(OptionSet parser, std::filesystem::path& out,
                                   const std::string& help = "Document to write (.json)");
 
-// --instruction-set: one of the sets that this processor supports; any other is wrong use.
+// --instruction-set: one of the sets that this processor supports; any other set is wrong use.
 void add_instruction_set_option(OptionSet parser, InstructionSet& set);
 
 }  // namespace spoonbill

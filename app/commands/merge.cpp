@@ -60,7 +60,8 @@ struct MergeParts {
 
 struct MergeOutcome {
   Merged merged;
-  std::vector<Joint> corners;                 // corner k joins patch k + 1 to the result of those before it
+  // corner k joins patch k + 1 to the result of the patches before it
+  std::vector<Joint> corners;
   std::vector<std::string> tight_fillets;     // notes
   std::vector<std::size_t> reversed_patches;  // patches whose normals pointed inwards
 };
@@ -110,8 +111,8 @@ Result<ChosenEdges> parse_edges(const std::string& text) {
   return edges;
 }
 
-// Returns the continuity of the joints. Default: C0 for a sharp corner; C1 for a fillet, because an arc that
-// is C2 with its neighbours is tighter than its radius.
+// Returns the continuity of the joints. Default: C0 for a sharp corner; C1 for a fillet, because a fillet
+// that joins its neighbours with C2 is tighter than the requested radius.
 int continuity_of(const MergeOptions& options) {
   if (options.crossing && options.fillet_m == 0.0) return 0;
   if (options.continuity) return *options.continuity;

@@ -38,7 +38,7 @@ class CommandOption {
   CommandOption require() const;
   // Sets the name that --help shows for the type of the value.
   CommandOption show_as(const std::string& form) const;
-  // Limits the value: one outside the range is wrong use.
+  // Limits the value: a value outside the range is wrong use.
   CommandOption limit(Range<int> range) const;
   CommandOption limit(Range<double> range) const;
   CommandOption limit(Range<std::uint64_t> range) const;

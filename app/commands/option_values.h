@@ -32,8 +32,8 @@ Result<Pose> parse_pose(std::string_view text);
 // Parses a length within the range, with a unit unless it is 0: "5mm", "0.2in", "2inch".
 Result<double> parse_length(std::string_view text, Range<double> range_m);
 
-// Parses `count` lengths within the range: "60x40x20mm", "6cmx40mmx20mm". The last must have a unit; a length
-// without a unit has that of the next length that has one.
+// Parses `count` lengths within the range: "60x40x20mm", "6cmx40mmx20mm". The last length must have a unit; a
+// length without a unit has the unit of the next length that has one.
 Result<std::vector<double>> parse_lengths(std::string_view text, std::size_t count, Range<double> range_m);
 
 // Parses an order of continuity, "C0" to "C8", the order that the highest degree allows.
@@ -60,7 +60,7 @@ Result<Side> parse_side(std::string_view text);
 // Parses "mm", "cm", "m", "in" or "inch".
 Result<LengthUnit> parse_unit(std::string_view text);
 
-// Parses "0,0,0;10,5,0;20,0,0mm": points of three coordinates, the last one with the unit of all.
+// Parses "0,0,0;10,5,0;20,0,0mm": points of three coordinates, the last one with the unit of all points.
 Result<std::vector<Vector3>> parse_points(const std::string& text);
 
 // A table of lengths in metres, optionally with a leading column of whole numbers named "section".

@@ -39,7 +39,7 @@ Status send_mesh(const std::filesystem::path& file, Console& console) {
 // Sends a cloud, or a frame of kind `faces` for a mesh.
 Status send_cloud(const std::filesystem::path& file, Console& console) {
   const FileFormat format = format_from_name(file);
-  // The header alone shows whether a PLY file has faces; the rest may be large.
+  // Only the header is read, because it shows whether a PLY file has faces, and the rest may be large.
   if (format == FileFormat::ply && ply_face_count(read_first_bytes(file, ply_header_bytes)) > 0) {
     write_frame(console.out, FrameKind::faces, {});
     return {};

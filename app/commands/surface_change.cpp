@@ -26,7 +26,7 @@ struct Allowed {
   Progress progress;
 };
 
-// The parsers of the words after a change's name, in order.
+// Range that is wider than the range of any size: each shape checks its own sizes.
 using WordParsers = std::vector<Status (*)(const std::string& word, ChangeRequest& request)>;
 
 struct Change {

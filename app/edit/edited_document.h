@@ -27,8 +27,8 @@ class EditedDocument {
   // Renames a recovered document that cannot be read, so that this session can autosave.
   void set_recovered_aside() const;
 
-  // Switches to a file that the session has opened. Nothing is autosaved before begin(), because the
-  // recovered document must be kept until the user has decided on it.
+  // Switches to a file that the session has opened. Nothing is autosaved before begin(), because a recovered
+  // document must be kept until the user has decided about it.
   void switch_to(std::filesystem::path file, LiveSession& live);
 
   // Marks the document as unchanged and starts to autosave.

@@ -75,8 +75,8 @@ namespace {
 constexpr double picking_px_per_m = 1000.0;
 constexpr SamplingTarget target{1.0, 0.1};
 
-// Returns the first t > 0 with |origin + t direction - point| = reach; nothing if the ray misses or starts
-// beyond it.
+// Returns the first t > 0 with |origin + t direction - point| = reach; nothing if the ray misses the sphere
+// around `point` or starts beyond it.
 std::optional<double> first_crossing(const Ray& ray, const Vector3& point, double reach) {
   const Vector3 to_point = point - ray.origin_m;
   const double along = to_point.dot(ray.direction);
@@ -117,7 +117,7 @@ void SurfacePick::update_vertices(Sampled& sampled) {
 }
 
 void SurfacePick::update(const Snapshot& snapshot) {
-  // A soft tool is the last of the bodies and must not be picked.
+  // A soft tool, which is the last of the bodies, must not be picked.
   surfaces_.resize(snapshot.bodies.size() - (is_soft(snapshot.tool) ? 1 : 0));
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     Sampled& sampled = surfaces_[i];

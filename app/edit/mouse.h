@@ -16,7 +16,7 @@
 
 namespace spoonbill {
 
-// Mouse navigation as in a modelling program. The wheel zooms in all of them, except during a stroke.
+// Mouse navigation as in a modelling program. The wheel zooms in every preset, except during a stroke.
 //   Rhino: the right button orbits, with Shift pans, with Ctrl zooms.
 //   Blender: the middle button orbits, with Shift pans, with Ctrl zooms.
 //   SculptGL: the right button orbits, as does the left one beside the model; the middle button pans.
@@ -105,7 +105,7 @@ class MouseHand : public InputSource {
   explicit MouseHand(const Vector3& start_m)
       : depth_point_m_(start_m), hover_m_(start_m), target_m_(start_m) {}
 
-  // Sets the input that is_used() and next_target() use. The pick must not be null.
+  // Sets the input that is_used() and next_target() use. frame.pick must not be null.
   void set_frame(const MouseFrame& frame) { frame_ = frame; }
 
   bool is_used() override { return frame_.is_stroking || !frame_.pointer.moved_px.isZero(); }
@@ -121,7 +121,7 @@ class MouseHand : public InputSource {
  private:
   struct Press {
     Vector3 anchor_m;   // position of the tool at the press
-    Vector3 inward;     // unit vector into the body; zero beside it
+    Vector3 inward;     // unit vector into the body; zero if the press began beside the body
     Vector3 pointer_m;  // pointer position in the screen plane at the press
     double depth_m = 0.0;
     int frames = 0;

@@ -42,7 +42,7 @@ enum class FilePurpose { open_model, save_model, export_model };
 // Prompt for a file: a text field and a list of the folder's models.
 class FilePrompt {
  public:
-  // Opens the prompt with the next draw(), with this file or folder.
+  // Makes the next draw() open the prompt, showing this file or folder.
   void ask(FilePurpose purpose, const std::filesystem::path& start);
   void close() { is_open_ = false; }
   bool is_open() const { return is_open_; }
@@ -68,7 +68,7 @@ class FilePrompt {
 // Prompt for a new stock shape: its kind and sizes.
 class ShapePrompt {
  public:
-  // Opens the prompt with the next draw(), with the previous choice.
+  // Makes the next draw() open the prompt, showing the previous choice.
   void ask();
   void close() { is_open_ = false; }
   bool is_open() const { return is_open_; }

@@ -51,8 +51,8 @@ ForeignTask cad_task(const std::filesystem::path& file, ForeignTask::Work work) 
   return task;
 }
 
-// Reads frames until the last, whose content it returns. handle() gets each of the others; its error ends the
-// conversation.
+// Reads frames until the last one and returns its content. handle() gets each of the other frames; an error
+// of handle() ends the conversation.
 template <class Handle>
 Result<std::string> read_frames(ForeignChild& child, const Handle& handle) {
   for (;;) {

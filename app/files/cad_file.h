@@ -18,9 +18,9 @@ struct CadChild {
   Progress progress;                            // reported several times a second
 };
 
-// Reads a CAD file of at most 512 MiB. Every error names the file: a file that is missing, unreadable, empty
-// or malformed; a child that crashes, exceeds its time or 4 GiB; what read_cad() rejects; a surface that no
-// document can hold; a request to stop.
+// Reads a CAD file of at most 512 MiB. Every error names the file. Errors: a file that is missing,
+// unreadable, empty or malformed; a child that crashes, exceeds its time or 4 GiB; what read_cad() rejects; a
+// surface that no document can hold; a request to stop.
 Result<CadModel> read_cad_file(const std::filesystem::path& file, const CadReading& reading,
                                const CadChild& child = {});
 

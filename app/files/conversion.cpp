@@ -22,7 +22,7 @@ namespace spoonbill {
 namespace {
 
 constexpr double default_chord_m = 5e-5, default_cad_tolerance_m = 1e-5;
-// The fractions of the work that are done after reading, and after joining solids for a mesh.
+// Fractions of the work that are done after reading, and after joining solids for a mesh.
 constexpr double read_fraction = 0.5, joined_fraction = 0.7;
 
 // A request with the formats of its files.
@@ -194,7 +194,7 @@ struct ModelMeshing {
   double chord_m = default_chord_m;
   std::filesystem::path file;  // named in messages
   CadChild child;              // joins the faces of solids
-  Progress progress;           // of the meshing after that
+  Progress progress;           // progress of the meshing that follows
 };
 
 struct ModelMeshes {
@@ -233,7 +233,8 @@ class Mesher {
   }
 
  private:
-  // Returns the fraction done after so many surfaces; the last part is the writing of the file.
+  // Returns the fraction of the work that is done after this number of surfaces; the last part is the writing
+  // of the file.
   double fraction_after(std::size_t surfaces) const {
     return static_cast<double>(surfaces) / static_cast<double>(model_.surfaces.size() + 1);
   }
@@ -264,7 +265,7 @@ class Mesher {
   Status add_single_surface(std::size_t k) {
     const CadSurface& part = model_.surfaces[k];
     const std::size_t left = exported_triangle_limit - std::min(triangles_, exported_triangle_limit);
-    // A shell has its surface twice, and walls.
+    // The mesh of a shell contains its surface twice, and walls, so each part gets a third of the limit.
     const std::size_t limit = part.shell_thickness_m > 0.0 ? left / 3 : left;
     const double before = fraction_after(k);
     auto alone =
@@ -330,7 +331,7 @@ Status write_mesh_file(const CadModel& model, const ConversionJob& job, const Pr
   report.unit_out = unit.name;
   auto out = OutputFile::create(request.out);
   if (!out) return out.error();
-  // Errors of the file name it; those of the writer do not.
+  // Errors of the file contain its name; errors of the writer do not.
   Status file_status;
   const Status written = write_meshes(made->meshes, job.out, unit.metres, [&](std::string_view bytes) {
     file_status = progress.report(1.0) ? out->write(bytes)

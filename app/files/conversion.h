@@ -49,7 +49,7 @@ Result<ConversionReport> convert_file(const ConversionRequest& request, const Pr
 // Returns true if the ending is that of a CAD file or a mesh.
 bool is_exported_to(const std::filesystem::path& file);
 
-// Writes bodies in memory as convert_file() writes those of a document.
+// Writes bodies that are in memory, as convert_file() writes the bodies of a document.
 Result<ConversionReport> export_bodies(std::vector<Body> bodies, const std::filesystem::path& out,
                                        const Progress& progress);
 

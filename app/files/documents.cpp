@@ -103,7 +103,8 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-// Returns the largest shell thickness for which the body has a lattice, or the thinnest tried if none has.
+// Returns the largest shell thickness for which the body has a lattice, or the smallest thickness tried if
+// the body has none at any.
 double find_shell_thickness(Body body, double size_m) {
   double thickness = shell_thickness_range_m.low;
   for (int halving = 0; halving <= thickness_halvings; ++halving) {
@@ -121,9 +122,9 @@ bool has_lattice_along(const Body& body) {
                                 : tube_lattice(body.surface, body.lattice).ok();
 }
 
-// Sets the largest node budget with which a lattice can follow the body: in details of a scan, cells of the
-// default size may fold. Keeps the default if none can, because a box of cells is better than a lattice of
-// few nodes.
+// Sets the largest node budget with which a lattice can follow the body: cells of the default size may fold
+// in details of a scan. Keeps the default if no budget works, because a box of cells is better than a lattice
+// of few nodes.
 void choose_node_budget(Body& body) {
   const int usual = body.lattice.node_budget;
   const int most = body.shell_thickness_m ? 16 : 4;

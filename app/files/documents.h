@@ -37,7 +37,7 @@ Result<Material> shipped_material(const std::string& name);
 Document starting_document(const std::string& name, Surface surface, const Material& material,
                            std::optional<double> shell_thickness_m = {});
 
-// A size of a stock shape, such as its radius.
+// A size of a stock shape, such as the radius.
 struct StockShapeField {
   const char* name;
   double default_mm;
@@ -63,8 +63,9 @@ StockShapeChoice default_stock_shape(std::size_t kind);
 // millisecond. The error names a size that is out of range.
 Result<Document> make_stock_shape_document(const StockShapeChoice& choice, const Material& material);
 
-// Returns a document with one body of modelling clay per surface. All other settings are those of
-// starting_document() for the first. Returns an error for more surfaces than a document can have bodies.
+// Returns a document with one body of modelling clay per surface. All other settings are those that
+// starting_document() chooses for the first surface. Returns an error for more surfaces than a document can
+// have bodies.
 Result<Document> make_cad_document(const CadModel& model, const std::string& name);
 
 struct FittedDocument {
@@ -72,9 +73,9 @@ struct FittedDocument {
   std::vector<std::string> notes;  // bodies that cannot be simulated, or only in a box of cells
 };
 
-// Returns a starting_document() of clay bodies for a fitted scan. Closed surfaces become solids. Others
-// become shells of a hundredth of their size, at most 2 mm, thinner where their curvature demands it. Returns
-// an error for more bodies than a document can have.
+// Returns a starting_document() of clay bodies for a fitted scan. Closed surfaces become solids. Other
+// surfaces become shells of a hundredth of their size, at most 2 mm, thinner where their curvature demands
+// it. Returns an error for more bodies than a document can have.
 Result<FittedDocument> make_fitted_document(const ScanFit& fit, const std::string& name,
                                             const Material& clay);
 

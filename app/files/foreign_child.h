@@ -75,7 +75,7 @@ class ForeignChild {
   ChildOutput output_;
   std::chrono::milliseconds patience_;
   Progress progress_;
-  double fraction_ = 0.0;  // last reported by the child
+  double fraction_ = 0.0;  // fraction last reported by the child
 };
 
 // Makes the calling child process end together with its parent, because a file may keep it busy for long.

@@ -33,9 +33,9 @@ struct MeshFile {
   LengthUnit unit = millimetre;
 };
 
-// Reads an OBJ, STL or PLY file of at most 512 MiB. Every error names the file: another ending; a file that
-// is missing, unreadable, empty, truncated or malformed; a child that crashes, exceeds its time or 4 GiB; too
-// many triangles, or more than three vertices per triangle of the limit.
+// Reads an OBJ, STL or PLY file of at most 512 MiB. Every error names the file. Errors: another ending; a
+// file that is missing, unreadable, empty, truncated or malformed; a child that crashes, exceeds its time or
+// 4 GiB; too many triangles, or more than three vertices per triangle of the limit.
 Result<MeshFile> read_mesh_file(const std::filesystem::path& file, const MeshReading& reading = {});
 
 // Reads a point cloud of at most 1 GiB in the file's own unit, or nothing if a PLY or OBJ file has faces and

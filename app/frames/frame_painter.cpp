@@ -57,7 +57,7 @@ Result<FramePainter> FramePainter::make(int width_px, int height_px, std::mutex*
 }
 
 FramePainter::~FramePainter() {
-  if (!context_) return;  // moved from
+  if (!context_) return;  // the object was moved from
   const auto turn = lock_interface(interface_turn_);
   interface_.reset();
 }

@@ -76,7 +76,7 @@ struct PaintedFrame {
 };
 
 // Paints frames on several threads while the owner prepares the next ones. Frames are assigned to the
-// painters in a fixed order, so the result is the same on any machine. One owner, one thread:
+// painters in a fixed order, so that the result is the same on any machine. One owner, one thread:
 //
 //  while (more) {
 //    if (crew.is_full()) use(crew.receive());

@@ -47,7 +47,7 @@ class FrameWriter {
   FrameWriter(const FrameWriter&) = delete;
   FrameWriter& operator=(const FrameWriter&) = delete;
 
-  // Both return the first failure of any frame so far. After a failure nothing more is written.
+  // add() and finish() return the first failure of any frame so far. After a failure nothing more is written.
   Status add(int number, Image frame);
   Status finish();  // waits until all frames are on the disk; ends adding
 

@@ -8,8 +8,8 @@
 namespace spoonbill {
 namespace {
 
-// Carries out a command. Catches exceptions of the standard library, mostly a lack of memory, because the
-// thread must survive.
+// Carries out a command. Catches exceptions of the standard library, which mostly report a lack of memory,
+// because the thread must survive.
 Status run_job(LiveCommand& command, LentSession& lent) {
   try {
     if (auto* queued = std::get_if<QueuedRequest>(&command)) {
@@ -17,7 +17,7 @@ Status run_job(LiveCommand& command, LentSession& lent) {
     }
     if (auto* queued = std::get_if<QueuedJob>(&command)) return queued->job(lent);
   } catch (const std::exception& exception) {
-    return Error{ErrorCode::internal, std::string("not done: ") + exception.what()};
+    return Error{ErrorCode::internal, std::string("the command failed: ") + exception.what()};
   }
   return {};
 }

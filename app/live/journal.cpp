@@ -91,7 +91,8 @@ void Journal::run() {
       while (process_pending()) {
       }
     } catch (const std::exception& exception) {
-      // Mostly a lack of memory: the thread must survive, so that later documents can be saved.
+      // The exception mostly reports a lack of memory. The thread must survive, so that later documents can
+      // be saved.
       abandon_recording(Error{ErrorCode::internal, exception.what()});
     }
     if (stopping) return;

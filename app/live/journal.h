@@ -138,7 +138,7 @@ class Journal {
   // are called by the haptic thread.
   LiveScene& scene() { return scenes_.writing(); }
   void publish_scene() { scenes_.publish(); }
-  // Returns true if a recording was abandoned since the last call.
+  // Returns true if a recording has been abandoned since the last call.
   bool consume_recording_failure() { return recording_failed_.exchange(false, std::memory_order_acq_rel); }
 
   // Sets the view that is saved with documents. Called by the main thread, as are the functions below.

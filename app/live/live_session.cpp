@@ -25,7 +25,7 @@ Result<std::unique_ptr<Session>> make_session(const Document& document, const st
   return std::make_unique<Session>(std::move(session).value());
 }
 
-// Restarts the session from its current shape.
+// Restarts the session from the current shape of its bodies.
 Status restart_session(LentSession& lent, const DeviceSpecification& device, InstructionSet set) {
   auto session = make_session(make_session_document(*lent.session), "the current shape", device, set);
   if (!session) return session.error();

@@ -171,7 +171,7 @@ void request_material(Material material, PanelAnswer& answer) {
   answer.requests.emplace_back(Command(SetMaterial{std::move(material)}));
 }
 
-// Returns the mass and the number of regions of other materials, in one row to suit a small window.
+// Returns the mass and the number of regions of other materials, in a single row, to suit a small window.
 std::string mass_text(const PanelModel& model) {
   std::string mass = grams_text(model.mass_kg);
   if (model.region_count == 0) return mass;
@@ -243,7 +243,7 @@ void draw_view(const PanelModel& model, const Theme& theme, PanelAnswer& answer)
   pair("Fixed nodes", overlays.fixed_nodes, "Touched nodes", overlays.touched_nodes);
   pair("Lattice", overlays.lattice, "Control net", overlays.control_net);
   pair("See through", see_through, "Fixing planes", overlays.fixing_planes);
-  // Three short labels share this row, which saves a row.
+  // Short labels share a row, which saves space.
   pair("Force", overlays.force, "Cells", overlays.cells);
   ImGui::SameLine();
   ImGui::SetCursorPosX(0.71F * theme.metrics.panel_width_px);

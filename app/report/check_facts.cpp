@@ -55,7 +55,7 @@ void add_thickness(FactSheet& facts, const SurfaceCheck& check, Json& json) {
     return;
   }
   const Thickness& thin = *check.thinnest;
-  // Sides that meet have a distance from rounding error alone.
+  // A smaller distance is rounding error: the sides meet.
   const double thickness_m = thin.thickness_m > 1e-12 ? thin.thickness_m : 0.0;
   facts.add("  Thinnest", short_length_text(thickness_m) + " at " + position_text(thin.position_m), "",
             nullptr);

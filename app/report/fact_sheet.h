@@ -13,7 +13,7 @@ namespace spoonbill {
 class FactSheet {
  public:
   // Adds a line of `label` and `text`, and a JSON member `field` with `value`. An empty label omits the line,
-  // an empty field the member.
+  // an empty field omits the member.
   void add(const std::string& label, const std::string& text, const std::string& field, Json value);
 
   void print(std::ostream& out, bool as_json) const;

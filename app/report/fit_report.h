@@ -24,7 +24,7 @@ std::optional<std::string> find_size_note(const ScanFile& file, const ScanFit& f
 std::optional<std::string> find_detail_note(const ScanFit& fit);
 
 // Returns notes on bodies that miss the tolerance or fold, on normals that were flipped, and on connected
-// components of the scan that were skipped or capped. A tolerance of 0 means none.
+// components of the scan that were skipped or capped. A tolerance of 0 means that there is no tolerance.
 std::vector<std::string> find_fit_shortcomings(const ScanFit& fit, double tolerance_m);
 
 // Adds the unit and size of the scan, and how many of its points were used.
@@ -33,8 +33,8 @@ void add_scan_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit);
 // Adds each body with its errors, and in the JSON the errors of all bodies together.
 void add_fit_facts(FactSheet& facts, const ScanFit& fit, double tolerance_m);
 
-// Writes a binary PLY file in metres. Each point of the scan, or of samples all over it if it is a mesh, has
-// its distance_mm and a colour from dark blue (0) through green to yellow (`full_m` and beyond).
+// Writes a binary PLY file in metres. Each point of the scan (or, for a mesh, each of the samples all over
+// it) has its distance_mm and a colour from dark blue (0) through green to yellow (`full_m` and beyond).
 Status write_error_cloud(const ScanFit& fit, double full_m, const std::filesystem::path& file);
 
 }  // namespace spoonbill

@@ -44,7 +44,7 @@ class Lockstep {
   // cannot be written.
   Status run_to(std::uint64_t tick);
 
-  // Runs the remaining ticks, compares the last state and finishes the written recording.
+  // Runs the remaining ticks, compares the last state and finishes the recording that is written.
   Status finish();
 
   std::uint64_t tick() const { return tick_; }

@@ -39,7 +39,7 @@ struct ChangeView {
 // Kind of a file to write.
 enum class FileMarkKind { document, picture };
 
-// A request to write a document or a screenshot under this name.
+// A request to write a document or a screenshot under the given name.
 struct MarkFile {
   FileMarkKind kind = FileMarkKind::document;
   std::string name;
@@ -111,7 +111,7 @@ struct SessionFacts {
   std::string title;
   Tool tool;
   Material material;
-  int region_count = 0;  // of the first body, like the material
+  int region_count = 0;  // number of regions of the first body; the material, too, is that of the first body
   Sculpting sculpting;
   Symmetry symmetry;
   bool can_undo = false;

@@ -26,8 +26,8 @@ class StrokeHistory {
   // Must be called after every tick. `touching`: the tool acted on the body in that tick.
   void after_tick(const Simulation& simulation, bool touching);
 
-  // undo() restores the shape before the last stroke, redo() the one after the next stroke. Each does nothing
-  // if there is no such stroke. An error of the simulation leaves the history unchanged.
+  // undo() restores the shape before the last stroke, redo() the shape after the next stroke. Each does
+  // nothing if there is no such stroke. An error of the simulation leaves the history unchanged.
   Status undo(Simulation& simulation);
   Status redo(Simulation& simulation);
 
@@ -47,7 +47,7 @@ class StrokeHistory {
   Status restore_shape(std::size_t index, Simulation& simulation);
 
   // Sequence that undo and redo step through: shapes_[0 .. count_ - 1]. The body has the shape
-  // shapes_[current_], or, while a stroke is open, one after it that is not stored yet.
+  // shapes_[current_], or, while a stroke is in progress, a later shape that is not stored yet.
   std::vector<ShapeState> shapes_;
   std::size_t count_ = 1;
   std::size_t current_ = 0;

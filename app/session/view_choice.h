@@ -1,4 +1,4 @@
-// How a document or a recording shows its scene, with the JSON for it and the contact debug views:
+// The view with which a document or a recording shows its scene, its JSON form, and the contact debug views:
 //  "view": {"camera": {...}, "overlays": {"lattice": true, ...}, "see_through_body": false,
 //           "ground_mm": -40}
 //  {"command": "set_camera", ...}   {"command": "set_overlays", "lattice": true, ...}

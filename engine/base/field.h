@@ -74,9 +74,11 @@ struct FieldForm {
   Range<double> range{-unlimited, unlimited};  // of a number, or of each component of a vector
   double length_limit = unlimited;             // largest length of a vector
   VectorSense sense = VectorSense::quantity;   // meaning of a vector
-  // True if files may omit the field. It then has its struct's default, and it is written only if it differs.
+  // True if files may omit the field. A missing field then has its struct's default, and a field is written
+  // only if it differs from the default.
   bool optional = false;
-  // An earlier optional field that this one accompanies: required if that one is given, unknown otherwise.
+  // Name of an earlier optional field that this field accompanies: this field is required if the earlier one
+  // is given, and unknown otherwise.
   const char* partner = nullptr;
   FieldAlias alias = {};
   FieldSlider slider = {};
@@ -153,7 +155,7 @@ template <class Object>
 struct Field {
   FieldForm form;
   FieldMember<Object> member;
-  // Returns the number's range where it depends on the object's other fields; null if it does not.
+  // Returns the number's range if it depends on the object's other fields; null if it does not.
   Range<double> (*range_by_object)(const Object&) = nullptr;
   // Returns whether this object has the field at all; null if every object has it.
   bool (*applies_to)(const Object&) = nullptr;

@@ -12,7 +12,7 @@
 
 namespace spoonbill {
 
-// Returns an error where read_file() would refuse the file before reading it: missing, a folder, a device or
+// Returns an error if read_file() would refuse the file before reading it: missing, a folder, a device or
 // pipe, not readable by this process, empty, or larger than `bytes_limit`. `remedy` is appended to the
 // message of the last case, for example "reduce the mesh". Never waits for the other end of a pipe.
 Status check_file(const std::filesystem::path& file, std::size_t bytes_limit, std::string_view remedy = {});
@@ -30,8 +30,8 @@ Result<std::ifstream> open_file(const std::filesystem::path& file);
 std::string read_first_bytes(const std::filesystem::path& file, std::size_t count);
 std::string read_last_bytes(const std::filesystem::path& file, std::size_t count);
 
-// Says if commit() waits until the content is on the disk. A sequence of files is committed with `later`,
-// then flushed by one call of flush_to_disk().
+// Selects whether commit() waits until the content is on the disk. A sequence of files is committed with
+// `later`, then flushed by one call of flush_to_disk().
 enum class Durability { now, later };
 
 // A file being written. One owner, one thread; never the haptic thread, because writing may block.

@@ -18,7 +18,7 @@ namespace spoonbill {
 //   }
 class Progress {
  public:
-  // Receives the fraction done, 0 to 1, possibly the same one repeatedly. Returns whether the work may
+  // Receives the fraction done, 0 to 1, possibly the same fraction repeatedly. Returns whether the work may
   // continue.
   using Report = std::function<bool(double fraction)>;
 
@@ -29,8 +29,8 @@ class Progress {
   // early and return stopped() if it has no result.
   bool report(double fraction) const { return !report_ || report_(start_ + (end_ - start_) * fraction); }
 
-  // Returns the progress of a part of the work, whose fractions 0 and 1 are `from` and `to` of this one.
-  // Successive parts must not overlap.
+  // Returns the progress of a part of the work, whose fractions 0 and 1 correspond to `from` and `to` of this
+  // progress. Successive parts must not overlap.
   Progress part(double from, double to) const {
     SPOONBILL_ASSERT(0.0 <= from && from <= to);
     Progress part = *this;

@@ -32,8 +32,8 @@ using BlossomWeights = std::array<double, max_degree + 1>;
 // Returns the blossom of a polynomial piece at the arguments: the symmetric multi-affine function that equals
 // the polynomial where all arguments are equal. At consecutive knots it gives control points, which converts
 // between knot vectors (Ramshaw 1989). `span` is a result of find_span(). There may be more arguments than
-// the degree, up to max_degree: the piece is then treated as one of that degree, and the blossom is the mean
-// over all choices of as many arguments as the degree. Does not allocate.
+// the degree, up to max_degree: the piece is then treated as a polynomial of that degree, and the blossom is
+// the mean over all choices of as many arguments as the degree. Does not allocate.
 BlossomWeights blossom(const KnotVector& knots, int span, std::span<const double> arguments);
 
 // Parallel lines of control points: the next point of a line is `along` elements further, the next line

@@ -187,9 +187,8 @@ Status check_open(const KnotVector& knots, const std::vector<double>& samples) {
   return {};
 }
 
-// Matches control points to samples in cyclic order, starting with control point 0 and sample `offset`;
-// the numbers of samples continue from one period to the next. Returns the number of control points
-// matched.
+// Matches control points to samples in cyclic order, starting with control point 0 and sample `offset`; the
+// numbering of samples continues from one period to the next. Returns the number of control points matched.
 int count_matched(const KnotVector& knots, const std::vector<double>& samples, int offset) {
   const double period = knots.domain_end() - knots.domain_start();
   const int count = static_cast<int>(samples.size());

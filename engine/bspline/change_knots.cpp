@@ -332,8 +332,8 @@ Result<Approximation> remove_spare_knots(const Surface& surface, Direction direc
   SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   Approximation best{surface, 0.0};
   for (RoundsDone done(0.2);; done.step()) {
-    // Removes as many of the cheapest knots as possible at once. The remaining knots then have other costs,
-    // hence the loop.
+    // Removes as many of the cheapest knots as possible at once. The costs of the remaining knots then
+    // change, hence the loop.
     const auto spare =
         spare_knots(best.surface, direction, tolerance_m, progress.part(done.fraction(), done.fraction()));
     if (!spare) return spare.error();

@@ -15,12 +15,13 @@ namespace spoonbill {
 // Converts a surface exactly, except for rounding, to finer knots. They must contain each of the surface's
 // knots in the domain of `finer`, with its multiplicity raised by the difference of the degrees;
 // elevate_degree(), knot_union() and clamped_part() make such knots. An open target may be a part of a
-// periodic direction. Each control point is the blossom of a polynomial piece in its support (Ramshaw
-// 1989). Refuses knots that lack one of the surface's, and names the missing knot.
+// periodic direction. Each control point is the blossom of a polynomial piece in its support (Ramshaw 1989).
+// Refuses knots that lack one of the surface's knots, and names the missing knot.
 Result<Surface> convert_to_finer_knots(const Surface& surface, Direction direction, const KnotVector& finer);
 
 // An approximation. `deviation_m` bounds the distance between both surfaces: it is the largest distance of
-// their control points over a common knot vector, and surfaces are in the convex hull of those.
+// their control points over a common knot vector, and surfaces are in the convex hull of their control
+// points.
 struct Approximation {
   Surface surface;
   double deviation_m = 0.0;

@@ -68,8 +68,8 @@ struct NestedParameters {
 };
 NestedParameters nested_parameters(const KnotVector& knots, int pieces_per_span, int levels);
 
-// Points at the parameters u[i], v[j], with the index i * v.size() + j. The parameters must increase
-// strictly within the domain. The fit is well conditioned if there are at least twice as many as control
+// Points at the parameters u[i], v[j], with the index i * v.size() + j. The parameters must increase strictly
+// within the domain. The fit is well conditioned if there are at least twice as many parameters as control
 // points in each direction.
 struct PointGrid {
   std::vector<double> u, v;

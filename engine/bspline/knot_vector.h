@@ -116,7 +116,7 @@ Result<KnotVector> knot_union(const KnotVector& a, const KnotVector& b);
 // seam, with `end` at most one period beyond `start`. Refuses an empty part and one outside the domain.
 Result<KnotVector> clamped_part(const KnotVector& knots, double start, double end);
 
-// Returns the knots scaled to the domain [start, end]. Refuses unless start < end, both finite.
+// Returns the knots scaled to the domain [start, end]. Refuses ends unless start < end and both are finite.
 Result<KnotVector> with_domain(const KnotVector& knots, double start, double end);
 
 // Returns the knots mirrored within the same domain.

@@ -15,7 +15,8 @@ namespace {
 
 using ControlLine = std::vector<double>;  // coordinates of all control points with one index
 
-// A sequence of lines of control points; the support of line i is from knots[i] to knots[i + degree + 1].
+// A sequence of lines of control points; the support of the basis function of line i is from knots[i] to
+// knots[i + degree + 1].
 struct Sequence {
   int degree;
   std::vector<double> knots;
@@ -35,7 +36,7 @@ void insert_once(Sequence& sequence, double knot) {
   const int span = static_cast<int>(std::upper_bound(knots.begin(), knots.end(), knot) - knots.begin()) - 1;
   std::vector<ControlLine> lines(sequence.lines.begin(), sequence.lines.begin() + span - degree + 1);
   for (int i = span - degree + 1; i <= span; ++i) {
-    // The weight is 0 where knots[i] is a copy of the knot; the previous point is then copied.
+    // The weight is 0 where knots[i] is a copy of the knot; then the previous line is copied.
     const double weight = knots[i] < knot ? (knot - knots[i]) / (knots[i + degree] - knots[i]) : 0.0;
     if (weight == 0.0) {
       lines.push_back(sequence.lines[i - 1]);
@@ -230,7 +231,7 @@ Result<Surface> with_seam_at(const Surface& surface, Direction direction, double
   const KnotVector& knots = knots_along(surface, direction);
   if (!knots.is_periodic() || !std::isfinite(seam)) {
     return Error{ErrorCode::unsupported,
-                 "only a periodic direction has a seam to move, to a finite parameter"};
+                 "the seam can be moved only in a periodic direction, and only to a finite parameter"};
   }
   const double length = knots.domain_end() - knots.domain_start();
   double at = knots.into_domain(seam);

@@ -149,12 +149,12 @@ namespace {
 template <class Real>
 constexpr double product_noise = 16.0 * std::numeric_limits<Real>::epsilon();
 
-// Distance in domain lengths within which the product must grow beyond its own size for an edge to count as
+// Distance, in domain lengths, within which du x dv must grow beyond its own size for an edge to count as
 // collapsed. A ring of control points that a refit in single precision has moved together coincides only to
 // about 1e-7, and the normal of the remaining hole would be arbitrary.
 constexpr double hole = 1e-6;
 
-// Distances in domain lengths of neighbours that replace a sample whose first-order limit vanishes too.
+// Distances, in domain lengths, at which neighbours replace a sample whose first-order limit vanishes too.
 constexpr double steps_inside[] = {0x1p-14, 0x1p-10, 0x1p-6};
 
 // Derivatives with respect to parameters over a domain of length 1, and a bound of |du x dv| from the
@@ -179,7 +179,7 @@ LimitTangents tangents_at(const KnotVector& u_knots, const KnotVector& v_knots, 
     const int index = u_knots.control_index(bu.span, i) * net.columns + v_knots.control_index(bv.span, j);
     return Vector3(net.x[index], net.y[index], net.z[index]);
   };
-  // Offsets from one control point, so that a distant origin adds no rounding noise.
+  // Uses offsets from one control point, so that a distant origin adds no rounding noise.
   const Vector3 origin = control(0, 0);
   LimitTangents tangents;
   double reach = 0.0;

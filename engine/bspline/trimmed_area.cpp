@@ -154,7 +154,7 @@ Status TrimmedArea::compute_level(const std::vector<std::vector<Eigen::Vector2d>
                        " and trim loop 0 keep different parts; outer loops must run counter-clockwise and "
                        "holes clockwise"};
     }
-    // On the right nothing remains, or the part inside another loop that shares the edge.
+    // On the right of a loop nothing remains, except the part inside another loop that shares the edge.
     const auto beyond = windings_beside(polygons[k], -sample_offset);
     if (level_ < 0 || level_ > 1 || (!beyond.contains(-level_) && !beyond.contains(1 - level_))) {
       return Error{ErrorCode::duplicate,
@@ -395,7 +395,7 @@ class Cutter {
     if (piece.corners.front() == piece.corners.back()) piece.corners.pop_back();
     if (piece.corners.size() < 3) return;
     for (const Eigen::Vector2d& corner : piece.corners) {
-      // A crossing of two grid lines is a corner of every piece that meets it, and needs no entry.
+      // A crossing of two grid lines is already a corner of every piece that meets it, and needs no entry.
       if (u_.find_line(corner.x()) >= 0 && v_.find_line(corner.y()) >= 0) continue;
       on_u_line_[u_.merge_seam(corner.x())].insert(corner.y());
       if (v_.find_line(corner.y()) >= 0) on_v_line_[v_.merge_seam(corner.y())].insert(corner.x());

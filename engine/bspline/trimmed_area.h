@@ -84,7 +84,7 @@ class GridLines {
   // Returns the parameter, moved onto a line that is nearer than a billionth of the domain, so that no sliver
   // is cut off.
   double snap(double parameter) const;
-  // Returns the cell of a parameter, clamped to the domain; of a line, the cell after it.
+  // Returns the cell of a parameter, clamped to the domain; for a parameter on a line, the cell after it.
   int find_cell(double parameter) const;
   // Returns the line exactly at a parameter, or -1.
   int find_line(double parameter) const;

@@ -58,8 +58,8 @@ struct Rims {
   std::size_t first = 0, last = 0;
 };
 
-// Returns, from each pole, the first station whose perimeter reaches 85 % of the largest one nearby (within a
-// tenth of the length).
+// Returns, from each pole, the first station whose perimeter reaches 85 % of the largest perimeter nearby
+// (within a tenth of the length).
 Rims near_rims(const Profile& profile);
 
 // Returns, from each pole, the first station after the outermost one from which the length grows at least
@@ -73,7 +73,7 @@ Rims further_rims(const Rims& a, const Rims& b);
 // Axes and extents of a cross-section, in metres.
 struct CrossSection {
   Vector3 e1, e2;                       // the wide and the narrow axis
-  double width = 0.0, thickness = 0.0;  // of a bent section, along its bend and across it
+  double width = 0.0, thickness = 0.0;  // for a bent section, measured along its bend and across it
   bool bent = false;                    // such as the section of a spoon's bowl
 };
 
@@ -88,7 +88,7 @@ struct Extents {
   bool bent = false;  // whether any section between the rims is bent
 };
 
-// Returns the extents of the sections between the rims.
+// Returns the extents of the tube's sections between the rims.
 Extents lattice_extents(const Surface& surface, const Profile& profile, const Rims& rims,
                         const CrossSection& centre_section);
 

@@ -18,12 +18,13 @@ enum class StepSchema { ap214, ap242 };
 struct CadSurface {
   std::string name;
   Surface surface;
-  // Largest distance between the surface and the one in the file; 0 where the conversion is exact.
+  // Largest distance between the surface and the original in the file; 0 if the conversion is exact.
   double deviation_m = 0.0;
-  std::vector<TrimLoop> trims;  // loops around the visible part; empty where the whole surface is visible
+  std::vector<TrimLoop> trims;  // loops around the visible part; empty if the whole surface is visible
   // Reason why there are no trims although the file shows only a part; empty otherwise.
   std::string trim_problem;
-  // Thickness of the material behind the surface; 0: none. Meshes get its walls, CAD files do not.
+  // Thickness of the material behind the surface; 0: none. Exported meshes include the walls of this shell,
+  // CAD files do not.
   double shell_thickness_m = 0.0;
   std::string solid = {};  // solid of several faces that this surface belongs to; empty: none
 };
@@ -62,7 +63,7 @@ struct CadSolid {
   // Indices into CadModel::surfaces of its faces, ascending, including the faces of its cavities.
   std::vector<std::size_t> places;
   TriangleMesh mesh;           // watertight; normals out of the material
-  double chord_error_m = 0.0;  // largest distance from samples of faces and edges to their triangles
+  double chord_error_m = 0.0;  // largest distance of samples of faces and edges from their triangles
   double gap_m = 0.0;          // widest gap between two faces that share an edge
   double volume_m3 = 0.0, area_m2 = 0.0;
   Vector3 centre_m = Vector3::Zero();  // centre of mass at constant density
@@ -83,7 +84,7 @@ struct SolidMeshing {
 inline constexpr std::size_t cad_name_bytes_limit = 200;
 
 // Returns the name as UTF-8 of at most `bytes_limit` bytes. Control characters and bytes that are not UTF-8
-// become spaces; spaces at the ends are removed. Returns `fallback` where nothing remains.
+// become spaces; spaces at the ends are removed. Returns `fallback` if nothing remains.
 std::string clean_cad_name(const std::string& name, const std::string& fallback,
                            std::size_t bytes_limit = cad_name_bytes_limit);
 

@@ -36,7 +36,7 @@ void read_head(FieldReader& reader, std::size_t surfaces, CadSolid& solid, Count
   reader.finish();
 }
 
-// Reads vertices and triangles. Returns false where the size, a coordinate or an index is wrong.
+// Reads vertices and triangles. Returns false if the size, a coordinate or an index is wrong.
 bool read_mesh(std::string_view bytes, const Counts& counts, TriangleMesh& mesh) {
   const std::size_t points = counts.vertices * vertex_bytes;
   if (bytes.size() != points + counts.triangles * triangle_bytes) return false;

@@ -117,7 +117,7 @@ std::optional<Ground> read_ground(FieldReader& reader) {
   return ground;
 }
 
-// Returns true where the symmetry differs from the default; only then is it written.
+// Returns true if the symmetry differs from the default; only then is it written.
 bool is_not_default(const Symmetry& symmetry) {
   const Symmetry standard;
   return symmetry.on || symmetry.point_m != standard.point_m || symmetry.normal != standard.normal;
@@ -150,7 +150,7 @@ auto find_command(std::string_view name) {
   return std::find(command_names.begin(), command_names.end(), name);
 }
 
-// Reads the optional index of the body that a command is for.
+// Reads the optional index of the body to which a command applies.
 int read_body_index(FieldReader& reader) {
   return reader.has("body") ? reader.integer("body", {0, sculpted_body_count_range.high - 1}) : 0;
 }

@@ -1,4 +1,4 @@
-// Reader and writer of documents, materials and commands. A document is a scene and how it is viewed, as
+// Reader and writer of documents, materials and commands. A document is a scene and its view, stored as
 // human-readable JSON with lengths in mm. Fields marked "optional" may be missing; the value after the mark
 // is the default.
 //
@@ -72,8 +72,8 @@
 
 namespace spoonbill {
 
-inline constexpr int document_version = 2;         // version that is written
-inline constexpr int oldest_document_version = 1;  // oldest version that is read
+inline constexpr int document_version = 2;         // version that write_document() writes
+inline constexpr int oldest_document_version = 1;  // oldest version that can be read
 
 // Content of a document file. `view` belongs to the program that draws (camera, overlays) and is written as
 // it was read.
@@ -84,8 +84,8 @@ struct Document {
 };
 
 // Converts JSON to a document. `source` names the file in messages. Unknown fields are refused by name, so
-// that a misspelt one is not silently ignored; numbers must be finite and within the ranges that the message
-// gives.
+// that a misspelt field is not silently ignored. Numbers must be finite and within their ranges; the message
+// gives the range.
 Result<Document> document_from_json(const Json& json, const std::string& source);
 
 // Converts a document to JSON. Every number reads back to the same bits, so that a document that is read and
@@ -100,14 +100,14 @@ Result<Document> read_document(const std::filesystem::path& file);
 // read back is refused before any file is touched.
 Status write_document(const Document& document, const std::filesystem::path& file);
 
-// Convert a single material, the content of a file in assets/materials.
+// Convert between JSON and a single material, the content of a file in assets/materials.
 Result<Material> material_from_json(const Json& json, const std::string& source);
 Json material_to_json(const Material& material);
 // Reads a material of at most 1 MiB.
 Result<Material> read_material(const std::filesystem::path& file);
 
-// Convert a command of the simulation. Every field is required unless noted; the fields of tool, material and
-// sculpting are those of documents:
+// Convert between JSON and a command of the simulation. Every field is required unless noted; the fields of
+// tool, material and sculpting are those of documents:
 //   {"command": "place_plane", "point_mm": [x, y, z], "normal": [x, y, z]}
 //   {"command": "remove_planes"}
 //   {"command": "set_tool", "kind", "action", "radius_mm", "iterations", and for a solid "solid", "soft"}
@@ -122,8 +122,7 @@ Result<Material> read_material(const std::filesystem::path& file);
 Result<Command> command_from_json(const Json& json, const std::string& source);
 Json command_to_json(const Command& command);
 
-// Returns true where "command" names a command of the simulation; recordings also contain commands of the
-// view.
+// Returns true if "command" names a command of the simulation; recordings also contain commands of the view.
 bool is_simulation_command(const Json& json);
 // Returns the names of all commands of the simulation, separated by ", ", for messages.
 std::string simulation_command_names();

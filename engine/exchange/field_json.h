@@ -15,7 +15,7 @@
 
 namespace spoonbill {
 
-// Returns true where the field is to be read: it is required, or it is optional and present.
+// Returns true if the field is to be read: it is required, or it is optional and present.
 bool is_field_expected(const FieldReader& reader, const FieldForm& form);
 
 // Each function reads one value; a problem is stored in the reader.
@@ -56,8 +56,8 @@ Object read_fields(FieldReader& reader) {
   return object;
 }
 
-// Writes all fields of the table into `json`; an optional field only where its value differs from the
-// struct's default.
+// Writes all fields of the table into `json`; an optional field only if its value differs from the struct's
+// default.
 template <class Object>
 void add_fields(const Object& object, Json& json) {
   static const Object default_object{};

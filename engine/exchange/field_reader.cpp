@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t text_limit = 200;
 
-// Deviation from unit length up to which a direction is not normalised, so that its bits survive writing and
-// reading.
+// Largest deviation from unit length at which a direction is left as it is, so that its bits survive writing
+// and reading.
 constexpr double unit_tolerance = 1e-12;
 
 const Json& null_value() {

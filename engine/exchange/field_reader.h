@@ -1,6 +1,6 @@
-// Reader of the fields of one JSON object. The first problem is stored and names file, path and range; later
-// reads return harmless values, so that the caller reads straight through and checks status() once at the
-// end.
+// Reader of the fields of one JSON object. The first problem is stored; its message names file, path and
+// range. Later reads return harmless values, so that the caller can read all fields and check status() once
+// at the end.
 //
 //   FieldReader reader(json, "spoon.json");
 //   tool.radius_m = reader.length_m("radius_mm", tool_radius_range_m);
@@ -33,7 +33,8 @@ class FieldReader {
 
   bool has(std::string_view field) const;
 
-  // Read the version number of the file's format and refuse a version outside `known`; the second returns it.
+  // Read the version number of the file's format and refuse a version outside `known`; the second function
+  // returns it.
   void version(std::string_view field, int known);
   int version(std::string_view field, Range<int> known);
 
@@ -46,7 +47,8 @@ class FieldReader {
   double length_m(std::string_view field, Range<double> range_m);
   Vector3 vector(std::string_view field, Range<double> range);
   Vector3 position_m(std::string_view field, Range<double> range_m);  // three lengths
-  Vector3 direction(std::string_view field);  // not zero; scaled to length 1 unless it has it already
+  // not zero; scaled to length 1 unless it already has this length
+  Vector3 direction(std::string_view field);
   const Json& object(std::string_view field);
   const Json& list(std::string_view field, Range<int> size);
 
@@ -87,7 +89,8 @@ class FieldReader {
 
   const Json* json_;
   std::string source_;
-  std::string path_;                       // of the object within the file; empty for the outermost
+  // path of the object within the file; empty for the outermost object
+  std::string path_;
   std::vector<std::string> known_fields_;  // in the order of the first read
   std::shared_ptr<std::optional<Error>> problem_;
 };

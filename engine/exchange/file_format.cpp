@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t bytes_limit = std::size_t{64} << 20;
 
-// Returns true for a recording. Only the first bytes are read: a recording may be long or truncated.
+// Returns true if the file is a recording. Only its first bytes are read, because a recording may be long or
+// truncated.
 bool starts_like_recording(const std::filesystem::path& file) {
   return read_first_bytes(file, 64).find("\"spoonbill_recording\"") != std::string::npos;
 }

@@ -33,7 +33,7 @@ struct FileEnding {
   FileFormat format;
 };
 
-// All endings of known formats. The first of a format is its usual one.
+// All endings of known formats. The first ending of a format is its usual one.
 inline constexpr std::array<FileEnding, 15> file_endings{{{"json", FileFormat::document},
                                                           {"step", FileFormat::step},
                                                           {"stp", FileFormat::step},
@@ -91,8 +91,8 @@ inline bool is_cloud(FileFormat format) {
          format == FileFormat::point_text;
 }
 
-// Returns which of the program's own formats a file has: document, recording, script or material. Its name is
-// ignored. Refused: a file that cannot be read, or has none of these formats.
+// Returns which of the program's own formats a file has: document, recording, script or material. The file's
+// name is ignored. Refused: a file that cannot be read, or has none of these formats.
 Result<FileFormat> find_native_format(const std::filesystem::path& file);
 
 }  // namespace spoonbill

@@ -1,6 +1,6 @@
 // Protocol between the program and the child processes that read and write foreign files, on one machine. A
 // frame is eight letters that name its kind, its length in 64 bits, and that many bytes. A child sends any
-// number of progress frames, then its results, and last one frame of kind ending, mesh, cloud, faces or
+// number of progress frames, then its results, and finally one frame of kind ending, mesh, cloud, faces or
 // failure.
 #pragma once
 
@@ -59,7 +59,7 @@ struct Frame {
 inline constexpr std::uint64_t frame_bytes_limit = std::uint64_t{1} << 30;
 // Longest line of a failure, in bytes.
 inline constexpr std::size_t failure_bytes_limit = 400;
-// Message of a child whose memory limit is too small for its file.
+// Message that a child sends if its memory limit is too small for its file.
 inline constexpr const char* bad_allocation = "bad allocation";
 
 void write_frame(std::ostream& out, FrameKind kind, std::string_view content);
@@ -68,21 +68,19 @@ void write_progress(std::ostream& out, double fraction);
 void write_mesh(std::ostream& out, const TriangleMesh& mesh);
 void write_cloud(std::ostream& out, const PointCloud& cloud);
 
-// Writes a message as one line of printable ASCII, cut to the limit.
+// Writes a message as one line of printable ASCII, cut to failure_bytes_limit.
 void write_failure(std::ostream& out, const std::string& message);
 // Writes an error's code and message, for parse_failure().
 void write_failure(std::ostream& out, const Error& error);
-// Converts the content of a failure frame to an error. The code is `process_failed` where the child sent
-// none.
+// Converts the content of a failure frame to an error. The code is `process_failed` if the child sent none.
 Error parse_failure(std::string_view content);
 
-// Returns true where the letters name a kind of frame.
+// Returns true if the letters name a kind of frame.
 bool is_known(FrameKind kind);
 
-// Reads exactly `bytes` bytes; returns false where fewer are left.
+// Reads exactly `bytes` bytes; returns false if fewer are left.
 using ReadBytes = std::function<bool(void* to, std::size_t bytes)>;
-// Reads a whole frame. Returns nullopt where the bytes end early, are not a frame, or exceed
-// frame_bytes_limit.
+// Reads a whole frame. Returns nullopt if the bytes end early, are not a frame, or exceed frame_bytes_limit.
 std::optional<Frame> read_frame(const ReadBytes& read);
 
 }  // namespace spoonbill

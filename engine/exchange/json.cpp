@@ -94,7 +94,7 @@ class StrictBuilder : public nlohmann::json_sax<Json> {
 
   ErrorCode code() const { return code_; }
   const std::string& complaint() const { return complaint_; }
-  // Offset of a syntax error in bytes; nullopt where the builder itself refused.
+  // Offset of a syntax error in bytes; nullopt if the builder itself refused the text.
   std::optional<std::size_t> error_offset() const { return error_offset_; }
   Json release_value() { return std::move(root_); }
 
@@ -144,7 +144,7 @@ class StrictBuilder : public nlohmann::json_sax<Json> {
 
   Json root_;
   std::vector<Json*> open_;  // containers around the next value, outermost first
-  Json* slot_ = nullptr;     // destination of the value of the field just named
+  Json* slot_ = nullptr;     // destination of the next value, for the field named last
   std::size_t values_ = 0;
   ErrorCode code_ = ErrorCode::malformed;
   std::string complaint_;
@@ -159,8 +159,7 @@ std::string to_printable_line(std::string text) {
   return text;
 }
 
-// Returns "line L, column C", or the column alone where the text has one line. `position` counts bytes
-// from 1.
+// Returns "line L, column C", or the column alone if the text has one line. `position` counts bytes from 1.
 std::string position_text(std::string_view text, std::size_t position) {
   const std::string_view before = text.substr(0, std::min(position > 0 ? position - 1 : 0, text.size()));
   const auto line = 1 + std::count(before.begin(), before.end(), '\n');
@@ -175,8 +174,8 @@ std::string escape(const std::string& text) {
   return json_to_line(Json(text));
 }
 
-// Appends the value on one line with a space after each comma and colon. Returns false where `out` would
-// exceed `width`.
+// Appends the value on one line with a space after each comma and colon. Returns false if `out` would exceed
+// `width`.
 bool append_spaced(const Json& json, std::size_t width, std::string& out) {
   if (json.is_object() || json.is_array()) {
     out += json.is_object() ? '{' : '[';
@@ -194,7 +193,8 @@ bool append_spaced(const Json& json, std::size_t width, std::string& out) {
   return out.size() <= width;
 }
 
-// Appends the value as json_to_page() lays it out; `before` is the count of columns in use on the first line.
+// Appends the value as json_to_page() lays it out; `before` is the number of columns that are already used on
+// the first line.
 void append_page(const Json& json, std::size_t indent, std::size_t before, std::string& out) {
   std::string line;
   const bool structured = json.is_object() || json.is_array();
@@ -223,7 +223,7 @@ bool have_same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
-// Returns the shortest number of millimetres that reads back to the same bits; nullopt where there is none.
+// Returns the shortest number of millimetres that reads back to the same bits; nullopt if there is none.
 std::optional<double> shortest_millimetres(double metres) {
   const double near = metres * millimetres_per_metre;
   std::optional<double> best;
@@ -286,7 +286,7 @@ Result<Json> parse_json(std::string_view text, const std::string& source) {
   const bool parsed = Json::sax_parse(TrackedIterator(text.data(), &furthest),
                                       TrackedIterator(text.data() + text.size(), &furthest), &builder);
   if (parsed) {
-    // The parser takes a zero byte for the end of the text, whatever follows.
+    // The parser would treat a zero byte as the end of the text, whatever follows.
     const std::size_t zero = text.find('\0');
     if (zero == std::string_view::npos) return builder.release_value();
     return Error{ErrorCode::malformed,

@@ -14,24 +14,24 @@ namespace spoonbill {
 using Json = nlohmann::ordered_json;
 
 // Parses JSON text. `source` names the file in messages, which give line and column. Besides syntax errors,
-// these are refused: NaN and infinities, numbers beyond a double, a field given twice, nesting deeper than
-// 64, more than six million values, more than 1,000 fields in one object, a zero byte.
+// these are refused: NaN and infinities, numbers beyond a double, a field that occurs twice, nesting deeper
+// than 64, more than six million values, more than 1,000 fields in one object, a zero byte.
 Result<Json> parse_json(std::string_view text, const std::string& source);
 
 // Returns the value on one line, without spaces. Bytes that are not UTF-8 are replaced.
 std::string json_to_line(const Json& json);
 
 // Returns the value laid out for people and ending with a newline: a value that fits into 110 columns is on
-// one line, any other is indented by two spaces a level.
+// one line, any other is indented by two spaces per level.
 std::string json_to_page(const Json& json);
 
 // Converts a number to JSON, whole numbers without a fraction ("8", not "8.0"). A number that is not finite
 // is written as null, which every reader refuses.
 Json number_to_json(double number);
 
-// Converts a length from metres to the shortest number of millimetres whose thousandth is `metres` to the
-// last bit. About one length in fifty has no such double, because doubles of millimetres can be up to 2.4 %
-// sparser than those of metres; it becomes a decimal in quotes. Lengths that a person would write in
+// Converts a length from metres to the shortest number of millimetres that, divided by 1000, gives `metres`
+// to the last bit. About one length in fifty has no such double, because doubles of millimetres can be up to
+// 2.4 % sparser than those of metres; it becomes a decimal in quotes. Lengths that a person would write in
 // millimetres are always plain numbers.
 Json length_to_json(double metres);
 

@@ -33,7 +33,7 @@ constexpr std::size_t ply_header_bytes_limit = 65536;
 // Property of an element; a list is a count followed by that many numbers.
 struct PlyProperty {
   bool is_list = false;
-  std::size_t count_bytes = 0, bytes = 0;  // size of the count and of each number; 0: unknown type
+  std::size_t count_bytes = 0, bytes = 0;  // size of a list's count and of each number; 0: unknown type
 };
 
 struct PlyElement {
@@ -85,7 +85,7 @@ Result<PlyHeader> read_ply_header(std::istream& stream) {
       header.elements.back().properties.push_back(property);
     }
   }
-  return Error{ErrorCode::malformed, "its header has no end within 64 KiB; it is cut or no PLY file"};
+  return Error{ErrorCode::malformed, "its header has no end within 64 KiB; it is cut or not a PLY file"};
 }
 
 bool skip(std::istream& stream, std::uint64_t numbers) {
@@ -101,7 +101,7 @@ bool skip_list(std::istream& stream) {
   return count >= 0.0 && count < 1e9 && skip(stream, static_cast<std::uint64_t>(count));
 }
 
-// Upper limit of the counts of rows and list entries: more than any file has, too few to overflow.
+// Upper limit of the counts of rows and list entries: more than any file has, and too few to overflow.
 constexpr std::uint64_t row_limit = std::uint64_t{1} << 32U;
 
 bool skip_bytes(std::istream& stream, std::uint64_t bytes) {
@@ -140,7 +140,7 @@ Error truncated_error(const PlyElement& element, std::uint64_t row) {
                                          "; it is cut or damaged"};
 }
 
-// Returns the size of a row of a binary file; 0 where rows differ in size because of lists or text.
+// Returns the size of a row of a binary file; 0 if rows differ in size because of lists or text.
 std::size_t fixed_row_bytes(const PlyHeader& header, const PlyElement& element) {
   std::size_t bytes = 0;
   for (const PlyProperty& property : element.properties) {
@@ -151,7 +151,7 @@ std::size_t fixed_row_bytes(const PlyHeader& header, const PlyElement& element) 
 }
 
 Status check_rows(std::istream& stream, const PlyHeader& header, const PlyElement& element) {
-  // Rows without properties need no bytes, however many are promised.
+  // Rows without properties need no bytes, however many rows the header promises.
   if (element.properties.empty()) return {};
   if (Status types = check_types(element); !types && !header.is_text) return types;
   if (const std::size_t bytes = fixed_row_bytes(header, element); bytes > 0) {
@@ -199,8 +199,8 @@ bool begins_as_text_stl(const std::filesystem::path& file) {
   return stream.read(word.data(), static_cast<std::streamsize>(word.size())) && word == "solid";
 }
 
-// Returns the form of a face's corner, such as "#/#" for "7/1" or "#//#" for "7//3"; empty where it does not
-// end with a digit.
+// Returns the form of a face's corner, such as "#/#" for "7/1" or "#//#" for "7//3"; empty if the corner does
+// not end with a digit.
 std::string corner_form(std::string_view corner) {
   std::string form;
   for (const char character : corner) {
@@ -242,7 +242,7 @@ bool begins_with_line_feed(const std::string& file, std::size_t& begin) {
   return begin < start.size() && start[begin] == '\n';
 }
 
-// Content of a file with a second line feed before its data, for Assimp to skip.
+// Content of a file with a second line feed inserted before its data; Assimp skips one of the two.
 class PaddedStream final : public Assimp::MemoryIOStream {
  public:
   PaddedStream(const std::string& file, std::size_t begin) : PaddedStream(read_padded(file, begin)) {}
@@ -263,8 +263,8 @@ class PaddedStream final : public Assimp::MemoryIOStream {
   std::vector<std::uint8_t> bytes_;  // storage of the base class; moving keeps its address
 };
 
-// File system that contains only one file: a material that the file names could be a device, a pipe or a
-// secret.
+// File system that contains only one file, because a material file that it names could be a device, a pipe or
+// a secret.
 class SingleFileIo final : public Assimp::DefaultIOSystem {
  public:
   explicit SingleFileIo(std::string file) : file_(std::move(file)) {}

@@ -11,7 +11,7 @@
 namespace spoonbill {
 
 // Reads the triangles of an STL, OBJ or PLY file; polygons are triangulated, points and lines are ignored.
-// Coordinates are in the file's own unit (not yet metres) and single precision. Other files that this one
+// Coordinates are in the file's own unit (not yet metres) and single precision. Other files that the file
 // names are not opened.
 Result<TriangleMesh> import_mesh(const std::filesystem::path& file);
 
@@ -20,11 +20,11 @@ Result<TriangleMesh> import_mesh(const std::filesystem::path& file);
 Status check_ply(const std::filesystem::path& file);
 
 // Checks that an STL file in text form ends with `endsolid`, with or without a name and a line feed. Binary
-// files pass: Assimp checks their length.
+// files are accepted: Assimp checks their length.
 Status check_text_stl(const std::filesystem::path& file);
 
 // Checks the last line of an OBJ file that lacks a line feed: a vertex needs three numbers, a face three or
-// more corners of one form. A file cut between two lines, or within the last number, passes.
+// more corners of one form. A file that is cut off between two lines, or within the last number, is accepted.
 Status check_last_obj_line(const std::filesystem::path& file);
 
 }  // namespace spoonbill

@@ -31,7 +31,7 @@ void read_counts(FieldReader& reader, LatticeRequest& lattice) {
   }
 }
 
-// Reads the mesh of a solid tool. Returns nullopt where a list is malformed.
+// Reads the mesh of a solid tool. Returns nullopt if a list is malformed.
 std::optional<TriangleMesh> read_triangles(FieldReader& reader) {
   TriangleMesh mesh;
   const Range<int> counts{3, 3 * tool_triangle_limit};
@@ -66,7 +66,8 @@ std::optional<ToolSolid> read_mesh(FieldReader& reader) {
   return std::nullopt;
 }
 
-// Names of the shapes that have a table of fields, followed by the two that do not.
+// Indices of mesh and surface in the list of shape names; these two have no table of fields and follow the
+// shapes that have one.
 constexpr std::size_t mesh_index = kind_names<ImplicitShape>.size(), surface_index = mesh_index + 1;
 constexpr auto shape_names = [] {
   std::array<const char*, surface_index + 1> names{};
@@ -156,7 +157,7 @@ Range<double> read_fractions(FieldReader& reader, const char* field) {
   return fractions;
 }
 
-// Reads one or two depths; a single one is the smallest, without a largest.
+// Reads one or two depths; a single depth is the smallest, and the largest is then unlimited.
 Range<double> read_depths(FieldReader& reader) {
   const Json& list = reader.list("depth_mm", {1, 2});
   Range<double> depths = BodyRegion().depth_m;

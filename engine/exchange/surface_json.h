@@ -19,7 +19,7 @@ std::optional<Surface> read_surface(FieldReader& reader);
 Json surface_to_json(const Surface& surface);
 
 // Reads the optional field "trims" of a surface and checks that the loops bound an area of it. Returns an
-// empty list where the field is missing.
+// empty list if the field is missing.
 std::vector<TrimLoop> read_trims(FieldReader& surface_reader, const Surface& surface);
 void add_trims(const std::vector<TrimLoop>& trims, Json& surface_json);
 
@@ -28,7 +28,7 @@ void add_trims(const std::vector<TrimLoop>& trims, Json& surface_json);
 std::optional<KnotVector> read_knot_vector(FieldReader& reader, Range<int> control_point_counts);
 void add_knot_vector(const KnotVector& knots, Json& json);
 
-// Converts a list of three lengths. Returns false where the value is not such a list, or a length is outside
+// Converts a list of three lengths. Returns false if the value is not such a list, or a length is outside
 // position_range_m.
 bool read_point(const Json& json, Vector3& point_m);
 Json position_to_json(const Vector3& position_m);

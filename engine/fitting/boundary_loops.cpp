@@ -65,8 +65,8 @@ void append_simple_loops(const std::vector<std::uint32_t>& path, const PointGrap
   append_ring(std::move(open), graph, boundary_loops);
 }
 
-// Returns the widest angle, in radians, in which a node has no neighbours within two steps, measured in their
-// plane; 0 with fewer than three of them.
+// Returns the widest angle, in radians, in which a node has no neighbours within two steps, measured in the
+// neighbours' plane; 0 with fewer than three neighbours.
 double widest_gap(const PointGraph& graph, std::uint32_t node) {
   std::set<std::uint32_t> near;
   for (const std::uint32_t other : graph.adjacent(node)) {
@@ -93,7 +93,8 @@ double widest_gap(const PointGraph& graph, std::uint32_t node) {
   return gap;
 }
 
-// Returns a graph of the given nodes, with edges between those at most `steps` edges apart.
+// Returns a graph of the given nodes, with edges between nodes that are at most `steps` edges apart in
+// `graph`.
 PointGraph connect_within(const PointGraph& graph, const std::vector<std::uint32_t>& nodes, int steps) {
   std::vector<std::uint32_t> index(graph.size(), no_index);
   std::vector<Vector3> points;
@@ -133,7 +134,7 @@ std::vector<std::uint32_t> find_ring(const PointGraph& part) {
   const std::uint32_t b = farthest(paths);
   std::vector<std::uint32_t> there{b};
   for (std::uint32_t n = b; n != a;) there.push_back(n = paths.predecessor[n]);
-  // Nodes beside the first path are closed to the second, except near its ends.
+  // Nodes beside the first path are closed to the second path, except near its ends.
   std::vector<bool> is_taken(part.size(), false);
   const double end_reach = 3.0 * mean_edge_length(part);
   for (const std::uint32_t n : there) {
@@ -202,7 +203,7 @@ std::vector<TriangleCorners> least_area_triangles(const std::vector<Vector3>& pa
   return triangles;
 }
 
-// Inserts the node between two consecutive ring nodes that share a neighbour but no edge.
+// Inserts a node between two consecutive ring nodes that share it as a neighbour but have no edge.
 std::vector<std::uint32_t> fill_steps(const PointGraph& graph, const std::vector<std::uint32_t>& ring) {
   std::vector<std::uint32_t> steps;
   std::set<std::uint32_t> is_taken(ring.begin(), ring.end());
@@ -264,7 +265,8 @@ std::vector<BoundaryLoop> find_cloud_boundaries(const PointGraph& graph) {
   for (std::uint32_t node = 0; node < graph.size(); ++node) {
     if (widest_gap(graph, node) > open_angle) open.push_back(node);
   }
-  // Noise can hide single boundary nodes; wider steps close rings that narrow ones cannot.
+  // Numbers of steps to try. Noise can hide single boundary nodes; wider steps close rings that narrow ones
+  // cannot.
   constexpr std::array steps{2, 4};
   std::vector<BoundaryLoop> boundary_loops;
   if (open.empty()) return boundary_loops;
@@ -291,7 +293,7 @@ std::vector<BoundaryLoop> find_cloud_boundaries(const PointGraph& graph) {
 }
 
 Cap cap_hole(const PointGraph& graph, const BoundaryLoop& loop, std::uint32_t first) {
-  // The loop's own nodes come first, then those added by splitting.
+  // The loop's own nodes come first, then the nodes added by splitting.
   std::vector<Vector3> points;
   for (const std::uint32_t node : loop.nodes) points.push_back(graph.points_m[node]);
   std::vector<TriangleCorners> triangles = least_area_triangles(points);

@@ -30,7 +30,7 @@ std::vector<BoundaryLoop> find_cloud_boundaries(const PointGraph& graph);
 // to the nodes' spacing.
 struct Cap {
   std::vector<Vector3> points_m;  // added nodes, numbered from `first` on
-  std::vector<Vector3> normals;   // unit normals of the added nodes, by the loop's sense of rotation
+  std::vector<Vector3> normals;   // unit normals of the added nodes, oriented by the loop's sense of rotation
   std::vector<NodePair> pairs;    // edges among the added nodes and the loop's nodes
   double area_m2 = 0.0;
 };

@@ -23,8 +23,8 @@ inline constexpr std::size_t nodes_around_bridge = 24;
 // Component with a hole cut into it, where a bridge begins.
 struct Opening {
   FitPoints island;  // without the nodes that were cut out
-  // Nodes at even steps along the hole's boundary, counterclockwise seen from outside: nodes_around_bridge of
-  // them, or none if the component is too small.
+  // Nodes at even steps along the hole's boundary, counterclockwise seen from outside. Their number is
+  // nodes_around_bridge, or zero if the component is too small.
   std::vector<std::uint32_t> loop;
 };
 
@@ -32,8 +32,8 @@ struct Opening {
 constexpr double opening_fraction = 0.12;
 constexpr std::size_t least_hole_nodes = 5;
 
-// Returns each node's position on the source's tangent plane, to which the surface is unrolled along the
-// shortest paths.
+// Returns each node's position on the tangent plane of the paths' source node, onto which the surface is
+// unrolled along the shortest paths.
 std::vector<Vector2> unroll(const FitPoints& points, const ShortestPaths& paths, const Vector3& facing) {
   const PointGraph& graph = points.graph;
   std::vector<std::uint32_t> order(graph.size());
@@ -162,10 +162,10 @@ bool runs_counterclockwise(const FitPoints& points, const std::vector<std::uint3
 }
 
 // Cuts out the nodes within a path length of `node`; their points go to the nearest remaining node. The loop
-// is the shortest closed path through the boundary nodes, with steps longer the more the normals turn. Over
-// the edge of a thin wall a boundary is folded onto itself in all views. The search therefore starts from the
-// order in a view or in the plane unrolled along shortest paths (Schmidt, Grimm and Wyvill 2006). `towards`
-// replaces the normal of a component without normals.
+// is the shortest closed path through the boundary nodes, with steps longer the more the normals turn. A
+// boundary that runs over the edge of a thin wall is folded onto itself in all views. The search therefore
+// starts from the order in a view, or from the order in the plane that is unrolled along shortest paths
+// (Schmidt, Grimm and Wyvill 2006). `towards` replaces the normal of a component without normals.
 Opening cut_opening(const FitPoints& whole, std::uint32_t node, const Vector3& towards) {
   SPOONBILL_ASSERT(node < whole.graph.size());
   const double reach = opening_fraction * bounding_diagonal_m(whole.graph.points_m);
@@ -216,8 +216,8 @@ NearestPair nearest_pair(const PointGraph& a, const PointGraph& b) {
   return pair;
 }
 
-// Combines two components without edges between them; spanning nodes go last. `index_a` and `index_b` receive
-// the new node numbers.
+// Combines two components without adding edges between them; spanning nodes go last. `index_a` and `index_b`
+// receive the new node numbers.
 FitPoints combine(const FitPoints& a, const FitPoints& b, std::vector<std::uint32_t>& index_a,
                   std::vector<std::uint32_t>& index_b) {
   FitPoints both = a;
@@ -259,7 +259,7 @@ FitPoints combine(const FitPoints& a, const FitPoints& b, std::vector<std::uint3
   return both;
 }
 
-// Rotates ring b to the start that makes the sum of squared distances to ring a smallest.
+// Rotates ring b so that it starts where the sum of squared distances to ring a is smallest.
 void align_rings(const PointGraph& graph, const std::vector<std::uint32_t>& a,
                  std::vector<std::uint32_t>& b) {
   const auto squares = [&] {
@@ -281,7 +281,7 @@ void align_rings(const PointGraph& graph, const std::vector<std::uint32_t>& a,
   b = std::move(best);
 }
 
-// Adds a straight tube of nodes from ring to ring.
+// Adds a straight tube of nodes between ring a and ring b.
 void span_gap(FitPoints& points, const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
   double length = 0.0;
   for (std::size_t k = 0; k < nodes_around_bridge; ++k) {
@@ -313,8 +313,8 @@ void span_gap(FitPoints& points, const std::vector<std::uint32_t>& a, const std:
   add_spanning_nodes(points, positions, normals, pairs);
 }
 
-// Joins two components by a tube between openings at the nearest pair. Openings that face each other run in
-// opposite directions, so one ring is reversed.
+// Joins two components by a tube between openings at their nearest pair of nodes. Openings that face each
+// other run in opposite directions, so one ring is reversed.
 Result<FitPoints> join_at(const FitPoints& a, const FitPoints& b, const NearestPair& pair) {
   const Vector3 between = (b.graph.points_m[pair.b] - a.graph.points_m[pair.a]).normalized();
   const Opening open_a = cut_opening(a, pair.a, between), open_b = cut_opening(b, pair.b, -between);

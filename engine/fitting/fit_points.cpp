@@ -34,7 +34,7 @@ void join_coincident_vertices(Scan& scan) {
   scan.triangles = std::move(remaining);
 }
 
-// Returns true if the spread across the main axis is rounding error beside the spread along it.
+// Returns true if the spread across the main axis is only rounding error compared with the spread along it.
 bool are_collinear(const std::vector<Vector3>& points_m) {
   const auto count = static_cast<double>(points_m.size());
   Vector3 centre = Vector3::Zero();
@@ -78,8 +78,8 @@ std::vector<double> compute_vertex_normals(Scan& scan) {
   return weights;
 }
 
-// Thins the scan to the limit by voxels and sums the weights; those of a cloud count its points. Triangles
-// between two or three groups remain as edges between nodes.
+// Thins the scan to the limit by voxels and sums the weights; the weights of a cloud are numbers of points.
+// Triangles between two or three groups remain as edges between nodes.
 void thin(Scan& scan, std::vector<double>& weights, std::vector<std::uint32_t>& representative) {
   if (scan.points_m.size() <= fitted_point_limit + fitted_point_limit / 4) return;
   const VoxelGroups groups = group_by_voxels(scan, voxel_side_for(scan, fitted_point_limit));
@@ -123,7 +123,7 @@ std::vector<NodePair> mesh_pairs(const Scan& scan, const std::vector<std::uint32
   return pairs;
 }
 
-// Pairs each node with its nearest ones, unless they are much farther than usual or have opposed normals.
+// Pairs each node with its nearest nodes, unless they are much farther than usual or have opposed normals.
 std::vector<NodePair> cloud_pairs(const Scan& nodes) {
   const NearestPoints nearest(nodes.points_m);
   std::vector<NearestPoints::Neighbour> found;
@@ -229,7 +229,7 @@ Result<FitPoints> make_fit_points(Scan scan) {
   for (const std::uint32_t spike : spikes) fit.representative[spike] = no_point;
   if (!is_mesh) {
     remove_points(fit, find_outliers(fit.scan.points_m, fit.weights));
-    // Dense and sparse regions count alike.
+    // The weights are equal, so that dense and sparse regions count alike.
     fit.weights.assign(fit.weights.size(), 1.0);
   }
   make_nodes(fit);

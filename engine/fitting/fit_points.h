@@ -18,8 +18,8 @@ inline constexpr std::uint32_t no_point = 0xffffffffU;
 struct FitPoints {
   bool is_mesh = false;  // only spikes count as outliers of a mesh
   Scan scan;             // thinned and cleaned, without triangles
-  // Positions of the given points; of a mesh those of its vertices after joining. `representative` holds for
-  // each the index of the scan point that stands in for it, or no_point where it was removed.
+  // Positions of the given points, or of a mesh's vertices after joining. For each of them, `representative`
+  // holds the index of the scan point that represents it, or no_point if it was removed.
   std::vector<Vector3> given_m;
   std::vector<std::uint32_t> representative;
   std::vector<double> weights;               // of each scan point: its area in a mesh, 1 in a cloud
@@ -29,7 +29,7 @@ struct FitPoints {
   std::vector<BoundaryLoop> boundary_loops;  // longest first
   // Number of nodes at the end of the graph that have no points and span holes and gaps.
   std::size_t spanning_nodes = 0;
-  std::size_t outliers = 0;         // given points removed as outliers; spikes of a mesh
+  std::size_t outliers = 0;         // number of given points removed as outliers, or of a mesh's spikes
   std::size_t joined = 0;           // mesh vertices merged with another at the same position
   std::size_t flipped_normals = 0;  // given points whose normals were flipped to agree with their neighbours
 };
@@ -40,7 +40,8 @@ struct FitPoints {
 Result<FitPoints> make_fit_points(Scan scan);
 
 // Replaces the nodes by a subset of the points, without edges, and returns the nodes' parameters. `uv` holds
-// the known parameters of all points. Used for clouds whose neighbours in space mislead, such as thin walls.
+// the known parameters of all points. Used for clouds in which neighbours in space mislead, such as clouds of
+// thin walls.
 std::vector<Vector2> use_points_as_nodes(FitPoints& points, const std::vector<Vector2>& uv);
 
 // Adds nodes that span a hole or a gap. `pairs` connects them to other nodes; the added ones are numbered

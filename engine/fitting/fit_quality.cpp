@@ -71,7 +71,7 @@ ClosestPoint ClosestParameters::project_from(const Vector3& point, const Vector2
     const Vector3 away = at.position_m - point;
     const double a = at.du.squaredNorm(), b = at.du.dot(at.dv), c = at.dv.squaredNorm();
     const double p = at.du.dot(away), q = at.dv.dot(away);
-    // Newton's matrix where positive definite, otherwise that of Gauss-Newton.
+    // The matrix is Newton's where that is positive definite, otherwise that of Gauss-Newton.
     double m = a + at.duu.dot(away), n = b + at.duv.dot(away), o = c + at.dvv.dot(away);
     if (!(m > 0.1 * a && o > 0.1 * c && m * o - n * n > 0.1 * (a * c - b * b))) m = a, n = b, o = c;
     const double ridge = 1e-9 * (m + o) + 1e-300;
@@ -109,7 +109,7 @@ namespace {
 constexpr int samples_per_span = 4, cusp_samples_per_span = 12;
 constexpr double cusp_cosine = -0.5;
 
-// Unit normals at cell centres, which avoid poles and seams.
+// Unit normals at cell centres; cell centres avoid poles and seams.
 struct NormalGrid {
   std::size_t rows = 0, columns = 0;
   std::vector<Vector2> uv;
@@ -148,7 +148,7 @@ bool turns_at(const NormalGrid& grid, bool u_closes, double cosine, std::size_t 
   return in_u || (j + 1 < grid.columns && normal.dot(grid.normals[i * grid.columns + j + 1]) < cosine);
 }
 
-// Data normals by position in (u, v), measured in spans; those near a periodic seam are repeated beyond it.
+// Data normals by position in (u, v), measured in spans; normals near a periodic seam are repeated beyond it.
 class DataNormals {
  public:
   DataNormals(const Surface& surface, const NormalsAtParameters& data)
@@ -230,7 +230,8 @@ namespace {
 constexpr int distance_steps = 4;
 constexpr int error_samples_per_span = 4;
 constexpr std::size_t plane_points = 10;
-// A sample counts as seen within this many mean spacings of the data; beyond a boundary, within one.
+// A sample counts as seen if data are within this many mean spacings; beyond a boundary, if they are within
+// one.
 constexpr double seen_spacings = 3.0;
 
 // Returns true where errors are measured at the fitted points: the given vertices of a refined mesh may be
@@ -248,7 +249,7 @@ void measure_data(const FittedSurface& fit, const FitPoints& points, FitErrors& 
     const std::size_t fitted = are_fitted ? g : points.representative[g];
     const Vector3& point = errors.positions_m[g];
     ClosestPoint found = closest.project_from(point, fit.uv[fitted], distance_steps);
-    // Points caught in a local minimum are also searched from the nearest sample.
+    // For points caught in a local minimum, the search also starts from the nearest sample.
     if (found.distance_m > 1.5 * fit.distance_m[fitted] || fit.trust[fitted] < 1.0) {
       const ClosestPoint other = closest.project(point, distance_steps);
       if (other.distance_m < found.distance_m) found = other;
@@ -281,7 +282,7 @@ std::vector<Vector3> surface_samples(const Surface& surface) {
   return samples;
 }
 
-// Returns the distance from the plane through the found points.
+// Returns the distance of the sample from the plane through the found points.
 double plane_distance(const Vector3& sample, const std::vector<Vector3>& points,
                       const std::vector<NearestPoints::Neighbour>& found) {
   Vector3 mean = Vector3::Zero();
@@ -296,7 +297,7 @@ double plane_distance(const Vector3& sample, const std::vector<Vector3>& points,
   return std::abs(normal.dot(sample - mean));
 }
 
-// Returns the mean distance to the sixth neighbour, sampled at up to about 2000 points.
+// Returns the mean distance to the sixth neighbour, measured at up to about 2000 points.
 double mean_spacing(const std::vector<Vector3>& points, const NearestPoints& nearest) {
   constexpr std::size_t neighbours = 6, most = 2000;
   std::vector<NearestPoints::Neighbour> found;

@@ -30,7 +30,7 @@ class ClosestParameters {
   // reduces the distance and is never longer than 0.75 of a mean span.
   ClosestPoint project_from(const Vector3& point, const Vector2& start, int steps) const;
 
-  // Same search, started from the surface sample nearest to the point.
+  // Does the same search, started from the surface sample nearest to the point.
   ClosestPoint project(const Vector3& point, int steps) const;
 
  private:
@@ -81,15 +81,15 @@ struct Deviation {
 Deviation compute_deviation(std::vector<double> distances_m);
 
 struct FitErrors {
-  // Distances from the data to their closest surface points: without strays, and with them. The data are the
-  // given points, or points all over a mesh.
+  // Distances from the data to their closest surface points, without strays (data_to_surface) and with them
+  // (all_to_surface). The data are the given points, or points all over a mesh.
   Deviation data_to_surface, all_to_surface;
-  std::size_t strays = 0;  // points of zero trust: off the surface, unlike the points around them
-  // Distances from surface samples (4 x 4 a span) to the plane of the nearest data points, or to the nearest
-  // point where that is closer.
+  std::size_t strays = 0;  // points of zero trust: they are off the surface, unlike the points around them
+  // Distances from surface samples (4 x 4 per span) to the plane of the nearest data points, or to the
+  // nearest point where that is closer.
   Deviation surface_to_data;
   double unseen_fraction = 0.0;  // fraction of samples without data nearby, which surface_to_data ignores
-  // Per data point, for pictures: position, surface parameters, distance, and the stray flag.
+  // Values for each data point, for pictures: position, surface parameters, distance, and the stray flag.
   std::vector<Vector3> positions_m;
   std::vector<Vector2> uv;
   std::vector<double> distance_m;

@@ -13,7 +13,7 @@
 namespace spoonbill {
 namespace {
 
-// A component needs 30 nodes, and each node of a cloud three points.
+// Smallest number of points: a component needs 30 nodes, and each node of a cloud three points.
 constexpr std::size_t least_cloud_points = 90;
 
 Result<FittedBody> fit_body(FitPoints island, const Parameterisation& start, FitSettings settings,

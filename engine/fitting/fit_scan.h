@@ -44,17 +44,17 @@ struct ScanFit {
   std::size_t islands = 0;               // number of connected components found
   std::vector<UnfittedIsland> unfitted;  // largest first; only with IslandChoice::all
   std::size_t open_bridged = 0;  // bridged components with open ends away from the gaps, which were capped
-  // Points left out: duplicates, outliers, points of tiny components, points of components that were not
-  // fitted.
+  // Numbers of points left out: duplicates, outliers, points of tiny components, points of components that
+  // were not fitted.
   std::size_t joined = 0, outliers = 0, dust = 0, other_islands = 0;
-  // Cloud points whose normals were flipped to agree with their neighbours, as needed when all normals face
-  // the scanner.
+  // Number of cloud points whose normals were flipped to agree with their neighbours. Flipping is needed when
+  // all normals face the scanner.
   std::size_t flipped_normals = 0;
 };
 
 // Fits a scan with finite points. Fails, with advice, on too few points (a cloud needs at least 90) and on a
-// shape that cannot be parameterised as the requested kind. Fails also if components cannot be bridged, or on
-// a request to stop. With IslandChoice::all, single failures are listed in `unfitted`.
+// shape that cannot be parameterised as the requested kind. It also fails if components cannot be bridged, or
+// on a request to stop. With IslandChoice::all, single failures are listed in `unfitted`.
 Result<ScanFit> fit_scan(Scan scan, const FitRequest& request);
 
 }  // namespace spoonbill

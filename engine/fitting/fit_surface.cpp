@@ -22,7 +22,7 @@ namespace spoonbill {
 namespace {
 
 inline constexpr int projection_steps = 3;
-// Lower bound of the fairness; lets surfaces follow data without noise.
+// Lower bound of the fairness; it lets surfaces follow data without noise closely.
 inline constexpr double least_fairness = 3e-4;
 
 // Data of one fitting stage: the nodes first, then all points.
@@ -45,7 +45,7 @@ inline double wrapped(double difference) {
   return difference - std::round(difference);
 }
 
-// Ranks fits: those without folds first, then by error, with a surcharge for each fold and cusp.
+// Ranks fits: fits without folds come first, then by error, with a surcharge for each fold and cusp.
 struct FitQuality {
   std::size_t folds, cusps;
   double error_m;
@@ -60,14 +60,14 @@ struct FitQuality {
 
 class SurfaceFitter {
  public:
-  // Points keep their parameters if the surface normal at the closest point has a smaller cosine with their
-  // own normal than `least_agreement`. On a thin wall the closest point may be on the other face.
+  // A point keeps its parameters if the cosine between its own normal and the surface normal at the closest
+  // point is below `least_agreement`. On a thin wall the closest point may be on the other face.
   SurfaceFitter(const FitPoints& points, const Parameterisation& start, const FitSettings& settings,
                 double least_agreement, double fairness_factor);
   Result<FittedSurface> run();
 
  private:
-  // State that unfolding changes, to restart from.
+  // State that unfolding changes, stored to restart from it.
   struct Folding {
     Surface surface;
     FoldCheck folds;
@@ -212,7 +212,7 @@ void SurfaceFitter::add_poles() {
     bool exact = false;
     for (std::size_t n = 0; n < nodes_.uv.size(); ++n) {
       const double away = std::abs(nodes_.uv[n].y() - v);
-      if (exact || !(away < near)) continue;  // skips NaN as well
+      if (exact || !(away < near)) continue;  // also skips NaN
       if (away == 0.0) {
         exact = true;
         sum.setZero();
@@ -318,7 +318,7 @@ bool SurfaceFitter::has_inward_normals() const {
   return closed() ? compute_enclosed_mass(surface_).volume_m3 < 0.0 : is_inside_out(surface_);
 }
 
-// Reverses a closed surface of negative volume, which early rounds of a thin wall can give.
+// Reverses a closed surface of negative volume, which can result from early rounds on a thin wall.
 Status SurfaceFitter::orient_outwards() {
   if (!closed() || compute_enclosed_mass(surface_).volume_m3 >= 0.0) return {};
   surface_ = reversed(surface_, Direction::u);
@@ -387,9 +387,10 @@ Status SurfaceFitter::point_rounds() {
   return {};
 }
 
-// Returns the fit, with the nearer of two closest points for each point: from its parameters and from the
-// nearest sample, since points may have been held back or caught in a local minimum. Normals estimated for
-// clouds only count folds; on thin walls some belong to the other face, so they do not steer the fit.
+// Returns the fit. For each point it takes the nearer of two closest points, searched from the point's
+// parameters and from the nearest sample, since points may have been held back or caught in a local minimum.
+// Normals that are estimated for clouds serve only to count folds; on thin walls some of them belong to the
+// other face, so they do not steer the fit.
 FittedSurface SurfaceFitter::result() {
   const std::size_t count = points_->scan.points_m.size();
   all_.uv.resize(count);
@@ -427,10 +428,10 @@ constexpr double least_pole_size = 0.02;
 constexpr std::array fairness_factors{1.0, 3.0, 10.0, 30.0, 100.0, 300.0};
 // About every fourth point is held out of the fit for cross-validation.
 constexpr std::size_t held_out_stride = 4;
-// A larger fairness is chosen if its held-out error is within this ratio of the least.
+// A larger fairness is chosen if its held-out error is at most the least one times this ratio.
 constexpr double most_error_ratio = 1.03;
 
-// Sets the fairness of all spans; those with few data get up to `unseen_fairness` times more.
+// Sets the fairness of all spans; spans with few data get up to `unseen_fairness` times more.
 void SurfaceFitter::set_fairness(double fairness, const FittedData& data) {
   const std::size_t u_spans = span_count(structure_.u), v_spans = span_count(structure_.v);
   std::vector<double> weight(u_spans * v_spans, 0.0);
@@ -472,7 +473,8 @@ Status SurfaceFitter::choose_fairness(const FittedData& data) {
   for (std::size_t p = 0; p < weights.size(); ++p) {
     weights[p] *= data.trust[p];
     if (data.uv[p].hasNaN() || weights[p] == 0.0) continue;
-    if ((p * 2654435761U >> 7) % held_out_stride != 0) continue;  // hashed, since scans run along lines
+    // hashed, since neighbouring points may follow each other along scan lines
+    if ((p * 2654435761U >> 7) % held_out_stride != 0) continue;
     if (p + points_->spanning_nodes < weights.size()) held_out.push_back(p);
   }
   std::vector<double> fit_weights = weights;
@@ -499,14 +501,15 @@ Status SurfaceFitter::choose_fairness(const FittedData& data) {
 constexpr double huber_deviations = 3.0;
 constexpr double stray_deviations = 5.0, most_strays = 0.15;
 constexpr std::size_t stray_neighbours = 15;
-// Smallest stray distance, as a fraction of the size, however exact the other points are.
+// Smallest distance at which a point may count as a stray, as a fraction of the size, however exact the other
+// points are.
 constexpr double least_stray_fraction = 3e-4;
 
-// Distance beyond an open edge over which points still pull it outwards, as a fraction of the size.
+// Distance beyond an open edge within which points still pull the edge outwards, as a fraction of the size.
 constexpr double edge_fraction = 0.02;
 
-// Reduces the weight of points farther off than nearly all others, but of no more than one in twenty: in
-// early rounds the surface is wrong, not the points.
+// Reduces the weight of points that are farther off than nearly all others, but of no more than one point in
+// twenty: in early rounds the surface is wrong, not the points.
 void SurfaceFitter::update_trust(FittedData& data) const {
   std::vector<double> sorted(data.distance_m.begin(),
                              data.distance_m.end() - static_cast<std::ptrdiff_t>(points_->spanning_nodes));
@@ -577,14 +580,15 @@ void SurfaceFitter::distrust_strays() {
 }
 
 constexpr int fold_rounds = 30, cusp_rounds = 60;
-// Rounds of relaxation to try. Relaxing untangles crossed parameters, but displaces those that do not cross.
+// Numbers of relaxation rounds to try. Relaxing untangles crossed parameters, but displaces parameters that
+// do not cross.
 constexpr std::array relaxation_rounds{10, 0};
 constexpr double most_fairness = 10.0;
 // Largest allowed error growth from removing cusps, relative to the surface without folds.
 constexpr double most_smoothing_ratio = 1.2;
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-// Returns the spans with folds, or without folds those with cusps, which are the smaller fault.
+// Returns the spans with folds, or if there are none, the spans with cusps, which are the smaller fault.
 const std::vector<bool>& SurfaceFitter::faulty_spans() const {
   return folds_.folds > 0 ? folds_.span_folds : folds_.span_cusps;
 }
@@ -607,8 +611,8 @@ void SurfaceFitter::stiffen_faulty_spans() {
   }
 }
 
-// Moves the parameters of nodes in faulty spans towards the mean of their neighbours, as in a harmonic map,
-// where none cross.
+// Moves the parameters of nodes in faulty spans towards the mean of their neighbours: in a harmonic map,
+// whose nodes are such means, no parameters cross.
 void SurfaceFitter::relax_faulty_spans(int rounds) {
   const PointGraph& graph = points_->graph;
   const std::size_t count = points_->scan.points_m.size(), spanning = points_->spanning_nodes;
@@ -617,7 +621,7 @@ void SurfaceFitter::relax_faulty_spans(int rounds) {
   for (std::uint32_t k = 0; k < spanning; ++k) {
     node_points[graph.size() - spanning + k].push_back(static_cast<std::uint32_t>(count) + k);
   }
-  // A node's parameters are those of its first point.
+  // The parameters of a node are the parameters of its first point.
   const auto first_point = [&](std::uint32_t node) {
     return node_points[node].empty() ? no_point : node_points[node].front();
   };
@@ -742,8 +746,8 @@ Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisatio
   SPOONBILL_ASSERT(settings.tolerance_m >= 0.0);
   struct Trial {
     double agreement, fairness_factor;
-    std::size_t cusps;      // largest number of cusps, without folds, at which the result is accepted
-    double error_fraction;  // error below which it is accepted, as a fraction of the size
+    std::size_t cusps;      // largest number of cusps, without folds, with which the result is accepted
+    double error_fraction;  // error below which the result is accepted, as a fraction of the size
   };
   constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
   constexpr std::array trials{Trial{0.0, 1.0, 0, 0.005}, Trial{-0.3, 1.0, 0, 0.005},

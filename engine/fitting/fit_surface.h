@@ -13,27 +13,28 @@
 namespace spoonbill {
 
 struct FitSettings {
-  int control_u = 24, control_v = 24;  // upper bounds of the control point counts
-  // The fit stops adding control points once all points but outliers are within; 0: it uses all of them.
+  int control_u = 24, control_v = 24;  // largest numbers of control points
+  // The fit stops adding control points once all points except outliers are within this distance; 0: it uses
+  // all control points.
   double tolerance_m = 0.0;
   Progress progress = {};  // a stop request makes the fit fail
 };
 
 struct FittedSurface {
   Surface surface;
-  std::vector<Vector2> uv;         // of each point
-  std::vector<double> distance_m;  // of each point
-  // Weight factor of each point, from 1 down to 0: reduced where far off, 0 for strays.
+  std::vector<Vector2> uv;         // parameters of each point
+  std::vector<double> distance_m;  // distance of each point from the surface
+  // Weight factor of each point, from 1 down to 0: reduced for a point far from the surface, 0 for strays.
   std::vector<double> trust;
   FoldCheck folds;
 };
 
 // Fits a cubic surface. `start` holds the initial parameters of the nodes. Alternates least squares with
 // closest-point parameters, from few control points to many; knots are added where errors are large, and
-// outliers weigh less (Huber 1964). The fairness is the largest that cross-validation permits, raised further
-// where the surface folds. On thin walls several rules for keeping points on their face are tried, and the
-// best result is returned. Normals point out of closed shapes. Open shapes follow the scan's normals; without
-// any they point away from a tube's axis, from a sheet's hollow side, or to +z.
+// outliers have less weight (Huber 1964). The fairness is the largest that cross-validation permits, raised
+// further where the surface folds. On thin walls several rules for keeping points on their face are tried,
+// and the best result is returned. Normals point out of closed shapes. Open shapes follow the scan's normals;
+// without such normals they point away from a tube's axis, from a sheet's hollow side, or to +z.
 Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
                                   const FitSettings& settings);
 

@@ -21,8 +21,9 @@ double edge_weight(const PointGraph& graph, std::uint32_t a, std::uint32_t b, do
   return 1.0 / (0.25 + fraction * fraction);
 }
 
-// Minimises sum w (f_b - f_a - jump(a, b))^2 over the edges with use(a, b). `fixed` holds given values of f,
-// NaN elsewhere. A weak spring to zero determines nodes without edges. Empty if the system is singular.
+// Minimises sum w (f_b - f_a - jump(a, b))^2 over the edges for which use(a, b) is true. `fixed` holds given
+// values of f, and NaN elsewhere. A weak spring to zero determines f at nodes without edges. Returns nothing
+// if the system is singular.
 template <class Use, class Jump>
 std::optional<Eigen::VectorXd> solve_harmonic(const PointGraph& graph, const std::vector<double>& fixed,
                                               const Use& use, const Jump& jump) {
@@ -138,7 +139,7 @@ Vector3 estimate_local_normal(const PointGraph& graph, std::uint32_t node) {
 
 enum class SquareSide : unsigned char { none, left, right };
 
-// Cut along the shortest path between the ends: the side of each node near it.
+// Cut along the shortest path between the ends, and the side of the path on which each node near it is.
 struct Cut {
   std::vector<SquareSide> side;
   std::vector<bool> near_pole;
@@ -160,7 +161,7 @@ void mark_around(const PointGraph& graph, std::uint32_t node, int rings, std::ve
 }
 
 // Returns unit vectors to the left of the path within the surface. They turn slowly even across sharp edges,
-// so the mean of many previous ones decides each sign.
+// so the mean of many previous vectors decides the sign of each.
 std::vector<Vector3> compute_lefts(const PointGraph& graph, const std::vector<std::uint32_t>& path) {
   constexpr std::size_t reach = 3, memory = 14;
   std::vector<Vector3> lefts(path.size());

@@ -12,14 +12,14 @@
 
 namespace spoonbill {
 
-// Ends at v = 0 and v = 1: a pole of one node each, or the nodes of a boundary loop.
+// Ends of a shape, at v = 0 and v = 1: each is a pole of one node, or the nodes of a boundary loop.
 struct ShapeEnds {
   std::vector<std::uint32_t> start, end;
 };
 
-// Returns (u, v) in [0, 1] for each node of a connected graph, periodic in u. Near poles u is NaN, since it
-// is not resolved there. The path length from start to end determines v, the harmonic function u. Fails if
-// the ends touch or u does not close.
+// Returns (u, v) in [0, 1] for each node of a connected graph, periodic in u. Near poles u is NaN, since the
+// nodes do not resolve it there. The path length from start to end determines v; a harmonic function
+// determines u. Fails if the ends touch or u does not close.
 Result<std::vector<Vector2>> harmonic_tube_map(const PointGraph& graph, const ShapeEnds& ends);
 
 // Maps a disc onto the unit square by Tutte's embedding. The ordered `loop` maps to the sides by arc

@@ -13,19 +13,20 @@
 namespace spoonbill {
 namespace {
 
-// Pairs longer than this, relative to the median, are not direct neighbours and may bridge a gap.
+// Pairs longer than the median length times this factor are not direct neighbours and may bridge a gap.
 constexpr double doubtful_length = 1.5;
-// Least ratio of a gap to the widest step between the points of a node; random points leave no wider steps.
+// Least ratio of a gap to the widest step between the points of a node; within one surface, random points
+// leave no gap as wide as this.
 constexpr double gap_steps = 3.0;
 // Least cosine between the gap and the normals on both sides (45 degrees).
 constexpr double facing_fraction = 0.7;
 constexpr std::size_t least_around = 5;
-// Fewer points do not determine their spacing.
+// Smallest number of points of a component; fewer do not determine their spacing.
 constexpr std::size_t least_island_points = 3;
-// Larger groups are subsampled.
+// Largest number of points that are used; larger groups are subsampled.
 constexpr std::size_t most_points = 64;
 
-// Returns the direction in which a node and its neighbours spread least, zero with fewer than five
+// Returns the direction in which a node and its neighbours spread least, or zero with fewer than five
 // neighbours.
 Vector3 normal_at(const PointGraph& graph, std::uint32_t node) {
   const auto around = graph.adjacent(node);
@@ -101,8 +102,8 @@ std::vector<double> pair_lengths(const std::vector<Vector3>& nodes_m, const std:
   return lengths;
 }
 
-// Returns the body of each component: itself, or for dust the body with the shortest pair to it, or no_point
-// without such a pair.
+// Returns the body to which each component belongs: the component itself or, if it is dust, the body with the
+// shortest pair to it; no_point if no pair leads to a body.
 std::vector<std::uint32_t> assign_bodies(const ConnectedComponents& parts,
                                          const std::vector<std::size_t>& component_points,
                                          const std::vector<NodePair>& pairs,

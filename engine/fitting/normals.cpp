@@ -15,13 +15,16 @@
 namespace spoonbill {
 namespace {
 
-// Two nodes may coincide with opposite normals, so enough neighbours are needed to reach all around.
+// Number of neighbours of a node. Two nodes may coincide with opposite normals, so enough neighbours are
+// needed to reach all around.
 constexpr std::size_t normal_neighbours = 12;
 constexpr double longest_pair = 3.0;  // relative to the median
 constexpr double opposite_cosine = -0.5;
-// Largest height of a neighbour on the same face, relative to its distance; more is a wall's thickness.
+// Largest height of a neighbour on the same face, relative to its distance; a larger height is a wall's
+// thickness.
 constexpr double most_height_fraction = 0.25;
-// Least fraction of flipped pairs, and least fraction of those on either side. At a wall all are on one side.
+// Smallest fraction of pairs that must be flipped, and smallest fraction of the flipped pairs on either side;
+// at a wall, all of them are on one side.
 constexpr double least_flipped_fraction = 0.003, least_side_fraction = 0.2;
 constexpr double clear_majority = 0.75;
 
@@ -69,7 +72,7 @@ double agreement(const Vector3& normal_a, const Vector3& normal_b, const Vector3
   return normal_a.dot(normal_b - 2.0 / square * normal_b.dot(chord) * chord);
 }
 
-// Minimum spanning trees of the components. Each node takes its sign from its predecessor.
+// Minimum spanning trees of the components. The sign of each node follows from its predecessor.
 class SpanningForest {
  public:
   SpanningForest(const PointGraph& graph, const std::vector<Vector3>& normals)
@@ -148,7 +151,8 @@ std::vector<bool> find_inconsistent_normals(const Scan& nodes) {
 
 namespace {
 
-// Largest spread across the plane relative to that along it; more is an edge, or two faces in one.
+// Largest spread across a node's plane, relative to the spread along it; a larger spread indicates an edge,
+// or two faces in one.
 constexpr double most_thickness = 0.15;
 constexpr double most_opposed = 0.2;
 

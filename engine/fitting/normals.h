@@ -11,22 +11,24 @@
 namespace spoonbill {
 
 // Returns a flag for each normal that must be flipped so that all agree along the surface. Normals at both
-// ends of a chord should be mirror images in its bisecting plane; signs spread along the minimum spanning
-// tree of that measure (Hoppe et al. 1992). Each component keeps the orientation of its majority if that is
-// at least three quarters, otherwise it faces away from its centre. Zero normals are ignored.
+// ends of a chord should be mirror images in its bisecting plane; signs are propagated along the minimum
+// spanning tree of that measure (Hoppe et al. 1992). Each component keeps the orientation of the majority of
+// its normals if that is at least three quarters; otherwise its normals point away from its centre. Zero
+// normals are ignored.
 std::vector<bool> orient_consistently(const std::vector<Vector3>& points_m,
                                       const std::vector<Vector3>& normals,
                                       const std::vector<NodePair>& pairs);
 
-// Returns flags for the node normals to flip, all false where the normals agree already. Neighbours with
-// opposite normals disagree if they are side by side along the surface; if one is behind the other, they are
-// the two faces of a wall.
+// Returns a flag for each node normal that must be flipped; all are false if the normals already agree.
+// Neighbours with opposite normals disagree if they are side by side along the surface; if one is behind the
+// other, they belong to the two faces of a wall.
 std::vector<bool> find_inconsistent_normals(const Scan& nodes);
 
-// Estimates a normal for each parameter in `uv`, which belong to the points in order; any further ones get
-// zero. Normals are perpendicular to the local plane of the nodes, oriented consistently, and follow the
-// surface at the majority of each component. They are zero where the nodes have no clear plane, or where the
-// surface opposes more than a fifth of the component, as where both faces of a thin wall are mixed.
+// Estimates a normal for each parameter pair in `uv`. The pairs belong to the points in order; any pairs
+// beyond these get zero. Normals are perpendicular to the local plane of the nodes, oriented consistently,
+// and agree with the surface's normals at the majority of each component's points. They are zero where the
+// nodes have no clear plane, or where the surface's normals oppose more than a fifth of the component's, as
+// where both faces of a thin wall are mixed.
 std::vector<Vector3> estimate_normals(const FitPoints& points, const Surface& surface,
                                       const std::vector<Vector2>& uv);
 

@@ -17,8 +17,8 @@ namespace spoonbill {
 namespace {
 
 constexpr double sheet_fraction = 0.12;
-// Least ratio of the loop's area to the whole that makes a sheet of a surface that faces outwards. It is
-// larger than sheet_fraction, since a closed body may lack the scan of its foot.
+// Smallest ratio of the loop's area to the total area at which a surface that faces outwards counts as a
+// sheet. It is larger than sheet_fraction, since a closed body may not have been scanned at its foot.
 constexpr double outward_sheet_fraction = 0.3;
 constexpr double tube_fraction = 0.75;
 constexpr double roundness = 0.12;
@@ -32,7 +32,7 @@ Vector3 vector_area(const PointGraph& graph, const BoundaryLoop& loop) {
   return area;
 }
 
-// Returns the area of each node, as for a hexagonal lattice with its edge lengths.
+// Returns the area of each node, computed as in a hexagonal lattice with the node's edge lengths.
 std::vector<double> node_areas(const PointGraph& graph) {
   std::vector<double> areas(graph.size(), 0.0);
   for (std::uint32_t n = 0; n < graph.size(); ++n) {
@@ -126,8 +126,8 @@ std::optional<ShapeEnds> find_axis_poles(const PointGraph& graph) {
   return find_poles(graph, axes.centre, axes.axes.col(is_disc ? 0 : 2));
 }
 
-// Returns true if the normals point away from the centroid, as they do if the inside of a closed shape was
-// not scanned.
+// Returns true if the normals point away from the centroid, as on a closed shape of which only the outside
+// was scanned.
 bool faces_outwards(const FitPoints& island) {
   const Axes axes = principal_axes(island.graph);
   const std::vector<double> areas = node_areas(island.graph);
@@ -190,7 +190,8 @@ std::array<std::size_t, 4> find_corners(const PointGraph& graph, const BoundaryL
   return corners;
 }
 
-// Parameterises a sheet by projection onto its principal plane, over which it should be a height field.
+// Parameterises a sheet by projection onto its principal plane. The sheet should be a height field over that
+// plane.
 Parameterisation start_sheet_on_plane(const FitPoints& island) {
   const Axes axes = principal_axes(island.graph);
   Parameterisation start;
@@ -265,16 +266,17 @@ Result<Parameterisation> initial_parameterisation(FitPoints& island, ShapeKind k
 namespace {
 
 constexpr double axis_roundness = 0.1;
-// Thickest wall, as a fraction of the size, and thinnest one whose faces can be separated, in raster cells.
+// Largest thickness of a thin wall, as a fraction of the size, and smallest thickness at which its two faces
+// can be separated, in raster cells.
 constexpr double thin_fraction = 0.1;
 constexpr double separable_cells = 3.0;
-// Points per raster cell, if all were on a path three times the size.
+// Mean number of points per raster cell if all points were on a path three times as long as the size.
 constexpr double points_per_cell = 12.0;
 constexpr double face_fraction = 0.2;  // relative to the wall's thickness
 // If half the points are deeper than this fraction of the thickness, they may be one noisy face.
 constexpr double between_fraction = 0.25;
 constexpr double covered_fraction = 0.85;
-constexpr int least_cell_points = 2;         // per cell that counts
+constexpr int least_cell_points = 2;         // for a cell to count
 constexpr int dilation = 2;                  // in cells
 constexpr double near_axis_fraction = 0.05;  // relative to the largest distance from the axis
 
@@ -334,7 +336,8 @@ class ProfileRaster {
     filled_.assign(counts.size(), false);
     for (int row = 0; row < rows_; ++row) {
       for (int column = 0; column < columns_; ++column) {
-        // Rings near the axis are short and have few points, so one point there fills all cells to the axis.
+        // Rings near the axis are short and have few points, so a single point there fills all cells between
+        // it and the axis.
         const bool near_axis = column < near_axis_fraction * columns_;
         if (counts[index(column, row)] < (near_axis ? 1 : least_cell_points)) continue;
         for (int c = near_axis ? 0 : column; c <= column; ++c) fill_around(c, row);
@@ -344,7 +347,7 @@ class ProfileRaster {
   }
 
   // outline() returns the cell edges between filled and outside cells, from the axis back to the axis, or
-  // nothing if it does not return. area() returns the enclosed area in square metres.
+  // nothing if the path does not return to the axis. area() returns the enclosed area in square metres.
   std::vector<Vector2> outline() const;
   double area() const {
     return cell_m_ * cell_m_ * static_cast<double>(std::count(outside_.begin(), outside_.end(), false));
@@ -397,8 +400,8 @@ class ProfileRaster {
 };
 
 std::vector<Vector2> ProfileRaster::outline() const {
-  // Corners are numbered by the cell above and to the right of them. The walk keeps filled cells on its right
-  // and starts at the top filled cell on the axis.
+  // Each corner has the row and column of the cell above and to the right of it. The walk keeps filled cells
+  // on its right and starts at the top filled cell on the axis.
   int row = rows_;
   while (row > 0 && !inside(0, row - 1)) --row;
   if (row == 0) return {};
@@ -420,9 +423,9 @@ std::vector<Vector2> ProfileRaster::outline() const {
     };
     const int old_dc = dc, old_dr = dr;
     if (ahead(true)) {
-      dc = -old_dr, dr = old_dc;  // turn left
+      dc = -old_dr, dr = old_dc;  // turns left
     } else if (!ahead(false)) {
-      dc = old_dr, dr = -old_dc;  // turn right
+      dc = old_dr, dr = -old_dc;  // turns right
     }
   }
   return {};
@@ -459,7 +462,8 @@ double path_length(const std::vector<Vector2>& path) {
 }
 
 // Returns the fraction of the cells of a grid over (u, v) that have a point no deeper than `reach` below the
-// outline. It is small for wavy sheets, which fill the profile only when seen from all sides together.
+// outline. The fraction is small for wavy sheets, which fill the profile only when all sides are projected
+// onto it together.
 double face_coverage(const std::vector<Vector2>& uv, const std::vector<double>& depths, double reach) {
   constexpr int sectors = 8, lengths = 16;
   std::array<bool, sectors * lengths> seen{};

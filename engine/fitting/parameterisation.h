@@ -22,7 +22,7 @@ constexpr std::string_view name_of(ShapeKind kind) {
 // periodic in u with a pole at both ends of v.
 struct Parameterisation {
   ShapeKind kind = ShapeKind::sheet;
-  std::vector<Vector2> uv;  // of each point, in [0, 1]; NaN where unknown
+  std::vector<Vector2> uv;  // parameters of each point, in [0, 1]; NaN where unknown
 };
 
 // Detects the kind of shape from its boundary loops. A loop around much of the area makes a sheet, two loops
@@ -33,14 +33,14 @@ ShapeKind classify_shape(const FitPoints& island);
 void span_all_holes(FitPoints& island);
 
 // Spans the holes with added nodes and computes (u, v) for all nodes. Poles of a closed shape are on its axis
-// if it is round about one, otherwise as far apart as possible. Fails if the shape cannot be laid out as
+// if it is round about one, otherwise as far apart as possible. Fails if the shape cannot be parameterised as
 // `kind`.
 Result<Parameterisation> initial_parameterisation(FitPoints& island, ShapeKind kind);
 
 // Parameterisation of a thin wall about an axis, such as a bowl, cup or plate. Its two faces may be closer
 // than neighbouring points, but all points together draw its profile clearly. The angle about the axis gives
-// u; the profile's outline, from the axis over the rim back to the axis, gives v. Empty if the points are not
-// round about an axis, have no such outline, or are not a thin wall with two faces.
+// u; the profile's outline, from the axis over the rim back to the axis, gives v. There is no such map if the
+// points are not round about an axis, have no such outline, or are not a thin wall with two faces.
 struct ProfileMap {
   Parameterisation start;
   bool may_be_one_face;  // a single face whose noise may look like a wall

@@ -52,8 +52,8 @@ class NearestPoints {
 
 using NodePair = std::pair<std::uint32_t, std::uint32_t>;
 
-// Undirected graph over points. Neighbours of node n: neighbours[first[n]] up to neighbours[first[n + 1]],
-// sorted, without n itself or duplicates.
+// Undirected graph over points. The neighbours of node n are neighbours[first[n]] up to, but not including,
+// neighbours[first[n + 1]], sorted, without n itself or duplicates.
 struct PointGraph {
   std::vector<Vector3> points_m;
   std::vector<std::uint32_t> first;

@@ -100,12 +100,13 @@ Scan average_groups(const Scan& scan, const VoxelGroups& groups) {
 namespace {
 
 constexpr std::size_t neighbours_per_point = 8, plane_neighbours = 16;
-// Deviations beyond which a point is an outlier; scanner noise keeps within three.
+// Number of deviations beyond which a point is an outlier; scanner noise stays within three.
 constexpr double outlier_deviations = 6.0;
 // Largest spacing relative to the median; sampling density on one surface does not drop faster from voxel to
 // voxel.
 constexpr double sparse_spacings = 8.0;
-// Largest spread across a plane relative to that along it; points that fill space spread about twice as far.
+// Largest spread across a plane relative to the spread along it; for points that fill space, this ratio is
+// about twice as large.
 constexpr double flatness = 0.3;
 
 // Weighted quantiles: `counts` holds the number of given points for each value.
@@ -174,8 +175,8 @@ bool is_on_plane(const Vector3& point, const std::vector<Vector3>& points_m,
          std::abs(axes.eigenvectors().col(0).dot(point - mean)) < 2.0 * along;
 }
 
-// Clears the flag of points on a plane if two thirds of their neighbours are on one too. Space-filling points
-// can be flat by chance, but not most around them.
+// Clears the outlier flag of a point on a plane if two thirds of its neighbours are on planes too. Points
+// that fill space can be flat by chance, but then most of their neighbours are not.
 void clear_surface_points(const std::vector<Vector3>& points_m, const NearestPoints& nearest,
                           std::vector<bool>& is_outlier) {
   std::vector<NearestPoints::Neighbour> found;
@@ -211,14 +212,17 @@ std::vector<bool> find_outliers(const std::vector<Vector3>& points_m, const std:
 
 namespace {
 
-// Shortest edge at a tip relative to the median edge; corners of an even mesh have shorter ones.
+// Smallest ratio of the shortest edge at a tip to the median edge; the corners of an even mesh have shorter
+// edges.
 constexpr double long_edge_ratio = 3.0;
-// Shortest edge at a tip relative to the mean edge of its ring, a few of whose edges lead to neighbouring
-// tips.
+// Smallest ratio of the shortest edge at a tip to the mean edge of its ring; a few of the ring's edges may
+// lead to neighbouring tips.
 constexpr double long_ring_edge_ratio = 1.5;
-// Least height relative to the ring's radius. Tips in an even mesh are lower, since their next ring is wider.
+// Smallest height of a spike relative to the radius of its ring. Tips in an even mesh are lower, since the
+// ring around them is wider.
 constexpr double least_spike_height = 4.0;
-// Least distance of the ring behind from the centre, and its largest height above the plane, in ring radii.
+// Smallest distance from the centre of the ring behind the tip's ring, and largest height of that ring above
+// the plane, in radii of the tip's ring.
 constexpr double least_outer_radius = 1.2, most_height = 0.6;
 constexpr std::size_t most_measured = 1'000'000;
 
@@ -238,7 +242,8 @@ double median_edge(const Scan& mesh) {
   return median(std::move(lengths));
 }
 
-// Returns the vertices whose edges are all long compared with the mesh and with the ring about them.
+// Returns the vertices whose edges are all long compared with the edges of the mesh and of the ring around
+// the vertex.
 std::set<std::uint32_t> find_tips(const Scan& mesh) {
   std::vector<double> shortest(mesh.points_m.size(), std::numeric_limits<double>::infinity());
   std::vector<double> around(mesh.points_m.size(), 0.0), sides(mesh.points_m.size(), 0.0);
@@ -303,7 +308,8 @@ class RingPlane {
     normal_ = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
   }
 
-  // Returns true if the vertices behind are farther out along the ring's plane, at least on its longer sides.
+  // Returns true if the vertices behind the ring are farther out along the ring's plane, at least on its
+  // longer sides.
   bool is_continued_by(const Scan& mesh, const VertexRing& behind) const {
     std::vector<double> out, off;
     for (const std::uint32_t vertex : behind) {
@@ -372,7 +378,7 @@ class EdgeSplitter {
       for (std::size_t k = 0; k < 3; ++k) pieces.push_back({t[k], midpoint[k], midpoint[(k + 2) % 3]});
     }
     if (split_count != 1 && split_count != 2) return;
-    // Starts at the only split edge, or after the only unsplit one.
+    // Starts at the only edge that is split, or after the only edge that is not.
     std::size_t k = 0;
     while (split_count == 1 ? !is_split[k] : is_split[(k + 2) % 3]) ++k;
     const std::uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3], m = midpoint[k];

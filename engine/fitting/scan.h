@@ -22,36 +22,36 @@ struct Scan {
 double bounding_diagonal_m(const std::vector<Vector3>& points_m);
 
 struct VoxelGroups {
-  std::vector<std::uint32_t> group_index;  // of each point
+  std::vector<std::uint32_t> group_index;  // group of each point
   std::size_t count = 0;
 };
 
 // Groups the points of each cubic cell. Normals that point along different half axes make separate groups, so
-// the two faces of a thin wall stay apart.
+// the two faces of a thin wall stay separate.
 VoxelGroups group_by_voxels(const Scan& scan, double side_m);
 
-// Returns a cell side that gives about `groups` groups: within 10 % where possible, never more than 25 %
-// above.
+// Returns a cell side that gives about `groups` groups: within 10 % of this number where possible, never more
+// than 25 % above it.
 double voxel_side_for(const Scan& scan, std::size_t groups);
 
 // Returns the mean position and mean unit normal of each group.
 Scan average_groups(const Scan& scan, const VoxelGroups& groups);
 
-// Flags points that are much farther from their neighbours than usual. The number of given points that each
-// one represents is in `counts`: 1, or those of its voxel in a thinned cloud. Usual values are weighted by
-// counts, as most given points are on the surface. A thinned point that represents far fewer points than
-// usual is an outlier too. Sparse points are not flagged where they and most of their neighbours are on
-// planes, as on a surface.
+// Flags points that are much farther from their neighbours than usual. `counts` holds how many given points
+// each point represents: 1, or in a thinned cloud the number of points in its voxel. The usual values are
+// weighted by these counts, as most given points are on the surface. A thinned point that represents far
+// fewer points than usual is an outlier too. Sparse points are not flagged where they and most of their
+// neighbours are on planes, as on a surface.
 std::vector<bool> find_outliers(const std::vector<Vector3>& points_m, const std::vector<double>& counts);
 
 // Moves the tip of each spike into the centre of its ring of vertices and returns the tips; the connectivity
 // stays. A spike's edges are all much longer than usual, its height is at least four ring radii, and the
-// surface continues flat around its ring. A cone's tip counts only if it is as slender, a single fan of
-// triangles, on a plate.
+// surface continues flat around its ring. The tip of a cone counts as a spike only if the cone is as slender,
+// a single fan of triangles, and stands on a plate.
 std::vector<std::uint32_t> level_spikes(Scan& mesh);
 
 // Halves edges until none is longer than `longest_m` or the triangle limit is reached. Both triangles of an
-// edge are split, so no gap opens. Existing points keep their positions; added ones follow.
+// edge are split, so no gap opens. Existing points keep their positions; added points are appended.
 void split_long_edges(std::vector<Vector3>& points_m, std::vector<TriangleCorners>& triangles,
                       double longest_m, std::size_t triangle_limit);
 

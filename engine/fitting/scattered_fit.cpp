@@ -17,15 +17,16 @@
 namespace spoonbill {
 namespace {
 
-// Weight of a smooth pole in spans' worth of points; low, since u may run unevenly around a pole.
+// Weight of a smooth pole, measured in the weight of one span's points. It is low, since u may run unevenly
+// around a pole.
 constexpr double smooth_pole_fraction = 0.1;
-// Weight of round rings next to a pole, in spans' worth of points. It falls with the cube of the distance, as
-// deviations from an ellipse grow with that cube on a smooth surface.
+// Weight that keeps the rings next to a pole round, measured in the weight of one span's points. It falls
+// with the cube of the distance, as deviations from an ellipse grow with that cube on a smooth surface.
 constexpr double round_pole_fraction = 0.003;
 constexpr int round_pole_spans = 3;
 
 // Products of each control point's basis function with those of its neighbours up to `degree` away, so that
-// sums need no search: entry (control, du + degree, dv + degree).
+// adding to a sum needs no search; the indices of an entry are (control, du + degree, dv + degree).
 class NormalEquations {
  public:
   NormalEquations(const SurfaceStructure& structure)
@@ -38,7 +39,7 @@ class NormalEquations {
         products_(static_cast<std::size_t>(rows_) * columns_ * block_),
         right_(static_cast<std::size_t>(rows_) * columns_, Vector3::Zero()) {}
 
-  // Adds the weighted equation sum a_k b_l over the net = value; null means zero.
+  // Adds the weighted equation sum a_k b_l over the net = value; a null pointer stands for zeros.
   void add(const double* a, const int* rows, const double* b, const int* columns, double weight,
            const Vector3* value) {
     for (int k = 0; k <= pu_; ++k) {
@@ -78,7 +79,7 @@ class NormalEquations {
   double pole_weight_ = 0.0;
 };
 
-// Returns the unknown of each control point; those of a pole share one.
+// Returns the index of the unknown of each control point; the control points of a pole share one unknown.
 std::vector<int> NormalEquations::unknowns(const SurfaceStructure& structure, int& count) const {
   std::vector<int> unknown(right_.size());
   count = 0;
@@ -135,7 +136,7 @@ Result<Surface> NormalEquations::solve(const SurfaceStructure& structure) const 
           const double value = block[(di + pu_) * width_ + dj + pv_];
           const int other = unknown[index((i + di) % rows_, j + dj)];
           put(unknown[control], other, value);
-          // the half that add() leaves out
+          // adds the half of the matrix that add() leaves out
           if (di > 0) put(other, unknown[control], value);
         }
       }
@@ -225,7 +226,7 @@ std::vector<PieceBasis::Values> ring_bases(const PieceBasis& u_basis) {
       u_basis.take(breaks[s] + fraction * length, values);
       return values;
     };
-    // A cubic's second derivative is linear within a span.
+    // A cubic's second derivative is linear within a span, so two values determine it.
     const PieceBasis::Values low = at(0.25), high = at(0.75);
     for (const double fraction : {0.5 - 0.5 / std::sqrt(3.0), 0.5 + 0.5 / std::sqrt(3.0)}) {
       PieceBasis::Values ring = at(fraction);
@@ -362,7 +363,7 @@ KnotVector refine_knots(const KnotVector& knots, int direction, int count, std::
     };
     const auto most = std::max_element(spans.begin(), spans.end(),
                                        [&](const Span& a, const Span& b) { return worth(a) < worth(b); });
-    // Errors of cubic pieces fall steeply with their length.
+    // The errors of cubic pieces fall steeply with the length of the pieces.
     const Span whole = *most;
     const double midpoint = 0.5 * (whole.begin + whole.end);
     *most = {whole.begin, midpoint, 0.25 * whole.error};

@@ -1,6 +1,5 @@
-// Sparse least-squares fit of a surface to scattered points with known parameters.
-// The blending matrix has one row per point (Eq. 4 of Pungotra et al. 2013); a fairness term decides where
-// there are no points.
+// Sparse least-squares fit of a surface to scattered points with known parameters. The blending matrix has
+// one row per point (Eq. 4 of Pungotra et al. 2013); a fairness term decides where there are no points.
 #pragma once
 
 #include <span>
@@ -40,7 +39,8 @@ struct ScatteredData {
 Result<Surface> fit_scattered(const SurfaceStructure& structure, const ScatteredData& data,
                               std::span<const double> fairness);
 
-// Fits one surface for each factor on the fairness, at little more than the cost of one.
+// Fits one surface for each factor by which the fairness is multiplied, at little more than the cost of one
+// fit.
 Result<std::vector<Surface>> fit_scattered_family(const SurfaceStructure& structure,
                                                   const ScatteredData& data, std::span<const double> fairness,
                                                   std::span<const double> factors);
@@ -49,9 +49,9 @@ Result<std::vector<Surface>> fit_scattered_family(const SurfaceStructure& struct
 std::size_t span_count(const KnotVector& knots);
 
 // Inserts knots in one direction (0: u, 1: v) until there are `count` control points, each time halving the
-// span with the largest sum of weighted squared errors. Halves get a quarter of the sum each. Part of the
-// mean is added to every span, so uniform errors refine evenly. Spans shorter than a quarter of the mean are
-// not halved.
+// span with the largest sum of weighted squared errors. Each half gets a quarter of the span's sum. Part of
+// the mean sum is added to every span, so that uniform errors lead to even refinement. Spans shorter than a
+// quarter of the mean are not halved.
 KnotVector refine_knots(const KnotVector& knots, int direction, int count, std::span<const Vector2> uv,
                         std::span<const double> weighted_squares);
 

@@ -42,8 +42,8 @@ ParameterMinimum find_best_in_cell(const PieceCell& cell,
   return best;
 }
 
-// Pattern search within the cell: moves to the best of the eight neighbours, or halves the step if none is
-// better.
+// Searches for a minimum within the cell by a pattern search: moves to the best of the eight neighbours, or
+// halves the step if none is better.
 ParameterMinimum search_cell(Candidate from, const std::function<double(double, double)>& value) {
   double step_u = 0.5 * (from.cell.u1 - from.cell.u0), step_v = 0.5 * (from.cell.v1 - from.cell.v0);
   for (int halving = 0; halving < halvings;) {
@@ -67,8 +67,8 @@ ParameterMinimum search_cell(Candidate from, const std::function<double(double, 
   return from.minimum;
 }
 
-// Returns whether the control points of an edge coincide: of the first or last row if `of_u`, otherwise of
-// the first or last column.
+// Returns whether the control points of an edge coincide: those of the first or last row if `of_u`, otherwise
+// those of the first or last column.
 bool is_collapsed(const ControlNet& net, bool of_u, bool last) {
   const double size = bounding_box(net).size();
   const int count = of_u ? net.columns : net.rows, line = last ? (of_u ? net.rows : net.columns) - 1 : 0;

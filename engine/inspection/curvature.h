@@ -37,7 +37,7 @@ ParameterMinimum find_minimum(const std::vector<PieceCell>& cells,
                               const Progress& progress = {});
 
 // Curvatures in 1/m, positive where the surface is convex seen from the side of its normals du x dv. Both
-// are 1 / r on a ball of radius r with outward normals.
+// curvatures are 1 / r on a ball of radius r with outward normals.
 struct PrincipalCurvatures {
   double smallest = 0.0, largest = 0.0;
 };
@@ -55,13 +55,13 @@ struct CurvatureRange {
   CurvatureExtreme smallest, largest;
 };
 
-// Finds the extremes over all pieces, on both sides of each knot, except within a hundredth of a piece
-// from a pole. A smooth extreme has a relative accuracy of a millionth.
+// Finds the extremes over all pieces, on both sides of each knot, except within a hundredth of a piece from a
+// pole. A smooth extreme is found with a relative accuracy of a millionth.
 CurvatureRange find_curvature_range(const Surface& surface, const TrimmedArea& area = {},
                                     const Progress& progress = {});
 
 // Returns the integral of the squared principal curvatures over the area, a dimensionless measure that is
-// small for fair surfaces. A ball of any size has 8 pi.
+// small for fair surfaces. It is 8 pi for a ball of any size.
 double compute_bending_energy(const Surface& surface, const TrimmedArea& area = {});
 
 }  // namespace spoonbill

@@ -27,8 +27,9 @@ PieceQuadrature make_piece_quadrature(const KnotVector& knots, int nodes);
 using AreaVisitor = std::function<void(const SurfacePoint& point, double weight)>;
 
 // Visits the quadrature points of the area within the trims. For a whole surface the rule is exact up to
-// degree 4 p + 1 in a direction of degree p. For a trimmed one it is exact up to degree 5 on triangles, eight
-// for each whole polynomial piece (Radon 1948); the trim loops are approximated by the triangles' edges.
+// degree 4 p + 1 in a direction of degree p. For a trimmed surface it is exact up to degree 5 on triangles,
+// of which a whole polynomial piece has eight (Radon 1948); the trim loops are approximated by the triangles'
+// edges.
 void visit_area(const Surface& surface, const TrimmedArea& area, const AreaVisitor& visit);
 
 // Area and its centre; for a closed surface without trims also the enclosed volume and its centre, by the

@@ -21,7 +21,7 @@ constexpr std::size_t max_meetings = 100'000, max_reported = 16;
 // triangle's side.
 constexpr double relative_spacing = 0.005;
 constexpr int max_along_side = 200;
-// Largest number of samples besides one per triangle, and the factor by which the spacing grows while
+// Largest number of samples in addition to one per triangle, and the factor by which the spacing grows while
 // there are more.
 constexpr std::size_t max_samples = 500'000;
 constexpr double spacing_growth = 1.4;

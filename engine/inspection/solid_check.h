@@ -20,7 +20,7 @@ struct SolidSelfIntersection {
 
 struct SolidCheck {
   std::vector<SolidSelfIntersection> self_intersections;  // deepest first
-  bool self_intersections_complete = true;                // false: too many to search them all
+  bool self_intersections_complete = true;                // false: there are too many to search them all
   // Thinnest wall found along inward lines from the mesh's triangles, measured on the exact surfaces.
   // Another wall may be thinner by twice the mesh's error, and a wall narrower than 1/200 of the solid's
   // size may be missed. Empty if no line leaves through a wall (exits_through_wall()), as in a

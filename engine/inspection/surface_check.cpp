@@ -17,7 +17,7 @@ double parameter_at(const KnotVector& knots, double fraction) {
   return knots.domain_start() + fraction * (knots.domain_end() - knots.domain_start());
 }
 
-// Compares the two ends of u, which are edges along v, if `along_u`; otherwise those of v.
+// Compares the two ends of u (edges along v) if `along_u`, otherwise the two ends of v.
 EdgeGap measure_edge_gap(const Surface& surface, bool along_u) {
   EdgeGap gap;
   const KnotVector& knots = along_u ? surface.u : surface.v;

@@ -61,14 +61,14 @@ struct SurfaceCheck {
   double bending = 0.0;  // compute_bending_energy()
   std::vector<SurfaceDefect> surface_defects;
   std::vector<SelfIntersection> self_intersections;
-  bool self_intersections_complete = true;  // false: too many to search them all
+  bool self_intersections_complete = true;  // false: there are too many to search them all
   std::optional<Thickness> thinnest = {};   // only if encloses() and the volume is positive
 
   // Returns whether the surface bounds a body by itself.
   bool encloses() const { return closing.closedness == Closedness::solid && !is_trimmed; }
 };
 
-// Returns nothing if `progress` stopped it.
+// Checks a surface. Returns nothing if `progress` stopped it.
 std::optional<SurfaceCheck> check_surface(const Surface& surface, const TrimmedArea& area = {},
                                           const Progress& progress = {});
 

@@ -72,9 +72,9 @@ class ExactWalls {
   // `error_m`, at least 0, is the largest distance of the mesh from the surfaces.
   ExactWalls(const std::vector<const Surface*>& surfaces, double error_m);
 
-  // Returns the wall between the surfaces nearest to the ends of `mesh_wall`, along the normal of the first,
-  // exact up to rounding. Returns nothing if no two surfaces are there, or if their distance differs by more
-  // than the mesh's error explains, as at a sliver that faces askew.
+  // Returns the wall between the surfaces nearest to the ends of `mesh_wall`, along the normal of the first
+  // surface, exact up to rounding. Returns nothing if no two surfaces are there, or if their distance differs
+  // by more than the mesh's error explains, as at a sliver that faces askew.
   std::optional<WallThickness> at(const WallThickness& mesh_wall) const;
 
  private:

@@ -53,8 +53,8 @@ inline constexpr double effective_modulus_stability_fraction = 0.75;
 inline constexpr double speed_cap_cells = 0.1;
 
 // Distance, in cells, beyond which a node's motion since the linearisation makes a new linearisation
-// necessary within the tick. The error of the first order in a spring's strain is then below half its
-// square. A sculpting hand moves nodes by about a hundredth of a cell per tick.
+// necessary within the tick. The first-order error of a spring's strain is then below half the square of the
+// strain. A sculpting hand moves nodes by about a hundredth of a cell per tick.
 inline constexpr double linear_cells = 0.1;
 
 // Returns the largest stable symplectic Euler step, s, for an angular frequency and a damping ratio: h < (2

@@ -39,8 +39,8 @@ Gaps gaps_between(const std::vector<Vector3>& a, const std::vector<Vector3>& b) 
 struct GraphEdge {
   PatchEdge name;
   EdgeCurve curve;
-  std::vector<Vector3> points_m;  // open edges: at equal fractions of the length
-  RingFrame frame;                // rings only
+  std::vector<Vector3> points_m;  // at equal fractions of the length, for open edges
+  RingFrame frame;                // for rings only
 };
 
 GraphEdge prepare_edge(const std::vector<Surface>& patches, PatchEdge name) {
@@ -136,8 +136,8 @@ RingFit fit_best(const EdgeRing& a, const EdgeRing& b, std::optional<bool> reque
   return best;
 }
 
-// Returns the best fit of two rings. Coincident rings are compared as they are, which is exact for identical
-// ones; others after a rotation.
+// Returns the best fit of two rings. Coincident rings are compared without moving them, which is exact for
+// identical rings; other rings are compared after a rotation.
 RingFit fit_best_rotated(const GraphEdge& a, const GraphEdge& b, std::optional<bool> requested) {
   constexpr double coincidence_fraction = 0.02;  // relative to the radius
   const EdgeRing ring_a(a);
@@ -321,8 +321,8 @@ Error layout_error(int patch, const char* what) {
                                         "; merge patches that make a row or a full grid, or name the edges");
 }
 
-// Sorts the matches between patches that are not grid neighbours: they close the grid if each row or column
-// has one, otherwise they stay open.
+// Sorts the matches between patches that are not grid neighbours: the matches close the grid if there is one
+// for each row or column; otherwise they stay open.
 void sort_closing_matches(const std::vector<std::optional<GridCell>>& cells,
                           const std::vector<EdgeMatch>& matches, Arrangement& arrangement) {
   arrangement.closing_u.clear();
@@ -352,7 +352,7 @@ void sort_closing_matches(const std::vector<std::optional<GridCell>>& cells,
 }
 
 // Shifts the cells of closed directions so that the first patch, which is at 0, follows the seam. Returns
-// true if there are any.
+// true if there are closed directions.
 bool start_rings_at_first(const Arrangement& arrangement, std::vector<std::optional<GridCell>>& cells) {
   const auto wrapped = [](int cell, int count) { return (cell % count + count) % count; };
   for (std::optional<GridCell>& cell : cells) {

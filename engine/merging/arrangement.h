@@ -15,7 +15,7 @@ struct EdgeMatch {
   PatchEdge a, b;
   bool reversed = false;  // b runs against a
   double seam = 0.0;      // parameter of a periodic b next to a's seam
-  // Largest and mean distance between points at equal fractions of the arc length; of rings, at equal
+  // Largest and mean distance between points at equal fractions of the arc length; for rings, at equal
   // fractions of the period from their seams.
   double gap_m = 0.0;
   double mean_gap_m = 0.0;
@@ -29,8 +29,8 @@ std::string edge_name(PatchEdge edge);
 Result<EdgeMatch> match_edges(const std::vector<Surface>& patches, PatchEdge a, PatchEdge b,
                               std::optional<bool> reversed = std::nullopt);
 
-// Returns matches that connect all patches: first every pair of edges within `together_m`, then the free
-// pairs with the smallest mean gap until no patch is separate. Fails if a patch has no suitable edge; the
+// Returns matches that connect all patches: first every pair of edges within `together_m`, then pairs of free
+// edges, the smallest mean gap first, until no patch is separate. Fails if a patch has no suitable edge; the
 // message names it.
 Result<std::vector<EdgeMatch>> find_edge_matches(const std::vector<Surface>& patches, double together_m);
 
@@ -43,7 +43,7 @@ struct Orientation {
 
 Surface orient(const Surface& surface, const Orientation& orientation);
 
-// Side after applying an orientation, and whether the edge's direction is reversed.
+// Side after applying an orientation, and whether the direction of its edge is reversed.
 struct TurnedSide {
   Side side;
   bool reversed;

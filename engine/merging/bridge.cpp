@@ -45,8 +45,8 @@ Vector3 difference_at_end(const Surface& piece, int line, int k, bool at_end) {
   return points[0];
 }
 
-// Returns true if the Taylor terms of third and higher order agree across the joint, within the bound of the
-// first.
+// Returns true if the Taylor terms of third and higher order agree across the joint, within the bound used
+// for the first-order term.
 bool agree_beyond_second(const Surface& before, const Surface& after, double stretch, int continuity,
                          double speed) {
   const std::vector<double> breaks_before = before.v.breakpoints(), breaks_after = after.v.breakpoints();
@@ -239,7 +239,7 @@ Cells cells_along(const KnotVector& knots) {
                               (ends[piece + 1] - ends[piece]) * (k + 0.5) / cells_in_bridge_piece);
       cells.is_smooth.push_back(true);
     }
-    // Open ends count as clamped, so nothing is smooth across them.
+    // Open ends count as clamped, so the surface is not smooth across them.
     cells.is_smooth.back() = starts[(piece + 1) % starts.size()].multiplicity < knots.degree();
   }
   return cells;
@@ -365,7 +365,7 @@ Result<Surface> make_strip(const Surface& before, const Surface& after, const Br
   return bridge(before, moved.value(), continuity);
 }
 
-// Returns the length that crosses the gap at the patches' speed at its edges.
+// Returns the length of a bridge that crosses the gap at the speed that the patches have at its edges.
 Result<BridgeLength> even_speed_length(const Surface& before, const Surface& after) {
   double chord = 0.0, speed_before = 0.0, speed_after = 0.0;
   const std::vector<double> parameters = uniform_parameters_without_seam(before.u, 64);
@@ -434,7 +434,7 @@ Result<Surface> bridge(const Surface& before, const Surface& after, int continui
   SPOONBILL_ASSERT(before.u.control_point_count() == after.u.control_point_count() &&
                    before.v.degree() == after.v.degree());
   const int degree = before.v.degree();
-  // The order is higher than requested if the degree gives it without further pieces.
+  // The order is higher than requested if the degree permits it without further pieces.
   const int order = std::max(continuity, degree / 2);
   const BridgeForm form = choose_form(before, after);
   const int between = form.has_columns_between ? columns_between : 0;

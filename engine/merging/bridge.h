@@ -23,7 +23,7 @@ double mean_gap_m(const JointEdges& edges);
 // there; negative where they overlap.
 double mean_advance_m(const JointEdges& edges);
 
-// Returns true if the patches continue straight ahead across every gap wider than `touching_m`, neither
+// Returns true if, across every gap wider than `touching_m`, the patches continue straight ahead, neither
 // sideways nor backwards.
 bool continues_ahead(const JointEdges& edges, double touching_m);
 
@@ -31,8 +31,8 @@ bool continues_ahead(const JointEdges& edges, double touching_m);
 // by a constant factor. Derivatives that point in different directions give the ratio of their lengths.
 double stretch_at_edge(const JointEdges& edges);
 
-// Returns true if the derivatives up to the continuity agree, so that no blend is needed. The patches must
-// have equal degrees and equal knots along u.
+// Returns true if the derivatives of both patches agree up to order `continuity`, so that no blend is needed.
+// The patches must have equal degrees and equal knots along u.
 bool is_smooth(const Surface& before, const Surface& after, double stretch, int continuity);
 
 double mean_speed(const std::vector<SurfacePoint>& points);
@@ -50,14 +50,15 @@ double mean_length_m(const Surface& surface, double start, double end);
 std::optional<Vector3> find_fold(const Surface& surface);
 
 // Finds folds in the strip from v = `start` to v = `end`. Besides sudden turns it detects slow ones: normals
-// that oppose both edges although these agree, and neighbouring lines that oppose each other although they
-// agree at both edges.
+// that oppose the normals at both edges although these agree, and neighbouring lines that oppose each other
+// although they agree at both edges.
 std::optional<Vector3> find_fold_between(const Surface& surface, double start, double end);
 
-// Length of a bridge. Both patches cross the gap at one speed, from the chords between the edges and the mean
-// derivatives there. The parameter length is reduced until the bridge does not fold; between rings also, to a
-// quarter at most, until it is nowhere narrower than the narrower ring. Fails for edges without a direction
-// across v, and for bridges that fold at any length unless `may_fold` is set.
+// Length of a bridge. The speed across the gap is the same for both patches; it follows from the chords
+// between the edges and the mean derivatives there. The parameter length is reduced until the bridge does not
+// fold. Between rings it is also reduced, to a quarter at most, until the bridge is nowhere narrower than the
+// narrower ring. Fails for edges without a direction across v, and for bridges that fold at any length unless
+// `may_fold` is set.
 struct BridgeLength {
   double parameter = 0.0;
   double stretch_of_after = 1.0;

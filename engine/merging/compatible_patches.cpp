@@ -97,7 +97,8 @@ std::string patch_name(std::size_t patch) {
   return "patch " + std::to_string(patch + 1) + " of the row";
 }
 
-// Moves the patch to the u domain of the first. Equal domains are not touched, which avoids rounding errors.
+// Moves the patch to the u domain of the first. A domain that is already equal is not touched, which avoids
+// rounding errors.
 Result<Surface> match_domain(const Surface& first, const Surface& patch) {
   const double start = first.u.domain_start(), end = first.u.domain_end();
   if (patch.u.domain_start() == start && patch.u.domain_end() == end) return patch;
@@ -164,8 +165,8 @@ Result<Surface> align_seam(const Surface& before, const Surface& patch, const Jo
   const EdgeCurve a = edge_curve(before, Side::v_end), b = edge_curve(patch, Side::v_start);
   const Vector3 seam_point = position(a, a.knots.domain_start());
   const double nearest = nearest_on_ring(b, seam_point);
-  // The best fit differs from the nearest seam if the parameters differ, and by rounding for identical rings
-  // with corners.
+  // The nearest seam replaces the best fit if it is at the same position, within this fraction of the
+  // tolerance. The two differ if the parameters differ, and by rounding for identical rings with corners.
   constexpr double coincidence_fraction = 1e-6;
   const double near_m =
       request.tolerance_m * (match->gap_m > request.tolerance_m ? 1.0 : coincidence_fraction);
@@ -175,7 +176,7 @@ Result<Surface> align_seam(const Surface& before, const Surface& patch, const Jo
   return with_seam_at(patch, Direction::u, align_seam_to_knots(before.u, patch.u, target));
 }
 
-// Samples in each piece: for fitting, for finding where knots are needed, and for measuring.
+// Numbers of samples in each piece: for fitting, for finding where knots are needed, and for measuring.
 constexpr int fitted_per_piece = 5, checked_per_piece = 10, measured_per_piece = 40;
 
 // Returns evenly spaced parameters in each piece, without the end of a period.
@@ -185,8 +186,8 @@ std::vector<double> dense_parameters(const KnotVector& knots, int per_piece) {
   return dense;
 }
 
-// Returns the surface with u reparameterised over `knots`: parameters `fitted` correspond to `matching`
-// on the surface.
+// Returns the surface with u reparameterised over `knots`: the new parameters `fitted` correspond to
+// `matching` on the given surface.
 Result<Surface> compose(const Surface& surface, const KnotVector& knots, const std::vector<double>& fitted,
                         const std::vector<double>& matching) {
   const bool open = !knots.is_periodic();
@@ -259,7 +260,7 @@ Result<CompatiblePatches> match_parameters_to(const Surface& before, const Surfa
                "tolerance");
 }
 
-// Fraction of the tolerance for snapping knots.
+// Fraction of the tolerance that snapping knots may use.
 constexpr double knots_fraction = 0.05;
 
 // Refines all patches to the union of their u knots.
@@ -298,8 +299,8 @@ Result<Surface> elevate(const Surface& patch, int degree_u, int degree_v) {
   return convert_to_finer_knots(along_u.value(), Direction::v, v.value());
 }
 
-// Fractions of the tolerance: largest distance of shared edges, and largest error left by different
-// parameters.
+// Fractions of the tolerance: the largest distance at which edges count as shared, and the largest error that
+// different parameters may leave.
 constexpr double distance_fraction = 0.75, matching_fraction = 0.25;
 
 // Returns true if the edges are one curve with different parameters.

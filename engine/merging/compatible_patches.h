@@ -13,7 +13,7 @@ namespace spoonbill {
 struct JoinRequest {
   int continuity = 2;         // 0 to 8
   double tolerance_m = 5e-5;  // largest distance of the merged surface from the patches, outside blends
-  double spent_m = 0.0;       // part of the tolerance used up by earlier steps or reserved for later ones
+  double spent_m = 0.0;       // part of the tolerance used up by earlier steps or reserved for later steps
   double blend_m = 0.0;       // length of a blend at joints that lack the continuity; 0: none
   double twist = 0.0;         // rotation of each ring from its best fit, as a fraction of a turn
   int largest_count = 200;    // most control points in each direction
@@ -22,7 +22,7 @@ struct JoinRequest {
   Progress progress = {};          // of all the work that the request covers
 };
 
-// Knots closer than this fraction of the domain are snapped together if that costs little.
+// Knots closer than this fraction of the domain are snapped together if that changes the surface little.
 inline constexpr double snap_fraction = 1e-5;
 
 // Returns the seam moved by at most `snap_fraction` of the period, so that a knot of the second ring
@@ -48,8 +48,8 @@ struct CompatiblePatches {
 // Makes the patches compatible along u. Edges within the tolerance count as shared, whatever their
 // parameters. The degree along v becomes at least the continuity plus one. The first patch keeps its u
 // domain. Seams of rings are placed next to the previous ring's seam, or at the best fit, plus the twist.
-// Fails for closed next to open patches, parameters that cannot be matched within the tolerance, and too many
-// control points.
+// Fails for a closed patch next to an open one, parameters that cannot be matched within the tolerance, and
+// too many control points.
 Result<CompatiblePatches> make_compatible(std::vector<Surface> patches, const JoinRequest& request);
 
 }  // namespace spoonbill

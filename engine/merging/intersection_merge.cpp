@@ -36,7 +36,7 @@ namespace {
 class LinesFromLoop {
  public:
   // `body` runs along v from the pole beside the loop, is periodic in u, and must outlive this object. `loop`
-  // holds (u, v) in order, with u in any period.
+  // holds (u, v) in order, with each u in any period.
   LinesFromLoop(const Surface& body, const std::vector<Eigen::Vector2d>& loop);
 
   // Returns the angle about the loop's centre, as a fraction of a turn.
@@ -71,13 +71,13 @@ struct CrossingPatches {
 struct CornerLine {
   double first_v = 0.0;
   double second_u = 0.0, second_v = 0.0;
-  std::optional<Vector3> centre_m;  // of the rolling ball
+  std::optional<Vector3> centre_m;  // centre of the rolling ball
 };
 
 // Caches corner lines, since fits evaluate the same ones repeatedly. One owner.
 class CornerLines {
  public:
-  // `patches` must outlive this object. A radius of 0 gives an edge.
+  // `patches` must outlive this object. A radius of 0 gives a sharp edge.
   CornerLines(const CrossingPatches& patches, double fillet_m);
 
   // Returns nothing if the line does not cross or no ball fits.
@@ -99,7 +99,8 @@ class CornerLines {
 
 using std::numbers::pi;
 
-// Radius of the circle relative to the loop's farthest point, limited to half of the rest to the far pole.
+// Radius of the circle relative to the loop's farthest point, and its limit as a fraction of the remaining
+// distance to the far pole.
 constexpr double circle_ratio = 1.3, most_rest_fraction = 0.5;
 
 Eigen::Vector2d polar(double radius, double angle) {
@@ -151,7 +152,7 @@ Eigen::Vector2d LinesFromLoop::at(const Eigen::Vector2d& start, double fraction)
     const double s = (fraction - bend_) / (1.0 - bend_), start_slope = speed_at_bend_ * (1.0 - bend_);
     point = polar(circle_ + s * start_slope + s * s * (1.0 - circle_ - start_slope), angle);
   } else {
-    // Hermite cubic that continues into the line beyond with its speed.
+    // Computes a Hermite cubic that goes over smoothly into the line beyond, at equal speed.
     const Eigen::Vector2d from = to_plane(start), to = polar(circle_, angle);
     const Eigen::Vector2d away = (from - centre_).normalized();
     const Eigen::Vector2d out = start_speed_m_ / metres_per_step(from, away) * away;
@@ -176,7 +177,8 @@ double LinesFromLoop::metres_per_step(const Eigen::Vector2d& point, const Eigen:
 }
 
 constexpr int lines_checked = 24;
-// Finer search for positions where a body leaves the other between two of the checked lines.
+// Number of lines in the finer search for positions where a body leaves the other between two of the checked
+// lines.
 constexpr int lines_searched = 8 * lines_checked;
 
 Surface run_along_v(const Surface& patch) {
@@ -400,8 +402,8 @@ CornerLines::CornerLines(const CrossingPatches& patches, double fillet_m)
   choose_sides();
 }
 
-// Chooses the side of both remaining parts for the ball: on each surface, the side to which the other's part
-// leads.
+// Chooses the side of both remaining parts on which the ball rolls: on each surface, the side to which the
+// other surface's part leads.
 void CornerLines::choose_sides() {
   const Surface &first = patches_->first, &second = patches_->second;
   const std::vector<LineCrossing> crossings = cross_lines(first, second, second_).crossings;
@@ -447,10 +449,11 @@ std::optional<CornerLine> CornerLines::find(double u) const {
   return CornerLine{contact->v, contact->other_u, contact->other_v, contact->centre_m};
 }
 
-// Fraction of the tolerance for each part; their edges then meet within twice that, and joining uses the
-// rest. Parts that start beside a pole get more, as their curvature is not aligned with their lines.
+// Fraction of the tolerance for fitting each part. The edges of two parts then meet within twice that, and
+// joining uses the rest of the tolerance. Parts that start beside a pole get more, as their curvature is not
+// aligned with their lines.
 constexpr double part_fraction = 0.2, askew_fraction = 0.5;
-// Fraction of the work for each of up to three parts.
+// Fraction of the work that fitting each of up to three parts takes, for the progress.
 constexpr double fitted_fraction = 0.25;
 
 double interpolate(double from, double to, double fraction) {
@@ -467,8 +470,7 @@ struct PartShape {
   std::optional<double> bend = {};
 };
 
-// Least cells in which spans are added. Few cells keep simple parts simple; many avoid refining everywhere
-// where the lines are oblique in one place.
+// Smallest numbers of cells in which spans are added.
 constexpr int few_spans = 4, local_spans = 48;
 
 Error not_fitted(const Error& error, double fraction, double tolerance_m) {

@@ -9,12 +9,12 @@ namespace spoonbill {
 
 struct IntersectionRequest {
   JoinRequest join;       // its continuity applies to the fillet
-  double fillet_m = 0.0;  // radius of a ball that rolls along the corner; 0: an edge
+  double fillet_m = 0.0;  // radius of a ball that rolls along the corner; 0: a sharp edge
 };
 
 struct IntersectionMerge {
   Surface surface;
-  double deviation_m = 0.0;  // from the patches, outside the fillet
+  double deviation_m = 0.0;  // largest distance from the patches, outside the fillet
   // Joint of the two patches; its blend, from blend_start to blend_end along v, is the fillet.
   Joint corner;
   bool first_was_inward = false, second_was_inward = false;
@@ -22,12 +22,12 @@ struct IntersectionMerge {
 
 // Merges two intersecting patches. Each closed body contributes the part outside the other; open patches
 // contribute the longer part of their lines. Closed bodies with inward normals are reversed first. The first
-// patch keeps its parameters around. If the first crosses a closed body beside its poles, the body is
-// resampled along lines from the intersection to the far pole.
+// patch keeps its parameters in the direction around it. If the first crosses a closed body beside its poles,
+// the body is resampled along lines from the intersection to the far pole.
 //
 // Fails if a line of constant u does not cross the other patch, or if lines do not follow each other along
-// the intersection. Fails also if a patch leaves a closed body again, or the fillet does not fit. The message
-// names a position where possible.
+// the intersection. It also fails if a patch leaves a closed body after entering it, or the fillet does not
+// fit. The message names a position where possible.
 Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& second,
                                          const IntersectionRequest& request);
 

@@ -71,10 +71,10 @@ JointState joint_state(const std::vector<PreparedRow>& rows, std::size_t joint, 
 }
 
 // Lengths of blends at small gaps that are not straight ahead, where a bridge of the gap's length would make
-// a step or fold. A blend spans one polynomial piece, within these multiples of the gap. The cut is limited
-// to a fraction of each patch.
+// a step or fold. A blend spans one polynomial piece; its length is limited to these multiples of the gap,
+// and the length cut off to this fraction of each patch.
 constexpr double least_gap_ratio = 10.0, most_gap_ratio = 40.0, most_cut_fraction = 0.25;
-// Largest overlap without a cut, relative to the gap.
+// Largest overlap that is not cut off, relative to the gap.
 constexpr double most_back_fraction = 0.5;
 
 bool is_short_cut(const std::vector<PreparedRow>& rows, std::size_t joint, double cut_m) {
@@ -137,7 +137,8 @@ Status cut_for_blend(std::vector<PreparedRow>& rows, std::size_t joint, const Jo
   return {};
 }
 
-// Measures a joint in each row, with common values for all rows: the mean stretch and the shortest bridge.
+// Measures a joint in each row, and sets common values for all rows: the mean stretch and the shortest
+// bridge.
 Status measure_joint(std::vector<PreparedRow>& rows, std::size_t joint, const JoinRequest& request) {
   double stretch = 0.0, shortest = std::numeric_limits<double>::infinity();
   for (PreparedRow& row : rows) {
@@ -207,7 +208,8 @@ Result<std::vector<Surface>> place_in_row(const PreparedRow& row) {
     const double start = placed.back().v.domain_end() + gap;
     const double length = patch.v.domain_end() - patch.v.domain_start();
     double end = start + stretch * length;
-    // Parts of one patch keep their knots to the last bit.
+    // Parts of one patch keep their knots to the last bit: an end that differs only by rounding is set to the
+    // patch's end.
     if (std::abs(end - patch.v.domain_end()) <= same_knot_fraction * length) end = patch.v.domain_end();
     auto moved = with_domain(patch, Direction::v, start, end);
     if (!moved) return moved.error();
@@ -283,7 +285,8 @@ PointGrid sample_patch(const Surface& patch, const KnotVector& merged_v, int in_
   return sample_grid_points(patch, nested_parameters(patch.u, in_piece, 0).parameters, std::move(along));
 }
 
-// Returns the largest deviation, refined around the worst sample unless coarse samples show only rounding.
+// Returns the largest deviation, refined around the worst sample, unless the coarse samples show nothing but
+// rounding errors.
 double deviation_m_from(const Surface& merged, const Surface& patch) {
   constexpr int few = 3, many = 6;
   const double at_few = largest_deviation_m(merged, sample_patch(patch, merged.v, few));
@@ -374,7 +377,7 @@ Status check_folds(const Surface& merged, const std::vector<Surface>& placed,
                    "blend, or cut a piece off");
 }
 
-// Fractions of the work.
+// Fractions of the work that are done after preparing and after approximating, for the progress.
 constexpr double prepared_fraction = 0.3, approximated_fraction = 0.6;
 
 }  // namespace

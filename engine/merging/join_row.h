@@ -31,19 +31,19 @@ struct PreparedRow {
 // are cut back and joined at the same parameters. They are cut back to fit a requested blend if the joint
 // lacks the continuity, and at small gaps that are not straight ahead, far enough to avoid a step. Fails if a
 // joint touches in one row and is open in another without a blend, or if a blend takes more than half of a
-// patch. Fails also where make_compatible() and bridge_length() do.
+// patch. It also fails where make_compatible() and bridge_length() do.
 Result<std::vector<PreparedRow>> prepare_rows(std::vector<std::vector<Surface>> rows,
                                               const JoinRequest& request);
 
-// Joint of the merged surface, which differs from the patches from blend_start to blend_end along v; both are
-// equal without a blend or bridge.
+// Joint of the merged surface, which differs from the patches from blend_start to blend_end along v; the two
+// are equal without a blend or bridge.
 struct Joint {
   double gap_m = 0.0;
   bool bridged = false;
   double blend_start = 0.0, blend_end = 0.0;
   double blend_length_m = 0.0;  // mean length of the blend along v
   double apart_m = 0.0;         // largest gap between the given edges
-  double cut_back_m = 0.0;      // cut off each of the two patches for the blend
+  double cut_back_m = 0.0;      // length cut off each of the two patches for the blend
 };
 
 struct Joined {

@@ -17,8 +17,8 @@ namespace {
 constexpr int cells_in_piece = 6;
 constexpr int chords_in_piece = 8;
 constexpr int ray_chords = 64;
-// Slack relative to chords, triangle sides and the surface's size, so that no crossing is lost between two
-// triangles or along a border.
+// Tolerance, relative to chords, triangle sides and the surface's size, so that no crossing is lost between
+// two triangles or along a border.
 constexpr double loose = 1e-9;
 
 struct CurvePoint {
@@ -29,8 +29,8 @@ Box box_around(const Vector3& a, const Vector3& b) {
   return box_about(std::array{a, b});
 }
 
-// Newton's residual, relative to the surface's size, below which it has converged; grazing crossings need
-// more than rounding.
+// Residual below which Newton's method has converged, relative to the surface's size; grazing crossings leave
+// more than rounding errors.
 constexpr double converged_fraction = 1e-10;
 
 void drop_repeated(std::vector<LineCrossing>& crossings, double nearness) {
@@ -88,7 +88,7 @@ std::vector<CrossingFinder::Start> CrossingFinder::find_starts(const Vector3& fr
   return starts;
 }
 
-// Newton's method for curve(along) = other(u, v).
+// Solves curve(along) = other(u, v) by Newton's method.
 template <class Curve>
 std::optional<LineCrossing> CrossingFinder::polish(const Curve& curve, double along,
                                                    const Start& start) const {
@@ -140,7 +140,7 @@ std::vector<LineCrossing> CrossingFinder::intersect_ray(const Vector3& from_m, c
   SPOONBILL_ASSERT(length_m >= 0.0);
   const auto curve = [&](double along) { return CurvePoint{from_m + along * direction, direction}; };
   std::vector<LineCrossing> crossings;
-  // Short chords have boxes with few cells.
+  // The ray is cut into short chords, because their boxes contain few cells.
   const double step = length_m / ray_chords;
   for (int k = 0; k < ray_chords; ++k) {
     for (const Start& start :
@@ -220,7 +220,7 @@ class Corner {
   }
 
  private:
-  // Continues across a pole on its opposite side.
+  // Moves parameters that have run past a pole to the opposite side of the pole.
   void cross_poles(ContactParameters& at) const {
     const double start = other_.v.domain_start(), end = other_.v.domain_end();
     const bool before = pole_at_start_ && at.other_v < start, behind = pole_at_end_ && at.other_v > end;

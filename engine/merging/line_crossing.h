@@ -11,18 +11,19 @@
 namespace spoonbill {
 
 struct LineCrossing {
-  double along = 0.0;  // v on the crossing line, or the distance along a straight one
+  double along = 0.0;  // v on the crossing line, or the distance along a straight line
   double other_u = 0.0, other_v = 0.0;
   Vector3 point_m = Vector3::Zero();
 };
 
 // Finds where lines cross a surface. A triangle mesh, fine enough for all crossings steeper than a few
-// degrees, gives start values; the results are exact to rounding on the surface. Immutable; any thread.
+// degrees, gives start values; the results are exact on the surface, except for rounding. Immutable; any
+// thread.
 class CrossingFinder {
  public:
   explicit CrossingFinder(const Surface& other);
 
-  // Returns the crossings in order of v. A line that only touches may be missed.
+  // Returns the crossings in order of v. A line that only touches the surface may be missed.
   std::vector<LineCrossing> intersect_line(const Surface& surface, double u) const;
 
   // Returns the crossings in order of distance, up to `length_m` along the unit direction.
@@ -56,7 +57,7 @@ struct BallSides {
 };
 
 // Solves for the contact by Newton's method, starting from the crossing with a radius that grows from zero.
-// Empty if no ball of that radius fits.
+// Returns nothing if no ball of that radius fits.
 std::optional<BallContact> ball_contact(const Surface& surface, double u, const Surface& other,
                                         const LineCrossing& crossing, BallSides sides, double radius_m);
 

@@ -36,7 +36,7 @@ Side own_side(Side in_grid, const Orientation& orientation) {
   return in_grid;
 }
 
-// Describes the joint from a cell to the next along a direction; the first follows the last.
+// Describes the joint from a cell to the next along a direction; after the last cell comes the first.
 MergedJoint describe(const PatchGrid& grid, int a, int b, Direction along, const Joint& joint) {
   const Arrangement& all = grid.arrangement;
   const int cell = all.cell(a, b);
@@ -184,7 +184,8 @@ Result<Merged> merge_grid(const PatchGrid& grid, const JoinRequest& request) {
   return merged;
 }
 
-// Largest ratio of the wider tube's opening to the other's; a wider opening would give the bridge a step.
+// Largest ratio of the wider tube's opening to the narrower tube's; a larger ratio would give the bridge a
+// step.
 constexpr double wider = 1.25;
 
 // Opens the poles of a pair; rings stay unchanged.
@@ -249,7 +250,7 @@ Result<std::vector<EdgeMatch>> find_matches(std::vector<Surface>& patches, const
   return matches;
 }
 
-// Returns true if both surfaces coincide in any orientation; periodic ones must have the same seam.
+// Returns true if both surfaces coincide in any orientation; periodic surfaces must have the same seam.
 bool are_same(const Surface& a, const Surface& b, double tolerance_m) {
   constexpr int steps = 5;
   const auto is_near = [&](const Surface& other) {

@@ -31,7 +31,7 @@ struct PatchEdge {
   friend bool operator==(const PatchEdge&, const PatchEdge&) = default;
 };
 
-// Edge curve over the parameter of the other direction.
+// Curve of a patch's edge, a function of the parameter along the edge.
 struct EdgeCurve {
   KnotVector knots;
   std::vector<Vector3> control_points_m;
@@ -45,7 +45,7 @@ Vector3 derivative(const EdgeCurve& curve, double t);
 // Returns true if the direction across the side is open and the edge is not a pole.
 bool is_joinable(const Surface& surface, Side side);
 
-// Returns the mean unit direction out of the patch across an edge; zero if the directions cancel.
+// Returns the mean unit direction that leads out of the patch across an edge; zero if the directions cancel.
 Vector3 outward(const Surface& surface, Side side);
 
 // Points at equal steps of the arc length, including the ends. Periodic edges start at the seam and do not
@@ -71,10 +71,10 @@ RingFrame ring_frame(const Surface& surface, Side side);
 // rings without a direction.
 Eigen::Matrix3d rotation_towards(const RingFrame& a, const RingFrame& b);
 
-// Returns the ratio of arc length to chord of a circular bend.
+// Returns the ratio of arc length to chord of a circular bend that turns by this rotation.
 double bend_stretch(const Eigen::Matrix3d& turn);
 
-// Returns true if a straight strip would pinch at this rotation: more than 45 degrees.
+// Returns true if a straight strip would pinch at this rotation, which is the case above 45 degrees.
 bool is_bend(const Eigen::Matrix3d& turn);
 
 // Fills the net's columns between two rings along a bend that leaves the first ring in direction `outward`.

@@ -19,7 +19,7 @@ namespace {
 
 using Polygon = std::vector<Eigen::Vector2d>;
 
-// Smooth loops turn less from chord to chord.
+// Smallest cosine of the angle between consecutive chords of a smooth loop.
 constexpr double smooth_cosine = 0.98;
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -87,10 +87,11 @@ class RoundEdge {
 
  private:
   Polygon polygon_;
-  std::vector<double> ends_;  // of each chord
+  std::vector<double> ends_;  // ends of the chords
 };
 
-// Returns where the ray from the centre towards `to` meets a hole that is star-shaped about it.
+// Returns where the ray from the centre towards `to` meets the edge of a hole that is star-shaped about the
+// centre.
 Eigen::Vector2d project_to_hole(const Polygon& hole, const Eigen::Vector2d& centre,
                                 const Eigen::Vector2d& to) {
   const Eigen::Vector2d offset = to - centre;
@@ -150,13 +151,13 @@ using Edge = TrimmedArea::Edge;
 // Loops with the kept part on their left.
 using Polygons = std::vector<std::vector<Eigen::Vector2d>>;
 
-// Smooth trims turn less from chord to chord.
+// Smallest cosine of the angle between consecutive chords of a smooth trim.
 constexpr double corner_cosine = 0.98;
-// Offset of the last line from the edge, and width that is too narrow to count, as a fraction of the part's
-// extent in u.
+// Distance of the last line from the edge, and the largest width that is ignored as too narrow, as a fraction
+// of the part's extent in u.
 constexpr double edge_margin = 1e-7;
 constexpr int trim_lines_checked = 64;
-// Shorter lines at an end, relative to the longest, are a point.
+// A line at an end of the part that is shorter than this fraction of the longest line counts as a point.
 constexpr double point_fraction = 1e-3;
 // Largest change of a line's ends across a corner, relative to the part's extent in v.
 constexpr double jump_fraction = 1e-3;
@@ -195,7 +196,7 @@ class KeptPart {
 
   const Interval& along_u() const { return along_u_; }
 
-  // Returns the part's interval on a line of constant u; nothing if it is not a single one.
+  // Returns the interval of a line of constant u that is in the part; nothing if it is not a single interval.
   std::optional<Interval> on_line(double u) const {
     std::optional<double> enters, leaves;
     for (const auto& [from, to] : edges_) {
@@ -223,7 +224,8 @@ class KeptPart {
     return first > point_fraction * longest && last > point_fraction * longest && changes_steadily();
   }
 
-  // Returns the ends and the corners of the loops, where the lines' ends have kinks.
+  // Returns the parameters u of the part's ends and of the loops' corners, at which the ends of the lines
+  // have kinks.
   std::vector<double> breaks_in_u() const {
     std::vector<double> breaks{along_u_.low, along_u_.high};
     const Eigen::Vector2d lengths(along_u_.length(), along_v_.length());
@@ -247,7 +249,7 @@ class KeptPart {
   }
 
  private:
-  // Returns true if the lines' ends do not jump at any corner, as they do at a step.
+  // Returns true if the ends of the lines do not jump at any corner, as they would at a step.
   bool changes_steadily() const {
     const double beside = 2.0 * edge_margin * along_u_.length();
     for (const double at : breaks_in_u()) {
@@ -260,7 +262,8 @@ class KeptPart {
     return true;
   }
 
-  // Returns true if each line meets two edges, counted from one corner to the next so that none is missed.
+  // Returns true if each line meets two edges. The edges are counted between consecutive corners, so that
+  // none is missed.
   bool meets_all_lines_twice() const {
     std::vector<std::pair<double, int>> changes;  // u and change of the number of edges that a line meets
     for (const auto& [from, to] : edges_) {
@@ -318,7 +321,7 @@ Result<FittedShape> resample_piece(const Surface& surface, const KeptPart& part,
 
 // Fraction of the tolerance for resampling; joining the pieces uses the rest.
 constexpr double piece_fraction = 0.3;
-// Pieces have at least six control points, and a patch at most 200.
+// Largest number of pieces: a piece has at least six control points, and a patch at most 200.
 constexpr std::size_t most_pieces = 33;
 
 // Resamples each piece between corners, where the lines' ends have kinks, and joins the pieces.

@@ -1,4 +1,4 @@
-// Resampling of trimmed patches as whole ones. Pure functions, outside the tick.
+// Resampling of trimmed patches as untrimmed ones. Pure functions, outside the tick.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,8 +15,8 @@ namespace spoonbill {
 // Resamples the part between a smooth outer loop and its centroid or a smooth hole. `polygons` are loops over
 // the parameters with the kept part on their left. The result is periodic in u, which follows the outer loop
 // by its length in metres. Along v, straight parameter lines run towards the centroid, up to the hole or a
-// pole. Empty if there are more than two loops, a loop has corners, or a line from the centroid meets one
-// more than once. Fails if fit_shape() does.
+// pole. Returns nothing if there are more than two loops, a loop has corners, or a line from the centroid
+// meets a loop more than once. Fails if fit_shape() does.
 std::optional<Result<FittedShape>> resample_round_part(
     const Surface& surface, const std::vector<std::vector<Eigen::Vector2d>>& polygons, double tolerance_m);
 

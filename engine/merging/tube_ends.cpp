@@ -76,7 +76,7 @@ struct RingSize {
   double radius_m = 0.0;
 };
 
-// Returns the centre and mean radius of the ring at v. `tube` must run along v.
+// Returns the centre and mean radius of the ring at v. The length of `tube` must be along v.
 RingSize ring_at(const Surface& tube, double v) {
   const std::vector<double> parameters = uniform_parameters_without_seam(tube.u, rim_samples);
   RingSize ring;
@@ -138,8 +138,8 @@ Result<Surface> make_cap(const Surface& tube, double height_m) {
   return make_surface(tube.u, knots.value(), std::move(net));
 }
 
-// Returns a position on the ring where the flat cap folds. Its spokes are straight and have a constant normal
-// each, so it folds where a spoke's normal opposes the ring's area.
+// Returns a position on the ring where the flat cap folds. Each spoke is straight and has a constant normal,
+// so the cap folds where a spoke's normal opposes the ring's area vector.
 std::optional<Vector3> find_fold_in_flat(const Surface& cap) {
   constexpr int spokes_in_piece = 16;
   const double start = cap.v.domain_start();
@@ -194,7 +194,7 @@ Result<Joined> add_cap(const Surface& surface, Side side, double height_m, const
                  std::string(side_name(side)) + " is not the open end of a tube; choose one that is");
   }
   Surface along = with_end_at_v_end(surface, side);
-  // Clamped knots, so that the last control points give the ring and its tangents.
+  // Makes the knots clamped, so that the last control points give the ring and its tangents.
   auto clamped = part_of(along, Direction::v, along.v.domain_start(), along.v.domain_end());
   if (!clamped) return clamped.error();
   auto cap = make_cap(clamped.value(), height_m);
@@ -244,7 +244,8 @@ std::vector<std::pair<PatchEdge, PatchEdge>> find_nearest_ends(const std::vector
     PatchEdge a, b;
     double cost_m;
   };
-  // The centre of a flat disc is as near to a ring as its edge is; similar widths decide.
+  // The centre of a flat disc may be as near to a ring as the disc's edge is; the end of similar width then
+  // takes precedence.
   constexpr double width_fraction = 0.01;
   std::vector<std::pair<PatchEdge, TubeEnd>> ends;
   for (int p = 0; p < static_cast<int>(tubes.size()); ++p) {

@@ -1,5 +1,5 @@
-// Ends of tubes: closing seams, capping open rings, opening poles for another tube. A tube is periodic in one
-// direction and open in the other. Pure functions, outside the tick; any thread.
+// Ends of tubes: closing seams, capping open rings, and opening poles for a joint to another tube. A tube is
+// periodic in one direction and open in the other. Pure functions, outside the tick; any thread.
 #pragma once
 
 #include <utility>
@@ -13,7 +13,7 @@
 
 namespace spoonbill {
 
-// Makes a direction periodic whose first and last edge meet, with the given continuity at the seam; raises
+// Makes a direction periodic if its first and last edge meet, with the given continuity at the seam; raises
 // the degree if needed. Exact if the derivatives agree there; otherwise knots are added beside the seam until
 // the tolerance is met. Fails for a periodic direction, or edges farther apart than the tolerance. Can be
 // stopped.

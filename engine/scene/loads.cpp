@@ -61,7 +61,7 @@ Vector3 displacement_at(const SupportMotion& motion, double time_s) {
   return smooth_step(turns) * sine_of_turns(turns) * motion.displacement_m;
 }
 
-// A ramp is fastest at half its duration, at 15/8 of the mean speed. A growing sine is never faster than at
+// A ramp is fastest at half its duration, with 15/8 of its mean speed. A growing sine is never faster than at
 // its full amplitude.
 double top_speed_m_per_s(const SupportMotion& motion) {
   const double distance_m = motion.displacement_m.norm();

@@ -35,7 +35,7 @@ struct Material {
   double friction = 0.0;  // Coulomb coefficient of the surface
 };
 
-// The ranges of stiffness and density reach from the softest gel to beyond diamond and from aerogel to
+// The range of stiffness reaches from the softest gel to beyond diamond, the range of density from aerogel to
 // beyond osmium. Every solver stays finite within all ranges.
 inline constexpr Range<double> youngs_modulus_range_pa{1.0, 1e12};
 inline constexpr Range<double> poissons_ratio_range{0.0, 0.49};
@@ -48,7 +48,7 @@ inline constexpr Range<double> yield_strain_range{1e-4, 0.5};  // plastic materi
 inline constexpr Range<double> elastic_yield_strain_range{0.0,
                                                           0.5};  // other materials, which ignore the value
 inline constexpr Range<double> flow_rate_range_per_s{0.0, 1000.0};
-// Above the upper limit, clay springs back.
+// With a hardening above the upper limit, clay would spring back.
 inline constexpr Range<double> hardening_range{0.0, 1.0};
 inline constexpr Range<double> stiffening_range{-1000.0, 1000.0};
 inline constexpr Range<double> relaxing_fraction_range{0.0, 1.0};
@@ -113,8 +113,8 @@ struct BodyRegion {
 
 bool contains(const BodyRegion& region, const BodyCoordinates& point);
 
-// Requires fractions within 0 to 1 and in order, and depths of at least 0 and in order. The error names the
-// field.
+// Requires fractions within 0 to 1 and in order, and depths that are at least 0 and in order. The error names
+// the field.
 Status check_region(const BodyRegion& region);
 
 // Region of a body whose material or friction differs from the rest.

@@ -10,7 +10,8 @@
 namespace spoonbill {
 namespace {
 
-// Returns whether the parameter's name is that of a field of Tool, and its range is within that field's.
+// Returns whether the parameter's name is that of a field of Tool, and its range is within the range of that
+// field.
 constexpr bool is_tool_field(const ToolParameter& parameter) {
   for (const Field<Tool>& field : fields_of<Tool>) {
     if (std::string_view(field.form.name) != parameter.field) continue;

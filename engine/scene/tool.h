@@ -51,8 +51,8 @@ struct ToolActionRow {
   const char* name;   // in files
   const char* label;  // in the panel
   const char* help;   // one sentence without a full stop
-  // True if the tool holds what it first touches until the button is released. Other actions let go as the
-  // tool leaves.
+  // True if the tool holds what it first touches until the button is released. With other actions the tool
+  // lets go as it leaves.
   bool grips;
   bool allows_soft_tool;
   ToolAction inverse;  // the action while Ctrl is down; the action itself if it has no inverse

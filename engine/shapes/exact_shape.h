@@ -27,7 +27,8 @@ struct ShapeDirection {
 // be continuous there. Fits are best if equal parameter steps cover about equal distances everywhere.
 struct ExactShape {
   ShapeDirection u, v;
-  bool pole_at_start = false, pole_at_end = false;  // whether all u give one point at that end of v
+  // whether the shape has a pole (one point for all u) at that end of v
+  bool pole_at_start = false, pole_at_end = false;
   // End of the first part and start of the last part along v in which the shape is in the plane of its pole;
   // each is one of the breaks. Empty if there is no such part.
   std::optional<double> flat_to = {}, flat_from = {};

@@ -21,8 +21,8 @@ namespace {
 // Largest ratio of the lengths of neighbouring spans; keeps the control net even and least squares well
 // conditioned.
 constexpr double largest_step = 3.0;
-// Fraction of the largest error that may spill over into neighbouring cells. Such cells are refined only once
-// their own error shows.
+// Fraction of the largest error that may spill over into neighbouring cells. Cells with no larger error are
+// refined only once their own error shows.
 constexpr double ringing_fraction = 0.1;
 // Largest refinement factor of one step, because an error far from its asymptote would lead to far too many
 // spans.

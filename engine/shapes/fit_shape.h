@@ -55,7 +55,7 @@ class ShapeKnots {
   int degree_;
   std::vector<double> ends_;  // ends of the cells
   std::vector<bool> jumps_;   // whether the curvature may jump at each end
-  std::vector<int> spans_;    // number in each cell
+  std::vector<int> spans_;    // number of spans in each cell
 };
 
 struct ShapeFit {

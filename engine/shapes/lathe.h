@@ -48,10 +48,10 @@ class Meridian {
 ExactShape revolved_shape(Meridian meridian);
 
 // Makes a body of revolution of a smooth profile through the points. An end on the axis becomes a pole, where
-// the profile is horizontal; with both ends there the shape is closed. A profile off the axis whose last
-// point is its first makes a ring that is closed both ways. Any other shape is open, with its outside away
-// from the axis. Refuses too few or coincident points, negative radii, and a profile that crosses the axis or
-// itself.
+// the profile is horizontal; with both ends on the axis the shape is closed. A profile off the axis whose
+// last point is its first makes a ring that is closed both ways. Any other shape is open, with its outside
+// away from the axis. Refuses too few or coincident points, negative radii, and a profile that crosses the
+// axis or itself.
 Result<ExactShape> lathe_shape(const std::vector<MeridianPoint>& profile_m);
 
 }  // namespace spoonbill

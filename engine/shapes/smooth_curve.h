@@ -22,9 +22,9 @@ class SmoothCurve {
   // Constructs an empty curve, to be assigned before any use.
   SmoothCurve() = default;
 
-  // Makes a curve through at least two points, or three if closed; a closed one continues from the last
-  // point to the first. Refuses too few points, and successive points that coincide; the error numbers
-  // them from 1.
+  // Makes a curve through at least two points, or three if closed; a closed curve continues from the last
+  // point to the first. Refuses too few points, and successive points that coincide; the error numbers them
+  // from 1.
   static Result<SmoothCurve> through(std::vector<Vector3> points_m, bool closed, const CurveEnds& first = {},
                                      const CurveEnds& last = {});
   // Makes a curve with given increasing parameters, one for each point and one more for the end of a closed
@@ -33,7 +33,8 @@ class SmoothCurve {
                                    const CurveEnds& first = {}, const CurveEnds& last = {});
 
   bool closed() const { return closed_; }
-  // Returns the end of the parameters, which run from 0; the sum of the chords if made by through().
+  // Returns the end of the parameters, which run from 0. For a curve made by through() it is the sum of the
+  // chords.
   double end() const {
     SPOONBILL_ASSERT(!parameters_.empty());
     return parameters_.back();

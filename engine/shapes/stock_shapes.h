@@ -85,9 +85,9 @@ using StockShapeSize =
 // Makes a stock shape. Refuses a size that is out of range, and names the size.
 Result<ExactShape> stock_shape(const StockShapeSize& size);
 
-// Returns the reach of the shape (Federer 1959): every point nearer than this has exactly one nearest
-// point on the shape. A fitted surface within the reach that does not fold cannot meet itself. Infinite
-// for a sheet.
+// Returns the reach of the shape (Federer 1959): every point nearer to the shape than this distance has
+// exactly one nearest point on it. A fitted surface within the reach that does not fold cannot meet itself.
+// Infinite for a sheet.
 double reach_m(const StockShapeSize& size);
 
 // Returns the default tolerance of a stock shape's fit: 0.01 mm; a thousandth of the longest side if that

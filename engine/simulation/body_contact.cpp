@@ -9,7 +9,7 @@ namespace spoonbill {
 namespace {
 
 // Largest lateral offset of a point over a surface, as a fraction of its height plus a rounding allowance.
-// Nearest points are accurate to far less.
+// The lateral error of nearest points is far smaller.
 constexpr double lateral_tolerance = 0.2, rounding_m = 1e-6;
 
 }  // namespace

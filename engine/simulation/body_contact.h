@@ -41,8 +41,8 @@ bool resolve_shell_gap(const ShellOrSolid& of, const ShellOrSolid& other, double
 // Control nets follow a dent one cell wide only in part; the rest is undone as soon as the bodies rest.
 inline constexpr double body_depth_limit_cells = 0.03;
 
-// Largest penetration of a body pressed onto itself, in lattice cells. Twice that of two bodies, because both
-// sides follow a dent only in part.
+// Largest penetration of a body pressed onto itself, in lattice cells. It is twice the limit for two bodies,
+// because both sides follow a dent only in part.
 inline constexpr double self_depth_limit_cells = 2.0 * body_depth_limit_cells;
 
 // Gap below which a point becomes a constraint, in lattice cells of the coarser body: about one tick's

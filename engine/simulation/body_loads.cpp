@@ -10,7 +10,7 @@
 namespace spoonbill {
 namespace {
 
-// Returns the volume of each node: an eighth of each cell around it.
+// Returns the volume of each node: an eighth of the volume of each cell around it.
 std::vector<double> compute_node_volumes(const LatticeMesh& mesh) {
   std::vector<double> volumes(mesh.nodes.size(), 0.0);
   for (int i = 0; i + 1 < mesh.count[0]; ++i) {

@@ -54,7 +54,7 @@ class BodySupports {
   static Result<BodySupports> make(const std::vector<Support>& supports, const LatticeMesh& mesh);
 
   // Assigns each support the nodes of its region that are not fixed yet, later supports first, and marks them
-  // in `fixed`, one byte a node.
+  // in `fixed`, one byte per node.
   void claim_nodes(const SpringLattice& lattice, std::vector<std::uint8_t>& fixed);
   // Keeps the supports' displacements when the rest shape of the lattice changes from `before` to `after`.
   void rebase(const SpringLattice& before, const SpringLattice& after);

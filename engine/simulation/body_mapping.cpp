@@ -69,7 +69,7 @@ FixedStretch find_fixed_stretch(const Surface& surface, const std::vector<Fixing
 
 // Inserts a knot of multiplicity degree - 1 at v: the displacement may start there with its own curvature,
 // and the surface stays C1. Moves v to an existing knot nearby, which avoids sliver elements. Inserts nothing
-// beyond the largest number of control points; up to a degree more columns are fixed then.
+// beyond the largest number of control points; then up to `degree` additional columns are fixed.
 Result<Surface> insert_edge_knot(const Surface& surface, double& v) {
   const std::vector<double> breaks = surface.v.breakpoints();
   const double tolerance = 1e-3 * (surface.v.domain_end() - surface.v.domain_start());
@@ -82,7 +82,8 @@ Result<Surface> insert_edge_knot(const Surface& surface, double& v) {
   return insert_knot(surface, Direction::v, v, multiplicity);
 }
 
-// Returns the midpoint of the element that contains the parameter; of the element before it at a knot.
+// Returns the midpoint of the element that contains the parameter; at a knot, the midpoint of the element
+// before it.
 double find_element_midpoint(const KnotVector& knots, double parameter) {
   const std::vector<double> breaks = knots.breakpoints();
   auto next = std::lower_bound(breaks.begin() + 1, breaks.end() - 1, parameter);

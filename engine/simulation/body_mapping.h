@@ -66,7 +66,7 @@ class BodyMapping {
  private:
   BodyMapping(Surface rest, Surface current, InstructionSet set)
       : set_(set), rest_(std::move(rest)), base_(current), current_(std::move(current)) {}
-  // Index of the first sample at the same point, over a seam or at a pole; otherwise the sample's own.
+  // Index of the first sample at the same point, over a seam or at a pole; otherwise the sample's own index.
   int find_twin(int row, int column) const;
   void embed(const SpringLattice& lattice);
   // Embedding of one sample as the tick reads it, without gaps. An unused entry has weight 0.

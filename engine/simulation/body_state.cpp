@@ -33,7 +33,8 @@ std::string describe_slender_cells(const BodyState& body) {
 
 Result<SpringLattice> make_sculpting_lattice(const LatticeMesh& mesh, const LatticeMaterials& materials,
                                              InstructionSet set) {
-  // The frequency is measured at 1 Pa: it scales with the root of the modulus, the springs with the modulus.
+  // The frequency is measured at 1 Pa. It scales with the square root of the modulus; the stiffness of the
+  // springs scales with the modulus.
   Result<SpringLattice> unit = SpringLattice::make(mesh, materials, 1.0, set);
   if (!unit.ok()) return unit;
   const Material& own = materials.own();

@@ -28,7 +28,7 @@ struct BodyState {
   SpringLattice lattice;
   std::variant<BodyMapping, MeshMapping> skin;
   Smoothing smoothing;
-  std::vector<std::uint8_t> fixed, touched;            // one byte a node
+  std::vector<std::uint8_t> fixed, touched;            // one byte per node
   std::optional<ImplicitSolver> implicit_solver = {};  // for materials too stiff for the lattice's springs
   bool implicit_suspended = false;
   BodyLoads loads = {};
@@ -38,7 +38,7 @@ struct BodyState {
 
   // Fixes the nodes behind the planes, then those of the supports.
   void fix_nodes_behind(const std::vector<FixingPlane>& planes);
-  // Sets the fixed nodes, one byte a node.
+  // Sets the fixed nodes, one byte per node.
   void fix(std::vector<std::uint8_t> nodes) {
     SPOONBILL_ASSERT(nodes.size() == static_cast<std::size_t>(lattice.mesh().node_count()));
     fixed = std::move(nodes);
@@ -50,8 +50,8 @@ struct BodyState {
     if (implicit_solver) implicit_solver->fix_nodes(fixed);
     suspend_implicit(implicit_suspended);
   }
-  // Lets the springs step the body while a tool grips. Grips act in both directions, and those of a tool much
-  // heavier than a stiff body would shake it.
+  // Lets the springs step the body while a tool grips. Grips act in both directions, and the grips of a tool
+  // much heavier than a stiff body would shake the body.
   void suspend_implicit(bool suspended) {
     implicit_suspended = suspended;
     lattice.set_contact_inverse_mass(active_solver() ? implicit_solver->contact_inverse_mass() : 0.0);
@@ -107,7 +107,7 @@ Result<SpringLattice> make_sculpting_lattice(const LatticeMesh& mesh, const Latt
 inline constexpr double stiff_youngs_modulus_pa = 1e6;
 
 // Makes the implicit solver of a lattice, unstrained at `rest_m`. It steps bodies whose materials are all
-// linear elastic and whose stiffest reaches stiff_youngs_modulus_pa. It also steps elastic shells, which a
+// linear elastic, the stiffest with at least stiff_youngs_modulus_pa. It also steps elastic shells, which a
 // single layer of springs would make twice too stiff in bending. Empty for bodies that their springs step.
 Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& lattice,
                                                            const std::vector<Vector3>& rest_m,
@@ -120,7 +120,7 @@ inline constexpr double slender_stiffness_limit = 0.25;
 // remedy; empty without one.
 std::string describe_lattice_warning(const BodyState& body);
 
-// Returns one byte a node, 1 for nodes behind a plane.
+// Returns one byte per node, 1 for nodes behind a plane.
 std::vector<std::uint8_t> find_nodes_behind(const SpringLattice& lattice,
                                             const std::vector<FixingPlane>& planes);
 

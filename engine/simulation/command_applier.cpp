@@ -22,7 +22,7 @@ std::vector<BodySelfContact> make_self_contacts(const std::vector<BodyState>& bo
 }
 
 BodyContacts make_contact_buffer() {
-  // Number of constraints, each with the nodes around it. Two handles on each other need some hundreds.
+  // Largest number of constraints. Two handles pressed on each other need some hundreds.
   constexpr int capacity = 8192;
   return BodyContacts(capacity);
 }
@@ -212,7 +212,7 @@ void CommandApplier::set_mappings(std::vector<BodyMapping> mappings) {
   make_contacts();
 }
 
-// Replaces the last tool's model, and its soft body at the end of the list.
+// Replaces the last tool's model, and the tool's soft body at the end of the list of bodies.
 void CommandApplier::adopt_model(ToolModel model) {
   while (state.bodies.size() > state.scene.bodies.size()) state.bodies.pop_back();
   if (model.soft) state.bodies.push_back(*std::move(model.soft));

@@ -273,7 +273,7 @@ void BodyGroundContact::find(int index, const BodyState& body, const Ground& gro
       footing.is_near = false;
       continue;
     }
-    // The node of a boxed body may be outside its skin, so only the samples count.
+    // A node of a boxed body may be outside the body's skin, so only the samples count.
     if (boxed) gap_m = std::numeric_limits<double>::infinity();
     for (int s = footing.first_followed; s < footing.first_followed + footing.followed_count; ++s) {
       const EmbeddedPoint& sample = body.mapping().sample(footings.followed[static_cast<std::size_t>(s)]);

@@ -14,7 +14,7 @@
 namespace spoonbill {
 
 // Heights of a surface above a plane. The height is itself a spline with the control points' heights as
-// coefficients. It is sampled four times an element in each direction; between samples, parabolas through
+// coefficients. It is sampled four times per element in each direction; between samples, parabolas through
 // neighbouring samples bound it. One owner, one thread; allocates only in make().
 class SkinHeights {
  public:
@@ -27,7 +27,7 @@ class SkinHeights {
   double v(int column) const { return nested_.grid.v.parameters[static_cast<std::size_t>(column)]; }
 
   // Samples the heights above the plane. Parts higher than `reach_m` may be skipped; returns false if all
-  // are.
+  // parts are higher.
   bool compute(const Surface& surface, const Vector3& point_m, const Vector3& normal, double reach_m);
   // Returns the lowest height between a sample and its neighbours; infinite if the sample was skipped.
   double lowest_m(int row, int column) const;

@@ -131,8 +131,8 @@ void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
   }
   std::array<RelaxedLattice, lattice_capacity> lattices{};
   for (std::size_t b = 0; b < s.stepped_count(); ++b) {
-    // Sag is weight over stiffness: a softened body gets proportionally less weight and load, so it sags as
-    // much as the real one.
+    // Sag is weight divided by stiffness: a softened body gets proportionally less weight and load, so it
+    // sags as much as the real one.
     BodyState& body = s.bodies[b];
     const double ratio = stiffness_ratio(s, b);
     body.loads.apply(1.0 / ratio, body.lattice, body.active_solver());

@@ -24,9 +24,9 @@ inline constexpr double tick_s = 1e-3;
 // Input of the hand in one tick.
 struct ToolInput {
   Pose pose;
-  bool gripping = false;  // the button is down, which holds a pull
-  // Stiffness of the spring between hand and tool, in N/m against the real material. 0: the tool is held
-  // rigidly.
+  bool gripping = false;  // the button is down, which keeps a pull gripping
+  // Stiffness of the spring between hand and tool, N/m, as felt with the material's real stiffness. 0: the
+  // tool is held rigidly.
   double coupling_n_per_m = 0.0;
   bool hovering = false;  // points without touching: the tool does not act until it is outside the bodies
 };
@@ -98,7 +98,7 @@ class Simulation {
   Reaction advance(const ToolInput& input);
 
   // Scene as it was set. Its surfaces date from the last structural change; surface() returns the current
-  // ones.
+  // surfaces.
   const Scene& scene() const;
   // Writes the scene with current surfaces, for saving. Allocates only if `scene` has another structure.
   void write_scene(Scene& scene) const;
@@ -116,7 +116,7 @@ class Simulation {
   // Refuses the shape of another lattice.
   Status restore(const ShapeState& shape);
 
-  // Warnings about the bodies' lattices, at most one line a body (describe_lattice_warning()).
+  // Warnings about the bodies' lattices, at most one line per body (describe_lattice_warning()).
   std::vector<std::string> remarks() const;
 
   // Lattice and current surface of a body of the scene, for studies and tests.

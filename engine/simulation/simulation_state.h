@@ -17,8 +17,8 @@
 
 namespace spoonbill {
 
-// Tool in the user's hand, or its mirror image. Movable, because the addresses that the contact keeps are
-// those of grids that the mappings hold by pointer.
+// Tool in the user's hand, or its mirror image. Movable, because the contact keeps only addresses of grids,
+// which the mappings hold by pointer.
 struct HeldTool {
   ToolContact contact;
   Pose hand{};  // in the last tick
@@ -100,7 +100,7 @@ ToolHold make_hold(const ToolInput& input);
 // Returns the mirror image of the hold, with mirrored axes.
 ToolHold make_mirrored_hold(const Symmetry& symmetry, const ToolInput& input);
 
-// Finds the contact of a tool and its motion from the last tick's pose to that of `hold`.
+// Finds the contact of a tool and its motion from the last tick's pose to the pose of `hold`.
 TouchingTool touch(Simulation::State& state, HeldTool& held, ToolHold hold, double coupling_n_per_m);
 
 // Computes proxy, force and touch of the tool in the user's hand, not of its mirror image, after the bodies

@@ -13,15 +13,15 @@ namespace {
 // Number of nodes that are smoothed in a tick.
 constexpr std::size_t nodes_per_tick = 24;
 
-// Fraction of a bump that is removed at a time. The largest eigenvalue of the flow is 8 (two lines, 4 each),
-// so that an explicit step is stable below 2 / 8.
+// Fraction of a bump that is removed in one step. The largest eigenvalue of the flow is 8 (two lines, 4
+// each), so that an explicit step is stable below 2 / 8.
 constexpr double shell_fraction = 0.15;
 
-// Fraction by which inner nodes return to their rest position among their six neighbours at a time, which
+// Fraction by which inner nodes return to their rest position among their six neighbours in one step, which
 // keeps cells even. Stable below 1.
 constexpr double inner_fraction = 0.3;
 
-// Largest movement of a node at a time, in lattice cells.
+// Largest movement of a node in one step, in lattice cells.
 constexpr double max_move_cells = 0.05;
 
 }  // namespace

@@ -46,7 +46,7 @@ class Smoothing {
   struct Curvature {
     Vector3 normal;                 // unit
     std::array<double, 2> per_m{};  // along each pair; positive where the side of the normal is convex
-    std::array<double, 2> height_factor{};  // height over the neighbours per curvature, m^2
+    std::array<double, 2> height_factor{};  // height above the neighbours per curvature, m^2
   };
 
   // Returns nothing where fewer than two lines cross or a line has no length.
@@ -55,7 +55,7 @@ class Smoothing {
   // Returns the change of the curvature since the rest shape.
   std::optional<Curvature> bend_at(const SpringLattice& lattice, int node) const;
   // Returns the bend of a neighbour along the line that leads to `node`. Lowers `height_factor` to the
-  // neighbour's if that is less.
+  // neighbour's height factor if that is less.
   std::optional<double> bend_toward(const SpringLattice& lattice, int neighbour, int node,
                                     double& height_factor) const;
   // Displacement of a shell node from the shape without its bump.

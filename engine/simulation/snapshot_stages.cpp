@@ -9,7 +9,7 @@
 namespace spoonbill {
 namespace {
 
-// Largest number of cached structures; a session rarely returns to as many.
+// Largest number of cached structures; a session rarely uses as many again.
 constexpr std::size_t max_cached_structures = 32;
 // Fingerprint that stands for the tool.
 constexpr std::uint64_t tool_structure = 0;

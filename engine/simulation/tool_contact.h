@@ -50,7 +50,7 @@ Result<ToolModel> make_tool_model(const Tool& tool, InstructionSet set);
 // Pose of a tool in the hand, and what the hand does with it.
 struct ToolHold {
   Pose pose;
-  // Axes of the tool in the world: the pose's orientation, or its mirror image.
+  // Axes of the tool in the world: the orientation of the pose, or the mirror image of that orientation.
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   double reach_m = 0.0;  // largest movement of any part of the tool in this tick, at least 0
   bool gripping = false;
@@ -110,7 +110,7 @@ class ToolContact {
   void find(BodyContact& contact, const BodyState& body, const Tool& tool, const ToolModel& model,
             const ToolHold& hold);
   void find_near_points(BodyContact& contact, const BodyState& body, double margin, const ToolHold& hold);
-  // Replaces the contact with a shell's surface by that with the face that the tool is nearest to.
+  // Replaces the contact with a shell's surface by the contact with the face that is nearest to the tool.
   void select_shell_face(BodyContact& contact, const BodyState& body, double margin) const;
   // Returns whether the tool is a sphere that fits between samples.
   bool is_small(const BodyState& body) const;

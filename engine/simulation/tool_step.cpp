@@ -68,8 +68,8 @@ double find_largest_stiffness_ratio(const Simulation::State& s) {
   return ratio;
 }
 
-// Returns the coupling stiffness. With an implicitly solved body, a hand without coupling gets one all the
-// same, because a stiff body does not yield to a rigidly held tool.
+// Returns the coupling stiffness. With an implicitly solved body, even a hand without coupling gets a
+// coupling spring, because a stiff body does not yield to a rigidly held tool.
 double choose_coupling(const Simulation::State& s, double wanted_n_per_m) {
   constexpr double hold_n_per_m = 1000.0;
   const auto is_stiff = [](const BodyState& body) { return body.active_solver() != nullptr; };
@@ -155,8 +155,8 @@ Vector3 compute_force(const Simulation::State& s) {
   return force;
 }
 
-// Returns the force on the hand through a soft tool. Tool and bodies are softened by different factors; of
-// two in series the softer one determines the real force.
+// Returns the force on the hand through a soft tool. Tool and bodies are softened by different factors; since
+// both act in series, the softer one determines the real force.
 Vector3 compute_soft_tool_force(const Simulation::State& s) {
   const std::size_t tool = s.bodies.size() - 1;
   double ratio = stiffness_ratio(s, tool);

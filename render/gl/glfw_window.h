@@ -52,7 +52,7 @@ class GlfwWindow final : public GlContext {
   int height() const;
   void resize(int width, int height);  // screen coordinates; the display may delay or refuse the change
 
-  // Returns the size of a pixel of the interface in pixels of the display: 1 on an ordinary display, 2 on a
+  // Returns the number of display pixels along one pixel of the interface: 1 on an ordinary display, 2 on a
   // dense one. Changes when the window moves to another display.
   double scale() const;
 

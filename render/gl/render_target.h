@@ -1,6 +1,6 @@
 // The picture being drawn, in two layers.
 //
-// The scene layer has 0 or 4 samples a pixel and is transparent where nothing was drawn. The frame layer
+// The scene layer has 0 or 4 samples per pixel and is transparent where nothing was drawn. The frame layer
 // receives the background, the scene and the interface, and pixels are read from it. Shaders compute in
 // linear light and encode to sRGB themselves, because an sRGB target would encode every sample.
 #pragma once
@@ -22,7 +22,7 @@ struct PixelArea {
 
 class RenderTarget {
  public:
-  // Errors: sample counts other than 0 and 4, sizes that the context does not support.
+  // Creates the layers. Errors: sample counts other than 0 and 4, sizes that the context does not support.
   static Result<RenderTarget> make(const GlFunctions& gl, int width_px, int height_px, int samples);
 
   int width_px() const { return width_px_; }

@@ -95,7 +95,7 @@ void visit_boundary(const LatticeSnapshot& lattice, const Visit& visit) {
 
 constexpr float net_width_px = 1.1f;
 
-// Size of the diamonds, constant on the screen.
+// Radius of the diamonds in the world; at 0, their size is constant on the screen.
 constexpr float net_radius_m = 0.0f;
 constexpr float net_radius_px = 2.0f;
 
@@ -155,7 +155,7 @@ void append_cell_lines(const LatticeSnapshot& lattice, const Eigen::Vector3f& ey
       edges.push_back({low, high, is_near});
     }
   });
-  // The near copy of an edge between two faces sorts first and survives.
+  // The near copy of an edge between two faces is sorted first and is the one that stays.
   std::sort(edges.begin(), edges.end(), [](const Edge& one, const Edge& other) {
     if (one.from != other.from) return one.from < other.from;
     if (one.to != other.to) return one.to < other.to;

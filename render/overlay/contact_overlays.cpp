@@ -64,8 +64,8 @@ bool is_shown(const ViewSettings& settings) {
   return settings.stages && settings.overlays.contact_stage != ContactStage::none;
 }
 
-// Returns the point of the tool, or of its bounding box, that a ray from its centre leaves last. A soft tool
-// has its position instead.
+// Returns the point of the tool, or of its bounding box, that a ray from its centre leaves last. For a soft
+// tool, returns its position instead.
 Vector3 find_arrow_start(const Snapshot& snapshot, const Vector3& direction) {
   const ToolSnapshot& tool = snapshot.tool;
   const ToolBody* body = rigid_body(tool);
@@ -173,7 +173,7 @@ std::optional<ForceArrow> force_arrow(const Snapshot& snapshot, const ViewSettin
   const double newtons = snapshot.force_n.norm();
   if (!settings.overlays.force || !(newtons >= smallest_n)) return std::nullopt;
   constexpr double longest_m = 0.060;
-  // An arrow shorter than its head would have no shaft.
+  // Smallest length of an arrow: an arrow shorter than its head would have no shaft.
   constexpr double shortest_m = 0.006;
   const double maximum_m = std::max(longest_m, 5.0 * snapshot.tool.radius_m);
   const double length_m = std::clamp(newtons * settings.arrow_m_per_n, shortest_m, maximum_m);

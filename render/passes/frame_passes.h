@@ -11,8 +11,8 @@
 
 namespace spoonbill {
 
-// Draws the vertical gradient behind the scene. The gradient is made once for a size and copied to every
-// frame, which takes a tenth of the time of drawing it.
+// Draws the vertical gradient behind the scene. The gradient is made once for each frame size and copied to
+// every frame, which takes a tenth of the time that drawing it would take.
 class BackgroundPass {
  public:
   explicit BackgroundPass(const GlFunctions& gl) : gl_(&gl) {}

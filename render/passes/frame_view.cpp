@@ -162,7 +162,7 @@ Lit studio_light(Look look, vec3 p, vec3 n, float key, float sky) {
   vec3 ambient = mix(floor_colour * floor_seen, sky_colour, 0.5 + 0.5 * n.y) * sky;
   vec3 light = ambient + key_colour * key_share * key + fill_colour * max(dot(n, toward_fill), 0.0) * sky +
                rim_colour * max(dot(n, toward_rim), 0.0);
-  // Light transmitted from behind.
+  // Light that is transmitted from behind the surface.
   float away = clamp(0.5 - 0.5 * nl, 0.0, 1.0);
   light += look.translucency * key_colour * 0.35 * away * sqrt(away) * (0.4 + 0.6 * key);
 

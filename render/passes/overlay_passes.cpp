@@ -40,7 +40,8 @@ void main() {
   along = length_px > 1e-4 ? along / length_px : vec2(1.0, 0.0);
   bool at_end = gl_VertexID == 1 || gl_VertexID == 2 || gl_VertexID == 4;
   float side = gl_VertexID == 2 || gl_VertexID == 4 || gl_VertexID == 5 ? 1.0 : -1.0;
-  // Wide enough that every pixel of the line is covered fully, so that only the smooth edge is visible.
+  // Makes the quad wide enough that every pixel of the line is covered fully, so that only the smooth edge is
+  // visible.
   side_px = side * (half_width + 1.25);
   colour = at_end ? end_colour : start_colour;
   vec4 clip = at_end ? b : a;
@@ -80,7 +81,7 @@ flat out int shape;
 void main() {
   float px_per_m = pixel_depth_ratio / max((world_to_clip * vec4(centre, 1.0)).w, 1e-6);
   radius_px = clamp(radius * px_per_m, least_px * scale, 7.0 * scale);
-  // Far enough toward the eye that a slanting surface does not cut off the near half.
+  // Raises the mark far enough toward the eye that a slanting surface does not cut off the near half.
   float raised = max(lift, 2.5 * radius_px / px_per_m);
   vec4 clip = world_to_clip * vec4(centre + normalize(eye - centre) * raised, 1.0);
   colour = srgb;

@@ -23,7 +23,7 @@ struct InstanceAttribute {
 // and the attributes of the instance at locations 0, 1, ...
 class InstancedQuads {
  public:
-  // The context must be current here and in draw().
+  // The context must be current during construction and in draw().
   InstancedQuads(const GlFunctions& gl, std::size_t instance_bytes,
                  std::initializer_list<InstanceAttribute> attributes);
 
@@ -96,7 +96,7 @@ class TrianglePass {
  public:
   static Result<TrianglePass> make(const GlFunctions& gl);
 
-  // Draws three corners a triangle, moved toward the eye by lift_m before the depth test.
+  // Draws triangles, given as three corners each, moved toward the eye by lift_m before the depth test.
   void draw(const FrameView& view, const std::vector<OverlayCorner>& corners, float lift_m) const;
 
  private:

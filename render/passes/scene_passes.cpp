@@ -13,12 +13,12 @@ namespace {
 constexpr float arrow_width_px = 5.0f;
 constexpr float smallest_tool_px = 5.0f;
 constexpr float stage_arrow_px = 3.0f;
-// Lift of shapes on a surface above its chords.
+// Distance by which shapes on a surface are lifted above the surface's chords.
 constexpr float stage_lift_m = 0.0004f;
 constexpr float ghost_translucency = 0.85f;
 
 // Lift of marks on the surface, as a fraction of a lattice cell: marks stay visible above the chords of a
-// curve, and those on the far side stay hidden.
+// curve, and marks on the far side stay hidden.
 constexpr float lift_fraction_of_cell = 0.4f;
 constexpr float lift_without_lattice_m = 0.0002f;
 

@@ -30,9 +30,9 @@ struct ShadowArea {
 // Tangent of half the angle of the key light: the rate at which shadows soften with distance.
 inline constexpr float key_light_spread = 0.17f;
 
-// Computes the shadow area. Corner and side move in steps of texels and of eighths of the size, so that edges
-// do not crawl while the scene moves slightly. The tool needs space on the ground but is not in the map.
-// Either box may be empty. toward_key points above the horizon.
+// Computes the shadow area. The corner moves in steps of texels and the side in eighths of the size, so that
+// edges do not crawl while the scene moves slightly. The tool needs space on the ground but is not in the
+// map. Either box may be empty. toward_key points above the horizon.
 ShadowArea shadow_area(const Box& body, const Box& tool, float ground_y_m, const Eigen::Vector3f& toward_key,
                        int map_side_px);
 

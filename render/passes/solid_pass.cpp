@@ -94,7 +94,7 @@ SolidVertex revolve(const LathePoint& p, double angle) {
   return {{p.radius * c, p.height, p.radius * s}, {p.normal_out * c, p.normal_up, p.normal_out * s}};
 }
 
-// Appends the band between two profile points, the lower one first. Three vertices a triangle,
+// Appends the band between two profile points, the lower one first. Each triangle has three vertices,
 // counter-clockwise seen from outside.
 void append_band(const LathePoint& low, const LathePoint& high, int segments,
                  std::vector<SolidVertex>& vertices) {

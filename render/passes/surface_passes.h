@@ -34,7 +34,7 @@ class SurfacePass {
                     const ToolSphere& tool, const ShadowPass* shadow) const;
 
   const GlFunctions* gl_;
-  // Two programs, because a software renderer computes both sides of every branch.
+  // Two programs are used, because a software renderer computes both sides of every branch.
   Program opaque_, translucent_;
 };
 

@@ -47,7 +47,7 @@ SamplingLevel choose_sampling_level(const SurfaceSnapshot& surface, double pixel
                                     const SamplingLevel& previous, const SamplingTarget& target = {});
 
 // Returns the parameters of a direction, aligned with the knots. The seam of a periodic direction appears
-// once. `pieces` has one entry a span.
+// once. `pieces` has one entry per span.
 std::vector<double> drawing_parameters(const KnotVector& knots, const std::vector<int>& pieces);
 
 // Computes the vertices and normals of a deforming mesh, smooth where adjacent faces are nearly parallel and
@@ -60,7 +60,7 @@ class MeshShading {
   // Finds the edges in the current shape of the mesh. They stay edges while the mesh deforms.
   void rebuild(const MeshSnapshot& mesh);
 
-  // Three vertex indices a triangle, counter-clockwise seen from outside.
+  // Vertex indices, three per triangle, counter-clockwise seen from outside.
   const std::vector<std::uint32_t>& indices() const { return indices_; }
 
   // Computes positions and normals of the vertices. Requires matches(mesh). Allocates nothing once `samples`
@@ -87,7 +87,7 @@ class TessellatedSurface {
 
   // Updates from a mesh, whose triangles do not depend on a level.
   void update(const MeshSnapshot& mesh);
-  // Returns whether the last update was from a mesh.
+  // Returns whether the last update() received a mesh.
   bool is_mesh() const { return is_mesh_; }
 
   const SamplingLevel& level() const { return level_; }

@@ -42,9 +42,9 @@ struct ToolVertex {
   Eigen::Vector3f normal;  // unit, outward
 };
 
-// A triangle mesh in the frame of the tool. Three indices a triangle, counter-clockwise seen from outside.
-// Vertices are shared where the solid is smooth and duplicated along its edges. An open sheet has triangles
-// on both sides.
+// A triangle mesh in the frame of the tool. Each triangle has three indices, counter-clockwise seen from
+// outside. Vertices are shared where the solid is smooth and duplicated along its edges. An open sheet has
+// triangles on both sides.
 struct ToolMesh {
   std::vector<ToolVertex> vertices;
   std::vector<std::uint32_t> indices;

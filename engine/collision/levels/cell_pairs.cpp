@@ -10,7 +10,7 @@ namespace spoonbill {
 
 namespace {
 
-// Number of slab groups in the cache, which is cleared once it is full.
+// Number of groups of slabs in the cache, which is cleared once it is full.
 constexpr int group_capacity = 8192;
 // Factor that allows for rounding: the cells of one element differ slightly in their parameter steps.
 constexpr double size_tolerance = 1.0 + 1e-9;
@@ -32,7 +32,7 @@ void CellSlabs::begin() {
   used_ = 0;
 }
 
-// Copies 3 x 3 samples, `stride` apart, starting at the cell's low corner.
+// Copies 3 x 3 samples of the finest grid, `stride` apart, starting at the cell's low corner.
 void CellSlabs::gather_samples(const LevelCell& cell, int stride) {
   levels_->sample_element(cell.i >> levels_->nested().levels, cell.j >> levels_->nested().levels);
   const PlanarPoints from = levels_->samples();
@@ -141,7 +141,7 @@ void ElementTree::update_strip(SurfaceLevels& levels, int element_u) {
     Box& box = boxes_[index];
     box = strip_[element_v];
     sizes_[index] = (box.high - box.low).sum();
-    // Six bulges are included in the sum.
+    // The sum of a box's sides includes six bulges.
     if (bulges_[element_v] <= 0.1 * sizes_[index]) continue;
     const Box hull = control_box(levels.surface().net, element_u, element_v);
     box = {box.low.cwiseMax(hull.low), box.high.cwiseMin(hull.high)};
@@ -212,8 +212,8 @@ const std::vector<CellPair>& CellPairs::find_within_at_level(double reach_m, int
   return pairs_;
 }
 
-// Starts from the centre of the smaller surface's box and takes the larger surface's element nearest to it,
-// then the smaller surface's element nearest to that.
+// Takes the larger surface's element nearest to the centre of the smaller surface's box, then the smaller
+// surface's element nearest to that element.
 CellPair CellPairs::find_likely_near_elements() const {
   const auto centre = [](const Box& box) -> Vector3 { return 0.5 * (box.low + box.high); };
   const bool first_is_smaller = first_tree_.size(first_tree_.root()) < second_tree_.size(second_tree_.root());
@@ -278,7 +278,7 @@ void CellPairs::refine(const CellPair& elements, double reach, int level) {
   }
 }
 
-// Children of the same two parents are neighbours, so the later pairs continue the region of the first.
+// Children of the same two parents are neighbours, so the later pairs continue the region of the first pair.
 void CellPairs::add_pair(const NodePair& nodes, bool is_first) {
   overflow_ = overflow_ || pairs_.size() == limit_;
   if (!overflow_) pairs_.push_back({nodes.first.cell, nodes.second.cell, is_first ? 0 : -1});

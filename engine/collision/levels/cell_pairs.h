@@ -41,14 +41,14 @@ class CellSlabs {
             4 * node.index_in_element + 1 + lane};
   }
 
-  // Returns the slabs of the four children of a cell that is not at the finest level. Lane 2 a + b is half a
-  // along u and half b along v. Valid until the next call.
+  // Returns the slabs of the four children of a cell that is not at the finest level. Lane 2 a + b holds the
+  // child in half a along u and half b along v. The result is valid until the next call.
   const SlabGroup& children(const QuadtreeCell& node) {
     SlabGroup* group = nullptr;
     if (claim_slot(node.key(), group)) compute_children(node.cell, *group);
     return *group;
   }
-  // Returns the slab of the cell itself, repeated in each lane. Valid until the next call.
+  // Returns the slab of the cell itself, repeated in each lane. The result is valid until the next call.
   const SlabGroup& single(const QuadtreeCell& node) {
     SlabGroup* group = nullptr;
     if (claim_slot(keys_ + node.key(), group)) compute_single(node.cell, *group);
@@ -98,7 +98,7 @@ class ElementTree {
   };
 
   // Updates the boxes to the current shape. An element's box encloses its corners and bulge. Where the
-  // surface is far from flat, it is intersected with the box of the element's control points.
+  // surface is far from flat, this box is intersected with the box of the element's control points.
   void update(SurfaceLevels& levels);
 
   int root() const { return 0; }
@@ -137,7 +137,7 @@ inline constexpr std::size_t cell_pair_capacity = 1 << 19;
 struct CellPair {
   LevelCell first, second;
   // Index of the region, set by ContactRegions. Before that, -1 if both cells are equal to or neighbours of
-  // those of the preceding pair, otherwise 0.
+  // the cells of the preceding pair, otherwise 0.
   int region = 0;
 };
 

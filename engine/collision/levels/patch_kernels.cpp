@@ -12,7 +12,7 @@ constexpr float offset_rounding = 1e-6F;
 constexpr float rounded_down = 1.0F - 1e-5F;
 constexpr float rounded_up = 1.0F + 1e-5F;
 
-// One sum per lane. The alignment is that of one number, not of the whole vector.
+// One sum per lane. Requires the alignment of one number only, not of the whole vector.
 typedef double Lanes __attribute__((vector_size(slab_lanes * sizeof(double)), aligned(sizeof(double))));
 
 // Adds weights[k] * values[k][j] over k for four neighbouring j.
@@ -121,7 +121,7 @@ void compute_slabs(const PlanarPoints& samples, double bulge, SlabGroup& group) 
       group.along_v[axis][k] = static_cast<float>(v[axis][k]);
     }
   }
-  // Unrolling this loop early would keep GCC from vectorising the lanes.
+  // If GCC unrolled this loop early, it would not vectorise the lanes.
 #pragma GCC unroll 1
   for (int k = 0; k < slab_lanes; ++k) {
     const double x = u[1][k] * v[2][k] - u[2][k] * v[1][k];
@@ -244,7 +244,7 @@ inline __attribute__((always_inline)) void find_separated(const ManySlabs& a, co
   store_product_magnitude(b.normal, a.v, v_b);
   separated = across_a > a.thickness + b.slack + u_a + v_a + further;
   separated |= across_b > b.thickness + a.slack + u_b + v_b + further;
-  // The slabs are apart if squared > along + slack * length; both sides are squared to avoid the root.
+  // The slabs are apart if squared > along + slack * length; the inequality is squared to avoid the root.
   Many au, av, bu, bv;
   store_product_magnitude(a.u, offset, au);
   store_product_magnitude(a.v, offset, av);

@@ -7,8 +7,9 @@ namespace spoonbill {
 
 inline constexpr int slab_lanes = 4;
 
-// Basis function values of one element in one direction, at its finest samples. `values` has `bandwidth` rows
-// of `padded` numbers, zero beyond `samples`; `controls` holds the index of each row's control point.
+// Values of an element's basis functions in one direction, at the element's samples of the finest level.
+// `values` has `bandwidth` rows of `padded` numbers, zero beyond `samples`; `controls` holds the index of
+// each row's control point.
 struct TileBand {
   const int* controls;
   const double* values;
@@ -55,8 +56,8 @@ struct PatchKernels {
   void (*compute_slabs)(const PlanarPoints& samples, double bulge, SlabGroup& group);
 
   // Returns bit 4 i + j set if slab i of the first group may be within `reach` of slab j of the second. The
-  // tested planes are across both normals and across the line between the centres. `lanes` is the number of
-  // slabs of the first group, 1 or 4.
+  // tested separating planes are perpendicular to the two normals and to the line between the centres.
+  // `lanes` is the number of slabs of the first group, 1 or 4.
   unsigned (*find_meeting)(const SlabGroup& first, int lanes, const SlabGroup& second, float reach);
 };
 

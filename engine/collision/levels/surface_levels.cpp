@@ -87,8 +87,8 @@ void SurfaceBounds::unroll_row(const ControlNet& net, int i) {
   }
 }
 
-// Computes the squared norms of the second derivatives' control points in one unrolled row, for all columns.
-// Rows i and i + 1 must be unrolled already.
+// Computes the squared norms of the second derivatives' control points in one row of the unrolled net, for
+// all columns. Rows i and i + 1 must be unrolled already.
 void SurfaceBounds::update_row_norms(const ControlNet& net, int i) {
   if (i + 2 < rows_) unroll_row(net, i + 2);
   const std::vector<double>*const here = row_[i % 3], *const next = row_[(i + 1) % 3],
@@ -289,7 +289,7 @@ SurfaceLevels::Bands SurfaceLevels::make_bands(const GridDirection& direction, i
     for (int sample = 0; sample < bands.samples; ++sample) {
       const int row = first_row + sample;
       const int shift = sample + 1 < bands.samples ? 0 : knots_at_end(direction, levels, element);
-      // The remaining functions belong only to the next element and vanish at this sample.
+      // The remaining basis functions belong only to the next element and vanish at this sample.
       for (int k = 0; k + shift < bands.bandwidth; ++k) {
         bands.values[(element * bands.bandwidth + k + shift) * bands.padded + sample] =
             matrix.values[row * bands.bandwidth + k];
@@ -506,8 +506,8 @@ const CoverSphere& SurfaceLevels::cover(const LevelCell& cell) {
 
 namespace {
 
-// Returns the gap from the corners of a to those of b along `direction`, times its length; negative if they
-// overlap.
+// Returns the gap from the corners of a to the corners of b along `direction`, multiplied by the length of
+// `direction`; negative if they overlap.
 double gap_along(const Vector3& direction, const PatchCorners& a, const PatchCorners& b) {
   double last_a = -std::numeric_limits<double>::infinity(), first_b = -last_a;
   for (const Vector3& corner : a) last_a = std::max(last_a, direction.dot(corner));

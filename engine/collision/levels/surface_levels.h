@@ -19,7 +19,7 @@
 namespace spoonbill {
 
 // A rectangle in a surface's parameter domain that encloses some cells of a grid. In a periodic direction it
-// is the whole domain if there are cells on both sides of the seam.
+// covers the whole domain if there are cells on both sides of the seam.
 struct ParameterRange {
   double u0, u1, v0, v1;
   bool contains(double u, double v) const { return u0 <= u && u <= u1 && v0 <= v && v <= v1; }
@@ -79,7 +79,7 @@ class SurfaceBounds {
   std::uint64_t stamp_ = 1;
   std::vector<std::uint64_t> column_at_,
       element_at_;                        // stamp of the last update, by unrolled column and by element_v
-  std::vector<double> row_[3][3];         // working memory: unrolled row i of control points at i mod 3
+  std::vector<double> row_[3][3];         // working memory: row i of the unrolled net is at index i mod 3
   std::vector<double> low_[3], high_[3];  // per control column
   std::vector<Box> row_boxes_;            // per control row
 };
@@ -125,8 +125,8 @@ class SurfaceLevels {
   // Starts a query. Call it whenever the control points may have moved. If none moved since the last call, it
   // returns false and all evaluated values stay valid. The surface must have the grid's knots and outlive the
   // calls below. The optional `samples` are all samples of the finest grid in the order of
-  // GridEvaluator<double>; no sample is then evaluated. They must belong to the surface and outlive the calls
-  // below.
+  // GridEvaluator<double>; no sample is then evaluated. These samples must belong to the surface and outlive
+  // the calls below.
   bool begin(const Surface& surface, const PlanarPoints& samples = {});
 
   const Surface& surface() const { return *surface_; }
@@ -137,7 +137,7 @@ class SurfaceLevels {
 
   // Returns one sample; index is row * columns + column of the finest grid.
   Vector3 sample(int index);
-  // Evaluates the samples of the coarsest level in one column, which share their sums along v.
+  // Evaluates the samples of the coarsest level in one column; they share their sums along v.
   void sample_column(int column);
   // Evaluates all samples of one element. Cheaper than single samples, with bitwise equal results.
   void sample_element(int element_u, int element_v);
@@ -203,18 +203,19 @@ class SurfaceLevels {
       column_at_;                    // generation in which the coarsest samples of a column were evaluated
   std::vector<CoverSphere> covers_;  // by cell_index()
   std::vector<std::uint32_t> covered_at_;
-  std::vector<int> first_cell_;  // per level
+  std::vector<int> first_cell_;  // index of the first cell of each level
   std::uint32_t generation_ = 0;
   int samples_evaluated_ = 0;
 };
 
 // Returns a lower bound of the distance between two patches, in metres: the largest gap along the line
-// between their centres and along both normals, less both bulges. A surface leaves the hull of its patch's
+// between their centres and along both normals, minus both bulges. A surface leaves the hull of its patch's
 // corners by at most its bulge, so a plane that separates the hulls bounds the distance.
 double patch_distance(const PatchCorners& a, double bulge_a, const PatchCorners& b, double bulge_b);
 
 // Returns a lower bound of the distance between two patches, in metres: the largest gap along the in-plane
-// directions across the sides of each patch, less both bulges. It separates slivers that are side by side.
+// directions across the sides of each patch, minus both bulges. This bound separates slivers that are side by
+// side.
 double patch_distance_in_plane(const PatchCorners& a, double bulge_a, const PatchCorners& b, double bulge_b);
 
 }  // namespace spoonbill

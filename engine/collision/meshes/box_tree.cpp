@@ -91,10 +91,10 @@ BoxTree::BoxTree(const std::vector<Box>& boxes, std::uint32_t leaf_size) {
 namespace {
 
 constexpr std::uint32_t mesh_leaf_size = 4;
-// Cosine of 50 degrees, between the common edge angles of 45 and 60 degrees so that rounding does not decide.
+// Cosine of 50 degrees. Common edge angles are 45 and 60 degrees; between them, rounding does not decide.
 constexpr double wall_cosine = 0.6428;
 
-// Slab test of a ray against a box (Kay and Kajiya 1986).
+// Tests a ray against a box by its slabs (Kay and Kajiya 1986).
 bool ray_hits_box(const Box& box, const Vector3& from, const Vector3& direction, double farthest) {
   double near = 0.0, far = farthest;
   for (int axis = 0; axis < 3; ++axis) {

@@ -22,8 +22,9 @@ class BoxTree {
  public:
   struct Node {
     Box box;
-    std::uint32_t first;  // in a leaf the start in order(); otherwise the right child, while the left one
-                          // follows its parent
+    // in a leaf, its first position in order(); otherwise the right child; the left child
+    std::uint32_t first;
+    // directly follows its parent
     std::uint32_t count;  // number of items in a leaf; 0 in an inner node
     bool is_leaf() const { return count > 0; }
   };
@@ -53,7 +54,7 @@ class BoxTree {
   // range of order(), and first_right(left, right) returns true to visit the right child first.
   template <class Descend, class FirstRight, class Leaf>
   void search(const Descend& descend, const FirstRight& first_right, const Leaf& leaf) const {
-    // Two entries for each halving of at most 2^32 items.
+    // Each halving of at most 2^32 items needs two entries.
     std::array<std::uint32_t, 66> pending;
     std::uint32_t count = 1;
     pending[0] = 0;
@@ -76,7 +77,8 @@ class BoxTree {
   std::vector<std::uint32_t> order_;
 };
 
-// Lower bound of the signed distance to the contents of the box: positive outside, negative inside.
+// Returns a lower bound of the signed distance of the box's contents: the signed distance of the box itself,
+// positive outside and negative inside.
 inline double signed_distance(const Box& box, const Vector3& point) {
   const Vector3 beyond = (box.low - point).cwiseMax(point - box.high);
   return beyond.maxCoeff() > 0.0 ? beyond.cwiseMax(0.0).norm() : beyond.maxCoeff();
@@ -96,7 +98,7 @@ class LineExits {
   explicit LineExits(std::vector<Triangle> triangles);
 
   // Returns the nearest triangle hit along the unit direction whose outward normal has a positive component
-  // along it. Triangles that the line enters are ignored.
+  // along that direction. Triangles through which the line enters the body are ignored.
   std::optional<LineExit> first(const Vector3& from, const Vector3& direction) const;
 
   const std::vector<Triangle>& triangles() const { return triangles_; }
@@ -107,15 +109,15 @@ class LineExits {
   std::unique_ptr<BoxTree> tree_;
 };
 
-// Returns true if a line in the unit direction leaves through a wall: if the direction is within 50 degrees
-// of the triangle's normal. A more oblique exit is beside an edge, where the distance between the sides does
-// not measure a wall's thickness.
+// Returns true if a line in the unit direction leaves through a wall, that is, if the direction is within 50
+// degrees of the triangle's normal. A more oblique exit is beside an edge, where the distance between the
+// sides does not measure a wall's thickness.
 bool exits_through_wall(const Triangle& triangle, const Vector3& direction);
 
 struct MeshIntersection {
   std::uint32_t first = 0, second = 0;  // triangle indices
-  // Smaller of the two depths by which each triangle penetrates the other's plane, in metres. Limited by the
-  // size of the triangles.
+  // Smaller of the two depths by which each triangle penetrates the plane of the other, in metres. The size
+  // of the triangles limits it.
   double depth_m = 0.0;
 };
 
@@ -128,7 +130,8 @@ struct MeshIntersections {
 // millionth. `triangles` must be in the order of the tree's leaves.
 //
 // The search takes about a microsecond per triangle without intersections. It ends early if it needs more
-// than 200 pair tests per triangle, as with long needles. `progress` can stop it but gets no fraction done.
+// than 200 pair tests per triangle, as with long needles. `progress` can stop it; no finished fraction is
+// reported.
 MeshIntersections self_intersections(const std::vector<Vector3>& vertices_m,
                                      const std::vector<TriangleCorners>& triangles, const BoxTree& tree,
                                      std::size_t limit, const Progress& progress = {});

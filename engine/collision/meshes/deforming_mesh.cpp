@@ -27,8 +27,8 @@ std::vector<Box> make_boxes(const TriangleMesh& mesh) {
   return boxes;
 }
 
-// Arc tangent for x from 0 to 1, accurate to 2e-8 (Abramowitz and Stegun 1964, 4.4.49). The C library's
-// differs in its last bits between processors, which would change the simulation's state.
+// Returns the arc tangent for x from 0 to 1, accurate to 2e-8 (Abramowitz and Stegun 1964, 4.4.49). The C
+// library's result differs in its last bits between processors, which would change the simulation's state.
 double arc_tangent(double x) {
   constexpr double term[] = {-0.3333314528, 0.1999355085, -0.1420889944, 0.1065626393,
                              -0.0752896400, 0.0429096138, -0.0161657367, 0.0028662257};
@@ -38,7 +38,7 @@ double arc_tangent(double x) {
   return x * (1.0 + sum);
 }
 
-// Angle between two unit vectors, 0 to pi. Half of it has the tangent |a - b| / |a + b|.
+// Returns the angle between two unit vectors, 0 to pi. The tangent of half the angle is |a - b| / |a + b|.
 double corner_angle(const Vector3& a, const Vector3& b) {
   constexpr double quarter_turn = 1.57079632679489662;
   const double across = (a - b).norm(), along = (a + b).norm();

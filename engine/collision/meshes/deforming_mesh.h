@@ -42,7 +42,7 @@ class DeformingMesh {
   const Box& bounds() const { return tree_.nodes()[0].box; }
 
   // Returns the nearest point, or nothing beyond `reach_m`. The sign of the gap comes from the normals of
-  // faces, edges and vertices; those of vertices are weighted by angle (Baerentzen and Aanaes 2005).
+  // faces, edges and vertices; the normals of vertices are weighted by angle (Baerentzen and Aanaes 2005).
   std::optional<NearestOnMesh> nearest(const Vector3& point_m, double reach_m) const;
 
  private:

@@ -15,12 +15,12 @@ namespace spoonbill {
 
 namespace {
 
-// Distance over radius beyond which a node counts as a dipole. Barill et al. use 2 with second-order moments;
-// without these, 3 gives the same accuracy.
+// Ratio of distance to radius beyond which a node counts as a dipole. Barill et al. use 2 with second-order
+// moments; without such moments, 3 gives the same accuracy.
 constexpr double far_radii = 3.0;
 
 struct Moments {
-  Vector3 area = Vector3::Zero();  // half the sum of the cross products
+  Vector3 area = Vector3::Zero();  // half the sum of the triangles' cross products
   Vector3 weighted = Vector3::Zero();
   double weight = 0.0;
 };

@@ -28,7 +28,7 @@ class WindingNumber {
  private:
   struct Dipole {
     Vector3 centre_m, area_m2;
-    double far_m;  // distance beyond which the dipole replaces its triangles
+    double far_m;  // distance beyond which the dipole replaces the node's triangles
   };
   const std::vector<Vector3>* vertices_m_;
   const std::vector<TriangleCorners>* triangles_;
@@ -55,12 +55,14 @@ class ShellDistance {
 
   const Box& bounds() const { return tree_.nodes()[0].box; }
 
-  // True if the sign comes from the normals of faces, edges and vertices; those of vertices are weighted by
-  // angle (Baerentzen and Aanaes 2005). This requires a manifold of at most `checked_triangles` without
-  // self-intersections. Otherwise the winding number gives the sign, which takes at least twice as long.
+  // True if the sign comes from the normals of faces, edges and vertices; the normals of vertices are
+  // weighted by angle (Baerentzen and Aanaes 2005). This requires a manifold of at most `checked_triangles`
+  // without self-intersections. Otherwise the winding number gives the sign, which takes at least twice as
+  // long.
   bool uses_normals() const { return !corner_normals_.empty(); }
 
-  // True if all vertices are behind all faces, to 1e-7 of the size. False also if that was not tested.
+  // True if all vertices are behind all faces, to 1e-7 of the size. It is also false if convexity was not
+  // tested.
   bool is_convex() const;
 
   static constexpr std::size_t checked_triangles = 1'000'000;
@@ -83,15 +85,16 @@ class ShellDistance {
   std::optional<WindingNumber> winding_;
 };
 
-// Default thickness of a sheet in metres. A slowly moved surface does not pass through it between two ticks.
+// Default thickness of a sheet in metres. Between two ticks, a slowly moved surface does not pass through a
+// sheet of this thickness.
 inline constexpr double sheet_thickness_m = 1e-3;
 
 // Signed distance to the union of the mesh's closed parts, without their cavities, and of its sheets. A sheet
 // is a plate of the given thickness with rounded edges, centred on the sheet.
 //
 // Outside, and inside a single solid, the distance is exact to rounding. Where parts overlap, it is the depth
-// in the part in which the point is deepest, a lower bound of the true depth. The distance is continuous and
-// changes by at most the distance moved. Immutable; any thread.
+// in the part in which the point is deepest, a lower bound of the true depth. When a point moves, its
+// distance changes continuously and by at most the distance that the point moved. Immutable; any thread.
 class MeshDistance final : public SignedDistance {
  public:
   explicit MeshDistance(const CleanMesh& mesh, double thickness_m = sheet_thickness_m);

@@ -103,8 +103,8 @@ std::vector<std::uint32_t> cut_edges(TriangleMesh& mesh, double longest) {
   return midpoint;
 }
 
-// Appends the pieces of a triangle. Rotates `corner` until a single cut is in the first side, or a single
-// uncut side is the last.
+// Appends the pieces of a triangle. Rotates `corner` so that a single cut is in the first side, or so that a
+// single uncut side is the last.
 void add_pieces(const TriangleMesh& mesh, TriangleCorners corner, std::array<std::uint32_t, 3> midpoint,
                 std::vector<TriangleCorners>& out) {
   int cuts = 0;

@@ -37,8 +37,9 @@ class MeshEdges {
   std::size_t open_count() const { return open_count_; }
   std::size_t branching_count() const { return branching_count_; }  // counts edges, not sides
 
-  // Sides on the boundary. An open edge contributes its side; a branching edge contributes the surplus of
-  // sides in its prevailing direction. In a consistently oriented mesh the boundary consists of closed loops.
+  // Returns the sides on the boundary. An open edge contributes its side; a branching edge contributes the
+  // sides by which its prevailing direction outnumbers the other. In a consistently oriented mesh the
+  // boundary consists of closed loops.
   const std::vector<MeshSide>& boundary() const { return boundary_; }
 
  private:
@@ -59,7 +60,7 @@ class SmoothNormals {
 
   // Returns the unit normal at a point of a triangle, with barycentric weights `to_b` and `to_c`. It is
   // interpolated from the corners, whose normals are area-weighted means over the adjacent triangles within
-  // 30 degrees of this one. Zero if the triangle has no area.
+  // 30 degrees of this triangle. Returns zero if the triangle has no area.
   Vector3 at(std::uint32_t triangle, double to_b, double to_c) const;
 
  private:

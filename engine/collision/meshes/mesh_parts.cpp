@@ -17,7 +17,7 @@ namespace spoonbill {
 namespace {
 
 constexpr std::uint32_t no_part = 0xffffffffU;
-// Limit of the box tests and triangles visited in the search for cavities, which bounds the time for files of
+// Limit of the box tests and triangles visited in the search for cavities. It bounds the time for files with
 // countless specks.
 constexpr std::size_t cavity_work = 50'000'000;
 
@@ -98,8 +98,8 @@ bool encloses(const TriangleMesh& mesh, const MeshPart& part, const Vector3& poi
   return std::abs(angle) > 0.5 * full_solid_angle;
 }
 
-// Marks the cavities, from the largest closed part to the smallest, so that a container precedes its
-// contents.
+// Marks the cavities. It proceeds from the largest closed part to the smallest, so that a container precedes
+// its contents.
 void find_cavities(const TriangleMesh& mesh, std::vector<MeshPart>& parts,
                    const std::vector<double>& volumes) {
   std::vector<int> closed;
@@ -140,7 +140,7 @@ MeshParts split_into_parts(const TriangleMesh& mesh) {
       TriangleCorners corners = mesh.triangles[order[t]];
       for (std::uint32_t& corner : corners) {
         std::uint32_t& own = copy[corner];
-        // An index below the part's first vertex is that of a copy for an earlier part.
+        // An index below the part's first vertex belongs to a copy made for an earlier part.
         if (own == no_part || own < part.first_vertex) {
           own = static_cast<std::uint32_t>(result.mesh.vertices_m.size());
           result.mesh.vertices_m.push_back(mesh.vertices_m[corner]);
@@ -213,7 +213,8 @@ MeshPart append_part(const TriangleMesh& from, const MeshPart& part, TriangleMes
 
 double signed_volume(const TriangleMesh& mesh, const MeshPart& part) {
   SPOONBILL_ASSERT(part.first_triangle <= part.end_triangle && part.end_triangle <= mesh.triangles.size());
-  // The origin is at one of the part's own vertices, which keeps precision for small parts far away.
+  // The origin is one of the part's own vertices, so that small parts far from the origin keep their
+  // precision.
   const Vector3 origin = mesh.vertices_m[part.first_vertex];
   double six_volumes = 0.0;
   for (std::uint32_t t = part.first_triangle; t < part.end_triangle; ++t) {
@@ -244,8 +245,8 @@ void orient_outward(TriangleMesh& mesh, std::vector<MeshPart>& parts, MeshReport
 
 namespace {
 
-// Vertices of a boundary loop in the winding order of the adjacent triangles, opposite to that of the filling
-// triangles.
+// Vertices of a boundary loop in the winding order of the adjacent triangles; the filling triangles have the
+// opposite order.
 using VertexLoop = std::vector<std::uint32_t>;
 
 // Cuts the boundary sides into simple loops that visit no vertex twice. Parts have no vertex in common, so
@@ -293,7 +294,7 @@ class BoundaryWalk {
 
   const TriangleMesh& mesh_;
   std::vector<std::uint32_t> first_,
-      next_;  // linked lists of the unused sides that leave each vertex, into boundary_
+      next_;  // linked lists of the unused sides that leave each vertex, as indices into boundary_
   std::vector<std::uint32_t> position_;  // position of each vertex in path_
   const std::vector<MeshSide>& boundary_;
   std::vector<std::uint32_t> path_;

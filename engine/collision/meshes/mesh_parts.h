@@ -36,9 +36,9 @@ double part_area(const TriangleMesh& mesh, const MeshPart& part);
 // Appends the part's vertices and triangles to `to`. Returns the part with its indices there.
 MeshPart append_part(const TriangleMesh& from, const MeshPart& part, TriangleMesh& to);
 
-// Marks as closed the orientable parts that have no holes or only small ones (hole_area_fraction). Fills each
-// of these holes with a fan around the length-weighted mean of its boundary loop. Returns the number of holes
-// filled. Cracks, whose loops have no area, count but get no triangles.
+// Marks as closed the orientable parts that have no holes, or only small holes (hole_area_fraction). Fills
+// each of these holes with a fan around the length-weighted mean of its boundary loop. Returns the number of
+// holes filled. Cracks, whose loops have no area, are counted but get no triangles.
 std::size_t fill_small_holes(MeshParts& parts);
 
 }  // namespace spoonbill

@@ -16,10 +16,10 @@ inline Box bounding_box(const Triangle& t) {
   return {t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])};
 }
 
-// Returns true if the triangles intersect or touch, or if no plane separates them by more than `slack_m`. It
-// is true for every pair nearer than the slack and for some slightly farther pairs whose corners face each
-// other. The separating axes are both normals, the cross products of the edges and, for coplanar triangles,
-// the in-plane directions across the edges.
+// Returns true if the triangles intersect or touch, or if no plane separates them by more than `slack_m`. The
+// result is true for every pair nearer than the slack, and for some pairs slightly farther apart whose
+// corners face each other. The separating axes are both normals, the cross products of the edges and, for
+// coplanar triangles, the in-plane directions across the edges.
 bool triangles_meet(const Triangle& a, const Triangle& b, double slack_m = 0.0);
 
 // Result of intersect_line_triangle().
@@ -57,8 +57,8 @@ NearestOnTriangle nearest_on_triangle(const Vector3& a, const Vector3& b, const 
 inline constexpr double full_solid_angle = 4.0 * 3.14159265358979323846;
 
 // Returns the solid angle of the triangle a, b, c seen from the origin, in steradians (van Oosterom and
-// Strackee 1983). It is positive if the triangle's back is visible, so a closed outward mesh gives 4 pi from
-// inside, and zero from a point in its plane.
+// Strackee 1983). The angle is positive if the triangle's back is visible, so the angles of a closed outward
+// mesh sum to 4 pi at a point inside. It is zero if the origin is in the triangle's plane.
 inline double solid_angle(const Vector3& a, const Vector3& b, const Vector3& c) {
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
   const double numerator = a.dot(b.cross(c));

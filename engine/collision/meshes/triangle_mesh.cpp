@@ -17,8 +17,8 @@ namespace spoonbill {
 namespace {
 
 constexpr std::uint32_t no_vertex = 0xffffffffU;
-// Width of a grid cell in tolerances. Few vertices are within the tolerance of a neighbouring cell of that
-// width, and a cell still has few kept vertices, because these are farther apart than the tolerance.
+// Width of a grid cell in tolerances. At this width, few vertices are within the tolerance of a neighbouring
+// cell, and a cell still has few kept vertices, because kept vertices are farther apart than the tolerance.
 constexpr double cell_tolerances = 4.0;
 
 // Finaliser of MurmurHash3 (Appleby 2011), which spreads regularly spaced positions.
@@ -79,7 +79,7 @@ class VertexGrid {
     return no_vertex;
   }
 
-  // Adds a vertex, with the next index of the kept vertices.
+  // Adds a vertex and gives it the next index of the kept vertices.
   void add(const Vector3& vertex) {
     std::uint32_t& first = first_[slot(cell(vertex))];
     next_.push_back(first);
@@ -161,7 +161,7 @@ Status check_input(const TriangleMesh& mesh, const std::string& source, std::siz
   return {};
 }
 
-// Returns the box of the vertices that triangles use; a file may contain others.
+// Returns the box of the vertices that triangles use; a file may contain vertices that no triangle uses.
 Box box_of_used_vertices(const TriangleMesh& mesh) {
   Box box;
   for (const TriangleCorners& corners : mesh.triangles) {
@@ -218,8 +218,8 @@ void join_and_drop(TriangleMesh& mesh, double size, MeshReport& report) {
   report.duplicates_dropped = drop_duplicates(mesh.triangles);
 }
 
-// Renumbers vertices by first use, because flipping triangles changed the order of their corners. Cleaning a
-// clean mesh therefore leaves it unchanged, and a document is written as it was read.
+// Renumbers vertices in the order of their first use, because flipping triangles has changed the order of
+// their corners. Cleaning therefore leaves a clean mesh unchanged, and a document is written as it was read.
 void number_by_first_use(TriangleMesh& mesh) {
   std::vector<std::uint32_t> new_index(mesh.vertices_m.size(), no_vertex);
   std::vector<Vector3> vertices_m;

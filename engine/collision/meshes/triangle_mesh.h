@@ -28,7 +28,7 @@ struct MeshPart {
   int cavity_of = -1;  // index of the closed part whose cavity this one bounds, facing inward; -1 for none
 };
 
-// Counts of what cleaning found and changed.
+// Numbers of faults that cleaning found and of changes that it made.
 struct MeshReport {
   std::size_t vertices_read = 0, triangles_read = 0;
   std::size_t vertices_joined = 0;

@@ -1,5 +1,5 @@
-// Close pairs between a closed surface and a deforming mesh: samples of the surface with the mesh's nearest
-// points, and vertices of the mesh with the surface's.
+// Close pairs between a closed surface and a deforming mesh: samples of the surface with the nearest points
+// of the mesh, and vertices of the mesh with the nearest points of the surface.
 #pragma once
 
 #include <algorithm>
@@ -22,9 +22,9 @@ struct SampleNearMesh {
 // A vertex of the mesh and the nearest point of the surface.
 struct VertexNearSurface {
   std::uint32_t vertex;
-  double u, v;         // parameters of the surface's nearest point
-  Vector3 normal;      // unit outward normal of the surface there
-  double gap_m = 0.0;  // along the normal; negative if the vertex is inside the body
+  double u, v;         // parameters of the point of the surface nearest to the vertex
+  Vector3 normal;      // unit outward normal of the surface at that point
+  double gap_m = 0.0;  // distance along the normal; negative if the vertex is inside the body
 };
 
 // Proximity search of a surface and a mesh. One owner, one thread; allocates only on construction. The grid
@@ -39,7 +39,7 @@ class MeshProximity {
   MeshProximity& operator=(const MeshProximity&) = delete;
 
   // Finds all points within `margin_m`. The surface must have the grid's knots and bound a body, with du x dv
-  // outward. The mesh must have the vertices of the patches and be up to date (refit()).
+  // pointing outward. The mesh must have the vertices of the patches and be up to date (refit()).
   void find(const Surface& surface, const DeformingMesh& mesh, double margin_m);
 
   // Removes the points for which `keep_sample` or `keep_vertex` returns false. Both may modify the point.
@@ -52,12 +52,13 @@ class MeshProximity {
     for (const VertexNearSurface& near : vertices_) least_gap_m_ = std::min(least_gap_m_, near.gap_m);
   }
 
-  // Samples of the surface near the mesh, of the last find().
+  // Returns the samples of the surface near the mesh that the last find() found.
   const std::vector<SampleNearMesh>& surface_samples() const { return samples_; }
-  // Vertices of the mesh near the surface, of the last find().
+  // Returns the vertices of the mesh near the surface that the last find() found.
   const std::vector<VertexNearSurface>& mesh_vertices() const { return vertices_; }
   double least_gap_m() const { return least_gap_m_; }  // infinite if nothing is near
-  // A capacity was exceeded, and points may be missing. Remedy: fewer control points or a smaller margin.
+  // Returns true if a capacity was exceeded, so that points may be missing. Remedy: fewer control points or a
+  // smaller margin.
   bool overflow() const { return overflow_; }
 
  private:

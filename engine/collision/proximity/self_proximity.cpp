@@ -14,7 +14,7 @@ namespace spoonbill {
 
 namespace {
 
-// Cosine of the largest angle between a direction into the body and the inward normal.
+// Cosine of the largest angle to the inward normal at which a direction counts as leading into the body.
 constexpr double inward_cosine = 0.3;
 // Least thickness of a body, in lattice cells. Facing points that are closer belong to a rest shape that is
 // pressed onto itself.
@@ -53,7 +53,7 @@ RestPairs::RestPairs(const Grid& grid, Surface rest, double cell_m)
   find_neighbours();
 }
 
-// Returns twice the volume over the area, from the triangles between the samples.
+// Returns twice the volume divided by the area, from the triangles between the samples.
 double RestPairs::thickness(int columns) const {
   double volume = 0.0, area = 0.0;
   const auto add = [&](const Vector3& a, const Vector3& b, const Vector3& c) {
@@ -116,7 +116,7 @@ void RestPairs::measure_from(int block, std::vector<double>& distances) const {
         offer(to, distance + step_between(at, to));
       }
     }
-    // Steps across a pole.
+    // Adds steps across a pole.
     if (rest_.v.is_periodic() || (j != 0 && j != columns - 1)) continue;
     for (int row = 0; row < rows; ++row) {
       offer(row * columns + j, distance + step_between(at, row * columns + j));

@@ -15,9 +15,9 @@
 namespace spoonbill {
 
 // Distance along the surface at rest below which points are neighbours: the larger of a number of lattice
-// cells and a number of thicknesses of the body (twice its volume over its area). A bar bent into a loop
-// whose inner side touches itself is longer than 4.4 times its bending radius. With three thicknesses, only
-// loops with a bending radius below two thirds of the thickness are missed.
+// cells and a number of thicknesses of the body (twice its volume divided by its area). A bar bent into a
+// loop whose inner side touches itself is longer than 4.4 times its bending radius. With three thicknesses,
+// only loops with a bending radius below two thirds of the thickness are missed.
 inline constexpr double neighbour_cells = 4.0;
 inline constexpr double neighbour_thicknesses = 3.0;
 
@@ -29,8 +29,8 @@ inline constexpr double through_body = 2.0;
 // All other pairs are neighbours or face each other through the body. Immutable; any thread.
 class RestPairs {
  public:
-  // `rest` is the surface at rest with the knots of the grid, du x dv outward. `cell_m` is the size of the
-  // lattice's cells.
+  // `rest` is the surface at rest with the knots of the grid and du x dv pointing outward. `cell_m` is the
+  // size of the lattice's cells.
   RestPairs(const Grid& grid, Surface rest, double cell_m);
 
   // Returns true if the points can touch. The points are samples of the grid, or given by parameters.
@@ -50,7 +50,7 @@ class RestPairs {
   double step_between(int block, int other) const;
 
   Surface rest_;
-  std::vector<double> u_, v_;  // starts of the parameter blocks, and the end of the last
+  std::vector<double> u_, v_;  // starts of the parameter blocks, and the end of the last block
   double cell_m_, neighbour_distance_m_ = 0.0;
   std::vector<RestPoint> points_;       // per sample
   std::vector<Vector3> block_centres_;  // per block
@@ -58,8 +58,8 @@ class RestPairs {
 };
 
 // Finds rings of a surface (its elements between two knots of v) that may be near each other, by boxes and
-// then by intervals along each ring's axis. A long body that is not folded is ruled out in a few
-// microseconds. One owner, one thread; allocates only on construction.
+// then by intervals along each ring's axis. For a long body that is not folded, all pairs are ruled out in a
+// few microseconds. One owner, one thread; allocates only on construction.
 class RingSeparation {
  public:
   // `pairs` lists the pairs of rings to be tested, as elements of v.
@@ -83,7 +83,7 @@ class RingSeparation {
   std::vector<int> column_;  // `width_` control columns of each ring
   std::vector<std::array<int, 2>> pairs_, near_;
   std::vector<Vector3> centres_;    // per control column
-  std::vector<double> low_, high_;  // per ring's axis, interval of each control column along it
+  std::vector<double> low_, high_;  // interval of each control column along the axis of each ring
   std::vector<Box> boxes_;          // per ring
   std::vector<char> is_current_;    // true if a ring's intervals are up to date
 };
@@ -95,7 +95,8 @@ inline constexpr double deepest_self_cells = 1.0;
 // outlive it.
 class SelfProximity {
  public:
-  // `rest` bounds a body, with du x dv outward. `cell_m` is the size of the cells of the body's lattice.
+  // `rest` bounds a body, with du x dv pointing outward. `cell_m` is the size of the cells of the body's
+  // lattice.
   SelfProximity(const NestedGrid& nested, const Surface& rest, double cell_m);
   SelfProximity(const SelfProximity&) = delete;
   SelfProximity& operator=(const SelfProximity&) = delete;
@@ -114,7 +115,8 @@ class SelfProximity {
   const std::vector<NearPoint>& points() const { return near_.points(); }
   // True if nothing was near in the last find(), so that the next one takes almost no time.
   bool is_clear() const { return clear_; }
-  // A capacity was exceeded, and points may be missing. Remedy: fewer control points or a smaller margin.
+  // Returns true if a capacity was exceeded, so that points may be missing. Remedy: fewer control points or a
+  // smaller margin.
   bool overflow() const { return missing_elements_ || near_.overflow(); }
 
  private:
@@ -150,7 +152,8 @@ class SelfProximity {
   std::vector<NearCell> cells_;  // cells of the elements in the slots
   std::uint32_t generation_ = 0;
   int slots_used_ = 0;
-  // Control points at which no elements were within the margin plus the lead; valid while clear_ is true.
+  // Control points for which no elements were within the margin plus the lead (lead_cells) of each other;
+  // valid while clear_ is true.
   ControlNet clear_net_;
   bool clear_ = false;
   bool missing_elements_ = false;

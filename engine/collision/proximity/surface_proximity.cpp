@@ -12,8 +12,8 @@ namespace spoonbill {
 
 namespace {
 
-// Returns the point of a triangle nearest to `point`, as weights of its edges from the first corner. Unlike
-// nearest_on_triangle(), it accepts triangles without area, which cells have at poles.
+// Returns the point of a triangle nearest to `point`, as weights of the two edges from the first corner.
+// Unlike nearest_on_triangle(), it accepts triangles without area, which cells have at poles.
 std::array<double, 2> nearest_edge_weights(const Vector3& point, const Vector3& corner, const Vector3& edge_a,
                                            const Vector3& edge_b) {
   const Vector3 offset = point - corner;
@@ -94,7 +94,7 @@ void NearPoints::offer(int i, int j, const SurfaceLevels& other, const LevelCell
     near_.push_back(
         {sample, grid.u.parameters[i], grid.v.parameters[j], 0.0, 0.0, point, Vector3::UnitY(), infinity});
   }
-  // Until compute_nearest(), the gap is the distance to the other surface's triangles.
+  // Until compute_nearest() is called, the gap is the distance to the other surface's triangles.
   NearPoint& near = near_[index_[sample]];
   if (on.distance >= near.gap_m) return;
   const auto between = [](const std::vector<double>& parameters, int at, int to, double fraction) {

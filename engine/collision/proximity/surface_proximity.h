@@ -11,8 +11,8 @@
 
 namespace spoonbill {
 
-// The nearest point of a cell of samples, taken as two triangles: local coordinates along u and v, 0 to 1,
-// and the distance in metres.
+// The nearest point of a cell between samples, taken as two triangles: local coordinates along u and v, 0 to
+// 1, and the distance in metres.
 struct NearestOnCell {
   double u, v, distance;
 };
@@ -71,7 +71,7 @@ class NearPoints {
   const SurfaceLevels& levels() const { return levels_; }
   const std::vector<NearPoint>& points() const { return near_; }
   double least_gap_m() const { return least_gap_m_; }  // infinite if nothing is near
-  // A capacity was exceeded, and points may be missing.
+  // Returns true if a capacity was exceeded, so that points may be missing.
   bool overflow() const { return overflow_; }
 
  private:
@@ -105,11 +105,12 @@ class SurfaceProximity {
     second_.keep_if(keep_second);
   }
 
-  // Points of each surface near the other, of the last find().
+  // Returns the points of each surface near the other that the last find() found.
   const std::vector<NearPoint>& first_points() const { return first_.points(); }
   const std::vector<NearPoint>& second_points() const { return second_.points(); }
   double least_gap_m() const;  // infinite if nothing is near
-  // A capacity was exceeded, and points may be missing. Remedy: fewer control points or a smaller margin.
+  // Returns true if a capacity was exceeded, so that points may be missing. Remedy: fewer control points or a
+  // smaller margin.
   bool overflow() const { return missing_cells_ || first_.overflow() || second_.overflow(); }
 
  private:

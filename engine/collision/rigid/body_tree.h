@@ -19,14 +19,14 @@ using BodyPair = std::pair<std::size_t, std::size_t>;
 class BodyTree {
  public:
   // The `boxes`, in metres, must be finite and may have no volume. Boxes that touch count as near: to find
-  // bodies within a distance of each other, grow their boxes by half of it.
+  // bodies within a distance of each other, grow their boxes by half of that distance.
   explicit BodyTree(const std::vector<Box>& boxes);
   ~BodyTree();
   BodyTree(const BodyTree&) = delete;
   BodyTree& operator=(const BodyTree&) = delete;
 
   // Returns the pairs whose boxes overlap or touch, in ascending order. Within one tree the first index is
-  // below the second; with another tree the first index is of this one.
+  // below the second; with another tree the first index belongs to this tree.
   std::vector<BodyPair> near_pairs() const;
   std::vector<BodyPair> near_pairs(const BodyTree& other) const;
 

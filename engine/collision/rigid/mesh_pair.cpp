@@ -24,7 +24,7 @@ namespace spoonbill {
 
 namespace {
 
-// A point of a mesh's triangles and its depth in the other mesh.
+// A point of a triangle of one mesh, and its depth in the other mesh.
 struct DeepPoint {
   double depth_m = -std::numeric_limits<double>::infinity();  // depth of the mesh's surface; negative outside
   Vector3 point_m = Vector3::Zero();
@@ -42,13 +42,14 @@ class MeshDepths {
   const DeepPoint& at_vertex(std::uint32_t v);
   bool is_inside(std::uint32_t v);
 
-  // Calls `visit` with the deepest point of each stretch of the edge that is inside, if deeper than `least_m`
-  // (not negative). Exact to rounding if the other mesh is convex; otherwise stretches shorter than 1/32 of
-  // its size may be missed.
+  // Calls `visit` with the deepest point of each stretch of the edge that is inside the other mesh, if that
+  // point is deeper than `least_m` (not negative). Exact to rounding if the other mesh is convex; otherwise
+  // stretches shorter than 1/32 of its size may be missed.
   void visit_edge(std::uint32_t from, std::uint32_t to, double least_m,
                   const std::function<void(const DeepPoint&)>& visit);
 
-  // Returns the other mesh's nearest triangle if a plate of either mesh fills the space up to it.
+  // Returns the other mesh's triangle nearest to the point if a plate of either mesh fills the space up to
+  // that triangle.
   std::optional<std::uint32_t> find_plate_neighbour(const DeepPoint& deep) const;
 
   // Returns the outward direction of the other mesh at a point of its surface.
@@ -64,7 +65,8 @@ class MeshDepths {
   Box other_box_;          // box of the other mesh
   std::vector<std::uint32_t> near_;
   std::vector<std::optional<DeepPoint>> vertices_;  // evaluated on demand
-  std::unique_ptr<ShellDistance> surface_;          // triangles of the other mesh, if a mesh has plates
+  // triangles of the other mesh; null unless a mesh has plates
+  std::unique_ptr<ShellDistance> surface_;
 };
 
 // Step between depth samples along an edge, as a fraction of the other mesh's size.
@@ -110,7 +112,7 @@ void MeshDepths::visit_edge(std::uint32_t from, std::uint32_t to, double least_m
   const DeepPoint start = at_vertex(from), end = at_vertex(to);
   const Vector3 edge = end.point_m - start.point_m;
   const double length_m = edge.norm(), half_thickness_m = mesh_.half_thickness_at_m(from);
-  // A depth changes by at most the distance moved.
+  // Along an edge, the depth changes by at most the distance moved.
   if (!(0.5 * (start.depth_m + end.depth_m + length_m) > least_m)) return;
   const int steps = static_cast<int>(
       std::clamp(std::ceil(length_m / (step_fraction * other_box_.size())), 1.0, steps_limit));
@@ -192,8 +194,8 @@ Gap find_gap(const PosedMesh& first, const PosedMesh& second) {
   return least;
 }
 
-// Returns true if the box of the whole mesh contains the box of a part of the other, a necessary condition
-// for containment.
+// Returns true if the box of the whole mesh contains the box of a part of the other mesh, a necessary
+// condition for containment.
 bool may_contain(const PosedMesh& mesh, const PosedMesh& other) {
   Box around = mesh.boxes().front();
   for (const Box& part : mesh.boxes()) around = joined(around, part);
@@ -201,9 +203,10 @@ bool may_contain(const PosedMesh& mesh, const PosedMesh& other) {
                      [&](const Box& part) { return around.holds(part); });
 }
 
-// Search for the regions in which two meshes overlap. The inside vertices of one triangle are in the same
-// region. A pair of crossing triangles is in the region of the inside vertices of both, and of pairs with the
-// same triangle of one mesh and a neighbouring triangle of the other.
+// Search for the regions in which two meshes overlap. The vertices of a triangle that are inside the other
+// mesh are in the same region. A pair of crossing triangles is in the same region as the inside vertices of
+// both triangles, and as the pairs with the same triangle of one mesh and a neighbouring triangle of the
+// other.
 class ContactSearch {
  public:
   ContactSearch(const PosedMesh& first, const PosedMesh& second, double thickness_m)
@@ -233,7 +236,8 @@ class ContactSearch {
     int side = 0;
   };
 
-  // Union-find items: the vertices of the first mesh, those of the second, then the pairs.
+  // Returns the union-find item of a vertex. Items are the vertices of the first mesh, the vertices of the
+  // second, then the pairs.
   std::size_t vertex_item(int s, std::uint32_t v) const {
     return s == 0 ? v : meshes_[0]->vertex_count() + v;
   }
@@ -241,7 +245,7 @@ class ContactSearch {
     return meshes_[0]->vertex_count() + meshes_[1]->vertex_count() + pair;
   }
 
-  // Returns false if the limit of crossings was met.
+  // Finds the pairs of crossing triangles. Returns false if their number reached the limit.
   bool find_crossings() {
     const BodyTree parts(meshes_[0]->boxes()), others(meshes_[1]->boxes());
     for (const auto& [i, j] : parts.near_pairs(others)) {
@@ -393,8 +397,8 @@ class ContactSearch {
     return contact;
   }
 
-  // Makes the contact of a region that is a whole part inside the other mesh, whose item is a vertex. Returns
-  // nothing if the region is not such a part.
+  // Makes the contact of a region that consists of a whole part inside the other mesh; `item` is one of its
+  // vertices. Returns nothing if the region is not such a part.
   std::optional<MeshPairContact> make_containment_contact(std::size_t item) {
     const int s = item < meshes_[0]->vertex_count() ? 0 : 1;
     const auto vertex = static_cast<std::uint32_t>(item - vertex_item(s, 0));

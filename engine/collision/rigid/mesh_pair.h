@@ -15,7 +15,7 @@ namespace spoonbill {
 // One region in which two meshes overlap or touch.
 struct MeshPairContact {
   Vector3 first_m = Vector3::Zero(), second_m = Vector3::Zero();  // deepest points, one on each mesh
-  Vector3 normal = Vector3::UnitY();  // unit, direction in which the first mesh leaves the second
+  Vector3 normal = Vector3::UnitY();  // unit; direction in which the first mesh leaves the second
   double depth_m = 0.0;               // along the normal; 0 if they only touch
 };
 
@@ -31,8 +31,8 @@ struct MeshPairResult {
   std::vector<MeshPairContact> contacts;
 };
 
-// Finds the contacts or the distance of two meshes; `second_pose` is the pose of the second in the first
-// one's frame. Closed parts are solid except for their cavities, open parts are plates of the given
+// Finds the contacts or the distance of two meshes; `second_pose` is the pose of the second mesh in the frame
+// of the first. Closed parts are solid except for their cavities, open parts are plates of the given
 // thickness, as in MeshDistance.
 //
 // A contact is the deepest of the vertices and edge points of both meshes in a region. On edges it is exact

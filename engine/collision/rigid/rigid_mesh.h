@@ -1,5 +1,5 @@
-// Rigid meshes in FCL's trees of boxes: distance and crossing triangles; and posed meshes of several such
-// parts. For loading, checks and reports, not for the tick, because queries allocate.
+// Rigid meshes in FCL's trees of boxes, with their distances and crossing triangles, and posed meshes that
+// consist of several such parts. For loading, checks and reports, not for the tick, because queries allocate.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@
 
 namespace spoonbill {
 
-// Unit and origin in which FCL computes. Its triangle distance treats normals below an absolute size as zero;
-// the scale keeps the normals of all triangles above that size.
+// Unit and origin in which FCL computes. FCL's triangle distance treats normals below an absolute size as
+// zero; the scale keeps the normals of all triangles above that size.
 struct RigidScale {
   Vector3 origin_m = Vector3::Zero();
   double per_m = 1.0;

@@ -15,7 +15,7 @@ constexpr double log_2_high = 0x1.62e42feep-1, log_2_low = 0x1.a39ef35793c76p-33
 
 constexpr int parts = 64;  // number of parts of an octave
 
-// Values of 2^(k / parts) by the Taylor series.
+// Returns 2^(k / parts) for each k, computed by the Taylor series.
 constexpr std::array<double, parts> make_roots_of_two() {
   std::array<double, parts> values{};
   for (int k = 0; k < parts; ++k) {
@@ -31,7 +31,7 @@ constexpr std::array<double, parts> roots_of_two = make_roots_of_two();
 // Adding and subtracting this rounds a number below 2^51 to an integer.
 constexpr double to_whole = 0x1.8p52;
 
-// 1 / 3, 1 / 5 and so on.
+// Returns 1 / 3, 1 / 5 and so on.
 constexpr std::array<double, 10> make_inverse_odds() {
   std::array<double, 10> values{};
   for (int k = 0; k < 10; ++k) values[k] = 1.0 / (2 * k + 3);
@@ -45,7 +45,7 @@ double power_of_two(int power) {
 
 }  // namespace
 
-// Taylor series within half a part of an octave, where the term of order six is below rounding.
+// Evaluates the Taylor series within half a part of an octave, where the term of order six is below rounding.
 double stable_exp(double x) {
   if (!(x > -700.0)) return 0.0;
   const double whole = (x * (parts * 1.4426950408889634) + to_whole) - to_whole;
@@ -55,12 +55,12 @@ double stable_exp(double x) {
       rest + square * (0.5 + rest * (1.0 / 6.0) + square * (1.0 / 24.0 + rest * (1.0 / 120.0)));
   const int number = static_cast<int>(whole), part = number & (parts - 1);
   const double root = roots_of_two[part];
-  // Two factors, each in range wherever the product is.
+  // The power is split into two factors, each of which is in range if the product is.
   const int power = (number - part) / parts, half = power / 2;
   return (root + root * beyond) * power_of_two(half) * power_of_two(power - half);
 }
 
-// log(m) = 2 artanh((m - 1) / (m + 1)) with m within a factor of sqrt(2) of 1.
+// Uses log(m) = 2 artanh((m - 1) / (m + 1)) for m within a factor of sqrt(2) of 1.
 double stable_log(double x) {
   SPOONBILL_ASSERT_DEBUG(x > 0.0);
   const std::uint64_t bits = std::bit_cast<std::uint64_t>(x), mantissa_bits = (std::uint64_t{1} << 52) - 1;

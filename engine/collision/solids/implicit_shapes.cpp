@@ -84,8 +84,8 @@ class TorusDistance final : public SignedDistance {
   Box bounds() const override;
 
   // The distance is a convex function of the distance from the axis and the height. Around the axis it is
-  // concave only where the ring is farther from the axis, with a curvature of at most one over the distance
-  // from the axis.
+  // concave only where the ring is farther from the axis, with a curvature of at most 1 / (distance from the
+  // axis).
   double concavity(const Vector3& centre_m, double radius_m) const override;
 
  private:
@@ -123,8 +123,8 @@ double from_axis(const Vector3& point) {
   return std::sqrt(point.x() * point.x() + point.z() * point.z());
 }
 
-// Rotates a direction from the meridian half-plane into that of the point. On the axis, where all are
-// equivalent, that of the x axis is used.
+// Rotates a direction from the meridian half-plane into that of the point. On the axis, where all half-planes
+// are equivalent, the half-plane of the x axis is used.
 Vector3 rotate_from_meridian(const MeridianDirection& direction, const Vector3& point) {
   const double out = from_axis(point);
   if (!(out > 0.0)) return {direction.out, direction.up, 0.0};
@@ -270,7 +270,8 @@ double EllipsoidDistance::solve(const Vector3& scaled, double low) const {
   return w;
 }
 
-// Handles points near the plane of the two longer axes whose nearest point is above or below the plane.
+// Returns the distance of a point near the plane of the two longer axes whose nearest surface point is above
+// or below that plane.
 DistanceSample EllipsoidDistance::at_central_plane(const Vector3& point_m) const {
   Vector3 nearest = Vector3::Zero();
   double rest = 1.0;

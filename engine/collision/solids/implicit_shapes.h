@@ -1,5 +1,5 @@
 // Analytic tool shapes as plain descriptions, and their signed distances. Lengths are in metres. Each shape
-// is in its own frame, centred on the origin unless noted.
+// is described in its own frame and is centred on the origin unless noted.
 #pragma once
 
 #include <array>
@@ -136,9 +136,10 @@ Status check_implicit_shape(const ImplicitShape& shape);
 
 // Makes the signed distance of a shape that passed check_implicit_shape(). It is exact to 1e-12 of the size.
 //
-// Inside a superquadric it is the best of several searches, which can all miss the nearest wall. The depth is
-// then too large, in about one of 100,000 points and by up to some thousandths of the size. The gradient
-// always belongs to a plane that bounds the solid. A query takes about 20 us, a hundred times the others.
+// Inside a superquadric, the distance is the best result of several searches, which can all miss the nearest
+// wall. The depth is then too large, in about one of 100,000 points and by up to some thousandths of the
+// size. The gradient always belongs to a plane that bounds the solid. A query of a superquadric takes about
+// 20 us, a hundred times as long as for other shapes.
 std::shared_ptr<const SignedDistance> make_signed_distance(const ImplicitShape& shape);
 
 }  // namespace spoonbill

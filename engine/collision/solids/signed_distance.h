@@ -10,7 +10,7 @@ namespace spoonbill {
 // Signed distance of a point and its gradient.
 struct DistanceSample {
   double distance_m = 0.0;              // negative inside
-  Vector3 gradient = Vector3::UnitY();  // unit; if several directions lead to the surface, one of them
+  Vector3 gradient = Vector3::UnitY();  // unit; one of them if several directions lead to the nearest surface
 };
 
 // Signed distance of a solid in its own frame. Immutable; any thread. at() allocates nothing and never
@@ -20,11 +20,11 @@ class SignedDistance {
   virtual ~SignedDistance() = default;
 
   // Returns the distance and its gradient. The distance changes by at most the distance moved, so its value
-  // at the centre of a ball, less the radius, is a lower bound within the ball.
+  // at the centre of a ball, minus the radius, is a lower bound within the ball.
   virtual DistanceSample at(const Vector3& point_m) const = 0;
 
   // Returns the distance if it is less than `enough_m`. Otherwise, a convex solid may return the distance to
-  // any plane that bounds it and is at least that far, which saves time where the distance is costly.
+  // any plane that bounds it and is at least `enough_m` away, which saves time if the distance is costly.
   virtual DistanceSample at_within(const Vector3& point_m, double enough_m) const {
     (void)enough_m;
     return at(point_m);
@@ -35,8 +35,8 @@ class SignedDistance {
     return at_within(point_m, limit_m).distance_m > limit_m;
   }
 
-  // Returns true for a convex solid. Its distance is nowhere below its tangents: at(a) + gradient . (b - a)
-  // <= at(b), a much tighter bound than the distance moved.
+  // Returns true for a convex solid. The distance of a convex solid is nowhere below its tangents: at(a) +
+  // gradient . (b - a) <= at(b), a much tighter bound than that by the distance moved.
   virtual bool is_convex() const = 0;
 
   // Returns a box around the solid; infinite if the solid is.

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double nothing = -1e300;     // logarithm of a zero coordinate
 constexpr double least_ratio = 1e-60;  // fraction of a semi-axis below which a coordinate counts as 0
-// Convergence tolerance of log(price), and so of the distance.
+// Convergence tolerance of the logarithm of the Lagrange multiplier (`price`), and therefore of the distance.
 constexpr double convergence_step = 1e-13;
 // Largest |log(gauge)| of a point that counts as on the surface, where the tangent plane gives the distance
 // to rounding.
@@ -25,8 +25,8 @@ double log_of_sum(double a, double b) {
 // One coordinate of the nearest point: the root L = log(x / a) of e^L + price e^((q-1) L) = target.
 struct Coordinate {
   double log_value = nothing;
-  double reach = 0.0;  // the second term: distance of the point beyond the surface, over the semi-axis
-  double slope = 0.0;  // derivative of log_value by log(price)
+  double reach = 0.0;  // the second term: distance of the point beyond the surface, divided by the semi-axis
+  double slope = 0.0;  // derivative of log_value with respect to log(price)
 };
 
 // Starts where the larger term alone would be the target, which is at or above the root. Both terms are
@@ -50,7 +50,7 @@ Vector3 with_signs_of(const Vector3& point, const Vector3& magnitude) {
   return (point.array() < 0.0).select(-magnitude, magnitude);
 }
 
-// log(|p_i| / a_i), or `nothing` for 0.
+// Returns log(|p_i| / a_i) for each coordinate, or `nothing` for 0.
 Vector3 log_targets(const Vector3& point, const Vector3& axes) {
   Vector3 logs;
   for (int k = 0; k < 3; ++k) {
@@ -121,7 +121,7 @@ DistanceSample SuperquadricDistance::outside(const Vector3& point) const {
     double move = std::clamp(-gauge / slope, -8.0, 8.0);
     if (!(std::abs(move) >= 0.0)) move = gauge > 0.0 ? 8.0 : -8.0;
     double next = log_price + move;
-    // Without a bound on the other side, only rounding can lead back.
+    // While one of the bounds is missing, only rounding can lead back beyond the other.
     const bool bounded = low > -1e300 && high < 1e300, leads_back = next <= low || next >= high;
     if (leads_back) next = bounded ? 0.5 * (low + high) : log_price;
     const bool converged = std::abs(gauge) < 2e-16 || std::abs(next - log_price) < convergence_step;
@@ -163,8 +163,8 @@ struct Fractions {
 
 }  // namespace
 
-// Half the squared distance of a point of the surface from a point of the first octant, with derivatives by
-// both logits.
+// Half the squared distance of a point of the surface from a point of the first octant, with derivatives with
+// respect to both logits.
 struct SuperquadricDistance::Expansion {
   double half_square;  // half the squared distance
   double slope[2];
@@ -178,7 +178,7 @@ void SuperquadricDistance::expand(const Spot& spot, const Vector3& point, Expans
   const Vector3 at = axes_.cwiseProduct(Vector3(stable_exp(ring + around.log_fraction / around_),
                                                 stable_exp(along.log_other / along_),
                                                 stable_exp(ring + around.log_other / around_)));
-  // Each coordinate is the exponential of a sum, so its derivatives are itself times these factors.
+  // Each coordinate is the exponential of a sum, so its derivatives are the coordinate times these factors.
   const Vector3 by_around(s_other / around_, 0.0, -s / around_);
   const Vector3 by_along(t_other / along_, -t / along_, t_other / along_);
   const double bend_around = s * s_other / around_, bend_along = t * t_other / along_;
@@ -193,7 +193,7 @@ void SuperquadricDistance::expand(const Spot& spot, const Vector3& point, Expans
   out.curvature[2] = square.dot(by_along.cwiseAbs2()) + pull.dot(along_twice);
 }
 
-// Newton's method, damped until the distance decreases.
+// Moves the spot to a minimum by Newton's method, damped until the distance decreases.
 SuperquadricDistance::Spot SuperquadricDistance::improve(Spot spot, const Vector3& point) const {
   Expansion here, there;
   expand(spot, point, here);
@@ -229,7 +229,7 @@ SuperquadricDistance::Spot SuperquadricDistance::improve(Spot spot, const Vector
   return spot;
 }
 
-// The tangent plane at any spot bounds the convex solid.
+// Returns the distance of the tangent plane at a spot. The tangent plane at any spot bounds the convex solid.
 DistanceSample SuperquadricDistance::tangent(const Spot& spot, const Vector3& point) const {
   const Fractions around(spot.around), along(spot.along);
   const double ring = along.log_fraction / along_, ring_normal = along.log_fraction - ring;

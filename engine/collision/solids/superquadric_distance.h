@@ -19,17 +19,17 @@ class SuperquadricDistance final : public SignedDistance {
  public:
   explicit SuperquadricDistance(const SuperquadricShape& shape);
   DistanceSample at(const Vector3& point_m) const override;
-  // Returns the distance to the tangent plane where the ray from the centre leaves the solid, if that is at
-  // least `enough_m`, otherwise the distance.
+  // Returns the distance to the tangent plane at which the ray from the centre leaves the solid, if this
+  // distance is at least `enough_m`; otherwise the distance to the solid.
   DistanceSample at_within(const Vector3& point_m, double enough_m) const override;
-  // Decides points inside by the gauge alone, without a distance.
+  // Decides by the gauge alone for points inside, without computing a distance.
   bool is_beyond(const Vector3& point_m, double limit_m) const override;
   bool is_convex() const override { return true; }
   Box bounds() const override { return {-axes_, axes_}; }
 
  private:
   // A point of the surface in the first octant. `around` is the logit of the fraction (x/a)^q2 against
-  // (z/c)^q2, `along` that of rho^q1 against (y/b)^q1. Logits keep precision near an edge.
+  // (z/c)^q2, `along` is the logit of rho^q1 against (y/b)^q1. Logits keep precision near an edge.
   struct Spot {
     double around, along;
   };

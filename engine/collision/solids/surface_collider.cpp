@@ -142,8 +142,9 @@ Clearance SurfaceCollider::clearance(const Surface& surface, const ToolShape& to
 }
 
 // Returns the depth of a tool inside a closed surface, along the nearest wall's normal; 0 if it is not
-// inside. A sphere is inside if its centre is. A convex solid that touches the wall is inside if the centre
-// of its bounds is. A tool that touches nothing is inside if its point nearest to the wall is.
+// inside. A sphere is inside if its centre is inside. A convex solid that touches the wall is inside if the
+// centre of its bounds is inside. A tool that touches nothing is inside if its point nearest to the wall is
+// inside.
 double SurfaceCollider::depth_inside(const ToolShape& tool, const SurfaceContact& nearest) const {
   if (tool.kind == ToolShape::Kind::sphere) {
     const bool inside = (tool.centre_m - nearest.point_m).dot(nearest.normal) < 0.0;
@@ -162,7 +163,7 @@ double SurfaceCollider::depth_inside(const ToolShape& tool, const SurfaceContact
 }
 
 // Offers the coarsest samples, except those of elements that are too far away. The nearest box comes first,
-// because its samples tighten that bound.
+// because its samples tighten the bound beyond which elements are too far.
 void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
   const Grid& grid = levels_.nested().grid;
   const int stride = levels_.step(0);
@@ -170,7 +171,7 @@ void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
   const auto offer_column = [&](int j) {
     levels_.sample_column(j);
     for (int i = 0; i < grid.rows(); i += stride) {
-      // A sample belongs to the elements on both sides.
+      // A sample between two elements belongs to both.
       const int after = std::min(i / stride, last), before = std::max(i / stride - 1, 0);
       if (std::min(row_bound_[before], row_bound_[after]) > reach(margin)) continue;
       offer(tool, grid.u.parameters[i], grid.v.parameters[j], levels_.sample(i * grid.columns() + j));
@@ -191,7 +192,7 @@ void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
   }
 }
 
-// The nearest point of the last query is mostly still almost the nearest, which prunes the search.
+// Offers the nearest point of the last query: mostly it is still almost the nearest, which prunes the search.
 void SurfaceCollider::offer_last(const Surface& surface, const ToolShape& tool) {
   best_ = {};
   best_.distance_m = std::numeric_limits<double>::infinity();
@@ -216,7 +217,7 @@ void SurfaceCollider::descend(const ToolShape& tool, double margin, CollisionRes
       }
     }
   }
-  // Breadth first, so that the best distance of a coarse level prunes the finer ones.
+  // Visits cells breadth first, so that the best distance of a coarse level prunes the finer levels.
   for (std::size_t at = 0; at < cells_.size(); ++at) visit_cell(tool, cells_[at], reach(margin), result);
 }
 
@@ -267,7 +268,7 @@ void SurfaceCollider::visit_cell(const ToolShape& tool, const LevelCell& cell, d
   }
 }
 
-// Returns the lower bound at which a patch can be skipped.
+// Returns the distance at or beyond which a patch can be skipped.
 double SurfaceCollider::enough() const {
   const double best = best_.distance_m;
   if (proof_ == Proof::clearance) {
@@ -276,7 +277,7 @@ double SurfaceCollider::enough() const {
   return best >= 0.0 ? std::max(best - tolerance_, -touch_tolerance_m) : best - tolerance_;
 }
 
-// Branch and bound below the finest samples of a cell that may still contain a nearer point.
+// Searches by branch and bound below the finest samples, in a cell that may still contain a nearer point.
 void SurfaceCollider::search_between_samples(const Surface& surface, const ToolShape& tool,
                                              const LevelCell& cell, bool& overflow) {
   if (is_cut(cell)) return search_trimmed_cell(surface, tool, cell);
@@ -338,12 +339,12 @@ void SurfaceCollider::polish(const Surface& surface, const ToolShape& tool) {
   } else {
     polish_analytic(surface, tool);
   }
-  // The search may have ended in another region.
+  // Newton's method may have ended in another region; then the previous point stays.
   if (region_ >= 0 && region_at(best_.u, best_.v) != region_) best_ = before;
 }
 
-// Newton's method on the parameters of the best point. A step that does not decrease the distance is halved.
-// The gradient is used where the curvature has the wrong sign.
+// Improves the parameters of the best point by Newton's method. A step that does not decrease the distance is
+// halved. The gradient is used where the curvature has the wrong sign.
 void SurfaceCollider::polish_analytic(const Surface& surface, const ToolShape& tool) {
   const bool sphere = tool.kind == ToolShape::Kind::sphere;
   SurfacePoint at = evaluate(surface, best_.u, best_.v);
@@ -362,7 +363,7 @@ void SurfaceCollider::polish_analytic(const Surface& surface, const ToolShape& t
     const double determinant = huu * hvv - huv * huv;
     double move_u = -(hvv * gu - huv * gv) / determinant, move_v = -(huu * gv - huv * gu) / determinant;
     if (!std::isfinite(move_u) || !std::isfinite(move_v)) return;
-    // A step that can only gain rounding is not worth halving.
+    // A step whose gain is below rounding is not worth halving.
     const double gain = -(move_u * gu + move_v * gv) / towards.norm();
     const int tries = gain > least_gain_m ? 12 : 1;
     const double before = best_.distance_m;
@@ -398,7 +399,7 @@ void SurfaceCollider::offer_trim_loops(const Surface& surface, const ToolShape& 
   minimise_on_edges(surface, tool, nearest);
 }
 
-// Offers the start and the midpoint of each edge.
+// Offers the start and the midpoint of each trim loop edge in the cell.
 void SurfaceCollider::offer_trim_edges(const Surface& surface, const ToolShape& tool, const LevelCell& cell,
                                        TrimEdges& nearest) {
   const std::span<const TrimmedArea::Edge> edges = trimmed_->edges(cell);
@@ -414,7 +415,7 @@ void SurfaceCollider::offer_trim_edges(const Surface& surface, const ToolShape& 
   }
 }
 
-// Minimises along the nearest edge, and along the edge that meets it at the nearest point.
+// Minimises the distance along the nearest edge, and along the edge that meets it at the nearest point.
 void SurfaceCollider::minimise_on_edges(const Surface& surface, const ToolShape& tool,
                                         const TrimEdges& nearest) {
   for (const TrimmedArea::Edge* edge : {nearest.first, nearest.second}) {
@@ -548,7 +549,7 @@ void SurfaceCollider::find_touched_cells(const Surface& surface, const ToolShape
   }
 }
 
-// Appends all cells connected with the first one, across a seam too, to grouped_.
+// Appends to grouped_ all cells that are connected with the first one, also across a seam.
 void SurfaceCollider::join_neighbours(int first, int region) {
   const Grid& grid = levels_.nested().grid;
   std::size_t next = grouped_.size();

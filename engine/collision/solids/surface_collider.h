@@ -52,7 +52,7 @@ struct NearSample {
 
 // Result of SurfaceCollider::collide().
 struct CollisionResult {
-  bool found = false;  // the surface is within the margin or encloses the tool, to 1e-6 m
+  bool found = false;  // the surface is within the margin or encloses the tool, with a tolerance of 1e-6 m
   // Deepest contact, valid if found. No point is deeper by more than 2e-5 m, or 5e-5 m for a non-convex solid
   // of unknown concavity.
   SurfaceContact nearest;
@@ -68,14 +68,14 @@ struct Clearance {
   bool overflow = false;  // a capacity was exceeded, and the distance is not guaranteed
 };
 
-// Contact search of one surface with a tool. Reuses what it evaluated until control points move, and starts
+// Contact search of one surface with a tool. Reuses evaluated samples until control points move, and starts
 // from the last nearest point. One owner, one thread; allocates only on construction. The grid must outlive
 // it.
 class SurfaceCollider {
  public:
-  // The optional `trim` restricts the surface to the trimmed area. Nearest points on trim loops are those of
-  // their polygons. In cells that loops cross, the nearest point is the best that Newton's method finds from
-  // samples and loops, without proof.
+  // The optional `trim` restricts the surface to the trimmed area. Nearest points on trim loops are points of
+  // the polygons that replace them. In cells that loops cross, the nearest point is the best that Newton's
+  // method finds from samples and loops, without proof.
   explicit SurfaceCollider(const NestedGrid& nested, std::shared_ptr<const TrimmedArea> trim = nullptr);
 
   // Finds the deepest contact within `margin_m`. The surface must have the grid's knots. `closed` is true if
@@ -102,7 +102,7 @@ class SurfaceCollider {
   // Cells visited by the last search, level by level. The children of a refined cell are contiguous, in the
   // order of the refined cells.
   const std::vector<LevelCell>& visited_cells() const { return cells_; }
-  // Refined cells of the finest level, in the same order.
+  // Refined cells of the finest level, in the order of visited_cells().
   const std::vector<LevelCell>& finest_cells() const { return finest_; }
 
  private:
@@ -112,7 +112,7 @@ class SurfaceCollider {
     int element_u, element_v, depth;
   };
 
-  // Goal of a search: the deepest contact to the tolerance, or a clearance.
+  // Goal of a search: the deepest contact within the tolerance, or a clearance.
   enum class Proof { deepest, clearance };
 
   // The private functions require SurfaceLevels::begin().
@@ -170,19 +170,19 @@ class SurfaceCollider {
   SurfaceSpot best_;
   SurfaceSpot last_;       // best of the previous query
   bool has_last_ = false;  // true after the first query
-  bool moved_ = true;      // since the boxes were updated
+  bool moved_ = true;      // true if the surface moved since the boxes were updated
   Proof proof_ = Proof::deepest;
   double tolerance_ = 0.0;
   int cuts_left_ = 0;
 
-  // Finest cells that the tool touches. Those of one region are contiguous in grouped_.
+  // A finest cell that the tool touches. The cells of one region are contiguous in grouped_.
   struct TouchedCell {
     LevelCell cell;
     int region;  // -1 until it is assigned
   };
   std::vector<TouchedCell> touched_;
-  std::vector<int> grouped_;               // into touched_
-  std::vector<int> touched_index_;         // by finest_index(), into touched_
+  std::vector<int> grouped_;               // indices into touched_
+  std::vector<int> touched_index_;         // indices into touched_, by finest_index()
   std::vector<std::uint32_t> touched_at_;  // query in which the tool touched the cell
   std::vector<ToolContactRegion> regions_;
   int region_ = -1;  // region that the search must not leave; -1 for none

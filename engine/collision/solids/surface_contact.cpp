@@ -17,14 +17,14 @@ namespace {
 inline constexpr int max_faces = 6;
 
 struct FacePlane {
-  double value;  // at the origin
+  double value;  // value at the origin
   Eigen::Vector2d slope;
 };
 
 struct MinimaxStep {
   Eigen::Vector2d step = Eigen::Vector2d::Zero();
   double value = 0.0;                       // value of the model at the step
-  std::array<double, max_faces> weights{};  // multipliers of the active planes, with the sum 1
+  std::array<double, max_faces> weights{};  // multipliers of the active planes, whose sum is 1
 };
 
 // Computes min over s of max_i (value_i + slope_i . s) + s . quadratic s / 2 by trying which one, two or
@@ -42,7 +42,8 @@ double model(const Planes& planes, int count, const Matrix2d& quadratic, const V
   return largest + 0.5 * step.dot(quadratic * step);
 }
 
-// Candidates for the minimum. Each is valued by the whole model, so the least one is the answer.
+// Search over candidates for the minimum. The whole model is evaluated at each candidate, so the least value
+// is the minimum.
 struct Search {
   const Planes& planes;
   int count;
@@ -151,9 +152,10 @@ constexpr double least_depth_gain = 1e-12;
 // Half the interval of the gradient's central differences: a fraction of the solid's size, and its limit in
 // metres.
 constexpr double difference_fraction = 1e-5, longest_difference_m = 1e-5;
-// Change of the gradient above which the interval crosses an edge of the solid and gives no curvature.
+// Change of the gradient above which the interval counts as crossing an edge of the solid, where there is no
+// curvature.
 constexpr double edge_change = 0.2;
-// Cosine above which two gradients belong to the same face, of which one expansion is stored.
+// Cosine above which two gradients belong to the same face, of which only one expansion is stored.
 constexpr double same_face = 0.9995;
 // Least curvature times the solid's size, which bounds the step in flat directions.
 constexpr double least_curvature = 1e-6;
@@ -172,7 +174,7 @@ struct ShapeFace {
   }
 };
 
-// The descent. Parameters continue across a periodic seam, so that their differences stay small.
+// State of a descent. Parameters continue beyond a periodic seam, so that their differences stay small.
 class Descent {
  public:
   Descent(const Surface& surface, const ToolShape& tool, const SurfaceSpot& from)
@@ -188,7 +190,7 @@ class Descent {
     for (int step = 0, restarts = 0; step < max_contact_steps; ++step) {
       const Step next = find_step();
       if (next.gain < least_depth_gain * size_ || !try_step(next.offset)) {
-        // Faces from far away may block the step. Without them a smooth descent continues.
+        // Expansions made far away may block the step; without them, the descent may continue smoothly.
         if (restarts++ == max_restarts || count_ == 1) break;
         drop_other_faces();
       }
@@ -220,7 +222,7 @@ class Descent {
     store_face(face, point.position_m);
   }
 
-  // Change of the gradient per unit of a derivative, by central differences; zero across an edge.
+  // Returns the change of the gradient per unit of a derivative, by central differences; zero across an edge.
   Vector3 gradient_change(const Vector3& from, const Vector3& along) const {
     const double length = along.norm();
     if (!(length > 0.0)) return Vector3::Zero();
@@ -270,8 +272,8 @@ class Descent {
     count_ = 1;
   }
 
-  // Weighted curvature of the faces in lengths along du and dv. Negative eigenvalues are replaced by their
-  // absolute values.
+  // Returns the weighted curvature of the faces, with lengths along du and dv as variables. Negative
+  // eigenvalues are replaced by their absolute values.
   Matrix2d quadratic() const {
     Matrix2d sum = Matrix2d::Zero();
     for (int k = 0; k < count_; ++k) sum += weights_[k] * faces_[k].curvature;
@@ -298,7 +300,8 @@ class Descent {
     for (int k = 0; k < count_; ++k) {
       const ShapeFace& face = faces_[k];
       const Vector2d slope = face.slope + face.curvature * (at_ - face.at);
-      // No face may exceed the distance, the maximum of the faces wherever a minimum may be on an edge.
+      // No face may exceed the distance, which is the maximum of the faces wherever a minimum may be on an
+      // edge.
       planes[k] = {k == current_ ? 0.0 : std::min(face.value(at_) - here, 0.0), scale.cwiseProduct(slope)};
     }
     Matrix2d curvature = quadratic();
@@ -316,7 +319,8 @@ class Descent {
     return {fraction * scale.cwiseProduct(found.step), -found.value};
   }
 
-  // Moves by the step, limited to the domain. Returns false if nothing was gained or learned.
+  // Moves by the step, limited to the domain. Returns false if neither the distance decreased nor a new face
+  // was found.
   bool try_step(const Vector2d& offset) {
     Vector2d there = at_ + offset;
     const KnotVector* knots[2] = {&surface_.u, &surface_.v};

@@ -1,5 +1,5 @@
-// A contact of a tool with a surface (position, frame and depth), and the local search for the deepest point
-// in a solid.
+// A contact of a tool with a surface (position, frame and depth), and the local search for the surface's
+// deepest point in a solid.
 #pragma once
 
 #include "engine/bspline/surface.h"
@@ -17,12 +17,12 @@ struct SurfaceSpot {
 
 // Descends from `from` to a local minimum of the distance over the surface; the result is never farther than
 // `from`. If several faces of the solid are equally near (an edge, an inner ridge), it keeps each face's
-// second order expansion. Each step minimises their maximum: a bundle-Newton method (Luksan and Vlcek 1998)
-// in two unknowns. The tool must be a solid. Allocates nothing.
+// second order expansion. Each step minimises the maximum of these expansions: a bundle-Newton method (Luksan
+// and Vlcek 1998) in two unknowns. The tool must be a solid. Allocates nothing.
 SurfaceSpot polish_on_solid(const Surface& surface, const ToolShape& tool, const SurfaceSpot& from);
 
 // Unit tangents spanning the plane across a unit normal: the projection of du and normal x u. Where du
-// vanishes, as at a pole, dv is used instead, or the normal alone if that vanishes too.
+// vanishes, as at a pole, dv is used instead, or the normal alone if dv vanishes too.
 struct Tangents {
   Vector3 u = Vector3::UnitX(), v = Vector3::UnitZ();
 };
@@ -33,7 +33,7 @@ struct SurfaceContact {
   double u = 0.0, v = 0.0;
   Vector3 point_m = Vector3::Zero();  // on the surface
   Vector3 normal = Vector3::UnitY();  // unit, along du x dv
-  double depth_m = 0.0;               // depth of the tool inside the surface; negative if apart
+  double depth_m = 0.0;               // depth of the tool inside the surface; negative if they are apart
   Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();  // tangents_across() the normal
 };
 

@@ -24,7 +24,8 @@ CornerValues tangent_at_corners(const DistanceSample& sample, const Vector3& fro
   return values;
 }
 
-// Largest minimum over the corners of a mixture of two tangents, a concave function of the mixing fraction.
+// Returns the largest minimum over the corners that a mixture of two tangents reaches; this minimum is a
+// concave function of the mixing fraction.
 double best_mix(const CornerValues& a, const CornerValues& b) {
   double low = 0.0, high = 1.0;
   const auto mixed = [&](double fraction) {
@@ -44,9 +45,10 @@ double best_mix(const CornerValues& a, const CornerValues& b) {
   return best;
 }
 
-// A convex solid is no nearer than any of its tangents or a mixture of two, which matters at its edges. The
-// minimum of a tangent over the corners' hull is at a corner. For other solids a tangent may be too large by
-// half the concavity times the squared distance; the distance moved is always a bound.
+// Returns a lower bound of the distance of a solid. A convex solid is no nearer than any of its tangents or a
+// mixture of two, which matters at its edges. The minimum of a tangent over the corners' hull is at a corner.
+// For other solids a tangent may be too large by half the concavity times the squared distance; the bound by
+// the distance moved always holds.
 double solid_bound(const ToolShape& tool, const PatchCorners& corners, double enough) {
   const Vector3 centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
   double radius = 0.0;
@@ -110,12 +112,13 @@ double lower_bound(const ToolShape& tool, const PatchCorners& corners, double bu
   }
   double foremost = infinity;
   for (const Vector3& corner : corners) foremost = std::min(foremost, direction.dot(corner - tool.centre_m));
-  // Behind the centre the direction gives no bound; the distance to a point is never negative.
+  // The direction gives no bound for corners behind the centre, but the distance to the centre is never
+  // negative.
   if (tool.kind == ToolShape::Kind::sphere) foremost = std::max(foremost, 0.0);
   return foremost - tool.radius_m - bulge;
 }
 
-// Seen from far away along a direction, the nearest point of a solid is its extreme point along it.
+// From a point far away in a direction, the nearest point of a solid is its extreme point in that direction.
 double depth_behind(const ToolShape& tool, const Vector3& point, const Vector3& normal) {
   SPOONBILL_ASSERT_DEBUG(std::abs(normal.squaredNorm() - 1.0) < 1e-6);
   if (tool.kind == ToolShape::Kind::half_space) return infinity;

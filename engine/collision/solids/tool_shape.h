@@ -57,7 +57,7 @@ struct ToolShape {
   bool is_solid() const { return kind == Kind::solid; }
 
   // Returns the signed distance. It changes by at most the distance moved, so its value at the centre of a
-  // ball, less the radius, is a lower bound within the ball.
+  // ball, minus the radius, is a lower bound within the ball.
   double distance(const Vector3& point) const {
     if (is_solid()) return distance_field->at(into_frame(point)).distance_m;
     return kind == Kind::sphere ? (point - centre_m).norm() - radius_m : normal.dot(point - centre_m);
@@ -75,7 +75,7 @@ struct ToolShape {
                       : distance(centre) - radius > reach;
   }
 
-  // Distance and gradient in the world frame; only for a solid. See SignedDistance::at_within().
+  // Returns distance and gradient in the world frame. Only for a solid. See SignedDistance::at_within().
   DistanceSample at_within(const Vector3& point, double enough) const {
     const DistanceSample sample = distance_field->at_within(into_frame(point), enough);
     return {sample.distance_m, turn * sample.gradient};

@@ -54,7 +54,7 @@ class HullBuilder {
  private:
   struct Plane {
     HullFace face;
-    Steps normal;  // outward
+    Steps normal;  // outward normal
   };
 
   Steps face_normal(const HullFace& face) const {
@@ -83,7 +83,7 @@ int HullBuilder::farthest(const Measure& measure) const {
   return best;
 }
 
-// Starts with a tetrahedron of distant points. Returns false if all points are in one plane.
+// Makes a tetrahedron of distant points. Returns false if all points are in one plane.
 bool HullBuilder::start() {
   const auto offset = [&](int a, int b) -> Eigen::Vector3d {
     return (points_[b] - points_[a]).cast<double>();

@@ -30,7 +30,7 @@ struct HullFacets {
 // thread.
 HullFacets hull_facets(const std::vector<Vector3>& points_m);
 
-// Finest level of the displayed spheres. Below the finest level of its own grid, the contact search cuts
+// Finest level of the displayed spheres. Beyond the finest level of its own grid, the contact search cuts
 // patches into four, as these levels do.
 inline constexpr int finest_stage_level = 3;
 
@@ -48,11 +48,11 @@ struct StageSphere {
   LevelCell cell;
   int surface = 0;         // index over all surfaces of the stages
   bool is_second = false;  // on the second of two surfaces
-  bool kept = false;       // refined, or triangulated at the last level; false if dropped
+  bool kept = false;       // true: refined, or triangulated at the last level; false: dropped
 };
 
-// One of the two triangles of a cell of the last level, stored if it may meet the other side, given the
-// surface's deviation from it.
+// One of the two triangles of a cell of the last level, stored if it may meet the other body, given the
+// surface's deviation from the triangle.
 struct StageTriangle {
   Triangle corners;
   LevelCell cell;

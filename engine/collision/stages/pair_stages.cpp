@@ -116,7 +116,7 @@ int PairStages::add_spheres(double margin_m, int first_surface, ContactStages& s
 void PairStages::add_triangles(const std::vector<CellPair>& pairs, double margin_m, int first_surface,
                                ContactStages& stages) {
   SurfaceLevels* const levels[2] = {&collider_->first_levels(), &collider_->second_levels()};
-  // Marks by cell and triangle: 1 if it was tested, 2 if it was kept.
+  // Marks of each triangle of each cell: 1 if it was tested, 2 if it was kept.
   Marks marks[2];
   for (int side = 0; side < 2; ++side) {
     marks[side].assign(static_cast<std::size_t>(2 * levels[side]->total_cell_count()), 0);

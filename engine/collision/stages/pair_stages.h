@@ -12,9 +12,9 @@
 
 namespace spoonbill {
 
-// Records the stages of a SurfacePairCollider. It shows the sphere of each cell visited, but the collider
-// drops cells by tighter slabs, so spheres of dropped cells may still meet. One owner, one thread. Surfaces
-// given to add() must have the knots of those given to make().
+// Records the stages of a SurfacePairCollider. It shows the sphere of each visited cell, but the collider
+// drops cells by their slabs, which are tighter, so spheres of dropped cells may still meet. One owner, one
+// thread. Surfaces given to add() must have the knots of those given to make().
 class PairStages {
  public:
   static Result<PairStages> make(const Surface& first, const Surface& second);

@@ -13,7 +13,8 @@ namespace {
 // Number of times a triangle is cut into four before it counts as near.
 constexpr int triangle_cuts = 6;
 
-// Tests balls around the triangle and its parts. Returns false only if no point of it is within reach.
+// Tests balls around the triangle and its parts. Returns false only if no point of the triangle is within
+// reach.
 bool is_within(const ToolShape& tool, const Triangle& triangle, double reach_m, int cuts) {
   const auto& [a, b, c] = triangle;
   const Vector3 centre = (a + b + c) / 3.0;

@@ -13,8 +13,8 @@
 namespace spoonbill {
 namespace {
 
-// Fraction of the radius below which the outward component of a ring's points is rounding, so that the ring
-// is flat.
+// Fraction of the radius below which the outward component of a ring's points counts as rounding, so that the
+// ring counts as flat.
 constexpr double flat_fraction = 1e-9;
 
 Status check_poles(const Surface& surface) {

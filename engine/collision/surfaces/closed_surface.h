@@ -28,15 +28,15 @@ struct ClosedSkin {
 // Samples a closed surface at its skin_parameters().
 ClosedSkin make_skin(const Surface& surface);
 
-// Number of samples per direction that skin_parameters() aims at. Each element gets two to eight, so a
-// surface of many elements has more samples, one of few elements fewer.
+// Number of samples per direction that skin_parameters() aims at. Each element gets two to eight samples, so
+// a surface of many elements has more samples than this, and a surface of few elements fewer.
 inline constexpr int skin_samples = 200;
 std::vector<double> skin_parameters(const KnotVector& knots);
 
 // Samples a closed surface at given parameters, ascending from the start of each domain to its end.
 ClosedSkin sample_skin(const Surface& surface, const std::vector<double>& u, const std::vector<double>& v);
 
-// Volume that the skin encloses, in cubic metres; negative if its normals point inward.
+// Returns the volume that the skin encloses, in cubic metres; negative if its normals point inward.
 double enclosed_volume_m3(const ClosedSkin& skin);
 
 }  // namespace spoonbill

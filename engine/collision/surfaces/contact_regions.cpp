@@ -52,7 +52,7 @@ void ContactRegions::join(const std::vector<CellPair>& pairs, const Paired& cell
   }
 }
 
-// Visits half of the cell's neighbours; the other half visit the cell.
+// Visits half of the cell's neighbours, because the other half visit the cell.
 void ContactRegions::join_neighbours(const std::vector<CellPair>& pairs, int pair) {
   const LevelCell& cell = pairs[pair].first;
   const Grid& grid = first_->nested().grid;

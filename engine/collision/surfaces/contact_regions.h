@@ -36,9 +36,9 @@ class ContactRegions {
   }
   // A cell of the first surface that is in a pair.
   struct Paired {
-    std::uint32_t at = 0;  // group() call in which it was last in a pair
+    std::uint32_t at = 0;  // group() call in which the cell was last in a pair
     int last_pair = 0;
-    bool split = false;  // true if its pairs are not all connected
+    bool split = false;  // true if the cell's pairs are not all connected
   };
 
   int root(int pair);
@@ -49,7 +49,7 @@ class ContactRegions {
 
   const SurfaceLevels* first_;
   const SurfaceLevels* second_;
-  // Number of cells of the second surface around a periodic direction; unlimited for open ones.
+  // Number of cells of the second surface around each periodic direction; unlimited for open directions.
   int around_u_ = 0, around_v_ = 0;
   std::vector<int> parent_;     // union-find parent of each pair: an earlier pair or itself
   std::vector<int> previous_;   // previous pair of the same cell of the first surface; -1 for the first
@@ -57,11 +57,13 @@ class ContactRegions {
   std::vector<Paired> paired_;  // by cell_index()
   std::uint32_t group_ = 0;
   std::vector<Region> regions_;
-  std::vector<int> end_;             // working memory: where the next pair of each region goes
+  // working memory: position at which the next pair of each region is stored
+  std::vector<int> end_;
   std::vector<CellPair> unordered_;  // working memory
 };
 
-// Mean of parameters. In a periodic direction each is taken relative to the first along the shorter path.
+// Mean of parameters. In a periodic direction each parameter is taken relative to the first one along the
+// shorter path.
 class ParameterMean {
  public:
   explicit ParameterMean(const KnotVector& knots) : knots_(&knots) {}
@@ -139,8 +141,8 @@ struct RegionRanges {
 };
 RegionRanges region_ranges(const RegionCells& cells);
 
-// Returns the deepest of a few pairs of the region, where the first surface is farthest behind the second, or
-// `touch` if none is behind. See deepest_pair() for `outside`.
+// Returns the deepest of a few pairs of the region, that is, the pair at which the first surface is farthest
+// behind the second, or `touch` if none is behind. See deepest_pair() for `outside`.
 PairParameters find_deepest_seed(const RegionCells& cells, const PairParameters& touch, double outside);
 
 // Returns the side of a surface on which another surface is: 1 if the two face each other, -1 if they face

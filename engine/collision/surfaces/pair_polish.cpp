@@ -53,7 +53,7 @@ bool solve_positive(Eigen::Matrix<double, size, size>& h, Eigen::Matrix<double, 
 // Quadratic model of a minimisation over parameters of different speeds. Steps are scaled to metres.
 template <int size>
 struct Problem {
-  Eigen::Matrix<double, size, 1> gradient;  // by the parameters
+  Eigen::Matrix<double, size, 1> gradient;  // with respect to the parameters
   Eigen::Matrix<double, size, size> curvature;
   Eigen::Matrix<double, size, 1> speed;  // metres per unit of each parameter
   std::array<const KnotVector*, size> knots;
@@ -218,7 +218,7 @@ DepthPoint evaluate_depth(const PiecewiseSurface& first, const PiecewiseSurface&
   result.b = nearest.at;
   result.normal = outside * unit_normal(second, nearest.at, nearest.u, nearest.v);
   const Vector3 difference = result.a.position_m - nearest.at.position_m;
-  // A point beyond an edge of the second surface cannot be behind it.
+  // smallest gain that the model must predict, in the unit of the objective
   const bool is_behind = difference.dot(result.normal) < 0.0 &&
                          !(on_edge(second, nearest.u, nearest.v) && is_oblique(difference, result.normal));
   result.depth = is_behind ? difference.norm() : -difference.norm();

@@ -42,13 +42,13 @@ struct DeepestPair {
 };
 
 // Returns the depth in metres of a point of the first surface behind the second, measured at the nearest
-// point found from `from`. Negative in front. See deepest_pair() for `outside`.
+// point found from `from`. It is negative in front. See deepest_pair() for `outside`.
 double depth_behind(const PiecewiseSurface& first, const PiecewiseSurface& second, const PairParameters& from,
                     double outside);
 
 // Finds the point of the first surface that is locally deepest behind the second, along the normal of the
 // second's nearest point. Stops early once the depth exceeds `enough_m`. `outside` is 1 if that normal is du
-// x dv, -1 if it is the opposite.
+// x dv, -1 if it is opposite to du x dv.
 //
 // The depth is f = -d(A(u, v)) for the signed distance d to the second surface, with the gradient -A_u . n.
 // With I and II the fundamental forms of the second surface at the nearest point, the parameters of that
@@ -61,7 +61,7 @@ DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& 
 // One region in which the surfaces cross or touch.
 struct PairContact {
   SurfacePair pair;              // deepest points, one on each surface
-  Vector3 normal;                // unit, direction in which the first surface leaves the second
+  Vector3 normal;                // unit; direction in which the first surface leaves the second
   double depth_m = 0.0;          // along the normal; 0 if they only touch
   ParameterRange first, second;  // parameter rectangles that contain the region
   Vector3 tangent_u, tangent_v;  // tangents_across() the normal, from the first surface

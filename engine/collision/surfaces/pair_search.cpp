@@ -28,7 +28,7 @@ Vector3 farthest(const ControlNet& net, const Vector3& direction) {
   return {net.x[at], net.y[at], net.z[at]};
 }
 
-// Up to four points of the Minkowski difference of the hulls. It is reduced to those that span the face
+// Up to four points of the Minkowski difference of the hulls; reduced to the points that span the face
 // nearest to the origin.
 struct Simplex {
   std::array<Vector3, 4> points;
@@ -91,7 +91,7 @@ bool hulls_are_apart(const ControlNet& first, const ControlNet& second) {
   double before = std::numeric_limits<double>::infinity();
   for (int step = 0; step < max_separation_steps; ++step) {
     const Vector3 a = farthest(first, -nearest), b = farthest(second, nearest);
-    // The first hull is beyond a plane across `nearest`, and the second in front of it.
+    // The first hull is beyond a plane perpendicular to `nearest`, and the second in front of that plane.
     const double noise = rounding * nearest.norm() * (a.norm() + b.norm());
     if (nearest.dot(a - b) > noise) return true;
     simplex.points[simplex.count++] = a - b;

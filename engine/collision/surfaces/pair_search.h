@@ -11,13 +11,13 @@
 namespace spoonbill {
 
 // Returns true only if a plane separates the convex hulls of the control points, which contain the surfaces;
-// the plane is verified with all control points. Hulls that nearly touch may count as intersecting. Uses only
-// support functions, so the hulls follow moving control points without being built (Gilbert, Johnson and
+// the plane is verified with all control points. Hulls that nearly touch may count as intersecting. Only
+// support functions are used, so the hulls of moving control points need not be built (Gilbert, Johnson and
 // Keerthi 1988). Allocates nothing.
 bool hulls_are_apart(const ControlNet& first, const ControlNet& second);
 
 // Decides which pairs of points count. For one surface against itself, Newton's method may converge to the
-// same point on both sides, whose distance of zero means nothing.
+// same point for both surfaces; their distance of zero then means nothing.
 class PairJudge {
  public:
   virtual bool counts(const PairParameters& at) const = 0;
@@ -29,7 +29,7 @@ class PairJudge {
 // Branch and bound over two patches. One owner, one thread; allocates only on construction.
 class PairSearch {
  public:
-  // Both surfaces may be the same if there is a judge. Surfaces and judge must outlive the search.
+  // The two surfaces may be the same one if there is a judge. Surfaces and judge must outlive the search.
   PairSearch(SurfaceLevels& first, SurfaceLevels& second, const PairJudge* judge = nullptr);
 
   // Starts a new query: forgets the best pair and clears overflow().
@@ -43,7 +43,7 @@ class PairSearch {
   double best_distance_m() const { return best_distance_m_; }
 
   // Searches two cells until nothing in them can be nearer than the best pair by more than `tolerance_m`, or
-  // the best pair is within `enough_m`. Both are in metres; the tolerance must be positive.
+  // the best pair is within `enough_m`. Both values are in metres; the tolerance must be positive.
   void search(const LevelCell& a, const LevelCell& b, double tolerance_m, double enough_m);
 
   // True if a search exceeded a capacity and skipped some patches.

@@ -56,7 +56,7 @@ PairResult SurfacePairCollider::collide(const Surface& first, const Surface& sec
   if (first_.begin(first, query.first_samples)) cells_.invalidate_first();
   if (second_.begin(second, query.second_samples)) cells_.invalidate_second();
   search_.begin();
-  // Surfaces that touched in the last call mostly still do, so the hull test is skipped.
+  // Surfaces that touched in the last call mostly still touch, so the hull test is skipped for them.
   if (touched_last_ || !hulls_are_apart(first.net, second.net)) {
     find_contacts(query);
     result.overflow = cells_.overflow();
@@ -96,14 +96,15 @@ const SurfacePairCollider::Seed* SurfacePairCollider::last_seed(const PairContac
   return nullptr;
 }
 
-// Tries the last touch and a few candidates, which mostly succeeds at once, before searching all pairs.
+// Returns true if the surfaces touch in the region. Tries the last touch and a few candidates first, which
+// mostly succeed at once, and then searches all pairs.
 bool SurfacePairCollider::touches(const RegionCells& cells, const Seed* last) {
   search_.forget_best();
   if (last != nullptr) search_.offer(last->touch);
   if (search_.best_distance_m() <= touch_tolerance_m) return true;
   const std::size_t count = cells.pairs.size(), seeds = cells.at_most(region_seeds);
   for (std::size_t k = 0; k < seeds; ++k) {
-    // Starts halfway through the list, where a region is likely to be deepest.
+    // Starts halfway through the list of pairs, where a region is likely to be deepest.
     search_.offer(cells.pair_centre(cells.pairs[(count / 2 + k * count / seeds) % count]));
     if (search_.best_distance_m() <= touch_tolerance_m) return true;
   }
@@ -114,14 +115,15 @@ bool SurfacePairCollider::touches(const RegionCells& cells, const Seed* last) {
   return false;
 }
 
-// Computes the depth of a region whose touch is in the contact. Returns the seed for the next collide().
+// Computes the depth of a region; `contact` holds the point where the surfaces touch. Returns the seed for
+// the next collide().
 SurfacePairCollider::Seed SurfacePairCollider::resolve_contact(const RegionCells& cells,
                                                                const PairQuery& query, const Seed* last,
                                                                PairContact& contact) const {
   Seed found{contact.pair.at, {}};
   contact.normal = unit_normal(second_.surface(), found.touch.s, found.touch.t);
-  // An open surface has no inside, so the side with the shorter exit counts. The search begins with the side
-  // on which the centre of the region is.
+  // An open surface has no inside, so the side towards which the exit is shorter counts. The search begins
+  // with the side on which the centre of the region is.
   Seeds seeds = find_seeds(cells, last);
   const double first_side = query.second_closed || seeds.centre_depth > 0.0 ? 1.0 : -1.0;
   double shortest = infinity;
@@ -158,9 +160,9 @@ RegionCentre SurfacePairCollider::find_centre(const RegionCells& cells) const {
   return centre;
 }
 
-// Tries the centre of the region and, in the direction of a few pairs, where the surfaces cross, the points
-// halfway to the pair and twice as far as it. Keeps the deepest point and the one farthest in front. With a
-// seed from the last call, only one of the points in a direction is tried per call.
+// Tries the centre of the region and, in the direction of a few pairs, at which the surfaces cross, the
+// points at half and at twice the distance of the pair. Keeps the deepest point and the one farthest in
+// front. With a seed from the last call, only one of the points in a direction is tried per call.
 SurfacePairCollider::Seeds SurfacePairCollider::find_seeds(const RegionCells& cells, const Seed* last) const {
   const RegionCentre centre = find_centre(cells);
   Seeds seeds;
@@ -211,9 +213,9 @@ void SurfacePairCollider::find_inner_touch(const RegionCells& cells, PairContact
   }
 }
 
-// Updates the contact if each surface is deeper behind the other than the contact's depth; the smaller of
-// both depths separates them. Depths beyond `shortest` need not be exact. `from` receives the parameters of
-// the first surface's deepest point.
+// Updates the contact if each surface is deeper behind the other than the contact's depth; moving by the
+// smaller of both depths separates them. Depths beyond `shortest` need not be exact. `from` receives the
+// parameters of the first surface's deepest point.
 void SurfacePairCollider::deepen_contact(PairContact& contact, PairParameters& from, double outside,
                                          bool first_closed, double shortest) const {
   const PiecewiseSurface first = first_.pieces(), second = second_.pieces();
@@ -240,7 +242,7 @@ void SurfacePairCollider::deepen_contact(PairContact& contact, PairParameters& f
   }
 }
 
-// One body can be inside the other only if its box is.
+// Returns true if one body may be inside the other: this requires its box to be inside the other's box.
 bool SurfacePairCollider::may_contain(const PairQuery& query) const {
   const Box& first = cells_.first_tree().box(cells_.first_tree().root());
   const Box& second = cells_.second_tree().box(cells_.second_tree().root());
@@ -277,8 +279,8 @@ void SurfacePairCollider::find_nearest(const PairQuery& query, PairResult& resul
   search_.forget_best();
   search_.offer(RegionCells{&first_, &second_, {}}.pair_centre(cells_.find_likely_near_elements()));
   if (nearest_known_) search_.offer(nearest_);
-  // A first guess that is much too far has a large tolerance, with which nearer points may have been skipped.
-  // The search is then repeated from the pair found.
+  // If the first guess is much too far, its tolerance is large, and nearer points may have been skipped. The
+  // search is then repeated from the pair that was found.
   while (search_all(reach) > 2.0 * tolerance()) continue;
   nearest_ = search_.best().at;
   nearest_known_ = true;

@@ -16,29 +16,30 @@ namespace spoonbill {
 // Options of SurfacePairCollider::collide().
 struct PairQuery {
   // True if the surface bounds a body: du x dv then points outward, and one body may be inside the other. An
-  // open surface has two sides, and the one with the shorter exit counts.
+  // open surface has two sides, and the side with the shorter exit counts.
   bool first_closed = false, second_closed = false;
   // Distance up to which the nearest points of surfaces that do not touch are searched, in metres.
   double reach_m = 0.0;
-  // Optional samples of the whole grid, see SurfaceLevels::begin(). If given, none is evaluated.
+  // Optional samples of the whole grid, see SurfaceLevels::begin(). If they are given, no sample is
+  // evaluated.
   PlanarPoints first_samples, second_samples;
 };
 
 // Result of SurfacePairCollider::collide().
 struct PairResult {
-  bool touching = false;   // to within touch_tolerance_m
+  bool touching = false;   // true if the surfaces touch, to within touch_tolerance_m
   bool contained = false;  // one body is inside the other; the only contact describes its exit
-  // Distance of surfaces that do not touch; infinite beyond the reach. No points are nearer by more than 1e-4
-  // of the larger of this distance and the smaller surface's size.
+  // Distance of surfaces that do not touch; infinite beyond the reach. It exceeds the true distance by at
+  // most 1e-4 of this distance or of the smaller surface's size, whichever is larger.
   double distance_m = std::numeric_limits<double>::infinity();
   SurfacePair nearest;
-  // A capacity was exceeded, and a contact may be missing. Remedy: surfaces of fewer elements or a smaller
-  // reach.
+  // True if a capacity was exceeded, so that a contact may be missing. Remedy: surfaces of fewer elements or
+  // a smaller reach.
   bool overflow = false;
   int samples_evaluated = 0;
 };
 
-// Contact search of two surfaces. Reuses what it evaluated until control points move, and starts from the
+// Contact search of two surfaces. Reuses evaluated samples until control points move, and starts from the
 // last contacts. One owner, one thread; allocates only on construction. The grids must outlive it.
 class SurfacePairCollider {
  public:
@@ -69,8 +70,8 @@ class SurfacePairCollider {
   using Pairs = std::vector<CellPair>;
   using Region = ContactRegions::Region;
 
-  // Points of a region from which the next collide() starts: where the surfaces touched, and where the first
-  // was deepest, by side as in Seeds.
+  // Points of a region from which the next collide() starts: the point where the surfaces touched, and the
+  // points where the first surface was deepest, by side as in Seeds.
   struct Seed {
     PairParameters touch, deepest[2];
     bool deep[2] = {false, false};

@@ -15,7 +15,7 @@ namespace {
 constexpr double all_directions = std::numbers::pi;
 constexpr double right_angle = 0.5 * std::numbers::pi;
 
-// Half angle of the cone of all vectors within `radius` of a vector.
+// Returns the half angle of the cone that contains all vectors within `radius` of a vector of this length.
 double half_angle(double length, double radius) {
   return radius < length ? std::asin(radius / length) : all_directions;
 }
@@ -57,7 +57,7 @@ void PatchFolds::begin() {
   update_mixed_bounds();
 }
 
-// S_uv is a B-spline of one degree less in both directions, bounded by its own control points.
+// S_uv is a B-spline surface of one degree less in both directions, and its own control points bound it.
 void PatchFolds::update_mixed_bounds() {
   const ControlNet& net = levels_->surface().net;
   const int rows = static_cast<int>(u_.control.size()), columns = static_cast<int>(v_.control.size());
@@ -289,7 +289,7 @@ bool SurfaceSelfCollider::can_meet(const CellPair& pair, int level) {
          patch_distance_in_plane(corners_a, bulge_a, corners_b, bulge_b) <= touch_tolerance_m;
 }
 
-// Returns true if two adjacent cells may meet other than where they are joined.
+// Returns true if two adjacent cells may meet elsewhere than where they are joined.
 bool SurfaceSelfCollider::joined_can_meet(const CellPair& pair) {
   const auto& [a, b, region] = pair;
   const Grid& grid = levels_.nested().grid;
@@ -332,7 +332,8 @@ bool SurfaceSelfCollider::is_mirror_of_earlier(const Region& region) const {
   });
 }
 
-// Tries a few candidates, which mostly succeeds at once, before searching all pairs.
+// Returns true if the surfaces touch in the region. Tries a few candidates first, which mostly succeed at
+// once, and then searches all pairs.
 bool SurfaceSelfCollider::touches(const RegionCells& cells) {
   search_.forget_best();
   const std::size_t seeds = cells.at_most(self_region_seeds);
@@ -365,7 +366,8 @@ PairContact SurfaceSelfCollider::make_contact(const RegionCells& cells, const Se
   return contact;
 }
 
-// Updates the contact if the smaller depth of the two parts behind each other is less than `shortest`.
+// Updates the contact if the two parts are behind each other and the smaller of their depths is less than
+// `shortest`.
 void SurfaceSelfCollider::deepen_contact(PairContact& contact, const PairParameters& from, double outside,
                                          const SelfQuery& query, double& shortest) const {
   const PiecewiseSurface pieces = levels_.pieces();

@@ -1,4 +1,4 @@
-// Contact of a B-spline surface with itself, open, periodic or closed, by the descent of SurfacePairCollider
+// Contact of a B-spline surface, open, periodic or closed, with itself, by the descent of SurfacePairCollider
 // with the same surface on both sides. Cells that are joined (at an edge or a corner, across a seam or at a
 // pole) always meet there. They are skipped as soon as PatchFolds proves that they meet nowhere else, and
 // split until then.
@@ -42,7 +42,7 @@ class PatchFolds {
  private:
   struct Cone {
     Vector3 axis = Vector3::Zero();  // unit
-    double angle = 0.0;              // half angle; above a right angle the cone is all directions
+    double angle = 0.0;              // half angle; above a right angle the cone contains all directions
   };
   struct Cones {
     Cone along_u, along_v;
@@ -52,7 +52,7 @@ class PatchFolds {
   void update_mixed_bounds();
 
   SurfaceLevels* levels_;
-  // Largest norm of S_uv over each element, by u and v. SurfaceBounds has those of S_uu and S_vv.
+  // Largest norm of S_uv over each element, by u and v. SurfaceBounds holds the norms of S_uu and S_vv.
   std::vector<double> mixed_;
   struct Direction {
     std::vector<int> span, control;  // knot span of each element; unrolled index to control index
@@ -70,18 +70,18 @@ class PatchFolds {
 // Options of SurfaceSelfCollider::collide().
 struct SelfQuery {
   // True if the surface bounds a body: du x dv then points outward. An open surface has two sides, and the
-  // one with the shorter exit counts.
+  // side with the shorter exit counts.
   bool closed = false;
-  Progress progress = {};  // fraction searched; may stop the search
+  Progress progress = {};  // receives the fraction searched; may stop the search
 };
 
 // Result of SurfaceSelfCollider::collide().
 struct SelfResult {
-  bool touching = false;  // to within touch_tolerance_m
-  // A capacity was exceeded, and a contact may be missing. Remedy: a surface of fewer elements or fewer
-  // levels.
+  bool touching = false;  // true if the surface touches itself, to within touch_tolerance_m
+  // True if a capacity was exceeded, so that a contact may be missing. Remedy: a surface of fewer elements or
+  // fewer levels.
   bool overflow = false;
-  bool stopped = false;  // by the progress callback; contacts found so far are valid
+  bool stopped = false;  // true if the progress callback stopped the search; contacts found so far are valid
 };
 
 // Self-contact search of one surface. One owner, one thread; allocates only on construction. The grid must
@@ -101,7 +101,8 @@ class SurfaceSelfCollider {
   const std::vector<PairContact>& contacts() const { return contacts_; }
 
  private:
-  // How cells at the ends of a direction are joined, apart from the corners that they share in the grid.
+  // Description of how cells at the ends of a direction are joined, apart from the corners that they share in
+  // the grid.
   struct Joints {
     bool seam = false;                         // both ends of the direction are the same edge
     bool low_pole = false, high_pole = false;  // an end is a single point
@@ -141,7 +142,7 @@ class SurfaceSelfCollider {
   PairSearch search_;
   ContactRegions regions_;
   Joints u_, v_;
-  Pairs pairs_;                            // in both orders
+  Pairs pairs_;                            // pairs of cells, each in both orders
   std::vector<CellPair> pending_;          // working memory: stack of cell pairs still to be split
   std::vector<std::array<int, 2>> nodes_;  // working memory: stack of node pairs
   std::vector<PairContact> contacts_;

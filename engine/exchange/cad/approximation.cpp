@@ -30,7 +30,7 @@ struct PatchBreak {
 
 struct PatchDirection {
   std::vector<PatchBreak> breaks;  // increasing, both ends of the domain included
-  // True where the end meets the start with the continuity of the first break; the result is then periodic.
+  // True if the end meets the start with the continuity of the first break; the result is then periodic.
   bool closed = false;
 };
 
@@ -50,7 +50,7 @@ using Pieces = std::vector<int>;
 
 Pieces initial_pieces(const PatchDirection& direction, int degree) {
   const std::size_t count = direction.breaks.size() - 1;
-  // A period of fewer pieces than the degree is badly conditioned.
+  // A period with fewer pieces than the degree is badly conditioned.
   const int smallest =
       direction.closed ? (2 * degree + static_cast<int>(count)) / static_cast<int>(count) : 1;
   return Pieces(count, smallest);
@@ -82,7 +82,7 @@ Result<KnotVector> make_knots(const PatchDirection& direction, const Pieces& pie
                           : KnotVector::open(degree, std::move(knots));
 }
 
-// Returns points of the patch; those of one u are a row.
+// Returns points of the patch; each row holds the points at one u.
 PointRows sample_patch(const Patch& patch, const std::vector<double>& u, const std::vector<double>& v) {
   PointRows points(static_cast<Eigen::Index>(u.size()), static_cast<Eigen::Index>(3 * v.size()));
   for (std::size_t i = 0; i < u.size(); ++i) {
@@ -94,7 +94,7 @@ PointRows sample_patch(const Patch& patch, const std::vector<double>& u, const s
   return points;
 }
 
-// Returns the points transposed: those of one v are a row.
+// Returns the points transposed: each row holds the points at one v.
 PointRows transpose_points(const PointRows& points) {
   const Eigen::Index rows = points.rows(), columns = points.cols() / 3;
   PointRows result(columns, 3 * rows);
@@ -131,7 +131,7 @@ std::vector<double> check_parameters(const std::vector<double>& ends) {
   return parameters;
 }
 
-// Returns distances at equal parameters in metres; NaN counts as infinite.
+// Returns the distances in metres between patch and surface at equal parameters; NaN counts as infinite.
 Eigen::MatrixXd distances(const Patch& patch, const Surface& surface, const std::vector<double>& u,
                           const std::vector<double>& v) {
   Eigen::MatrixXd result(static_cast<Eigen::Index>(u.size()), static_cast<Eigen::Index>(v.size()));
@@ -155,7 +155,7 @@ std::vector<double> piece_errors(const Eigen::MatrixXd& distances, std::size_t p
   return errors;
 }
 
-// Divides smooth pieces whose error is too large into more parts. Returns true where there were any.
+// Divides smooth pieces whose error is too large into more parts. Returns true if there were any.
 bool refine(const std::vector<double>& errors, double allowed_m, int degree, Pieces& pieces) {
   bool refined = false;
   std::size_t piece = 0;
@@ -163,7 +163,7 @@ bool refine(const std::vector<double>& errors, double allowed_m, int degree, Pie
     double largest = 0.0;
     for (int i = 0; i < count; ++i) largest = std::max(largest, errors[piece++]);
     if (largest <= allowed_m) continue;
-    // The error falls with the power degree + 1 of a piece's length where the patch is smooth.
+    // On a smooth patch, the error falls with the power degree + 1 of the length of a piece.
     const double factor = std::pow(largest / allowed_m, 1.0 / (degree + 1));
     count = std::max(count + 1, static_cast<int>(std::ceil(count * std::clamp(factor, 1.1, 2.0))));
     refined = true;
@@ -176,8 +176,8 @@ int count_control_points(const PatchDirection& direction, const Pieces& pieces, 
   return knots ? knots->control_point_count() : control_point_count_range.high + 1;
 }
 
-// Approximates the patch with one degree. Returns nullopt where too many control points would be needed, an
-// error where the patch is not finite.
+// Approximates the patch with one degree. Returns nullopt if too many control points would be needed, and an
+// error if the patch is not finite.
 Result<std::optional<PatchFit>> approximate_with_degree(const Patch& patch, double tolerance_m, int degree) {
   Pieces u_pieces = initial_pieces(patch.u, degree), v_pieces = initial_pieces(patch.v, degree);
   const double allowed_m = allowed_fraction * tolerance_m;
@@ -282,7 +282,7 @@ class ParameterLine {
 };
 
 // Returns the highest order from 0 to 2 up to which derivatives just before `left` and just after `right`
-// agree; -1 where the points differ.
+// agree; -1 if the points differ.
 int continuity_across(const ParameterLine& line, double left, double right, double scale) {
   const double step = 1e-9 * (line.end() - line.start());
   const double length = line.end() - line.start();

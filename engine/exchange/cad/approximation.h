@@ -16,7 +16,7 @@ struct ParameterBox {
 
 struct PatchFit {
   Surface surface;  // over the parameters of the original
-  // Largest distance at equal parameters, in metres, checked at 9 x 9 positions of each piece.
+  // Largest distance at equal parameters, in metres, checked at 9 x 9 positions in each piece.
   double deviation_m = 0.0;
 };
 

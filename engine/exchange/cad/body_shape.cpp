@@ -49,7 +49,8 @@ using SplineGeometry = opencascade::handle<Geom_BSplineSurface>;
 using Polygon = std::vector<Eigen::Vector2d>;
 
 constexpr double vertex_distance_mm = 1e-7;
-// Distance of edge curves in space from those over (u, v): the target, and the limit, which kinks may reach.
+// Distance between an edge's curve in space and its curve over (u, v): the target, and the limit, which kinks
+// may reach.
 constexpr double curve_tolerance_mm = 1e-6, curve_error_limit_mm = 1e-2;
 constexpr double corner_sine = 1e-4;
 constexpr int degree_limit = 14, segment_limit = 1000;
@@ -202,7 +203,8 @@ std::vector<double> find_corners(const Curve& curve) {
   return ends;
 }
 
-// Appends the vertex at a point; one that exists there is repeated, since a loop may return along a seam.
+// Appends the vertex at a point. If a vertex already exists there, it is appended once more, since a loop may
+// return along a seam.
 void add_vertex(const gp_Pnt& at, std::vector<TopoDS_Vertex>& vertices) {
   for (const TopoDS_Vertex& vertex : vertices) {
     if (BRep_Tool::Pnt(vertex).Distance(at) > vertex_distance_mm) continue;
@@ -218,7 +220,7 @@ Status add_curve_in_space(const Curve& curve, const SplineGeometry& geometry, co
                                       curve->FirstParameter(), curve->LastParameter(), curve_tolerance_mm);
   approximation.Perform(segment_limit, degree_limit, GeomAbs_C0, true);
   if (!approximation.HasResult() || !(approximation.MaxError3d() <= curve_error_limit_mm)) {
-    return Error{ErrorCode::unsupported, "OpenCASCADE finds no curve in space for a trim loop"};
+    return Error{ErrorCode::unsupported, "OpenCASCADE cannot find a curve in space for a trim loop"};
   }
   const BRep_Builder builder;
   builder.UpdateEdge(edge, approximation.Curve3d(), std::max(vertex_distance_mm, approximation.MaxError3d()));
@@ -243,11 +245,13 @@ Result<TopoDS_Wire> make_wire(const TrimLoop& loop, const SplineGeometry& geomet
     piece->Segment(ends[k], ends[k + 1]);
     BRepBuilderAPI_MakeEdge edge(piece, geometry, vertices[k], vertices[(k + 1) % vertices.size()], ends[k],
                                  ends[k + 1]);
-    if (!edge.IsDone()) return Error{ErrorCode::unsupported, "OpenCASCADE makes no edge of a trim loop"};
+    if (!edge.IsDone()) {
+      return Error{ErrorCode::unsupported, "OpenCASCADE cannot make an edge from a trim loop"};
+    }
     if (Status added = add_curve_in_space(piece, geometry, edge.Edge()); !added) return added.error();
     wire.Add(edge.Edge());
   }
-  if (!wire.IsDone()) return Error{ErrorCode::unsupported, "OpenCASCADE makes no wire of a trim loop"};
+  if (!wire.IsDone()) return Error{ErrorCode::unsupported, "OpenCASCADE cannot make a wire from a trim loop"};
   return wire.Wire();
 }
 
@@ -281,7 +285,7 @@ Result<std::vector<Outline>> make_outlines(const SplineGeometry& geometry, const
   return outlines;
 }
 
-// Returns the index of the smallest outer loop around a hole; -1 where the hole is in the whole surface.
+// Returns the index of the smallest outer loop around a hole; -1 if the hole is in the whole surface.
 int find_owner(const Outline& hole, const std::vector<Outline>& outlines) {
   int owner = -1;
   for (std::size_t k = 0; k < outlines.size(); ++k) {
@@ -293,7 +297,7 @@ int find_owner(const Outline& hole, const std::vector<Outline>& outlines) {
   return owner;
 }
 
-// Returns true where the surface closes: both directions are periodic, or one is and the other ends in poles.
+// Returns true if the surface closes: both directions are periodic, or one is and the other ends in poles.
 bool is_closed_surface(const Surface& surface) {
   const ControlNet& net = surface.net;
   const bool u = surface.u.is_periodic(), v = surface.v.is_periodic();
@@ -316,7 +320,7 @@ Result<std::vector<TrimmedSurface>> open_surface(const Surface& surface, const s
 }
 
 // Makes a face for each outer loop, or one for the whole surface with its holes. `geometry` is the surface of
-// the part, open, and no loop leaves its domain.
+// the part. It is open, and no loop leaves its domain.
 Result<std::vector<TopoDS_Face>> make_faces(const SplineGeometry& geometry, const TrimmedSurface& part) {
   const auto outlines = make_outlines(geometry, part);
   if (!outlines) return outlines.error();
@@ -326,7 +330,7 @@ Result<std::vector<TopoDS_Face>> make_faces(const SplineGeometry& geometry, cons
       if (hole.area < 0.0 && find_owner(hole, outlines.value()) == owner) maker.Add(hole.wire);
     }
     if (!maker.IsDone())
-      return Error{ErrorCode::unsupported, "OpenCASCADE cannot make a face of the trim loops"};
+      return Error{ErrorCode::unsupported, "OpenCASCADE cannot make a face from the trim loops"};
     faces.push_back(maker.Face());
     return {};
   };
@@ -355,7 +359,8 @@ TopoDS_Shape make_compound(const std::vector<TopoDS_Face>& faces) {
   return compound;
 }
 
-// Sews the faces of a surface that was divided into one shell with shared edges; null where they do not meet.
+// Sews the faces of a divided surface into one shell with shared edges. Returns a null shape if they do not
+// meet.
 TopoDS_Shape sew(const std::vector<TopoDS_Face>& faces) {
   BRepBuilderAPI_Sewing sewing(sewing_tolerance_mm);
   for (const TopoDS_Face& face : faces) sewing.Add(face);
@@ -401,7 +406,7 @@ Result<BodyShape> build_checked_shape(const CadSurface& part) {
   if (!made) return made.error();
   const TopoDS_Shape& shape = made.value();
   if (!BRepCheck_Analyzer(shape).IsValid()) {
-    return Error{ErrorCode::unsupported, "OpenCASCADE finds its face invalid"};
+    return Error{ErrorCode::unsupported, "OpenCASCADE rejects the surface's face as invalid"};
   }
   if (!part.solid.empty()) return BodyShape{shape, false};
   if (shape.ShapeType() == TopAbs_SHELL && shape.Closed()) {

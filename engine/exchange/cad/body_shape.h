@@ -18,7 +18,7 @@ struct BodyShape {
 
 struct PartFaces {
   std::vector<TopoDS_Face> faces;  // with the normals of the surface
-  bool was_cut = false;            // the surface was divided into two parts, which the faces belong to
+  bool was_cut = false;            // the surface was divided into two parts; the faces are those of both
 };
 
 // Builds the faces of the part of a surface that its trims keep. A face's edge ends at each corner of its
@@ -29,8 +29,8 @@ Result<PartFaces> build_faces(const CadSurface& part);
 // Returns a shell of one face.
 TopoDS_Shell make_shell(const TopoDS_Face& face);
 
-// Builds a solid from a surface that closes, otherwise an open shell. A trimmed surface is one shell, or a
-// compound of one for each connected component.
+// Builds a solid from a surface that closes, otherwise an open shell. A trimmed surface becomes one shell, or
+// a compound of a shell for each connected component.
 //
 // A side whose control points coincide is a pole of the body, two opposite sides that coincide are its seam;
 // the surface closes when every side is one or the other. Faces of a surface that closes, trimmed or not,

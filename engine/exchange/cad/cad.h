@@ -1,6 +1,6 @@
-// Reader and writer of STEP and IGES files, and meshes of their solids, through OpenCASCADE. Its settings
-// belong to the whole process and a hostile file can take the process over, so call these functions in a
-// child process with limits, prepare_occt() before all others. Each Error says what is wrong, without the
+// Reader and writer of STEP and IGES files, and meshes of their solids, through OpenCASCADE. OpenCASCADE's
+// settings apply to the whole process, and a hostile file can take over the process. Therefore call these
+// functions in a child process with limits, prepare_occt() first. Each Error says what is wrong, without the
 // file's name.
 #pragma once
 
@@ -24,25 +24,25 @@ void set_file_unit(std::string_view unit);
 
 using SurfaceSink = std::function<void(CadSurface)>;
 
-// Passes the surface of each face of the file to the sink, one after the other, where the file's assemblies
-// place it. Returns the unit and the notes of the whole file, without surfaces. Notes report an unknown unit,
-// faces that OpenCASCADE lost or that cannot be converted, other files that this one names (they are not
-// opened), and solids that are separated into faces. Refused: a file that OpenCASCADE cannot read, without
-// faces that can be converted, or with more faces than the limit.
+// Passes the surface of each face of the file to the sink, one after the other, positioned as the file's
+// assemblies place it. Returns the unit and the notes of the whole file, without surfaces. Notes report an
+// unknown unit, faces that OpenCASCADE lost or that cannot be converted, other files that the file names
+// (they are not opened), and solids that are separated into faces. Refused: a file that OpenCASCADE cannot
+// read, that has no face that can be converted, or that has more faces than the limit.
 Result<CadModel> read_cad(const std::filesystem::path& file, const CadReading& reading,
                           const SurfaceSink& sink, const Progress& progress = {});
 
-// Returns the text of a file. Each surface becomes a product of its name in STEP: a MANIFOLD_SOLID_BREP where
-// it closes, an open shell otherwise. In IGES it becomes a named entity: 186 where it closes, 128 where it
-// does not, 144 for each face where it is trimmed. Faces of one solid are joined under its name where they
-// close. A surface that find_closing() classifies as solid is written exactly closed. Notes report by how
-// much it was open, surfaces that would close but are not written as solids, and bridged gaps between the
-// faces of a solid.
+// Returns the text of a file. In STEP each surface becomes a product with the surface's name: a
+// MANIFOLD_SOLID_BREP if it closes, an open shell otherwise. In IGES it becomes a named entity: type 186 if
+// it closes, 128 if it does not, 144 for each face if it is trimmed. Faces of one solid are joined under its
+// name where they close. A surface that find_closing() classifies as solid is written exactly closed. Notes
+// report by how much it was open, surfaces that would close but are not written as solids, and bridged gaps
+// between the faces of a solid.
 Result<CadFileContent> write_cad(const CadModel& model, const CadWriting& writing,
                                  const Progress& progress = {});
 
-// Joins the surfaces of each CadSurface::solid into solids, as write_cad() does, and meshes these. All other
-// surfaces are loose. Surfaces that OpenCASCADE cannot join, and those of a solid for which it finds no
+// Joins the surfaces of each CadSurface::solid into solids, as write_cad() does, and meshes these solids. All
+// other surfaces are loose. Surfaces that OpenCASCADE cannot join, and those of a solid for which it finds no
 // watertight mesh, are loose too and reported in a note. Refused: more triangles than the limit.
 Result<CadSolids> mesh_solids(const CadModel& model, const SolidMeshing& meshing,
                               const Progress& progress = {});

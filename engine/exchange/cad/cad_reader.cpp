@@ -38,19 +38,19 @@ namespace {
 
 struct NamedFace {
   TopoDS_Face face;
-  std::string name;   // its own, its body's or its product's; unique within the file
-  std::string solid;  // unique name of the solid of several faces that has this one; empty: none
+  std::string name;   // name of the face, of its body or of its product; unique within the file
+  std::string solid;  // unique name of the face's solid, if that has several faces; otherwise empty
 };
 
 struct NamedFaces {
   std::vector<NamedFace> faces;
   int solids = 0;           // solids of more than one face
-  int faces_of_solids = 0;  // faces of these
+  int faces_of_solids = 0;  // total number of faces of these solids
 };
 
 using Shapes = opencascade::handle<XCAFDoc_ShapeTool>;
 
-// Depth beyond which assemblies are ignored.
+// Depth of nesting beyond which assemblies are ignored.
 constexpr int depth_limit = 64;
 
 std::string label_name(const TDF_Label& label) {
@@ -146,7 +146,7 @@ class FaceCollector {
     return is_generic_name(name) ? fallback : name;
   }
 
-  // Solid of more than one face, a range of the faces.
+  // A solid of more than one face, as a range of the collected faces.
   struct Solid {
     std::string name;
     std::size_t first = 0, end = 0;
@@ -157,7 +157,7 @@ class FaceCollector {
   std::vector<Solid> solids_;
 };
 
-// Returns the faces of a document where its assemblies place them, each with the most specific name.
+// Returns the faces of a document, positioned as its assemblies place them, each with the most specific name.
 NamedFaces collect_faces(const opencascade::handle<TDocStd_Document>& document) {
   const Shapes shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
   TDF_LabelSequence roots;
@@ -227,7 +227,7 @@ Result<Content> read_iges(const std::filesystem::path& file, const Progress& pro
   return content;
 }
 
-// Stores the unit, with a note where none is known.
+// Stores the unit, and adds a note if none is known.
 void add_unit(const FileUnit& unit, const CadReading& reading, CadModel& model) {
   model.unit = unit.name;
   model.unit_declared = unit.declared;
@@ -279,7 +279,7 @@ void add_loss_notes(const Content& content, CadModel& model) {
   }
 }
 
-// Adds a note about solids, each face of which becomes a body.
+// Adds a note about the solids of the file: each face of a solid becomes a body.
 void add_solid_notes(const NamedFaces& named, CadModel& model) {
   if (named.solids == 0) return;
   const std::string faces = std::to_string(named.faces_of_solids);
@@ -288,8 +288,8 @@ void add_solid_notes(const NamedFaces& named, CadModel& model) {
                         " come in as a body each; they leave joined where they still close");
 }
 
-// Returns metres for each unit of OpenCASCADE's numbers, which are millimetres. A unit that the file does not
-// declare counts as 1 mm, unless the caller gives it.
+// Returns the length in metres of one unit of OpenCASCADE's numbers, which are millimetres. A unit that the
+// file does not declare counts as 1 mm, unless the caller gives it.
 double find_scale(const FileUnit& unit, const CadReading& reading) {
   if (reading.unit_m > 0.0) return reading.unit_m / unit.millimetres;
   return unit.declared ? 1e-3 : 1e-3 / unit.millimetres;
@@ -326,8 +326,8 @@ Result<FaceSurface> convert_near_face(const TopoDS_Face& face, double scale, dou
   return found;
 }
 
-// Passes the surfaces of all faces to the sink; notes report faces that cannot be converted. Fails where that
-// is all of them.
+// Passes the surfaces of all faces to the sink; notes report faces that cannot be converted. Fails if no face
+// can be converted.
 Status convert_faces(const std::vector<NamedFace>& faces, double scale, const CadReading& reading,
                      const SurfaceSink& sink, const Progress& progress, CadModel& model) {
   std::optional<Error> first;
@@ -380,11 +380,12 @@ Result<CadModel> read_cad(const std::filesystem::path& file, const CadReading& r
     return read(file, reading, sink, progress);
   } catch (const Standard_Failure& failure) {
     return Error{ErrorCode::unsupported,
-                 std::string("OpenCASCADE fails on it (") + failure.DynamicType()->Name() + ")"};
+                 std::string("OpenCASCADE failed to read the file (") + failure.DynamicType()->Name() + ")"};
   } catch (const std::bad_alloc&) {
     return Error{ErrorCode::too_many, bad_allocation};
   } catch (const std::exception& exception) {
-    return Error{ErrorCode::unsupported, std::string("OpenCASCADE fails on it (") + exception.what() + ")"};
+    return Error{ErrorCode::unsupported,
+                 std::string("OpenCASCADE failed to read the file (") + exception.what() + ")"};
   }
 }
 

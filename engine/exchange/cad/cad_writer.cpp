@@ -57,7 +57,7 @@ struct WrittenBody {
   std::string name;  // unique within the file
   TopoDS_Shape shape;
   bool solid = false;
-  const CadSurface* surface = nullptr;  // of the model; null for a solid joined from several
+  const CadSurface* surface = nullptr;  // surface of the model; null for a solid joined from several surfaces
 };
 
 const char* const two_bytes = "\\X2\\";
@@ -125,7 +125,7 @@ int face_count(const TopoDS_Shape& shape) {
 
 std::string describe_open_shell(const CadSurface& surface, const BodyShape& body) {
   if (surface.trims.empty()) {
-    return "' closes, but OpenCASCADE finds no solid in it; an open shell is written";
+    return "' closes, but OpenCASCADE cannot make a solid of it; an open shell is written";
   }
   const int faces = face_count(body.shape);
   return "' would close, but is trimmed; an open shell of what is left is written" +
@@ -133,7 +133,7 @@ std::string describe_open_shell(const CadSurface& surface, const BodyShape& body
                     : std::string());
 }
 
-// Counts a body. Adds a note where its surface was moved to close it, or would close but is not a solid.
+// Counts a body. Adds a note if its surface was moved to close it, or if it would close but is not a solid.
 void add_body_notes(const CadSurface& surface, const BodyShape& body, double moved_m,
                     CadFileContent& content) {
   ++(body.solid ? content.solids : content.open_shells);
@@ -212,8 +212,8 @@ Result<std::vector<WrittenBody>> collect_bodies(const CadModel& model, const Pro
   return collector.release_bodies();
 }
 
-// Sets seventeen digits, which read back as the same number; OpenCASCADE's default is six decimals. Its
-// removal of trailing zeros is off, because it loses the exponent of numbers of this length.
+// Makes OpenCASCADE write seventeen digits, which read back as the same number; its default is six decimals.
+// Its removal of trailing zeros is off, because it loses the exponent of numbers of this length.
 void set_digits(Interface_FloatWriter& writer) {
   writer.SetFormat("%.16E");
 }
@@ -264,7 +264,7 @@ void fill_header(const opencascade::handle<IGESData_IGESModel>& model) {
   header.SetCompanyName(text(""));
 }
 
-// Fraction of the work for shapes; the rest is for the file.
+// Fraction of the work for making the shapes; the rest is for writing the file.
 constexpr double shape_fraction = 0.5;
 
 Result<CadFileContent> write_step(const CadModel& model, const CadWriting& writing,
@@ -284,7 +284,7 @@ Result<CadFileContent> write_step(const CadModel& model, const CadWriting& writi
   writer.SetColorMode(false);
   writer.SetLayerMode(false);
   if (!writer.Transfer(document)) {
-    return Error{ErrorCode::unsupported, "OpenCASCADE makes no STEP file of it"};
+    return Error{ErrorCode::unsupported, "OpenCASCADE cannot convert the model to a STEP file"};
   }
   const auto step = opencascade::handle<StepData_StepModel>::DownCast(writer.Writer().WS()->Model());
   fill_header(step);
@@ -301,7 +301,7 @@ void name_entity(const opencascade::handle<IGESData_IGESModel>& model,
   model->AddEntity(property);
 }
 
-// Names all entities of the given type, except the first `before` entities of the model.
+// Gives a name to all entities of the given type, except the first `before` entities of the model.
 void name_entities(const opencascade::handle<IGESData_IGESModel>& model, int before, int type,
                    const std::string& name) {
   for (int k = before + 1, count = model->NbEntities(); k <= count; ++k) {
@@ -349,7 +349,8 @@ Status add_body(IGESControl_Writer& writer, const WrittenBody& body) {
                      : type == untrimmed ? add_surface(writer, body.surface->surface)
                                          : add_faces(writer, body.shape);
   if (!added) {
-    return Error{ErrorCode::unsupported, "'" + body.name + "': OpenCASCADE makes no IGES entity of it"};
+    return Error{ErrorCode::unsupported,
+                 "'" + body.name + "': OpenCASCADE cannot convert the body to an IGES entity"};
   }
   name_entities(writer.Model(), before, type, body.name);
   return {};
@@ -397,8 +398,8 @@ Result<CadFileContent> write_cad(const CadModel& model, const CadWriting& writin
     return writing.format == FileFormat::step ? write_step(model, writing, progress)
                                               : write_iges(model, progress);
   } catch (const Standard_Failure& failure) {
-    return Error{ErrorCode::unsupported,
-                 std::string("OpenCASCADE fails on it (") + failure.DynamicType()->Name() + ")"};
+    return Error{ErrorCode::unsupported, std::string("OpenCASCADE failed to write the model (") +
+                                             failure.DynamicType()->Name() + ")"};
   } catch (const std::bad_alloc&) {
     return Error{ErrorCode::too_many, bad_allocation};
   }

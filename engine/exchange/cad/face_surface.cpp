@@ -38,8 +38,8 @@ namespace spoonbill {
 namespace {
 
 constexpr int samples_per_edge = 16;
-// Largest distance of an edge on the side of a box, as a fraction of the box's length; files store curves
-// less exactly than surfaces.
+// Largest distance from the side of a box at which an edge counts as being on that side, as a fraction of the
+// box's length. Files store curves less exactly than surfaces.
 constexpr double side_fraction = 1e-5;
 
 // Returns the projections of a point to the four sides of a box.
@@ -48,7 +48,7 @@ std::array<gp_Pnt2d, 4> project_to_sides(const gp_Pnt2d& point, const ParameterB
           gp_Pnt2d(point.X(), box.v_end)};
 }
 
-// Returns true where all samples of the edge are on one side of the box.
+// Returns true if all samples of the edge are on one side of the box.
 bool is_on_side(const TopoDS_Edge& edge, const TopoDS_Face& face, const ParameterBox& box, double tolerance) {
   double first = 0.0, last = 0.0;
   const auto curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
@@ -72,7 +72,7 @@ bool is_on_side(const TopoDS_Edge& edge, const TopoDS_Face& face, const Paramete
   return std::any_of(is_near.begin(), is_near.end(), [](bool near) { return near; });
 }
 
-// Returns true where an edge of the face is not on one of the sides of its box, to within `tolerance` (in the
+// Returns true if an edge of the face is on none of the sides of its box, to within `tolerance` (in the
 // face's unit) or the edge's own tolerance.
 bool is_trimmed(const TopoDS_Face& face, const ParameterBox& box, double tolerance) {
   for (TopExp_Explorer edges(face, TopAbs_EDGE); edges.More(); edges.Next()) {
@@ -88,7 +88,7 @@ using Point = Eigen::Vector2d;
 using CubicPiece = std::array<Point, 4>;
 
 // Largest distance between loops and the file's curves, as a fraction of the domain: the default, and the
-// smallest that a tight tolerance leads to.
+// smallest value that a tight tolerance leads to.
 constexpr double curve_fraction = 1e-6, smallest_curve_fraction = 1e-9;
 // Largest gap between edges that is closed by moving their ends, as a fraction of the domain.
 constexpr double meeting_fraction = 1e-3;
@@ -117,7 +117,8 @@ CurveTolerance find_curve_tolerance(const Surface& surface, double tolerance_m) 
       std::clamp(fraction, smallest_curve_fraction, curve_fraction)};
 }
 
-// Fit of a curve by cubic pieces with its tangents (Hermite), halved until they are within the tolerance.
+// Fit of a curve by cubic pieces that have the curve's end points and tangents (Hermite). The pieces are
+// halved until they are within the tolerance.
 class CurveFit {
  public:
   CurveFit(const Geom2dAdaptor_Curve& curve, const CurveTolerance& tolerance)
@@ -159,7 +160,7 @@ class CurveFit {
   CurveTolerance tolerance_;
 };
 
-// Returns the cubic pieces of an edge in the direction of its wire; empty where it has no curve over the
+// Returns the cubic pieces of an edge in the direction of its wire; empty if it has no curve over the
 // surface.
 std::vector<CubicPiece> fit_edge(const TopoDS_Edge& edge, const TopoDS_Face& face,
                                  const CurveTolerance& tolerance) {
@@ -186,7 +187,7 @@ CubicPiece line(const Point& from, const Point& to) {
   return {from, (2.0 * from + to) / 3.0, (from + 2.0 * to) / 3.0, to};
 }
 
-// Makes `next` begin at `end`: a small gap is closed by moving its start, a large one by a line.
+// Makes `next` begin at `end`: a small gap is closed by moving the start of `next`, a large one by a line.
 void join(const Point& end, const Point& lengths, std::vector<CubicPiece>& next) {
   const Point gap = end - next.front()[0];
   if (gap.cwiseQuotient(lengths).norm() <= meeting_fraction) {
@@ -262,9 +263,9 @@ std::vector<TrimLoop> orient_loops(std::vector<TrimLoop> loops, const KnotVector
 }
 
 // Returns a loop for each wire of the face except those around the whole domain, over the face's own
-// parameters. Its cubic pieces are within a millionth of the domain of the edges' curves, or closer where the
-// surface stretches that beyond the tolerance; splines of degree 3 and less are exact. Refused: edges that
-// have no curves over the parameters or are not connected, and loops that bound no area.
+// parameters. The cubic pieces of a loop are within a millionth of the domain of the edges' curves, or closer
+// where the surface stretches this distance beyond the tolerance; splines of degree 3 and less are exact.
+// Refused: edges that have no curves over the parameters or are not connected, and loops that bound no area.
 Result<std::vector<TrimLoop>> read_trim_loops(const TopoDS_Face& face, const Surface& surface,
                                               double tolerance_m) {
   const TopoDS_Face forward = TopoDS::Face(face.Oriented(TopAbs_FORWARD));
@@ -300,7 +301,8 @@ Geometry basis_surface(Geometry surface) {
   return surface;
 }
 
-// Returns the surface's own bound where the given one equals it within rounding.
+// Returns the surface's own bound `full` if the given bound equals it within rounding, otherwise the given
+// bound.
 double snap_bound(double bound, double full, double length) {
   return std::abs(bound - full) < 1e-7 * length ? full : bound;
 }
@@ -338,7 +340,7 @@ bool is_polynomial(const opencascade::handle<Geom_Curve>& curve) {
   return !opencascade::handle<Geom_Line>::DownCast(curve).IsNull();
 }
 
-// Returns true where OpenCASCADE converts the surface to a B-spline surface exactly.
+// Returns true if OpenCASCADE converts the surface to a B-spline surface exactly.
 bool is_polynomial(const Geometry& surface) {
   if (const auto spline = opencascade::handle<Geom_BSplineSurface>::DownCast(surface)) {
     return !spline->IsURational() && !spline->IsVRational();
@@ -359,8 +361,8 @@ bool is_whole(const Geometry& surface, const ParameterBox& box) {
          box.v_end == full.v_end;
 }
 
-// Returns the whole domain of a spline, which its loops trim, unless the face crosses its seam; otherwise the
-// box.
+// Returns the whole domain if the surface is a spline, because its loops trim it, unless the face crosses its
+// seam. Otherwise returns the box.
 ParameterBox widen_to_spline(const Geometry& surface, const ParameterBox& box) {
   ParameterBox full;
   surface->Bounds(full.u_start, full.u_end, full.v_start, full.v_end);
@@ -378,7 +380,7 @@ opencascade::handle<Geom_BSplineSurface> to_spline(const Geometry& surface, cons
       new Geom_RectangularTrimmedSurface(surface, box.u_start, box.u_end, box.v_start, box.v_end));
 }
 
-// Returns nullopt where the surface must be approximated.
+// Converts the surface exactly. Returns nullopt if it must be approximated.
 std::optional<Surface> exact_surface(const Geometry& surface, const ParameterBox& box) {
   if (!is_polynomial(surface)) return {};
   const auto spline = to_spline(surface, box);

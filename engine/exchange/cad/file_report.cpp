@@ -75,8 +75,8 @@ bool contains(int type, const std::array<int, count>& types) {
   return std::find(types.begin(), types.end(), type) != types.end();
 }
 
-// Returns true where another entity, other than a collection, uses this one. Some systems do not mark such
-// surfaces.
+// Returns true if another entity, other than a collection, uses this one. Some systems do not mark such
+// entities as dependent.
 bool is_used_by_another(const Entity& entity, const Interface_Graph& graph) {
   for (Interface_EntityIterator users = graph.Sharings(entity); users.More(); users.Next()) {
     const auto user = opencascade::handle<IGESData_IGESEntity>::DownCast(users.Value());
@@ -129,7 +129,7 @@ gp_XYZ to_vector(const UnitDirection& direction, const gp_XYZ& fallback) {
           direction->DirectionRatiosValue(3)};
 }
 
-// Returns true where the placement mirrors. Missing axes follow from the others, the third as their cross
+// Returns true if the placement mirrors. Missing axes follow from the other axes, the third as their cross
 // product (ISO 10303-42, 4.4.16).
 bool mirrors(const Operator& placement) {
   if (placement.Axis1().IsNull() || placement.Axis2().IsNull() || placement.Axis3().IsNull()) return false;

@@ -15,7 +15,7 @@ namespace spoonbill {
 // Unit of length of a file.
 struct FileUnit {
   std::string name;          // "mm", "inch", or as the file names it
-  double millimetres = 1.0;  // length that OpenCASCADE assumed for one unit
+  double millimetres = 1.0;  // length in millimetres that OpenCASCADE assumed for one unit
   bool declared = false;
 };
 
@@ -25,7 +25,7 @@ FileUnit find_unit(const opencascade::handle<IGESData_IGESModel>& model, const s
 
 // Numbers of entities that OpenCASCADE omits although it reports success.
 struct LossCount {
-  int faces = 0, lost_faces = 0;          // faces of the file, and those that did not become a shape
+  int faces = 0, lost_faces = 0;          // faces of the file, and faces that did not become a shape
   int instances = 0, lost_instances = 0;  // placed copies of parts of an IGES file
   int unread = 0;                         // IGES entities that could not be parsed or have no type
 };
@@ -33,13 +33,13 @@ struct LossCount {
 // Counts losses after the transfer.
 LossCount count_losses(const opencascade::handle<XSControl_WorkSession>& session, FileFormat format);
 
-// Count placements that OpenCASCADE ignores because they do more than translate and rotate: in STEP those
-// that scale or mirror, in IGES those that change angles.
+// Count placements that OpenCASCADE ignores because they do more than translate and rotate: in STEP
+// placements that scale or mirror, in IGES placements that change angles.
 int count_unread_placements(const opencascade::handle<StepData_StepModel>& model);
 int count_unread_placements(const opencascade::handle<IGESData_IGESModel>& model);
 
-// Removes the names of other files, which OpenCASCADE would open even if they were a pipe or a device, and
-// returns their number.
+// Removes the names of other files and returns their number. OpenCASCADE would open such a file even if it
+// were a pipe or a device.
 int remove_external_files(const opencascade::handle<StepData_StepModel>& model);
 
 }  // namespace spoonbill

@@ -27,7 +27,7 @@ std::string global_text(const std::filesystem::path& file) {
   return text;
 }
 
-// Returns the length of a string such as "3Habc" at `start`; 0 where there is none.
+// Returns the length of a string such as "3Habc" at `start`; 0 if there is none.
 std::size_t string_length(const std::string& text, std::size_t start) {
   std::size_t end = start;
   std::size_t count = 0;
@@ -60,7 +60,7 @@ std::optional<long> parse_field(const std::string& line, std::size_t start) {
 
 struct LineCounts {
   std::map<char, long> counts;  // number of lines of each section
-  std::string last;             // last line of the file, which counts those of the other sections
+  std::string last;             // last line of the file, which states the number of lines of each section
   int null_entities = 0;
   long farthest = 0;  // last line of parameters that an entity refers to
   std::optional<long>
@@ -139,7 +139,7 @@ double iges_model_scale(const std::filesystem::path& file) {
   const std::vector<std::string> parameters = read_iges_global_parameters(file);
   if (parameters.size() <= model_scale) return 1.0;
   std::string text = parameters[model_scale];
-  std::replace(text.begin(), text.end(), 'D', 'E');  // exponent of Fortran
+  std::replace(text.begin(), text.end(), 'D', 'E');  // 'D' marks the exponent in Fortran
   double scale = 1.0;
   std::from_chars(text.data(), text.data() + text.size(), scale);
   return scale;

@@ -30,22 +30,23 @@
 namespace spoonbill {
 namespace {
 
-// Sewing tolerances in the order they are tried: from the rounding of files to the gap between two
+// Sewing tolerances in the order in which they are tried: from the rounding of files to the gap between two
 // approximated faces.
 constexpr double tolerances_mm[] = {1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1};
 
-// Largest gap between two faces that is not reported; a larger deviation of the faces raises it.
+// Largest gap between two faces that is not reported; if the faces deviate more from the originals, this
+// limit is raised.
 constexpr double expected_gap_m = 2e-5;
 constexpr int gap_samples = 16;
 
-// Part that each geometry belongs to; sewing makes new faces on the same geometry.
+// Index of the part to which each geometry belongs; sewing makes new faces on the same geometry.
 using PartOf = std::map<const Geom_Surface*, std::size_t>;
 
 // Number of faces of each part.
 using FaceCounts = std::map<std::size_t, int>;
 
 struct ClosedShell {
-  TopoDS_Shell shell;  // oriented like most of its faces
+  TopoDS_Shell shell;  // oriented as most of its faces are
   FaceCounts faces;
   bool is_cavity = false;
 };
@@ -188,8 +189,8 @@ Result<AllFaces> collect_all_faces(const std::vector<const CadSurface*>& parts) 
   return all;
 }
 
-// Returns true where the parts in `found` have all their faces there: a part with a face outside a solid does
-// not belong to the solid.
+// Returns true if `found` contains all faces of each of its parts: a part that also has a face outside a
+// solid does not belong to the solid.
 bool are_complete(const FaceCounts& found, const FaceCounts& all) {
   return std::all_of(found.begin(), found.end(),
                      [&](const auto& count) { return count.second == all.at(count.first); });

@@ -1,4 +1,4 @@
-// Joins the faces of a solid, which are separate surfaces in the program, into that solid.
+// Joining of the faces of a solid, which are separate surfaces in the program, into that solid.
 #pragma once
 
 #include <TopoDS_Solid.hxx>
@@ -12,9 +12,9 @@
 namespace spoonbill {
 
 struct JoinedSolid {
-  TopoDS_Solid shape;              // including its cavities
+  TopoDS_Solid shape;              // the solid, including its cavities
   double gap_m = 0.0;              // widest gap between the two faces of an edge
-  std::vector<std::size_t> parts;  // indices of the parts whose faces it has
+  std::vector<std::size_t> parts;  // indices of the parts whose faces form the solid
 };
 
 struct JoinedFaces {
@@ -22,14 +22,14 @@ struct JoinedFaces {
   std::vector<std::size_t> loose;  // indices of the parts that belong to no solid
 };
 
-// Sews the parts' edges where they are at most 0.1 mm apart, as approximated faces may be. The normals of
+// Sews the parts' edges where they are at most 0.1 mm apart, which approximated faces may be. The normals of
 // most of a shell's faces decide which side is outside: a shell that is inside out is a cavity of the solid
-// around it, or loose where there is none. Refused: a surface or trim loops from which OpenCASCADE cannot
-// build a face.
+// around it, or loose if no solid is around it. Refused: a surface or trim loops from which OpenCASCADE
+// cannot build a face.
 Result<JoinedFaces> join_faces(const std::vector<const CadSurface*>& parts);
 
 // Returns notes about the joined faces of the solid `name`, one line each: bridged gaps that are wider than
-// two approximated faces explain, and the number of loose faces followed by `loose_outcome`, such as
+// the approximation of two faces explains, and the number of loose faces followed by `loose_outcome`, such as
 // "; they are written one by one".
 std::vector<std::string> describe_joining(const JoinedFaces& joined, const std::string& name,
                                           const std::vector<const CadSurface*>& parts,

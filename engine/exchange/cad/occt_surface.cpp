@@ -18,14 +18,15 @@
 namespace spoonbill {
 namespace {
 
-// One direction of an OpenCASCADE surface, and the index of the control point of each of its poles.
+// One direction of an OpenCASCADE surface: for each pole (OpenCASCADE's control point), the index of the
+// program's control point.
 struct OcctDirection {
   TColStd_Array1OfReal knots;
   TColStd_Array1OfInteger multiplicities;
   std::vector<int> controls;
 };
 
-// Returns one period from a seam of full multiplicity, with clamped ends.
+// Returns the knots of one period that starts at a seam of full multiplicity, with clamped ends.
 std::vector<double> clamped_period(const KnotVector& knots) {
   const auto degree = static_cast<std::size_t>(knots.degree());
   std::vector<double> period(degree + 1, knots.domain_start());
@@ -83,7 +84,7 @@ std::vector<double> flat_knots(const TColStd_Array1OfReal& knots,
 
 using ControlMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Returns the control points as a matrix; those of one index along the direction are a row.
+// Returns the control points as a matrix; each row holds the control points of one index along the direction.
 ControlMatrix control_lines(const Surface& surface, Direction direction) {
   const ControlNet& net = surface.net;
   const bool along_u = direction == Direction::u;
@@ -149,7 +150,7 @@ ControlMatrix opened_lines(const Surface& periodic, Direction direction) {
   return opened;
 }
 
-// Largest ratio of the spread of an edge's control points to the width of the edge.
+// Bound of the ratio of the spread of an edge's control points to the width of the edge.
 constexpr double control_spread = 10.0;
 constexpr int moved_samples = 64;
 
@@ -204,7 +205,8 @@ std::vector<double> greville_parameters(const KnotVector& knots) {
   const std::vector<double>& all = knots.extended_knots();
   const auto degree = static_cast<std::size_t>(knots.degree());
   std::vector<double> parameters;
-  // In a periodic direction the first control point is the one whose basis function starts in the period.
+  // In a periodic direction the first control point is the first one whose basis function starts in the
+  // period.
   const std::size_t first = knots.is_periodic() ? degree : 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(knots.control_point_count()); ++i) {
     double sum = 0.0;

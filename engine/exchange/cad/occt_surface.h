@@ -14,20 +14,21 @@ namespace spoonbill {
 inline constexpr double millimetres_per_metre = 1e3;
 
 // Converts a surface exactly. The result is open and clamped in both directions: a periodic direction is
-// opened at its seam by knot insertion, and an open one that is not clamped gets the knots at its ends.
-// Refused: different knots that OpenCASCADE treats as equal.
+// opened at its seam by knot insertion, and knots are inserted at the ends of an open direction that is not
+// clamped. Refused: knots that differ but that OpenCASCADE treats as equal.
 Result<opencascade::handle<Geom_BSplineSurface>> to_occt(const Surface& surface);
 
 // Converts a surface that is neither rational nor periodic exactly. Refused: a degree above max_degree,
 // invalid knots, coordinates that are not finite.
 Result<Surface> from_occt(const Geom_BSplineSurface& surface);
 
-// Returns the surface made periodic in `direction`, where it must be clamped, if its two edges coincide to
-// `tolerance_m`; otherwise, and where an edge is a single point, the surface unchanged. As many knots of the
-// seam are removed as possible without moving a control point of the open form by more than the tolerance.
+// Makes the surface periodic in `direction`, in which it must be clamped, if its two edges coincide to
+// `tolerance_m`. Otherwise, and if an edge is a single point, it is returned unchanged. As many of the seam's
+// knots are removed as possible without moving a control point of the open form by more than the tolerance.
 Surface close_seam(const Surface& surface, Direction direction, double tolerance_m);
 
-// Makes all control points of an edge equal where they coincide to `tolerance_m`, in both directions.
+// Makes all control points of an edge equal if they coincide to `tolerance_m`; treats the edges of both
+// directions.
 void close_poles(Surface& surface, double tolerance_m);
 
 struct ClosedSurface {
@@ -35,12 +36,12 @@ struct ClosedSurface {
   double moved_m = 0.0;  // largest displacement of samples
 };
 
-// Returns a solid (as classified by find_closing()) with periodic seams and single-point poles. Any other
-// surface, and one that cannot be closed within the tolerance, is returned unchanged.
+// Closes a surface that find_closing() classifies as solid: its seams become periodic and its poles single
+// points. Any other surface, and one that cannot be closed within the tolerance, is returned unchanged.
 ClosedSurface close_exactly(const Surface& surface);
 
-// Returns the Greville parameters, at which a spline of as many control points is interpolated well: the mean
-// of the inner knots that each basis function reaches (Greville 1964), brought into the domain.
+// Returns the Greville parameters, at which a spline with as many control points is interpolated well. Each
+// is the mean of the inner knots that a basis function spans (Greville 1964), brought into the domain.
 std::vector<double> greville_parameters(const KnotVector& knots);
 
 }  // namespace spoonbill

@@ -40,13 +40,13 @@ namespace {
 
 struct ShapeMesh {
   TriangleMesh mesh;
-  double chord_error_m = 0.0;  // as in CadSolid
+  double chord_error_m = 0.0;  // see CadSolid::chord_error_m
 };
 
 // Largest angle between neighbouring triangles of a face, in radians.
 constexpr double angle_limit = 0.5;
-// First deflection as a fraction of the chord error, which the mesher may exceed, and smallest ratio of a
-// deflection to the one before.
+// Deflection of the first try as a fraction of the chord error (the mesher may exceed its deflection), and
+// smallest ratio of a deflection to the previous one.
 constexpr double initial_fraction = 0.7, smallest_step = 0.2;
 constexpr int try_limit = 6;
 // Number of sampling intervals on a side of a triangle.
@@ -62,7 +62,7 @@ Vector3 to_metres(const gp_Pnt& at) {
 struct MeshedFace {
   TopoDS_Face face;
   Triangulation triangulation;
-  std::size_t first = 0;  // index of its first node among those of all faces
+  std::size_t first = 0;  // index of the face's first node among the nodes of all faces
 };
 
 // Nodes of an edge in one face, and their parameters along its curve.
@@ -84,7 +84,7 @@ MeshedEdge collect_edge(const MeshedFace& meshed, const TopoDS_Edge& edge, const
 // Nodes of all faces of a meshed shape, and the edges that join them.
 class MeshNodes {
  public:
-  // Collects the nodes of a shape. Returns false where a face has no triangles.
+  // Collects the nodes of a shape. Returns false if a face has no triangles.
   bool collect(const TopoDS_Shape& shape) {
     for (TopExp_Explorer each(shape, TopAbs_FACE); each.More(); each.Next()) {
       TopLoc_Location location;
@@ -108,7 +108,7 @@ class MeshNodes {
     return count;
   }
 
-  // Joins the nodes that two faces share. Returns false where an edge has more nodes in one face than in the
+  // Joins the nodes that two faces share. Returns false if an edge has more nodes in one face than in the
   // other.
   bool join(DisjointSets& unions) const {
     std::map<int, std::size_t> node_at_vertex;
@@ -289,9 +289,9 @@ Result<std::optional<ShapeMesh>> mesh_with_deflection(const TopoDS_Shape& shape,
 }
 
 // Meshes a closed shape so that faces share the points of their edges, with a smaller deflection at each try.
-// Samples of faces and edges should be within the chord error plus `gap_m`, the widest gap between two faces:
-// a shared point cannot be on both. Returns the most accurate mesh found, or nullopt where none is
-// watertight. Refused: more triangles than the limit before a watertight mesh is found.
+// The tries end when samples of faces and edges are within the chord error plus `gap_m`, the widest gap
+// between two faces: a shared point cannot be on both faces. Returns the most accurate mesh found, or nullopt
+// if none is watertight. Refused: more triangles than the limit before a watertight mesh is found.
 Result<std::optional<ShapeMesh>> mesh_shape(const TopoDS_Shape& shape, const SolidMeshing& meshing,
                                             double gap_m) {
   std::optional<ShapeMesh> best;
@@ -315,8 +315,8 @@ Result<std::optional<ShapeMesh>> mesh_shape(const TopoDS_Shape& shape, const Sol
 
 // Relative tolerance to which OpenCASCADE integrates volume and area; its default has an error of about 1 %.
 constexpr double integration_tolerance = 1e-6;
-// Allowed difference between the volumes of mesh and solid: a multiple of area times chord error, because
-// narrow bends add to it, plus a fraction of the volume for the error of its integral.
+// Allowed difference between the volumes of mesh and solid: a multiple of the area times the chord error,
+// because narrow bends add to the difference, plus a fraction of the volume for the error of integration.
 constexpr double volume_slack = 2.0, integral_slack = 1e-3;
 
 CadSolid measure_solid(const std::string& name, const JoinedSolid& joined) {
@@ -338,7 +338,8 @@ class SolidMesher {
  public:
   SolidMesher(const CadModel& model, const SolidMeshing& meshing) : model_(model), remaining_(meshing) {}
 
-  // Adds the solid of the surface at an index, once for all its faces. A surface without a solid is loose.
+  // Adds the solid that the surface at this index belongs to, once for all its faces. A surface without a
+  // solid is loose.
   Status add(std::size_t index) {
     const std::string& name = model_.surfaces[index].solid;
     if (name.empty()) {
@@ -385,7 +386,7 @@ class SolidMesher {
     auto found = mesh_shape(joined.shape, remaining_, joined.gap_m);
     if (!found) return found.error().in("'" + name + "'");
     if (!found.value() || !has_same_volume(found.value().value(), solid)) {
-      result_.notes.push_back("OpenCASCADE finds no watertight mesh of '" + name + "'");
+      result_.notes.push_back("OpenCASCADE cannot make a watertight mesh of '" + name + "'");
       result_.loose.insert(result_.loose.end(), solid.places.begin(), solid.places.end());
       return {};
     }
@@ -396,7 +397,7 @@ class SolidMesher {
     return {};
   }
 
-  // Returns true where mesh and solid have the same volume; a mesh that folds over does not.
+  // Returns true if mesh and solid have the same volume; a mesh that folds over does not.
   static bool has_same_volume(const ShapeMesh& found, const CadSolid& solid) {
     const double difference_m3 = enclosed_volume_m3(found.mesh) - solid.volume_m3;
     return std::abs(difference_m3) <=
@@ -427,7 +428,7 @@ Result<CadSolids> mesh_solids(const CadModel& model, const SolidMeshing& meshing
     return mesh_all_solids(model, meshing, progress);
   } catch (const Standard_Failure& failure) {
     return Error{ErrorCode::unsupported,
-                 std::string("OpenCASCADE fails on it (") + failure.DynamicType()->Name() + ")"};
+                 std::string("OpenCASCADE failed to mesh the model (") + failure.DynamicType()->Name() + ")"};
   }
 }
 

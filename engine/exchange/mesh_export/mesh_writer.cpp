@@ -19,7 +19,8 @@ static_assert(std::endian::native == std::endian::little, "STL and PLY are writt
 
 constexpr std::size_t part_bytes = std::size_t{1} << 20;
 
-// Buffer that passes bytes to the sink in large parts. The first error is stored; later bytes are dropped.
+// Buffer that passes bytes to the sink in large parts. The sink's first error is stored; bytes after it are
+// dropped.
 class PartBuffer {
  public:
   explicit PartBuffer(const ByteSink& sink) : sink_(sink) {}
@@ -177,7 +178,7 @@ class StopCheck {
     if (status_.ok()) status_ = sink_({});
     return status_.ok();
   }
-  // Asks the sink for every 16384th element only.
+  // Asks the sink whether to continue, but only at every 16384th element.
   bool may_continue_at(std::size_t number) {
     constexpr std::size_t interval = 1 << 14;
     return number % interval == 0 ? may_continue() : status_.ok();
@@ -254,7 +255,7 @@ class Archive {
     return false;
   }
 
-  // Compresses the files. Returns false after an error; the archive is unusable then.
+  // Compresses the files. Returns false on an error, after which the archive is unusable.
   bool pack(StopCheck& stop_check) {
     if (archive_ == nullptr) return false;
     const auto stops = [](zip_t*, void* state) {
@@ -263,18 +264,19 @@ class Archive {
     zip_register_cancel_callback_with_state(archive_, stops, nullptr, &stop_check);
     if (zip_close(archive_) != 0) return false;
     archive_ = nullptr;
-    // zip_close() ignores a stop that the last call of the callback reports.
+    // zip_close() ignores a stop request if the last call of the callback returns it, so the stop is checked
+    // here.
     return stop_check.status().ok();
   }
 
   // Passes the bytes of the packed archive on.
   Status send_to(const ByteSink& sink) {
-    if (zip_source_open(source_) != 0) return Error{ErrorCode::unwritable, "cannot be packed"};
+    if (zip_source_open(source_) != 0) return Error{ErrorCode::unwritable, "the ZIP archive cannot be read"};
     std::string part(std::size_t{1} << 20, '\0');
     Status status;
     for (;;) {
       const zip_int64_t count = zip_source_read(source_, part.data(), part.size());
-      if (count < 0) status = Error{ErrorCode::unwritable, "cannot be packed"};
+      if (count < 0) status = Error{ErrorCode::unwritable, "the ZIP archive cannot be read"};
       if (count <= 0) break;
       status = sink(std::string_view(part).substr(0, static_cast<std::size_t>(count)));
       if (!status.ok()) break;
@@ -296,7 +298,8 @@ Status write_three_mf(const std::vector<NamedMesh>& meshes, const ByteSink& sink
   Archive archive;
   if (!archive.add("[Content_Types].xml", types) || !archive.add("_rels/.rels", relations) ||
       !archive.add("3D/3dmodel.model", model) || !archive.pack(stop_check)) {
-    return stop_check.status().ok() ? Error{ErrorCode::unwritable, "cannot be packed"} : stop_check.status();
+    return stop_check.status().ok() ? Error{ErrorCode::unwritable, "the ZIP archive cannot be written"}
+                                    : stop_check.status();
   }
   return archive.send_to(sink);
 }

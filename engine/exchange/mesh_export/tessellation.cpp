@@ -24,7 +24,7 @@
 namespace spoonbill {
 namespace {
 
-// Height below which a triangle is a sliver, and distance below which vertices are merged.
+// Height below which a triangle is a sliver; also the distance below which vertices are merged.
 constexpr double smallest_height_m = 1e-9;
 constexpr std::size_t no_triangle = std::numeric_limits<std::size_t>::max();
 
@@ -96,8 +96,8 @@ class SliverRemover {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) add_edges(t);
   }
 
-  // Flips slivers until none is left, no flip is possible, or the limit is reached. A sliver beside
-  // another one is postponed.
+  // Flips edges of slivers until no sliver is left, no flip is possible, or the limit is reached. A sliver
+  // beside another one is postponed.
   void run() {
     const std::size_t flip_limit = flips_per_sliver * queue_.size();
     std::size_t idle = 0, flips = 0;
@@ -136,7 +136,7 @@ class SliverRemover {
     if (is_sliver(mesh_, corners)) queue_.push_back(t);
   }
 
-  // Flips the longest edge of a sliver, or removes a sliver at the boundary. Returns false where neither is
+  // Flips the longest edge of a sliver, or removes a sliver at the boundary. Returns false if neither is
   // possible.
   bool resolve(std::size_t t) {
     if (!is_sliver(mesh_, mesh_.triangles[t]) || is_degenerate(mesh_.triangles[t])) return true;
@@ -179,8 +179,8 @@ void drop_unused_vertices(TriangleMesh& mesh) {
   }
 }
 
-// Removes triangles lower than a nanometre, which trim loops leave: near corners are merged, other slivers
-// give their corner to the neighbour across their longest edge, so that no gap opens.
+// Removes triangles lower than a nanometre, which trim loops leave: corners that are close together are
+// merged; the longest edge of any other sliver is flipped, so that no gap opens.
 void remove_slivers(TriangleMesh& mesh) {
   merge_near_corners(mesh);
   SliverRemover(mesh).run();
@@ -190,9 +190,9 @@ void remove_slivers(TriangleMesh& mesh) {
 
 // Distance below which coordinates are equal after rounding in a file.
 constexpr double coincidence_m = 1e-9;
-// Fraction of the chord error for the bend along one direction; the rest is for the twist.
+// Fraction of the chord error that the bend along one direction may use; the rest is for the twist.
 constexpr double direction_fraction = 0.4;
-// Smallest fraction of the chord error that is left to cells where the edges of loops use the rest.
+// Smallest fraction of the chord error that remains for the cells when the edges of loops use the rest.
 constexpr double smallest_cell_fraction = 0.5;
 
 // Number of cells of each polynomial piece of one direction.
@@ -264,7 +264,8 @@ Result<Sheet> sample_sheet(const Surface& surface, const Cells& cells) {
   return sheet;
 }
 
-// Returns the largest error of the cells of each polynomial piece, in metres. After a stop the rest is 0.
+// Returns the largest error of the cells of each polynomial piece, in metres. After a stop request, the
+// errors that are not yet measured are 0.
 Eigen::MatrixXd measure_errors(const Sheet& sheet, const SurfaceBounds& bounds, const Cells& cells,
                                const Progress& progress) {
   Eigen::MatrixXd errors = Eigen::MatrixXd::Zero(bounds.elements_u(), bounds.elements_v());
@@ -328,7 +329,7 @@ class Welding {
     return i * columns_ + j;
   }
 
-  // Returns the largest distance of a corner from its vertex; 0 where a file rounds it away.
+  // Returns the largest distance of a corner from its vertex; 0 if the rounding of a file would hide it.
   double largest_move_m() const {
     double largest_m = 0.0;
     for (std::size_t i = 0; i < rows_; ++i) {
@@ -384,7 +385,7 @@ std::vector<GridTriangle> triangulate_cells(const Sheet& sheet, const Welding& w
   return triangles;
 }
 
-// Returns the mesh of triangles between grid points; indices beyond those of the sheet are into `more`.
+// Returns the mesh of triangles between grid points; indices beyond those of the sheet refer to `more`.
 TriangleMesh make_mesh(const Sheet& sheet, const std::vector<Vector3>& more,
                        const std::vector<GridTriangle>& triangles) {
   const std::size_t columns = sheet.grid.v.parameters.size(), samples = sheet.samples.x.size();
@@ -457,7 +458,7 @@ Result<Tessellation> make_tessellation(const Sheet& sheet, const Surface& surfac
   return result;
 }
 
-// Largest fraction of the area whose triangles may turn over; slivers do by rounding.
+// Largest fraction of the area whose triangles may turn over; slivers may turn over by rounding.
 constexpr double turned_fraction = 1e-3;
 
 Vector3 twice_area(const std::vector<Vector3>& points_m, const TriangleCorners& corners) {

@@ -15,13 +15,13 @@
 namespace spoonbill {
 
 struct Tessellation {
-  // Seams and poles are welded where they are within closing_tolerance_m. Normals are outward where every
-  // side of the surface is a seam or a pole.
+  // Seams and poles are welded where they are within closing_tolerance_m. Normals point outward if every side
+  // of the surface is a seam or a pole.
   TriangleMesh mesh;
   bool closed = false;  // every side is a seam or a pole, and no trim loop cuts the surface
   // Largest distance of a point of the surface from the point of its triangle at the same parameters, and of
-  // a trim loop from its edges. Welding adds at most closing_tolerance_m to the requested error; edges of
-  // loops add theirs where it is more than half of the request.
+  // a trim loop from the edges that replace it. Welding adds at most closing_tolerance_m to the requested
+  // error; the error of the loops' edges adds to it if it is more than half of the requested error.
   double chord_error_m = 0.0;
 };
 
@@ -32,21 +32,22 @@ inline constexpr std::size_t exported_triangle_limit = 10'000'000;
 // finer where it bends. A cell of sides h_u and h_v is within (h_u^2 |S_uu| + h_v^2 |S_vv|) / 8 of the
 // bilinear patch through its corners (surface_levels.h), and the patch within |P00 - P10 - P01 + P11| / 4 of
 // its triangles; both hold for cells that loops cut. A loop's polygon is within polygon_error_fraction() of
-// the domain of the loop, which the surface stretches by at most its first derivatives. Refused: more
-// triangles than the limit, loops that bound no area, a request to stop.
+// the domain of the loop, and the surface stretches this distance by at most its first derivatives. Refused:
+// more triangles than the limit, loops that bound no area, a request to stop.
 Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLoop>& trims, double chord_m,
                                 std::size_t triangle_limit = exported_triangle_limit,
                                 const Progress& progress = {});
 
-// Returns the volume that a closed mesh encloses, by the divergence theorem; negative where normals point
+// Returns the volume that a closed mesh encloses, by the divergence theorem; negative if its normals point
 // inward.
 double enclosed_volume_m3(const TriangleMesh& mesh);
 
 // Returns a shell: the outer mesh, a copy of it `thickness_m` (above 0) behind along the vertex normals, and
-// walls between the boundary edges of both. A vertex normal is the area-weighted mean of its triangles'. The
-// shell is closed where no edge of the outer mesh has more than two triangles. On a face of radius r the
-// distance between both is the thickness to about the square of a triangle's side over r. Refused: a shell
-// thicker than the radius of curvature, whose inner triangles turn over; the message gives the position.
+// walls between the boundary edges of both. A vertex normal is the area-weighted mean of the normals of its
+// triangles. The shell is closed if no edge of the outer mesh has more than two triangles. On a face of
+// radius r, the distance between both meshes differs from the thickness by about the square of a triangle's
+// side divided by r. Refused: a shell thicker than the radius of curvature, whose inner triangles turn over;
+// the message gives the position.
 Result<TriangleMesh> thicken_mesh(const TriangleMesh& outer, double thickness_m);
 
 }  // namespace spoonbill

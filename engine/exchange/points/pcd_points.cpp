@@ -87,7 +87,7 @@ Result<PcdHeader> make_header(const HeaderLines& lines, std::string_view data, s
   }
   const auto is_empty = [](const PcdField& field) { return field.count == 0; };
   if (std::all_of(header.fields.begin(), header.fields.end(), is_empty)) {
-    return Error{ErrorCode::too_few, "its fields hold nothing: each COUNT is 0"};
+    return Error{ErrorCode::too_few, "its fields are empty: each COUNT is 0"};
   }
   if (lines.points) {
     header.points = *lines.points;
@@ -113,7 +113,7 @@ Result<PcdHeader> read_pcd_header(std::string_view bytes) {
     if (keyword == "POINTS") lines.points = parse_count(extract_word(rest));
     if (keyword == "DATA") return make_header(lines, extract_word(rest), bytes);
   }
-  return Error{ErrorCode::malformed, "its header has no DATA line; it is cut or no PCD file"};
+  return Error{ErrorCode::malformed, "its header has no DATA line; it is cut or not a PCD file"};
 }
 
 // Returns the indices of the fields x, y, z, normal_x, normal_y and normal_z; -1 for missing ones.
@@ -139,7 +139,7 @@ Error truncated_error(std::uint64_t point, std::uint64_t points) {
                                          " of " + std::to_string(points) + "; it is cut or damaged"};
 }
 
-// Collects all points. `number(point, field)` returns a coordinate, or nullopt where the file ends early.
+// Collects all points. `number(point, field)` returns a coordinate, or nullopt if the file ends early.
 template <class Number>
 Result<PointCloud> collect_points(const PcdHeader& header, const Number& number) {
   const std::array<int, 6> columns = find_coordinate_fields(header.fields);
@@ -168,7 +168,7 @@ Result<PointCloud> read_text_body(PcdHeader header) {
     field.offset = numbers;
     numbers += field.count;
   }
-  // A number and its separator need at least two bytes.
+  // A number and its separator take at least two bytes, which limits the number of points.
   const std::uint64_t available = numbers == 0 ? 0 : header.body.size() / (2 * numbers);
   if (header.points <= point_limit && header.points > available + 1) {
     return truncated_error(available, header.points);
@@ -211,8 +211,8 @@ Result<PointCloud> read_binary_body(PcdHeader header) {
   });
 }
 
-// Reads the compressed and the full size, then LZF data: all values of the first field, those of the second,
-// and so on.
+// Reads the compressed and the full size, then LZF data: all values of the first field, then all values of
+// the second, and so on.
 Result<PointCloud> read_compressed_body(PcdHeader header) {
   if (header.points > point_limit) {
     return collect_points(header, [](auto, auto) { return std::optional<double>(); });

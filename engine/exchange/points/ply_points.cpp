@@ -16,7 +16,7 @@ constexpr std::size_t header_bytes_limit = 65536;
 struct Property {
   std::string_view name;
   NumberType type = NumberType::float32;
-  std::optional<NumberType> list_count = {};  // type of the length, for lists only
+  std::optional<NumberType> list_count = {};  // type of a list's length; empty if the property is not a list
 };
 
 struct Element {
@@ -108,12 +108,12 @@ Result<PlyHeader> read_ply_header(std::string_view bytes) {
     const std::string_view line = extract_line(rest);
     if (line == "end_header") {
       header.body = rest;
-      if (!header.format) return Error{ErrorCode::unsupported, "its header names no known format"};
+      if (!header.format) return Error{ErrorCode::unsupported, "its header does not name a known format"};
       return header;
     }
     if (Status read = read_line(line, header); !read) return read.error();
   }
-  return Error{ErrorCode::malformed, "its header has no end within 64 KiB; it is cut or no PLY file"};
+  return Error{ErrorCode::malformed, "its header has no end within 64 KiB; it is cut or not a PLY file"};
 }
 
 // Returns the indices of the properties x, y, z, nx, ny and nz; -1 for missing ones.
@@ -131,7 +131,8 @@ std::array<int, 6> find_coordinate_columns(const Element& element) {
   return columns;
 }
 
-// Reader of the numbers of a body, one by one. read() returns false at the end or where there is no number.
+// Reader of the numbers of a body, one by one. read() returns false at the end or if the next word is not a
+// number.
 class NumberReader {
  public:
   NumberReader(std::string_view body, Format format)
@@ -164,7 +165,7 @@ class NumberReader {
   }
 
   std::size_t remaining_bytes() const { return rest_.size(); }
-  // The last word that was read from text.
+  // Returns the word that was last read from text.
   std::string_view word() const { return word_; }
 
  private:
@@ -185,7 +186,7 @@ Error truncated_error(const Element& element, std::uint64_t row, std::string_vie
 
 Status skip_element(NumberReader& numbers, const Element& element) {
   double ignored = 0.0;
-  // Rows without properties need no bytes, however many are promised.
+  // Rows without properties need no bytes, however many rows the header promises.
   for (std::uint64_t row = 0; row < element.rows && !element.properties.empty(); ++row) {
     for (const Property& property : element.properties) {
       if (!numbers.read(property, ignored)) return truncated_error(element, row, numbers.word());
@@ -201,7 +202,8 @@ Result<PointCloud> read_vertices(NumberReader& numbers, const Element& element) 
   }
   const bool with_normals = std::min({columns[3], columns[4], columns[5]}) >= 0;
   PointCollector collector;
-  // A number needs at least a byte, so a header cannot request more memory than its file has.
+  // A number takes at least one byte; this check keeps a header from requesting more memory than the file's
+  // size justifies.
   if (element.rows <= point_limit && element.rows * element.properties.size() > numbers.remaining_bytes()) {
     return truncated_error(element, numbers.remaining_bytes() / element.properties.size());
   }

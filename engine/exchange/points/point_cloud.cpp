@@ -27,7 +27,7 @@ struct Row {
   std::array<double, column_limit> numbers{};
   std::size_t count = 0;
   bool all_numbers = true;
-  bool is_ambiguous = false;  // commas may separate numbers or be decimal
+  bool is_ambiguous = false;  // commas may separate numbers or mark decimals
 
   void add(std::optional<double> number) {
     all_numbers = all_numbers && number.has_value();
@@ -71,7 +71,7 @@ std::string_view trim_separators(std::string_view line) {
                                          : line.substr(begin, line.find_last_not_of(ignored) - begin + 1);
 }
 
-// Returns true where a comma has neighbours on both sides that are neither blank nor separator.
+// Returns true if a comma has neighbours on both sides that are neither blank nor separator.
 bool has_inner_comma(std::string_view line) {
   constexpr std::string_view separators = " \t\r\v\f;,";
   for (std::size_t at = line.find(',', 1); at < line.size(); at = line.find(',', at + 1)) {
@@ -84,9 +84,9 @@ bool has_inner_comma(std::string_view line) {
   return false;
 }
 
-// Parses numbers separated by blanks, commas or semicolons. Where semicolons separate the words, a comma
-// within a word is decimal; where blanks do, it may also separate thousands or columns, and the row is
-// ambiguous.
+// Parses numbers separated by blanks, commas or semicolons. If semicolons separate the words, a comma within
+// a word is a decimal comma. If blanks separate them, such a comma may also separate thousands or columns,
+// and the row is ambiguous.
 Row parse_text_row(std::string_view line) {
   Row row = parse_row(line, ",;");
   line = trim_separators(line);
@@ -170,7 +170,7 @@ Result<PointCloud> parse_text_points(std::string_view bytes) {
     const bool is_first = columns == 0;
     if (is_first && (!row.all_numbers || row.count == 1)) {
       if (has_heading) return no_point_error(line_number, line);
-      has_heading = true;  // names of the columns, or the count of points
+      has_heading = true;  // a heading gives the names of the columns, or the number of points
       continue;
     }
     if (!row.all_numbers || row.count < 3) return no_point_error(line_number, line);

@@ -22,7 +22,8 @@ inline constexpr std::size_t point_file_bytes_limit = std::size_t{1} << 30;
 struct PointCloud {
   std::vector<Vector3> points;   // in the file's own unit
   std::vector<Vector3> normals;  // one for each point, of any length; or empty
-  std::size_t skipped = 0;       // points with a coordinate that is NaN, as depth cameras write them
+  // number of points skipped because a coordinate is NaN, which depth cameras write
+  std::size_t skipped = 0;
 };
 
 // Builder of a cloud from single points, used by the readers. Call begin(), add() for each point, and
@@ -55,14 +56,14 @@ std::uint64_t ply_face_count(std::string_view bytes);
 // normal_x, normal_y and normal_z are its normals.
 Result<PointCloud> parse_pcd_points(std::string_view bytes);
 
-// Reads one point from each line: x, y, z separated by blanks, commas or semicolons, followed by a normal
-// where three further columns have length 1 in all lines. Between semicolons "12,5" is a number with a
-// decimal comma. Ignored: other columns, comments (#, //), a byte order mark, and before the first point one
-// line of words or of one number, the count. Refused: a comma within a word where blanks separate the words,
-// since it may separate numbers or be decimal.
+// Reads one point from each line: x, y, z separated by blanks, commas or semicolons, followed by a normal if
+// three further columns have length 1 in all lines. Between semicolons "12,5" is a number with a decimal
+// comma. Ignored: other columns, comments (#, //), a byte order mark, and, before the first point, one line
+// of words or of a single number (the count of points). Refused: a comma within a word if blanks separate the
+// words, since the comma may separate numbers or mark decimals.
 Result<PointCloud> parse_text_points(std::string_view bytes);
 
-// Reads the `v` lines of an OBJ file; its `vn` lines are normals where there are as many.
+// Reads the `v` lines of an OBJ file; its `vn` lines are their normals if there are as many of them.
 Result<PointCloud> parse_obj_points(std::string_view bytes);
 bool obj_has_faces(std::string_view bytes);
 

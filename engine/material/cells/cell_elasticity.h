@@ -25,8 +25,8 @@ struct CellResponse {
   CellMatrix tangent;  // derivative of the forces, N/m
 };
 
-// Says if a tangent includes the contribution of the present stress. Newton's method is fastest with it;
-// without it, no stress makes the tangent indefinite.
+// Selects whether a tangent includes the contribution of the present stress. Newton's method is fastest with
+// it; without it, no stress makes the tangent indefinite.
 enum class Tangent : std::uint8_t { stressed, plain };
 
 // Elasticity that a cell achieves along x, y and z. Plain data.
@@ -41,7 +41,7 @@ AchievedElasticity compute_elasticity(const Eigen::Matrix3d& normal_stiffness_pa
 // Elasticity that a body's cells achieve, compared with the requested one: means over the cells, weighted
 // by volume. Plain data.
 struct LatticeReport {
-  double youngs_modulus_ratio[3] = {};  // achieved over requested, along x, y, z
+  double youngs_modulus_ratio[3] = {};  // achieved modulus divided by the requested one, along x, y, z
   double poissons_ratio[3] = {};
   double wanted_poissons_ratio = 0.0;
   double worst_cell_misfit = 0.0;  // see CellSprings::misfit

@@ -15,8 +15,8 @@ namespace spoonbill {
 // shape. It is symmetric, and the six rigid motions are its only null space.
 //
 // The element is trilinear with three quadratic displacements per axis that are internal to the cell and
-// condensed out. A plain trilinear cell shears in bending and is too stiff, by half for one cell through a
-// beam of L/H = 10; it also locks near nu = 1/2 (Wilson et al. 1973).
+// condensed out. A plain trilinear cell shears in bending and is too stiff: by half if a beam of L/H = 10 has
+// a single cell through its height. It also locks near nu = 1/2 (Wilson et al. 1973).
 //
 // The gradients of the internal modes use the Jacobian at the cell's centre, so that distorted cells pass
 // the patch test (Taylor, Beresford and Wilson 1976). Two Gauss points per axis. The cell must not be

@@ -99,9 +99,9 @@ ComponentMatrix spring_components(const CellCorners& corners, double volume) {
 // through the plane of its neighbours, and a cell without diagonals has zero-energy modes.
 constexpr double min_spring_fraction = 0.1;
 
-// Returns the stiffnesses closest to `start` that satisfy `matrix * k = target`. Those that would fall
-// below their minimum are set to it, round by round. A negligible ridge keeps the normal matrix regular
-// where springs of a distorted cell are dependent.
+// Returns the stiffnesses closest to `start` that satisfy `matrix * k = target`. Stiffnesses that would fall
+// below their minimum are set to the minimum, in repeated rounds. A negligible ridge keeps the normal matrix
+// regular where springs of a distorted cell are dependent.
 Stiffnesses nearest_admissible(const ComponentMatrix& matrix, const Components& target,
                                const Stiffnesses& start) {
   Stiffnesses weight = start, from = start;
@@ -167,7 +167,7 @@ double bulk_stiffness(double youngs_modulus_pa, double poissons_ratio) {
 AchievedElasticity achieved_elasticity(const CellCorners& corners, const CellSprings& springs,
                                        double bulk_stiffness_pa) {
   const Components tensor = spring_components(corners, springs.volume_m3) * as_vector(springs);
-  Eigen::Matrix3d normal;  // stress along each axis by strain along each axis
+  Eigen::Matrix3d normal;  // maps strains along the axes to stresses along the axes
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
       int exponent[3] = {0, 0, 0};

@@ -18,9 +18,9 @@ extern const std::array<std::array<int, 2>, cell_spring_count> cell_spring_corne
 struct CellSprings {
   std::array<double, cell_spring_count> stiffness_n_per_m{};  // all positive
   double volume_m3 = 0.0;
-  // |achieved - target| / |target| over the 15 components of the springs' elasticity tensor. 0 for a cube
-  // and for bricks up to an aspect of about 1.5. Above 0 where springs of at least a tenth of a cube's
-  // stiffness cannot reach the tensor.
+  // Relative error of the springs' elasticity tensor: |achieved - target| / |target|, as norms of its 15
+  // components. It is 0 for a cube and for bricks up to an aspect of about 1.5, and above 0 where springs of
+  // at least a tenth of a cube's stiffness cannot reach the target.
   double misfit = 0.0;
 };
 

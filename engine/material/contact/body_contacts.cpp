@@ -23,8 +23,8 @@ Vector3 current_displacement(const BodyPoint& side) {
   return sum;
 }
 
-// Returns the velocity change of an impulse between two points, 1/kg. Within one body the impulses overlap
-// in the nodes that both points use.
+// Returns the velocity change per impulse between two points, 1/kg. Within one body the impulses overlap in
+// the nodes that both points use.
 double mutual_compliance(const BodyPoint& first, const BodyPoint& second) {
   if (first.body != second.body) {
     return first.point.compliance(*first.lattice) + second.point.compliance(*second.lattice);

@@ -31,7 +31,7 @@ class BodyContacts {
   // for a penetration. Both points may be of the same body and share nodes. Returns false when full.
   bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m);
 
-  // Starts a tick: marks all constraints as not acted.
+  // Starts a tick: marks all constraints as not having acted.
   void begin();
 
   // Solves the constraints. Call after the kick and before the drift of a substep of h_s.
@@ -42,7 +42,7 @@ class BodyContacts {
   // Returns whether any constraint of a body, or between two bodies, has acted since begin().
   bool acted(int body) const;
   bool acted(int body, int other) const;
-  // Sets the bytes of the nodes of a body's constraints that have acted.
+  // Sets the bytes in `touched` of those nodes of a body on which a constraint has acted.
   void mark_touched(int body, std::uint8_t* touched) const;
 
  private:
@@ -68,7 +68,7 @@ class BodyContacts {
 // body would hop down a slope on which it should stick.
 //
 // Measured friction follows a change of pressure gradually (Prakash 1998), which makes sliding well posed
-// (Ranjith and Rice 2001). Over that time the impulses sum to Coulomb's law.
+// (Ranjith and Rice 2001). Summed over that time, the impulses obey Coulomb's law.
 struct GroundContact {
   int body = 0, node = 0;
   double gap_m = 0.0;
@@ -81,16 +81,16 @@ struct GroundContact {
   double time_s = 0.0;
 };
 
-// Averaging time of the push, in material time. A soft body of a centimetre oscillates a few times in it
-// and slides imperceptibly.
+// Averaging time of the push, in material time. In this time, a soft body of a centimetre oscillates a few
+// times and slides imperceptibly.
 inline constexpr double friction_memory_s = 0.01;
 
 // Rigid ground under bodies: velocity constraints on their nodes. Lattices with springs solve them in each
 // substep, after all other contacts; the implicit solver once a tick.
 //
-// Stores the contacts of one tick and their memory for the next. Each constrains a single node, so one pass
-// solves the contacts of spring-stepped lattices exactly, and sticking contacts do not creep. One owner, one
-// thread; allocates only in its constructor.
+// Stores the contacts of one tick and their memory for the next. Each contact constrains a single node, so
+// one pass solves the contacts of spring-stepped lattices exactly, and sticking contacts do not creep. One
+// owner, one thread; allocates only in its constructor.
 class GroundContacts {
  public:
   explicit GroundContacts(int capacity);
@@ -114,7 +114,7 @@ class GroundContacts {
   int count() const { return static_cast<int>(contacts_.size()); }
   // Impulse of the ground on a body since begin(), N s.
   Vector3 impulse_ns(int body) const;
-  // Sets the bytes of the nodes of a body that the ground has pushed.
+  // Sets the bytes in `touched` of those nodes of a body that the ground has pushed.
   void mark_touched(int body, std::uint8_t* touched) const;
 
   // Visits everything that the next tick depends on.

@@ -14,7 +14,7 @@
 
 namespace spoonbill {
 
-// Limits on the change of a gap in one substep, as fractions of it.
+// Limits on the change of a gap in one substep, as fractions of the gap.
 struct ContactPace {
   double closing;     // largest fraction of a gap that may close
   double correction;  // fraction of a penetration that is corrected
@@ -23,7 +23,8 @@ struct ContactPace {
 // Pace of ground contacts. Each node on the ground has its own contact and closes its gap within a substep.
 inline constexpr ContactPace ground_pace{1.0, 0.7};
 
-// Contact of two points that must not pass each other, before the drift of one substep, and its impulse.
+// Contact of two points that must not pass each other, as it is before the drift of a substep, and its
+// impulse.
 struct ContactPush {
   double gap_m;      // negative: penetration depth
   Vector3 normal;    // unit vector along which the points separate
@@ -61,10 +62,11 @@ struct ContactPush {
 // Largest number of lattices that are stepped together.
 inline constexpr int lattice_capacity = 9;
 
-// State of the tool's proxy, which contacts keep apart from the hand. Plain data, stored from tick to tick.
+// State of the tool's proxy, which contacts can hold away from the hand. Plain data, stored from tick to
+// tick.
 struct ToolState {
   Vector3 position_m = Vector3::Zero();
-  Vector3 velocity_m_per_s = Vector3::Zero();  // per material time
+  Vector3 velocity_m_per_s = Vector3::Zero();  // metres per second of material time
 };
 
 // Fixed nodes of a lattice that moves rigidly with the tool. Their rest positions are in the tool's frame.
@@ -97,9 +99,9 @@ class ContactConstraints {
   //
   // Adds a point that the tool's sphere may push outward but never pulls.
   bool add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point);
-  // Adds a point that must stay beyond a plane that moves with the tool: on the side to which the unit
-  // vector `normal` points, `offset_m` along it from the tool's centre. For tools smaller than a cell and
-  // for those whose surface is flat over the motion of a tick.
+  // Adds a point that must stay beyond a plane that moves with the tool: on the side to which the unit vector
+  // `normal` points, `offset_m` along it from the tool's centre. It serves tools smaller than a cell, and
+  // tools whose surface is flat over the distance moved in a tick.
   bool add_plane_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
                       const Vector3& normal, double offset_m);
   // Adds a point gripped by the tool, at `offset_m` from its centre in the tool's frame.
@@ -121,7 +123,7 @@ class ContactConstraints {
   // Sum of the impulses of a body on the tool since begin(), N s.
   const Vector3& tool_impulse(int body) const { return tool_impulse_[body]; }
   bool acted() const { return acted_; }
-  // Sets the bytes of the nodes of a body's constraints that have acted.
+  // Sets the bytes in `touched` of those nodes of a body on which a constraint has acted.
   void mark_touched(int body, std::uint8_t* touched) const;
 
  private:
@@ -148,7 +150,7 @@ class ContactConstraints {
   std::vector<Constraint> constraints_;
   int count_ = 0;
   ToolMotion motion_;
-  Vector3 hand_velocity_ = Vector3::Zero();  // per material time, m/s
+  Vector3 hand_velocity_ = Vector3::Zero();  // metres per second of material time
   Vector3 carried_force_ = Vector3::Zero();
   double tool_compliance_ = 0.0;  // 1/kg; 0 if the hand holds the tool rigidly
   // Velocity change of the tool per impulse by the end of a substep, including the response of its spring

@@ -4,8 +4,8 @@
 
 namespace spoonbill {
 
-// A symmetric band matrix or its factor. Column j holds rows j to j + half_band from columns + j * stride
-// on, then zeros. In a factor, the first entry of a column is the inverse of the pivot. Vectors have
+// A symmetric band matrix or its factor. Column j is stored at columns + j * stride: its rows j to j +
+// half_band, then zeros. In a factor, the first entry of a column is the inverse of the pivot. Vectors have
 // `stride` zeros after their last entry.
 struct BandView {
   int size = 0;
@@ -24,8 +24,8 @@ struct BandKernels {
   void (*forward)(const BandView&, int from, double* x);
   // Sets x to L^-T x.
   void (*backward)(const BandView&, double* x);
-  // Sums in lanes, so that the order is the same on every processor. `size` must be a multiple of
-  // band_block.
+  // Returns the dot product of two vectors, summed in lanes so that the order is the same on every processor.
+  // `size` must be a multiple of band_block.
   double (*dot)(const double* a, const double* b, int size);
 };
 

@@ -115,8 +115,8 @@ inline void compute_stretch(const CellBatch& b, const Matrix& h, Matrix& stretch
   }
 }
 
-// Computes (tr S - S)^-1 for the symmetric part of S. A crushed cell without an inverse gets that of an
-// unstrained one.
+// Computes (tr S - S)^-1 for the symmetric part of S. A crushed cell, whose matrix has no inverse, gets the
+// inverse of an unstrained cell.
 inline void compute_spin_map(CellBatch& b, const Matrix& s) {
   for (int l = 0; l < lanes; ++l) {
     const double xx = 1.0 + s.at[0][l], yy = 1.0 + s.at[4][l], zz = 1.0 + s.at[8][l];

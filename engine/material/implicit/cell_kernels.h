@@ -12,8 +12,8 @@ inline constexpr int cell_stiffness_size = 300;  // lower half, row by row
 // Eight cells side by side. Lanes without a cell have zero stiffness and the nodes of another cell.
 struct CellBatch {
   int node[8][cell_lanes];
-  // N/m. In double precision, because the rounding errors in a rigid motion must stay far below the mass
-  // terms.
+  // Stiffness of each cell, N/m, in double precision, because the rounding errors in a rigid motion must stay
+  // far below the mass terms.
   double stiffness[cell_stiffness_size][cell_lanes];
   double rest[cell_axes][cell_lanes];      // relative to the centre, m
   double gradient[cell_axes][cell_lanes];  // of the shape functions at the centre, 1/m

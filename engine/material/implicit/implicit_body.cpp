@@ -29,7 +29,7 @@ namespace {
 
 using Part = BlockMaterials::Part;
 
-// Appends a part, or merges it with the last one if it follows that along j and has the same material.
+// Appends a part, or merges it into the last part if it follows that part along j and has the same material.
 void add_part(const Part& part, std::vector<Part>& parts) {
   if (!parts.empty()) {
     Part& last = parts.back();
@@ -43,7 +43,7 @@ void add_part(const Part& part, std::vector<Part>& parts) {
   parts.push_back(part);
 }
 
-// Merges the parts of a cell of one material.
+// Merges the parts of a cell that have the same material.
 std::vector<Part> merge_parts(std::vector<Part> parts) {
   const bool alike = std::all_of(parts.begin(), parts.end(),
                                  [&](const Part& part) { return part.material == parts[0].material; });
@@ -332,7 +332,7 @@ void ImplicitBody::begin_solve(double inertia, double stiffness, double h) {
   for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) {
     residual_[n] = free_[n] * (mass3_[n] * velocity_[n] + h * force_[n]);
   }
-  // Internal forces sum to zero.
+  // The internal forces sum to zero, so the residual sums to the momentum times `inertia`.
   momentum_ = sum_over_nodes(residual_) / inertia;
   const int blocks = rounded_up(size_, band_block);
   const double along_velocity = band_->dot(residual_.data(), velocity_.data(), blocks),
@@ -393,7 +393,7 @@ ImplicitBody::RigidMotion ImplicitBody::rigid_motion() const {
     inertia += this->mass_kg(n) * (from_centre.squaredNorm() * Eigen::Matrix3d::Identity() -
                                    from_centre * from_centre.transpose());
   }
-  // A body stretched to a line has no inertia about it.
+  // A body stretched to a line has no inertia about that line; the small term keeps the tensor regular.
   inertia.diagonal().array() += 1e-9 * inertia.trace();
   motion.spin_rad_per_s = inertia.ldlt().solve(moment);
   return motion;
@@ -414,8 +414,8 @@ bool ImplicitBody::cap_speeds(const RigidMotion& motion, double cap_m_per_s) {
   return capped;
 }
 
-// Moves a free body: it rotates as a whole, and the relative motion of its nodes rotates with it. Along
-// straight lines a fast spin would stretch the body by half the square of the angle per step.
+// Moves a free body: it rotates as a whole, and the relative motion of its nodes rotates with it. If nodes
+// moved along straight lines, a fast spin would stretch the body by half the square of the angle per step.
 void ImplicitBody::move_and_turn(const RigidMotion& motion, double step_s) {
   const Vector3 half_turn = 0.5 * step_s * motion.spin_rad_per_s;
   const Eigen::Matrix3d turn =

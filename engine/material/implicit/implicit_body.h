@@ -29,8 +29,8 @@ struct Overlap {
   double fraction() const { return 0.5 * (high - low); }
 };
 
-// Returns the overlaps of a coarse cell with the lattice's cells, in order and without gaps. Counts are of
-// nodes along the axis, at least 2 each.
+// Returns the overlaps of a coarse cell with the lattice's cells, in order and without gaps. The counts are
+// numbers of nodes along the axis, each at least 2.
 std::vector<Overlap> find_overlaps(int block_cell, int block_count, int lattice_count);
 
 // Materials in the cells of an implicit body. Plain data, a value.
@@ -83,7 +83,7 @@ struct ImplicitStep {
 
 struct ImplicitReport {
   int iterations = 0;     // of the conjugate gradients
-  double residual = 0.0;  // final residual over the initial one, in the norm of the preconditioner
+  double residual = 0.0;  // final residual divided by the initial one, in the norm of the preconditioner
 };
 
 // Implicit Euler method for a block of hexahedra. The velocities w at the end of a step h solve
@@ -128,7 +128,7 @@ class ImplicitBody {
   void fix_nodes(std::span<const std::uint8_t> fixed);
   bool is_fixed(int node) const { return free_[3 * static_cast<std::size_t>(mesh_.joined(node))] == 0.0; }
 
-  // Both nodes of a joined pair give the same result.
+  // Returns the displacement of a node, m: the same for both nodes of a joined pair.
   Vector3 displacement(int node) const { return at(moved_, mesh_.joined(node)); }
   Vector3 velocity(int node) const { return at(velocity_, mesh_.joined(node)); }
   void set_displacement(int node, const Vector3& d) { put(moved_, mesh_.joined(node), d); }

@@ -113,10 +113,12 @@ void ImplicitGroundContacts::solve(const GroundContacts& ground, std::span<Groun
 
 namespace {
 
-// Largest size of the band. A solution multiplies each entry twice, and a tick takes about five solutions.
+// Largest number of entries in the band. A solution multiplies each entry twice, and a tick takes about five
+// solutions.
 constexpr double max_band = 1.3e5;
 constexpr int min_budget = 30;
-// Inverse mass in contacts relative to that of the whole body: before the first contact, and the largest.
+// Inverse mass in contacts, relative to that of the whole body: the value before the first contact, and the
+// largest value.
 constexpr double initial_lightness = 8.0, max_lightness = 1e5;
 
 // Position of a node of one grid in another over the same body, along one axis.
@@ -399,7 +401,7 @@ void ImplicitSolver::write_velocities(SpringLattice& lattice) {
   }
 }
 
-// Collects the contact impulses. Returns the sum of their squares by node.
+// Collects the contact impulses. Returns the sum of their squares over the nodes.
 double ImplicitSolver::collect_impulses(const SpringLattice& lattice) {
   std::fill(impulse_.begin(), impulse_.end(), 0.0);
   double squares = 0.0;
@@ -425,8 +427,8 @@ void ImplicitSolver::update_contact_mass(double measured, SpringLattice& lattice
 }
 
 void ImplicitSolver::end_step(SpringLattice& lattice, const GroundPush& on_ground) {
-  // Contacts have given each node its impulse over the contact mass; the body now responds to all of them
-  // together.
+  // Each contact has changed its node's velocity by the impulse divided by the contact mass; the body now
+  // responds to all impulses together.
   const double squares = collect_impulses(lattice);
   if (squares > 0.0) update_contact_mass(body_.push(impulse_) / squares, lattice);
   if (!on_ground.contacts.empty()) {

@@ -26,7 +26,7 @@ struct GridPoint {
     for (std::size_t c = 0; c < 8; ++c) sum += weight[c] * of(node[c]);
     return sum;
   }
-  // Adds a vector at the point to the nodes' values, by coordinate.
+  // Distributes a vector at the point among the nodes and adds it to their values, by coordinate.
   void spread(const Vector3& point_value, std::vector<double>& by_coordinate) const {
     for (std::size_t c = 0; c < 8; ++c) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -47,7 +47,8 @@ struct GridPoint {
 //
 // This is the fixed point of r <- P(r - m (v - target)) with the projection P onto the cone, for every mass
 // m. Starting from the forces of the last tick, a few of these steps are taken with the spectral mass
-// |dr|^2 / (dr.W dr) (Barzilai and Borwein 1988). Each is shortened where it would pass the minimum of the
+// |dr|^2 / (dr.W dr) (Barzilai and Borwein 1988). Each step is shortened where it would pass the minimum of
+// the
 // energy along its direction (Birgin, Martinez and Raydan 2000). A body at rest is at the fixed point and
 // does not creep.
 //
@@ -121,7 +122,7 @@ class ImplicitSolver {
 
   // Rayleigh quotient (v.Kv) / (v.Mv) of the block's velocities; 0 at rest.
   double rayleigh_quotient() { return body_.rayleigh_quotient(); }
-  // Replaces all node forces by the forces on these nodes of the lattice, N. Fixed nodes bear theirs
+  // Replaces all node forces by the forces on these nodes of the lattice, N. Fixed nodes bear their forces
   // directly.
   void set_node_forces(const SpringLattice& lattice, std::span<const int> nodes);
   // Moves the followers of these fixed nodes of the lattice, in ascending order, at the given velocity in
@@ -150,7 +151,7 @@ class ImplicitSolver {
     visit(&contact_inverse_mass_, 1);
     for (const Vector3& rest : rest_m_) visit(rest.data(), 3);
   }
-  // Visits the further state of a body on the ground.
+  // Visits the additional state of a body on the ground.
   template <class Visitor>
   void visit_state_on_ground(Visitor&& visit) const {
     ground_contacts_.visit_state(visit);

@@ -71,8 +71,8 @@ Vector3 mean_edges(const LatticeMesh& mesh) {
   return sums.cwiseQuotient(edges);
 }
 
-// A corner of a cell: its edges over the mean edges, and their derivatives with respect to the moving node,
-// 0 or +-1 over the mean edge.
+// A corner of a cell: its edges, each divided by the mean edge of its axis, and their derivatives with
+// respect to the moving node, 0 or +-1 divided by that mean edge.
 struct Corner {
   std::array<Vector3, 3> edges;
   Vector3 follows;
@@ -117,7 +117,8 @@ void add_term(const Corner& corner, double lift_square, Sum& sum) {
                     determinant_gradient.transpose();
 }
 
-// The corners of cells that have a given node as one of their four ends.
+// The corners of cells whose terms depend on a given node: it is the corner itself or the other end of one of
+// the corner's three edges.
 class Around {
  public:
   Around(const LatticeMesh& mesh, int node, const Vector3& mean_edge)
@@ -201,7 +202,8 @@ void fill_from_hull(LatticeMesh& mesh) {
     const std::array<int, 3> at = mesh.grid_index(n);
     if (mesh.node_location(at[0], at[1], at[2]) != NodeLocation::in_body) continue;
     Vector3 point = Vector3::Zero();
-    // Faces minus edges plus corners: at an end of one axis, of two, of three.
+    // The Boolean sum adds faces, subtracts edges and adds corners: nodes at an end of one, two or three
+    // axes.
     for (int ends = 1; ends < 27; ++ends) {
       const std::array<int, 3> end = {ends / 9, ends / 3 % 3, ends % 3};  // 0: not at an end of this axis
       if (mesh.closed && end[0] != 0) continue;
@@ -220,9 +222,9 @@ void fill_from_hull(LatticeMesh& mesh) {
 }
 
 // Moves the nodes of `movable`, one at a time in sweeps, to minimise the sum over the corners of |S|^3 /
-// (3^1.5 h(det S)). S has the corner's edges as columns, each over the block's mean edge in its direction.
-// h(x) = (x + sqrt(x^2 + 4 d^2)) / 2 keeps the sum finite while cells are folded (Escobar et al. 2003;
-// Knupp 2001 for the measure).
+// (3^1.5 h(det S)). S has the corner's edges as columns, each divided by the block's mean edge in its
+// direction. h(x) = (x + sqrt(x^2 + 4 d^2)) / 2 keeps the sum finite while cells are folded (Escobar et al.
+// 2003; Knupp 2001 for the measure).
 //
 // For d = 0 a corner's term is convex in the position of a node, since det S is affine in it. `movable`
 // must contain representatives of joined nodes only. The result is deterministic; the caller checks for
@@ -246,7 +248,7 @@ void unfold(LatticeMesh& mesh, const std::vector<int>& movable) {
 }
 
 // Returns the smallest Jacobian determinant at the corners and the eight Gauss points of all cells, each
-// over its cell's volume; -1 if a cell has no positive volume.
+// divided by its cell's volume; -1 if a cell has no positive volume.
 double smallest_mesh_jacobian_ratio(const LatticeMesh& mesh) {
   const double low = 0.5 - 0.5 / std::sqrt(3.0), high = 1.0 - low;
   double smallest = std::numeric_limits<double>::infinity();
@@ -375,7 +377,7 @@ Result<TubeBlock> make_block(const Surface& surface, const Profile& profile, con
   const double first_distance = profile.distance[rims.first], last_distance = profile.distance[rims.last];
   const double centre_v = LinearTable{profile.distance, profile.v}.at(0.5 * (first_distance + last_distance));
   const Ring centre_ring = sample_ring(surface, centre_v);
-  // The direction at the centre, not from rim to rim: the ends of a coil may be anywhere.
+  // Uses the direction at the centre, not from rim to rim, because the ends of a coil may be anywhere.
   if (!(centre_ring.along.norm() > 0.0)) {
     return Error{ErrorCode::degenerate,
                  "surface: its rings coincide along v at half its length; spread its control points there",
@@ -419,9 +421,9 @@ std::vector<int> nodes_inside(const LatticeMesh& mesh) {
   return inside;
 }
 
-// Builds a block for a body that folds when filled slice by slice: caps that reach to the shoulders, and an
-// interior from the whole hull. The near rim of a narrow nose may be on a flank as steep as the side below.
-// Returns nothing if these blocks fold too.
+// Builds a block for a body that folds when filled slice by slice: the caps reach to the shoulders, and the
+// interior is filled from the whole hull. The near rim of a narrow nose may be on a flank as steep as the
+// side below. Returns nothing if these blocks fold too.
 std::optional<TubeBlock> make_unfolded_block(const Surface& surface, const Profile& profile,
                                              const LatticeRequest& request) {
   const Rims shoulders = shoulder_rims(profile);

@@ -21,8 +21,8 @@ Result<LatticeMesh> solid_lattice(const Surface& surface, const LatticeRequest& 
                                   const FeatureMapWatch& watch = {});
 
 // Returns the lattice of a closed tube-like or box-like body. Slices are at constant v, evenly spaced along
-// the body. The nodes of a ring are spaced by arc length; spacing by angle gives slender cells and twice
-// the substeps. The two end slices are on the caps.
+// the body. The nodes of a ring are spaced by arc length; spacing by angle would give slender cells and twice
+// as many substeps. The two end slices are on the caps.
 //
 // If cells fold, as in a body that is hollow at a pole, the caps reach to the shoulders, and the interior
 // nodes follow the whole hull and are unfolded. Fails on a surface that is not a closed tube, counts below

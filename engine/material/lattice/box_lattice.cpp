@@ -189,9 +189,9 @@ ClosedSkin coarse_skin(const Surface& surface, double longest_m) {
   return sample_skin(surface, thin_out(u, longest_m, over_u), thin_out(v, longest_m, over_v));
 }
 
-// Returns the skin of a body in a box of cells. Its points are those samples of make_skin() that leave
-// distances of at most two thirds of a cell's shortest edge, where the samples are that dense, and at least
-// eight steps per direction. A round body loses only thin slivers of its volume.
+// Returns the skin of a body in a box of cells. Its points are samples of make_skin(), at most two thirds of
+// a cell's shortest edge apart where the samples are that dense, and with at least eight steps per direction.
+// A round body loses only thin slivers of its volume.
 //
 // `coordinates_at` returns the body coordinates of (u, v). Points of the skin are in filled cells if
 // the samples are.
@@ -279,8 +279,8 @@ void set_node_coordinates(const SurfaceCoordinates& coordinates, LatticeMesh& bo
   }
 }
 
-// Sets the body coordinates of all cells' centres. Void cells get the body coordinates of the nearest
-// surface point, so that they do not stiffen anything softer.
+// Sets the body coordinates of all cells' centres. Void cells get the body coordinates of the nearest surface
+// point, so that they do not stiffen softer material around them.
 void set_cell_coordinates(const SurfaceCoordinates& coordinates, LatticeMesh& box) {
   box.cell_centres.resize(box.cell_count());
   for (int k = 0; k + 1 < box.count[2]; ++k) {
@@ -313,8 +313,8 @@ void add_midpoints(const std::array<Vector3, 3>& corners, const Vector3& cell_m,
   add_midpoints({centre, to, across}, cell_m, points);
 }
 
-// Returns points on the skin, dense enough to hit every cell that it passes through, except where it only
-// cuts off a corner.
+// Returns points on the skin, dense enough to hit every cell that the skin passes through, except where the
+// skin only cuts off a corner.
 std::vector<Vector3> sample_skin(const ClosedSkin& skin, const Vector3& size,
                                  const std::array<int, 3>& counts) {
   const Vector3 cell_m = size.cwiseQuotient(Vector3(counts[0] - 1, counts[1] - 1, counts[2] - 1));

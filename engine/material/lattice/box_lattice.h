@@ -42,8 +42,8 @@ EmbeddedPoint embed_in_box(const LatticeMesh& box, const Vector3& point_m);
 // a cell are too stiff in bending. Counts are along x, y and z. Nodes and cells get body coordinates
 // from the nearest sample of the surface, and their depth. A feature map in the request is ignored.
 //
-// Fails on counts below 2, and on a body whose volume over half its area is below a ten-thousandth of its
-// size.
+// Fails on counts below 2, and on a body whose volume divided by half its area is below a ten-thousandth of
+// its size.
 Result<LatticeMesh> surface_in_box(const Surface& surface, const LatticeRequest& request);
 
 }  // namespace spoonbill

@@ -100,7 +100,8 @@ class FeatureMap {
   }
 
  private:
-  // Descends from neighbour to neighbour, which finds the nearest node in an ordered grid.
+  // Returns the node nearest to the point: descends from neighbour to neighbour, which suffices in an ordered
+  // grid.
   std::array<int, 3> nearest(const Vector3& point, std::array<int, 3> at) const {
     const auto square_to = [&](const std::array<int, 3>& node) {
       return (mesh_.nodes[static_cast<std::size_t>(mesh_.index(node[0], node[1], node[2]))] - point)

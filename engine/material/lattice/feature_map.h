@@ -14,7 +14,7 @@ namespace spoonbill {
 // Quality of the cells of a lattice.
 struct CellQuality {
   double worst_jacobian = 0.0;  // see smallest_jacobian_ratio(); 1 for boxes
-  double volume_spread = 0.0;   // standard deviation of the cell volumes over their mean
+  double volume_spread = 0.0;   // standard deviation of the cell volumes divided by their mean
 };
 CellQuality measure_cell_quality(const LatticeMesh& mesh);
 

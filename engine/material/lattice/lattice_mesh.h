@@ -98,8 +98,8 @@ using CellCorners = std::array<Vector3, 8>;
 // triangulations.
 double cell_volume(const CellCorners& corners);
 
-// Returns the smallest Jacobian determinant at the corners over the cell's volume: 1 for a box, at most 0
-// for a folded cell.
+// Returns the smallest Jacobian determinant at the corners divided by the cell's volume: 1 for a box, at most
+// 0 for a folded cell.
 double smallest_jacobian_ratio(const CellCorners& corners);
 
 // Returns the point at (a, b, c) along i, j and k, each 0 to 1 inside the cell.

@@ -36,7 +36,7 @@ class ShellSurface {
   };
   Vector3 position_m(const Position& at) const;
   Vector3 normal(const Position& at) const;
-  // 1 if normal, across and along form a right-handed frame in this order, -1 otherwise.
+  // Returns 1 if normal, across and along form a right-handed frame in this order, -1 otherwise.
   double handedness() const { return (swapped_ ? -1.0 : 1.0) * (pole_at_end_ ? -1.0 : 1.0); }
 
   // Returns fractions that cut every polynomial piece into the same number of parts, at least `least` in
@@ -60,7 +60,7 @@ class ShellSurface {
 };
 
 constexpr int edge_samples = 32;
-// Edges shorter than this fraction of the control net's extent are points.
+// Edges shorter than this fraction of the control net's extent count as points.
 constexpr double point_fraction = 1e-6;
 
 std::vector<double> piece_fractions(const KnotVector& knots, int least) {
@@ -181,7 +181,7 @@ constexpr int length_stations = 200, lines = 16, volume_stations = 48;
 // Relative tolerance for the farthest point, so that the start of a ring does not depend on rounding.
 constexpr double farthest_tolerance = 1.0 - 1e-6;
 
-// Returns a table from arc length, the mean over the lines `over`, to the fractions of the stations.
+// Returns a table from arc length, averaged over the lines `over`, to the fractions of the stations.
 template <class PositionAt>
 LinearTable length_to_fraction(const ShellSurface& face, const std::vector<double>& stations,
                                const std::vector<double>& over, const PositionAt& position_at) {
@@ -302,7 +302,7 @@ FaceNodes face_nodes(const ShellSurface& face, const Spread& spread, int rows, i
   const bool closed = face.form() == ShellSurface::Form::ring;
   for (int i = 0; i < rows; ++i) {
     for (int k = 0; k < columns; ++k) {
-      // Joined nodes are equal to the last bit.
+      // The last row repeats the first, so that joined nodes are equal to the last bit.
       const int from = closed && i == rows - 1 ? 0 : i;
       const Position position =
           spread.at(static_cast<double>(from) / (rows - 1), static_cast<double>(k) / (columns - 1));

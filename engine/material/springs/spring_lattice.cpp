@@ -29,8 +29,8 @@ int find_direction(int di, int dj, int dk) {
   return -1;
 }
 
-// Fixed pseudo-random number in [-1, 1), by Knuth's multiplicative hash. Start vectors made of it contain
-// every mode.
+// Returns a fixed pseudo-random number in [-1, 1), by Knuth's multiplicative hash. Start vectors made of such
+// numbers contain every mode.
 float hashed_noise(std::uint32_t i) {
   const std::uint32_t bits = (i * 2654435761u) ^ ((i * 2654435761u) >> 15);
   return static_cast<float>(bits & 0xffffu) / 32768.0f - 1.0f;
@@ -54,7 +54,7 @@ const float* data_or_null(const AlignedVector<float>& values) {
 
 constexpr int frequency_steps = 300;
 
-// Stiffness of a crushed cell over its shear modulus: that of a material with Poisson's ratio 0.45.
+// Stiffness of a crushed cell divided by its shear modulus: that of a material with Poisson's ratio 0.45.
 constexpr double crushed_ratio = 8.0;
 constexpr float noise_fraction = 1e-4f;
 
@@ -68,7 +68,8 @@ bool differ(const LatticeMaterials& materials, const Property& property) {
   });
 }
 
-// Square of the pressure wave speed, m^2/s^2: E (1 - nu) / ((1 + nu) (1 - 2 nu)) over the density.
+// Returns the square of the pressure wave speed, m^2/s^2: E (1 - nu) / ((1 + nu) (1 - 2 nu)) divided by the
+// density.
 double wave_speed_square(const Material& material) {
   const double poisson = std::max(material.poissons_ratio, min_spring_poissons_ratio);
   return material.youngs_modulus_pa * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson)) /
@@ -724,7 +725,7 @@ bool SpringLattice::reform_cells(int node, const Vector3& move, Reforming& next)
 }
 
 bool SpringLattice::reform(int node, const Vector3& move_m) {
-  // The move as single precision stores it.
+  // The move is measured as single precision stores it.
   const Vector3 before = displacement(node);
   const Vector3 move = (before + move_m).cast<float>().cast<double>() - before;
   const int twin = mesh_.twin(node);

@@ -95,11 +95,11 @@ inline float volume_rate(const LatticeView& view, const FaceDiagonals& gradient,
          dot(v.e, gradient.e) + dot(v.f, gradient.f);
 }
 
-// Corner-major results for one block of cells, scattered afterwards.
+// Results for one block of cells, corner by corner, to be scattered to the nodes afterwards.
 struct BlockCells {
   alignas(64) float x[8][block], y[8][block], z[8][block];
 
-  // Sets `scale` times the gradient at each corner.
+  // Sets the results at each corner to `scale` times the gradient.
   void set(int l, float scale, const FaceDiagonals& gradient) {
     const FaceDiagonals g = {scale * gradient.a, scale * gradient.b, scale * gradient.c,
                              scale * gradient.d, scale * gradient.e, scale * gradient.f};

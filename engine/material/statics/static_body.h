@@ -96,7 +96,8 @@ void fix_node(int node, const Vector3& displacement_m, std::vector<FixedAxis>& f
 // tick.
 class StaticBody {
  public:
-  // Fails on materials outside their ranges, folded cells, and springs below a Poisson's ratio of 1/4.
+  // Builds the body of a study. Fails on materials outside their ranges, folded cells, and springs below a
+  // Poisson's ratio of 1/4.
   static Result<StaticBody> make(const LatticeMesh& mesh, const LatticeMaterials& materials, CellKind kind);
 
   const LatticeMesh& mesh() const { return mesh_; }

@@ -67,8 +67,8 @@ class Equilibrium {
   bool cancelled() const { return cancelled_; }
 
  private:
-  // Reports the progress as the orders of magnitude by which the unbalanced force has fallen, relative to
-  // those required: Newton's method gains more of them in each step. Returns false if the caller has
+  // Reports the progress as the orders of magnitude by which the unbalanced force has fallen, relative to the
+  // number required: Newton's method gains more of them with each step. Returns false if the caller has
   // cancelled.
   bool report(double fraction, double unbalanced, double first) const {
     if (!settings_->progress.is_watched()) return true;

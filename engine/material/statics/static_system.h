@@ -11,7 +11,7 @@ namespace spoonbill {
 // must outlive it.
 class StaticSystem {
  public:
-  // Each coordinate may be fixed at most once.
+  // Sets up the equations; `fixed` may contain a coordinate at most once.
   StaticSystem(const StaticBody& body, const std::vector<FixedAxis>& fixed);
 
   using Coordinates = Eigen::VectorXd;
@@ -48,7 +48,8 @@ class StaticSystem {
   std::vector<Eigen::Index> free_;  // by coordinate: index of the free coordinate, or -1 if fixed
   Eigen::Index free_count_ = 0;
   Stiffness stiffness_;
-  // 300 per cell: positions of the lower half of its tangent in the values of the stiffness, or -1.
+  // Positions of each cell's tangent entries (the lower half, 300 per cell) in the values of the stiffness,
+  // or -1.
   std::vector<Eigen::Index> value_index_;
 };
 
