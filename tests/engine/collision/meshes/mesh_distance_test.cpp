@@ -179,7 +179,7 @@ TEST(MeshDistance, WhatOverlapsIsOneBody) {
   EXPECT_NEAR(balls.at({0.0, 0.0, 0.0}).distance_m, -0.3, 2e-3);
   EXPECT_NEAR(balls.at({-0.3, 0.0, 0.0}).distance_m, -0.6, 2e-3);  // near the surface of the other ball
   const MeshDistance spindle(cleaned(torus_mesh(60, 60, 0.4, 0.7)));
-  // The surface winds around this point once, in either orientation.
+  // The surface winds around this point once in each orientation, which makes it outside.
   EXPECT_GT(spindle.at({0.0, 0.0, 0.0}).distance_m, 0.2);
   EXPECT_LT(spindle.at({0.5, 0.0, 0.0}).distance_m, -0.1);
   EXPECT_GT(spindle.at({0.0, 0.65, 0.0}).distance_m, 0.01);  // in the dimple of the spindle

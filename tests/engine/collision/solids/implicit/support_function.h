@@ -19,7 +19,7 @@ double distance_by_support(const ImplicitShape& shape, const Vector3& point);
 ImplicitShape random_convex_shape(Random& random, int kind);
 inline constexpr int convex_shape_kinds = 7;
 
-// Returns a direction of unit length.
+// Returns a direction of unit length; random_in_cube() returns a point in the unit cube.
 Vector3 random_direction(Random& random);
 Vector3 random_in_cube(Random& random);
 // Returns a rotation about any axis by less than half a turn.
