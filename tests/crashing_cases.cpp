@@ -1,4 +1,5 @@
-// Cases that end their process, for run_suite_test: which of them passed must be known all the same.
+// Test cases that end their process. run_suite_test checks that the results of the other cases are still
+// known.
 #include <gtest/gtest.h>
 
 #include <csignal>

@@ -73,7 +73,7 @@ TEST(ChangeCommand, OpenedAndCappedAndClosed) {
   const Outcome outcome =
       run({"change", opened, "cap", "v_end", "2mm", "--out", capped, "--tolerance", "0.05mm"});
   ASSERT_EQ(outcome.code, exit_done) << outcome.err;
-  // Closing the slit again.
+  // The slit is closed again.
   EXPECT_FALSE(json_of(run({"info", capped, "--json"}).out)["lattice"].is_null());
   const std::string slit = place.text("slit.json"), closed = place.text("closed.json");
   ASSERT_EQ(run({"change", handle, "split", "u=0.5", "--out", slit}).code, exit_done);

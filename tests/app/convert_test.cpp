@@ -167,7 +167,7 @@ TEST_F(ConvertTest, ATrimmedSurfaceStaysTrimmed) {
   Json& surface = document["body"]["surface"];
   const auto domain = read_document(place_.path("model.json"))->scene.bodies[0].surface;
   const double low = domain.v.domain_start(), high = domain.v.domain_end();
-  // A hole, whose loop runs clockwise.
+  // The loop of a hole runs clockwise.
   const auto at = [&](double u, double v) {
     const double start = domain.u.domain_start(), end = domain.u.domain_end();
     return Json::array({start + u * (end - start), low + v * (high - low)});
@@ -327,7 +327,7 @@ TEST_F(ConvertTest, NoMessageCommandsTheTerminal) {
       << outcome.err;
 }
 
-// Ctrl+C is pressed before the work begins and takes effect at the first check.
+// The child process presses Ctrl+C before the work begins; it takes effect at the first check.
 int exit_code_when_interrupted(const std::string& in, const std::string& out) {
   const pid_t process = fork();
   if (process == 0) {

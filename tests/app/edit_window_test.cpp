@@ -278,7 +278,7 @@ TEST_F(EditWindow, KilledInAStrokeItLosesASecondAtMost) {
   ASSERT_TRUE(wait_shown([](const Json& frame) { return frame["pressing"].get<bool>(); }));
   ASSERT_TRUE(hands("mousemove 900 330"));
   const Autosave autosave(place_.path("state") / "spoonbill", place_.path("handle.json"));
-  // An autosave lags the shape by at most a second, so a bent one appears soon.
+  // An autosave lags behind the shape by at most a second, so a bent shape is soon saved.
   EXPECT_TRUE(wait_for([&] {
     const auto saved = autosave.recovered_document();
     return saved && saved.value() && largest_difference(*saved.value(), held_model()) > 1e-4;

@@ -66,7 +66,7 @@ TEST(Info, TellsOfEveryBody) {
   EXPECT_NE(lines.find("periodic, from 0 to "), std::string::npos) << lines;
 }
 
-// The size of a handle that a loop trims to a part of its length is that of the part.
+// A trim loop keeps part of the handle; the reported size is that of the kept part.
 TEST(Info, TheSizeOfATrimmedBodyIsOfWhatIsKept) {
   const Workplace place;
   Document model = read_document(place.path("model.json")).value();
@@ -139,7 +139,7 @@ TEST(Info, TellsOfRecordingScriptAndMaterial) {
   EXPECT_EQ(material["material"]["youngs_modulus_pa"], document->scene.bodies[0].material.youngs_modulus_pa);
 }
 
-// A straight handle, and one bent around until its ends overlap.
+// One model is a straight handle, the other a handle bent around until its ends overlap.
 TEST(Collide, TellsOfOneModelWhetherItPassesThroughItself) {
   const Workplace place;
   const Json straight = json_of(run({"collide", place.text("model.json"), "--json"}).out);
@@ -180,7 +180,7 @@ TEST(Collide, TellsTheDistanceAndThenTheDepth) {
   EXPECT_NEAR(nearest["b"]["point_m"][1].get<double>() - nearest["a"]["point_m"][1].get<double>(), distance,
               1e-9);
 
-  // Moved closer by the distance plus a tenth of a millimetre.
+  // The second model is moved closer by the distance plus a tenth of a millimetre.
   const std::string pose = std::to_string(1000.0 - distance * 1e3 - 0.1) + "mm,";
   const Json deep =
       json_of(run({"collide", model, model, "--pose", "0," + pose + "0,1,0,0,0", "--json"}).out);

@@ -174,7 +174,7 @@ TEST(LiveSession, ExportsAMeshWhichSavesNothing) {
   EXPECT_EQ(next_notice(*live, Notice::Kind::problem).substr(0, 14), "not exported: ");
 }
 
-// A late save must not write one document into the file of another.
+// The live session must not write a late save of one document to the file of another.
 TEST(LiveSession, ASaveDoesNotPassToADocumentThatWasOpenedMeanwhile) {
   const Workplace place;
   Live live(held_handle());
@@ -217,7 +217,7 @@ TEST(LiveSession, AutosavesUnsavedWorkUntilItIsSaved) {
   const auto found = autosave.recovered_document();
   ASSERT_TRUE(found) << found.error().message;
   ASSERT_TRUE(found.value().has_value());
-  // At rest, so that nothing is autosaved after the save.
+  // The session must be at rest, so that nothing is autosaved after the save.
   wait_ticks(*live, 4000);
   ASSERT_TRUE(live->save(place.path("model.json")));
   EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) { return live->consume_saved_document().has_value(); }));
@@ -258,7 +258,8 @@ TEST(LiveSession, OpensAnotherDocument) {
   ASSERT_TRUE(live->open(other, "other"));
   EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.facts.title == "another"; }));
   EXPECT_TRUE(live->frame().snapshot.planes.empty());
-  // Without the plane the surface has fewer knots, and the buffers still hold those of the first document.
+  // Without the plane the surface has fewer knots, but the buffers still hold the surface of the first
+  // document.
   for (int frame = 0; frame < 6; ++frame) {
     ASSERT_TRUE(check_net(live->frame().snapshot.bodies[0].surface));
     wait_ticks(*live, 5);

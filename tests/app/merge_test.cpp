@@ -257,7 +257,7 @@ TEST(MergeCommand, RefusesInOneLine) {
     EXPECT_EQ(outcome.code, one.code) << one.told;
     EXPECT_NE(outcome.err.find(one.told), std::string::npos) << outcome.err;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    EXPECT_EQ(std::filesystem::file_size(out), 4u);  // as it was
+    EXPECT_EQ(std::filesystem::file_size(out), 4u);  // the existing file is unchanged
   }
 }
 

@@ -140,7 +140,7 @@ TEST(MeshCollide, TwoMeshesAreAsFarApartAsTheyAre) {
   EXPECT_EQ(apart["mesh_a"]["cleaning"]["vertices_joined"], 28);
   EXPECT_EQ(apart["mesh_b"]["cleaning"]["vertices_joined"], 28);
 
-  // In centimetres the ball is ten times as large and as deep inside.
+  // The cube is read in centimetres: it is ten times as large, and as deep inside as before.
   const Json deep = facts_of({box, cube, "--unit", "cm", "--pose", "14cm,20mm,0,1,0,0,0"});
   EXPECT_EQ(deep["touching"], true);
   EXPECT_EQ(deep["contained"], false);
@@ -184,7 +184,7 @@ TEST(MeshCollide, AllBodiesOfADocumentCount) {
   const Workplace place;
   const std::string model = place.text("model.json"), two = two_bodies(place);
   const std::string mesh = place.write("ball.stl", binary_stl(ball)).string();
-  // Above the upper body, which is 20 mm higher than the model's single body.
+  // The mesh is above the upper body, which is 20 mm higher than the model's single body.
   const Json one = facts_of({model, mesh, "--pose", above(25)}),
              upper = facts_of({two, mesh, "--pose", above(45)});
   EXPECT_EQ(upper["touching"], false);
@@ -193,7 +193,7 @@ TEST(MeshCollide, AllBodiesOfADocumentCount) {
   EXPECT_FALSE(upper["nearest"]["b"].contains("body"));
   EXPECT_FALSE(one["nearest"]["a"].contains("body"));
 
-  // A copy of the model between both bodies, 1 mm below the upper one and overlapping it.
+  // A copy of the model is between both bodies, 1 mm below the upper one and overlapping it.
   const Json alone = facts_of({model, model, "--pose", "0,-1mm,0,1,0,0,0"});
   const Json between = facts_of({two, model, "--pose", "0,19mm,0,1,0,0,0"});
   EXPECT_EQ(between["touching"], true);
@@ -202,7 +202,7 @@ TEST(MeshCollide, AllBodiesOfADocumentCount) {
   EXPECT_FALSE(between["contacts"][0]["b"].contains("body"));
   EXPECT_NEAR(between["depth_m"], alone["depth_m"], 1e-4);
 
-  EXPECT_EQ(facts_of({two})["touching"], false);  // neither itself nor the other
+  EXPECT_EQ(facts_of({two})["touching"], false);  // no body touches itself or the other
 }
 
 TEST(MeshCollide, TellsAPersonWhatTheMeshIs) {

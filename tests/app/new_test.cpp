@@ -56,7 +56,7 @@ TEST(New, TakesCountsMaterialAndUnits) {
 
 class Lumps : public testing::TestWithParam<std::vector<std::string>> {};
 
-// A script presses each document's ball tool into the top of its shape; the recording replays.
+// A script presses each document's ball tool into the top of its shape; the recording must replay.
 TEST_P(Lumps, CanBePressed) {
   const Workplace place;
   const Outcome made = run(with(GetParam(), {"--out", place.text("lump.json"), "--json"}));
@@ -77,7 +77,7 @@ TEST_P(Lumps, CanBePressed) {
 }
 
 // The ball is pressed in by a tenth of its radius: the reaction is perceptible, and the surface yields by a
-// plausible fraction of that.
+// plausible fraction of that depth.
 TEST_P(Lumps, GiveWayToTheirTool) {
   const Workplace place;
   ASSERT_EQ(run(with(GetParam(), {"--out", place.text("lump.json")})).code, exit_done);
@@ -181,7 +181,7 @@ TEST(New, RefusesWhatMakesNoShape) {
   EXPECT_EQ(content_of(place.path("old.json")), "precious");
 }
 
-// Both names of the inch work, also for lengths that take the unit of the last one.
+// Both names of the inch are accepted, also when a list gives the unit only after its last length.
 TEST(New, TakesInchesByBothNames) {
   const Workplace place;
   for (const char* size : {"2inchx40x20mm", "2inx40x20mm", "50.8x40x20mm", "50.8mmx40x20mm"}) {

@@ -18,7 +18,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double plugged_limit_n = 0.8;  // below the force of a press
+constexpr double plugged_limit_n = 0.8;  // less than the force of a press
 constexpr double noticeable_n = 0.3;     // threshold of a noticeable force
 
 enum class Fault { none, silent, garbage, broken_promise };

@@ -21,7 +21,7 @@ TEST(PointTable, ReadsUnitsOfItsColumns) {
   EXPECT_DOUBLE_EQ(table->rows_m[1][0], 0.01);
 }
 
-// Spreadsheets write both.
+// Spreadsheets write both byte order marks and plus signs.
 TEST(PointTable, ReadsAByteOrderMarkAndPluses) {
   const auto table = read("\xEF\xBB\xBFx_mm,y_mm,z_inch\r\n+1,-2,+1\r\n");
   ASSERT_TRUE(table.ok()) << table.error().message;

@@ -93,8 +93,8 @@ TEST(Program, AKilledRecordingReplaysUpToTheCut) {
   EXPECT_EQ(facts["ticks"].get<int>() % 100, 0);
 }
 
-// The limit on file size is 12 KiB: more than the recording's header, less than the performance even if half
-// of the ticks are missed.
+// The limit on file size is 12 KiB: more than the recording's header, and less than the whole recording even
+// if half of the ticks are missed.
 TEST(Program, ALiveRecordingThatIsCutIsAFailure) {
   const Workplace place;
   place.write("live.json", R"({"spoonbill_script": 1, "model": "model.json",
@@ -106,7 +106,7 @@ TEST(Program, ALiveRecordingThatIsCutIsAFailure) {
   EXPECT_NE(outcome.err.find("the recording has ended: "), std::string::npos) << outcome.err;
 }
 
-// A file that hits the size limit is a one-line error, and an existing file stays.
+// A file that reaches the size limit is a one-line error, and an existing file stays unchanged.
 TEST(Program, AFileThatMayNotGrowIsAFailureThatLeavesNothing) {
   const Workplace place;
   place.write("kept.json", "old");

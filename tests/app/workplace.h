@@ -27,7 +27,7 @@ bool is_clean_failure(const Outcome& outcome);
 
 Json json_of(const std::string& text);
 
-// A small handle that one plane holds.
+// Returns a small handle that is fixed by one plane.
 Document held_handle();
 
 class Workplace {
@@ -40,7 +40,7 @@ class Workplace {
     return folder_.write(name, content);
   }
 
-  // Records the script as `name`; 600 ticks in which the sphere presses twice and a command undoes the second
+  // Records 600 ticks of the script as `name`: the sphere presses twice, and a command undoes the second
   // stroke.
   std::filesystem::path record(const std::string& name) const;
 

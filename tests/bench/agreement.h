@@ -9,7 +9,7 @@
 
 namespace spoonbill {
 
-// The largest difference of two lists of coordinates; infinite where the sizes differ.
+// Returns the largest difference of two lists of coordinates; infinite if their sizes differ.
 template <class A, class B>
 double largest_difference(const A& ours, const B& theirs) {
   if (ours.size() != theirs.size()) return INFINITY;
@@ -19,7 +19,7 @@ double largest_difference(const A& ours, const B& theirs) {
   return largest;
 }
 
-// Fails the benchmark where the difference is above the tolerance, or no number.
+// Fails the benchmark if the difference is above the tolerance or is NaN.
 inline void require_agreement(benchmark::State& state, double difference, double tolerance) {
   if (!(difference <= tolerance))
     state.SkipWithError(("the peer's result differs by " + std::to_string(difference)).c_str());

@@ -1,6 +1,6 @@
-// A sphere on a sheet that deforms between queries: ours on the true surface, FCL on a mesh of 200 x 200
-// quads, which knows nothing of the grid; and a sphere on the handle, ours alone. Both are given the deformed
-// shape: control points to us, with the samples or without, and vertices to FCL.
+// A sphere on a sheet that deforms between queries: ours on the exact surface, FCL on a mesh of 200 x 200
+// quads without knowledge of the grid. Also a sphere on the handle, ours only. Every query is given the
+// deformed shape: control points (with or without samples) for ours, vertices for FCL.
 #include <benchmark/benchmark.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision.h>
@@ -13,11 +13,11 @@
 namespace spoonbill {
 namespace {
 
-constexpr int controls = 28, levels = 3;  // 25 elements a side, 2^3 cells each
+constexpr int controls = 28, levels = 3;  // 25 elements per side, 2^3 cells per element
 constexpr std::size_t quads = 200;
 constexpr double radius_m = 0.05, depth_m = 0.004;
 
-// Two shapes of one sheet, and where a sphere sits in both.
+// Two shapes of one sheet, and the position of a sphere that touches both.
 struct Sheets {
   Sheets()
       : nested(make_nested_grid(wavy_sheet(controls).u, wavy_sheet(controls).v, levels).value()),
@@ -47,7 +47,7 @@ fcl::CollisionResult<float> contacts_of(const fcl::BVHModel<Volume>& mesh, const
   return result;
 }
 
-// Whether FCL's triangles lie in our regions of contact.
+// Returns true if the contacts of FCL's triangles are in our contact regions.
 bool holds(const std::vector<ToolContactRegion>& regions, const Grid& grid,
            const fcl::CollisionResult<float>& result) {
   for (std::size_t k = 0; k < result.numContacts(); ++k) {
@@ -63,7 +63,7 @@ bool holds(const std::vector<ToolContactRegion>& regions, const Grid& grid,
   return true;
 }
 
-// Given: samples beside control points.
+// `given`: the query is given samples as well as control points.
 void sphere_ours(benchmark::State& state, bool given) {
   const Sheets sheets;
   SurfaceCollider collider(sheets.nested);
@@ -104,7 +104,7 @@ void sphere_fcl(benchmark::State& state) {
   state.counters["contacts"] = static_cast<double>(contacts);
 }
 
-// As the tick has it: a thumb's end pressed 1 mm into the shipped handle, which gives way.
+// A thumb's end is pressed 1 mm into the bundled handle, which yields, as in a tick.
 void handle_sphere(benchmark::State& state) {
   const Result<Document> document = read_document(SPOONBILL_ASSETS "/models/spoon-handle.json");
   if (!document) return state.SkipWithError(document.error().message.c_str());

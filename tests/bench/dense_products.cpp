@@ -1,5 +1,5 @@
-// Built once for each instruction set, as a shared library that shows nothing but its makers: Eigen's inline
-// functions must not mix with those compiled for another processor.
+// This file is built once for each instruction set, as a shared library that exports only its factory
+// functions: Eigen's inline functions must not mix with those compiled for another processor.
 #include "tests/bench/dense_products.h"
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
-// What a good programmer writes first with a matrix library: dense products in single precision. Compiled for
-// each instruction set with the flags of our own kernels, and chosen as they are.
+// The first solution that a good programmer writes with a matrix library: dense products in single precision.
+// They are compiled for each instruction set with the flags of our own kernels, and selected in the same way.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace spoonbill {
 
-// Tables hold one row a sample and one column a control point, row by row.
+// The tables hold one row per sample and one column per control point, in row-major order.
 struct DenseSheet {
   int samples = 0;   // in each direction
   int controls = 0;  // in each direction
@@ -16,15 +16,17 @@ struct DenseSheet {
   const float* derivatives = nullptr;
 };
 
-// M = A_u P A_v^T for points and both tangents, then the normalised cross product. Holds its working memory.
+// Computes M = A_u P A_v^T for points and both tangents, then the normalised cross product. Owns its working
+// memory.
 class DenseEvaluation {
  public:
   virtual ~DenseEvaluation() = default;
-  // in: the control points' x, y, z; out: the samples' x, y, z and normals, all planar.
+  // `in`: x, y, z of the control points; `out`: x, y, z of the samples and of their normals. Each coordinate
+  // is a separate array.
   virtual void points_and_normals(const float* const in[3], float* const out[6]) = 0;
 };
 
-// dP = A_u^+ dM (A_v^+)^T of one coordinate. Holds both pseudo-inverses and its working memory.
+// Computes dP = A_u^+ dM (A_v^+)^T of one coordinate. Owns both pseudo-inverses and its working memory.
 class DenseRefit {
  public:
   virtual ~DenseRefit() = default;
@@ -32,11 +34,11 @@ class DenseRefit {
 };
 
 std::unique_ptr<DenseEvaluation> make_dense_evaluation(const DenseSheet& sheet, InstructionSet set);
-// `inverse` holds controls x samples numbers, row by row, for both directions.
+// `inverse` is the pseudo-inverse for both directions: controls x samples numbers in row-major order.
 std::unique_ptr<DenseRefit> make_dense_refit(int samples, int controls, const float* inverse,
                                              InstructionSet set);
 
-// The makers of one instruction set.
+// The factory functions for one instruction set.
 struct DenseProducts {
   DenseEvaluation* (*make_evaluation)(const DenseSheet& sheet);
   DenseRefit* (*make_refit)(int samples, int controls, const float* inverse);

@@ -1,5 +1,5 @@
-// A thread that draws as a window would while the hand works: 1280 x 720 without a display, antialiased, with
-// shadow, a new shape each frame, 60 times a second or as often as it can.
+// A thread that draws as a window would during sculpting: 1280 x 720 without a display, antialiased, with
+// shadow, a new shape in each frame, 60 frames per second or as many as it can.
 #pragma once
 
 #include <atomic>
@@ -14,14 +14,14 @@ namespace spoonbill {
 
 class DrawingLoad {
  public:
-  // Draws the snapshots in turn.
+  // Draws the snapshots in rotation.
   explicit DrawingLoad(std::vector<Snapshot> snapshots);
   DrawingLoad(const DrawingLoad&) = delete;
   DrawingLoad& operator=(const DrawingLoad&) = delete;
   ~DrawingLoad();  // ends the thread
 
   int frames() const { return frames_; }
-  // Empty where drawing works. Call after the thread has had a moment.
+  // Returns an empty string if drawing works. Call it after the thread has had a moment to start.
   std::string error() const { return failed_ ? "nothing can be drawn here" : ""; }
 
  private:

@@ -1,5 +1,5 @@
 // Points and unit normals of a bicubic sheet on a whole grid: ours, SISL, OpenCASCADE, dense Eigen.
-// Arguments: samples a side, control points a side.
+// Arguments: samples per side, control points per side.
 #include <benchmark/benchmark.h>
 #include <sisl.h>
 
@@ -17,7 +17,7 @@
 namespace spoonbill {
 namespace {
 
-// Single precision on a sheet of 1 m; normals multiply the rounding of tangents.
+// The tolerances are for single precision on a sheet of 1 m; normals amplify the rounding of the tangents.
 constexpr double point_tolerance_m = 2e-5, normal_tolerance = 2e-3;
 
 std::size_t sample_count(const benchmark::State& state) {
@@ -44,7 +44,7 @@ struct Ours {
   GridSamples<Real> samples;
 };
 
-// Points and normals of a peer, interleaved as it likes them.
+// Points and normals computed by another library, with interleaved coordinates.
 struct Interleaved {
   std::vector<double> points, normals;
 };
@@ -123,7 +123,7 @@ void evaluate_sisl(benchmark::State& state) {
   const int side = static_cast<int>(state.range(0));
   Sisl sisl(sheet);
   std::vector<double> parameters = uniform_parameters(sheet.u, side);
-  // Point and both tangents of each sample.
+  // Each sample has a point and both tangents.
   constexpr std::size_t stride = 9;
   std::vector<double> derivatives(stride * sample_count(state)), normals(3 * sample_count(state));
   int status = 0;
@@ -132,7 +132,7 @@ void evaluate_sisl(benchmark::State& state) {
           normals.data(), &status);
   };
   run();
-  // Theirs is du x dv for the exchanged directions, so it points the other way.
+  // SISL's normal is du x dv with the directions exchanged, so it points the opposite way.
   Interleaved theirs{{}, normals};
   for (std::size_t k = 0; k < sample_count(state); ++k)
     theirs.points.insert(theirs.points.end(), &derivatives[stride * k], &derivatives[stride * k] + 3);
@@ -144,7 +144,7 @@ void evaluate_sisl(benchmark::State& state) {
   }
 }
 
-// Fills both lists, row by row, from anything with OpenCASCADE's D1.
+// Fills both lists in row-major order, from any class with OpenCASCADE's D1 function.
 template <class Evaluable>
 void evaluate_with_d1(const Evaluable& surface, const std::vector<double>& parameters, Interleaved& out) {
   std::size_t k = 0;
@@ -179,13 +179,13 @@ void evaluate_occt(benchmark::State& state) {
   time_d1(state, sheet, *opencascade_sheet(sheet));
 }
 
-// The adaptor keeps the polynomial piece of the last point; rows visit each piece in one go.
+// The adaptor caches the polynomial piece of the last point; a row visits each piece only once.
 void evaluate_occt_cached(benchmark::State& state) {
   const Surface sheet = wavy_sheet(static_cast<int>(state.range(1)));
   time_d1(state, sheet, GeomAdaptor_Surface(opencascade_sheet(sheet)));
 }
 
-// The grid grows over a small net, then the net under one grid.
+// First the grid grows with a small net, then the net grows with one grid.
 void sizes(benchmark::internal::Benchmark* bench) {
   bench->Unit(benchmark::kMicrosecond);
   for (const int samples : {25, 50, 100, 200, 400, 1000}) bench->Args({samples, 8});

@@ -1,4 +1,4 @@
-// Sheets as FCL knows them: meshes of triangles, whose vertices are replaced and whose tree is refitted.
+// Sheets in FCL's form: meshes of triangles whose vertices are replaced and whose tree is refitted.
 #pragma once
 
 #include <fcl/geometry/bvh/BVH_model.h>
@@ -22,7 +22,7 @@ inline FclPoints fcl_points(const GridSamples<double>& samples) {
   return points;
 }
 
-// Triangles 2 q and 2 q + 1 are those of quad q, row by row.
+// Triangles 2 q and 2 q + 1 belong to quad q; quads are in row-major order.
 template <class Volume>
 std::shared_ptr<fcl::BVHModel<Volume>> fcl_mesh(const FclPoints& vertices, std::size_t quads) {
   std::vector<fcl::Triangle> triangles;
@@ -47,14 +47,14 @@ void refit(fcl::BVHModel<Volume>& mesh, const FclPoints& vertices) {
   mesh.endReplaceModel(true, true);
 }
 
-// FCL copies a mesh of boxes at each query. An allocator that gave the pages back each time would double its
-// cost.
+// FCL copies a mesh of boxes at each query. An allocator that returned the pages to the system each time
+// would double FCL's cost.
 inline void keep_freed_pages() {
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
 }
 
-// The surface at the grid's parameters.
+// Returns the points of the surface at the grid's parameters.
 inline GridSamples<double> samples_of(const Surface& surface, const Grid& grid) {
   GridSamples<double> samples;
   samples.resize(static_cast<std::size_t>(grid.rows()) * static_cast<std::size_t>(grid.columns()));

@@ -1,5 +1,6 @@
-// Surfaces from points: a scan of 100,000 points to 24 x 24 control points, from nothing but the points; and
-// a grid of points with known parameters beside OpenCASCADE's approximation of the same grid.
+// Surfaces from points: a scan of 100,000 points fitted with 24 x 24 control points, without given
+// parameters; and a grid of points with known parameters, compared with OpenCASCADE's approximation of the
+// same grid.
 #include <benchmark/benchmark.h>
 
 #include <GeomAPI_PointsToBSplineSurface.hxx>
@@ -15,7 +16,7 @@
 namespace spoonbill {
 namespace {
 
-// Evenly over an egg with dents (golden spiral), about 60 mm long.
+// Returns points spread evenly (golden spiral) over an egg with dents, about 60 mm long.
 Scan dented_egg(int count) {
   Scan scan;
   for (int k = 0; k < count; ++k) {
@@ -62,7 +63,7 @@ void fit_grid_ours(benchmark::State& state) {
   }
 }
 
-// It chooses its own parameters and knots, to a tolerance that ours keeps as well.
+// OpenCASCADE chooses its own parameters and knots, for a tolerance that our fit meets as well.
 void fit_grid_occt(benchmark::State& state) {
   const auto knots = KnotVector::clamped_uniform(3, static_cast<int>(state.range(1))).value();
   const int side = static_cast<int>(state.range(0));

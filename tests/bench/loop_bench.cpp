@@ -1,6 +1,6 @@
-// loop_bench SECONDS loop|none idle|drawing: the 1 kHz loop with the whole tick of a pressed block in it,
-// while nothing or a thread draws, and prints how late its ticks began as JSON. "none" only draws, for
-// another program that measures lateness.
+// loop_bench SECONDS loop|none idle|drawing: runs the 1 kHz loop with the whole tick of a pressed block, with
+// or without a thread that draws, and prints as JSON how late its ticks began. "none" only draws, for another
+// program that measures lateness.
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr int block_count = 12, block_iterations = 6;
 
-// The press again and again.
+// Repeats the press endlessly.
 struct Hand {
   Press press = block_press(block_count, block_iterations);
   Simulation simulation = Simulation::make(press.scene, best_instruction_set()).value();
@@ -32,7 +32,7 @@ struct Hand {
   }
 };
 
-// The body at four moments of the press.
+// Returns snapshots of the body at four moments of the press.
 std::vector<Snapshot> moments_of_press() {
   Hand hand;
   std::vector<Snapshot> moments(4);
@@ -59,7 +59,8 @@ int run(double seconds, bool with_loop, bool drawing) {
   using clock = std::chrono::steady_clock;
   std::optional<DrawingLoad> load;
   if (drawing) load.emplace(moments_of_press());
-  if (drawing) std::this_thread::sleep_for(std::chrono::seconds(1));  // programs compile, buffers grow
+  // Time for shaders to compile and buffers to grow.
+  if (drawing) std::this_thread::sleep_for(std::chrono::seconds(1));
   Hand hand;
   Json report = Json::object();
   const int frames = load ? load->frames() : 0;

@@ -1,4 +1,4 @@
-// Two patches of 30 x 30 control points that share an edge become one, C2.
+// Two patches of 30 x 30 control points that share an edge are merged into one with C2 continuity.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -33,7 +33,7 @@ void merge_halves(benchmark::State& state, const Surface& whole) {
   state.counters["columns"] = halves[0].net.columns;
 }
 
-// 57 columns with a knot in the middle are twice 30.
+// 57 columns split at a central knot give two patches of 30 columns.
 void merge_30x30(benchmark::State& state) {
   merge_halves(state, sheet(57));
 }

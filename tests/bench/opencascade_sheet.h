@@ -1,4 +1,4 @@
-// Our clamped sheets as OpenCASCADE's surfaces.
+// Converts our clamped sheets to OpenCASCADE's surfaces.
 #pragma once
 
 #include <Geom_BSplineSurface.hxx>

@@ -1,5 +1,5 @@
-// A frame of 1280 x 720 as PNG: ours as sequences are written, and the encoder of stb_image_write. The frame
-// is the approved picture of the settled bend.
+// Writing a frame of 1280 x 720 as PNG: our encoder with the settings for image sequences, and the encoder of
+// stb_image_write. The frame is the approved picture of the settled bend.
 #include <benchmark/benchmark.h>
 
 #define STB_IMAGE_WRITE_STATIC

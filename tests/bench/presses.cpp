@@ -11,7 +11,7 @@ namespace {
 
 constexpr double edge_m = 0.06;
 
-// A tube that is nearly a box: sections of equal width and height, caps nearly flat.
+// Returns a tube that is nearly a box: sections of equal width and height, and nearly flat caps.
 Surface box_like_tube() {
   constexpr int around = 16;
   const std::vector<double> stations = {0, 0, 0.02, 0.06, 0.2, 0.4, 0.6, 0.8, 0.94, 0.98, 1, 1};
@@ -54,7 +54,7 @@ Material abs() {
   return abs;
 }
 
-// Down by `depth_m` in a second, a moment there, up again.
+// The hand moves down by `depth_m` within a second, waits a moment and moves up again.
 std::vector<DeviceReading> readings_of_press(double surface_m, double radius_m, double depth_m) {
   std::vector<DeviceReading> readings;
   for (int t = 0; t < 1700; ++t) {

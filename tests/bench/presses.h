@@ -1,4 +1,4 @@
-// What the tick's benchmarks run: a simulation, and what the hand does to it tick by tick.
+// Presses that the tick's benchmarks run: a simulation, and the hand's input tick by tick.
 #pragma once
 
 #include <filesystem>
@@ -13,18 +13,18 @@ namespace spoonbill {
 struct Press {
   Scene scene;
   DeviceSpecification device;
-  std::vector<DeviceReading> readings;  // one a tick
-  std::vector<TimedCommand> commands;   // of the simulation
+  std::vector<DeviceReading> readings;  // one per tick
+  std::vector<TimedCommand> commands;   // commands to the simulation
 };
 
-// A recording, as its own ticks had it.
+// Reads the inputs of a recording, tick by tick as they were recorded.
 Result<Press> recorded_press(const std::filesystem::path& recording);
 
-// The same, its bodies of a plastic that only an implicit method steps.
+// As recorded_press(), but the bodies are of a plastic so stiff that only the implicit method can step it.
 Result<Press> stiff_press(const std::filesystem::path& recording);
 
-// A block of clay with 60 mm edges and count^3 nodes, held at one end, pressed by a sphere from above over a
-// second and let go, with that many relaxation steps a tick.
+// A block of clay with 60 mm edges and count^3 nodes, fixed at one end. A sphere presses it from above within
+// a second and releases it; each tick takes `iterations` relaxation steps.
 Press block_press(int count, int iterations);
 
 }  // namespace spoonbill

@@ -1,5 +1,5 @@
-// Control points from a grid of samples: ours, the same product written densely with Eigen, OpenCASCADE's
-// approximation. Arguments: samples a side, control points a side.
+// Control points from a grid of samples: ours, the same product as dense Eigen matrices, and OpenCASCADE's
+// approximation. Arguments: samples per side, control points per side.
 #include <benchmark/benchmark.h>
 
 #include <GeomAPI_PointsToBSplineSurface.hxx>
@@ -31,10 +31,10 @@ struct Case {
   Surface sheet;
   Grid grid;
   std::vector<float> samples[3];
-  std::vector<float> controls;  // of the coordinate done last
+  std::vector<float> controls;  // of the coordinate that was computed last
 };
 
-// Rows as ours takes them.
+// Returns the rows with the padding that our refit requires.
 std::vector<AlignedVector<float>> padded(const Case& which, int stride) {
   std::vector<AlignedVector<float>> all;
   for (const std::vector<float>& samples : which.samples) {
@@ -47,7 +47,7 @@ std::vector<AlignedVector<float>> padded(const Case& which, int stride) {
   return all;
 }
 
-// A displacement has three coordinates.
+// Refits a displacement, which has three coordinates.
 template <class Refit, class Samples>
 void displace(Refit& refit, const Samples& coordinates, std::vector<float>& controls) {
   for (const auto& samples : coordinates) refit.control_displacement(samples.data(), controls.data());
@@ -81,12 +81,12 @@ void refit_dense(benchmark::State& state) {
   DisplacementRefit refit = DisplacementRefit::make(which.grid, best_instruction_set()).value();
   displace(refit, padded(ours, refit.sample_stride()), ours.controls);
   displace(*dense, which.samples, which.controls);
-  // Displacements of a millimetre in single precision, over sums of 200 terms.
+  // The tolerance is for displacements of a millimetre in single precision, in sums of 200 terms.
   require_agreement(state, largest_difference(ours.controls, which.controls), 1e-7);
   time_refit(state, *dense, which.samples, which.controls);
 }
 
-// It chooses its own parameters and knots, so its control points are near ours in number only.
+// OpenCASCADE chooses its own parameters and knots, so only the number of its control points is near ours.
 void refit_occt(benchmark::State& state) {
   const Case which(state);
   const int side = which.grid.rows();

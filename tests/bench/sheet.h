@@ -8,16 +8,16 @@
 
 namespace spoonbill {
 
-// Clamped, uniform, side x side control points.
+// Returns a clamped, uniform sheet with side x side control points.
 Surface wavy_sheet(int side);
 
-// samples x samples parameters, evenly spaced, both ends included.
+// Returns samples x samples evenly spaced parameters, including both ends of the domain.
 Grid sheet_grid(const Surface& sheet, int samples);
 
-// A blending matrix as a dense table, sample by control point, row by row.
+// Returns a blending matrix as a dense row-major table: a row per sample, a column per control point.
 std::vector<float> dense_table(const BlendingMatrix& matrix);
 
-// Control points in single precision.
+// Converts the coordinates to single precision.
 std::vector<float> in_single(const std::vector<double>& values);
 
 }  // namespace spoonbill

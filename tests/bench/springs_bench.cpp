@@ -1,6 +1,6 @@
-// One step of a block of count^3 mass points with springs along edges, face and body diagonals. Ours caps
-// speeds and follows the fastest frequency, as ticks do; `springs_full` has all that a material can have of
-// it beside them: each cell's volume, damping, and plastic flow. Argument: nodes a side.
+// One step of a block of count^3 mass points with springs along edges, face diagonals and body diagonals.
+// Ours limits speeds and tracks the highest frequency, as in a tick; `springs_full` adds everything that a
+// material can have: the volume force of each cell, damping, and plastic flow. Argument: nodes per side.
 #include <benchmark/benchmark.h>
 
 #include "engine/base/processor.h"
@@ -11,7 +11,7 @@
 namespace spoonbill {
 namespace {
 
-// At a Poisson's ratio of 1/4 springs need no volume force.
+// At a Poisson's ratio of 1/4, springs need no volume force.
 Material springs_alone() {
   Material material;
   material.name = material.source = "benchmark";
@@ -42,7 +42,7 @@ SpringLattice block(int count, const Material& material) {
   return lattice;
 }
 
-// Substeps as a tick of the bundled recording takes them, six at once, without a tool.
+// A tick of the bundled recording takes this many substeps; they run together, without a tool.
 constexpr int substeps_a_tick = 6;
 
 void time_ours(benchmark::State& state, const Material& material) {
@@ -90,7 +90,7 @@ void sizes(benchmark::internal::Benchmark* bench) {
   for (const int count : {8, 12, 16, 24, 32}) bench->Arg(count);
 }
 
-// Bullet's position-based body flies apart there.
+// Bullet's position-based body diverges at these sizes.
 void sizes_of_ours(benchmark::internal::Benchmark* bench) {
   sizes(bench);
   for (const int count : {48, 64}) bench->Arg(count);

@@ -1,5 +1,5 @@
-// Two sheets, one of which deforms between queries: ours on the true surfaces, FCL on meshes of 200 x 200
-// quads. And two nets crossing each other, ours alone.
+// Two sheets, one of which deforms between queries: ours on the exact surfaces, FCL on meshes of 200 x 200
+// quads. Also two nets that cross each other, ours only.
 #include <benchmark/benchmark.h>
 #include <fcl/narrowphase/collision.h>
 
@@ -18,7 +18,7 @@ namespace {
 using FclBox = fcl::AABB<float>;
 using FclTurnedBox = fcl::OBBRSS<float>;
 
-constexpr int controls = 28, levels = 3;  // 25 elements a side, 2^3 cells each
+constexpr int controls = 28, levels = 3;  // 25 elements per side, 2^3 cells per element
 constexpr std::size_t quads = 200;
 constexpr double depth_m = 0.004;
 
@@ -28,7 +28,7 @@ Surface with_heights(Surface sheet, const std::function<double(double, double, d
   return sheet;
 }
 
-// A hilly sheet in two shapes, and a gently waved one on which its hilltops rest.
+// A hilly sheet in two shapes, and a gently waved sheet on which the hilltops rest.
 struct Sheets {
   Sheets()
       : nested(make_nested_grid(wavy_sheet(controls).u, wavy_sheet(controls).v, levels).value()),
@@ -50,7 +50,7 @@ PlanarPoints view(const GridSamples<double>& samples) {
   return {samples.x.data(), samples.y.data(), samples.z.data()};
 }
 
-// Whether FCL's triangles lie in cells that ours has a contact in.
+// Returns true if the contacts of FCL's triangles are in cells in which ours has a contact.
 bool holds(const SurfacePairCollider& collider, const fcl::CollisionResult<float>& result) {
   std::set<std::array<int, 4>> cells;
   for (const CellPair& pair : collider.cells()) {
@@ -73,7 +73,8 @@ fcl::CollisionResult<float> contacts_of(const fcl::BVHModel<Volume>& a, const fc
   return result;
 }
 
-// One sheet moves, the other does not. Given: samples of the moved sheet beside its control points.
+// One sheet moves, the other does not. `given`: samples of the moved sheet are given as well as its control
+// points.
 void surfaces_ours(benchmark::State& state, bool given) {
   const Sheets sheets;
   SurfacePairCollider collider(sheets.nested, sheets.nested);
@@ -115,7 +116,7 @@ void surfaces_fcl(benchmark::State& state) {
   state.counters["contacts"] = static_cast<double>(contacts);
 }
 
-// Both move, and cross each other from side to side.
+// Both nets move, and they cross each other from side to side.
 void nets_crossing(benchmark::State& state) {
   constexpr int side = 30;
   const auto crossing = [](double amplitude) {

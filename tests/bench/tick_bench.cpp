@@ -1,7 +1,7 @@
-// tick_bench ROUNDS CASE...: plays presses and prints, as JSON, how long each whole tick with contact took,
-// as the median of the rounds. A case is the file of a recording, stiff:FILE, or block:COUNT:ITERATIONS.
-// Every tick is timed on the steady clock and on the thread's own, which does not run while another program
-// has the processor.
+// tick_bench ROUNDS CASE...: plays presses and prints as JSON how long each whole tick with contact took, as
+// the median of the rounds. A case is the file of a recording, stiff:FILE, or block:COUNT:ITERATIONS. Every
+// tick is timed with the steady clock and with the thread's own clock, which stops while another program has
+// the processor.
 #include <time.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ double steady_time_us() {
 }
 
 struct Times {
-  std::vector<double> wall_us, thread_us;  // of ticks with contact
+  std::vector<double> wall_us, thread_us;  // times of the ticks with contact
 };
 
 double quantile(std::vector<double> values, double share) {
@@ -80,8 +80,8 @@ Result<Press> press_of(const std::string& name) {
   return recorded_press(name);
 }
 
-// Every round does the same work in the same tick, bit for bit: the median over the rounds is what a tick
-// costs, without what the host did meanwhile.
+// The same tick of every round does the same work, bit for bit: the median over the rounds is the cost of a
+// tick without disturbances by the machine.
 std::vector<double> medians_of_ticks(const std::vector<std::vector<double>>& rounds) {
   std::vector<double> medians;
   medians.reserve(rounds[0].size());

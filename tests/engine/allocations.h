@@ -1,11 +1,11 @@
-// Programs that link allocations.cpp count what each thread takes from the heap by operator new.
+// Programs that link allocations.cpp count the heap allocations of each thread through operator new.
 #pragma once
 
 #include <cstddef>
 
 namespace spoonbill {
 
-// Of the calling thread, since it began.
+// Returns the number of allocations of the calling thread since it started.
 std::size_t allocation_count();
 
 }  // namespace spoonbill

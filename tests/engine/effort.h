@@ -1,4 +1,4 @@
-// How much a test tries. Under a sanitizer, ten times slower, a part of it meets the same code.
+// The number of cases that a test tries. A sanitizer is ten times slower, and fewer cases run the same code.
 #pragma once
 
 #include <cstdlib>
@@ -11,17 +11,17 @@ inline constexpr bool sanitized = true;
 inline constexpr bool sanitized = false;
 #endif
 
-// A quarter of the trials under a sanitizer.
+// Returns the number of trials, or a quarter of it under a sanitizer.
 constexpr int effort(int trials) {
   return sanitized ? (trials + 3) / 4 : trials;
 }
 
-// Whether cases of several seconds run too, as in tests/run --full.
+// Returns true if tests of several seconds run too, as in tests/run --full.
 inline bool is_full_run() {
   return std::getenv("SPOONBILL_FULL") != nullptr;
 }
 
-// Whether cases of minutes run too, as in tests/run --long random.
+// Returns true if tests of minutes run too, as in tests/run --long random.
 inline bool is_long_run() {
   return std::getenv("SPOONBILL_LONG") != nullptr;
 }
@@ -35,7 +35,7 @@ inline int random_cases(int quick, int many) {
 inline constexpr const char* only_in_full = "takes several seconds; runs with SPOONBILL_FULL alone";
 inline constexpr const char* only_in_long = "takes minutes; runs with SPOONBILL_LONG alone";
 
-// Said of tests that take a sanitizer a minute, and of which shorter ones meet the same code.
+// The reason for tests that take a sanitizer a minute and whose code shorter tests run as well.
 inline constexpr const char* long_when_sanitized =
     "a minute under a sanitizer, which shorter tests tell as much";
 

@@ -1,5 +1,5 @@
-// The cases that fuzzing has found, and the first ones it grew from, whole and cut short; and those it has
-// grown, which go every way it knows.
+// Runs every fuzz target on the inputs that fuzzing has found and on its seeds, both complete and truncated,
+// and on the inputs that together reach all code the fuzzer has covered.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace spoonbill {
 
-// Google Test's name for it.
+// Google Test calls this function, by this name, to print a parameter.
 void PrintTo(const FuzzTarget& target, std::ostream* out) {
   *out << target.name;
 }

@@ -1,5 +1,5 @@
-// What a coverage-guided fuzzer throws bytes at: each reader of ours, and what must hold of whatever it
-// accepts. The same functions take the kept cases in the ordinary tests.
+// Targets of the coverage-guided fuzzer: each of our readers, and the properties of whatever it accepts. The
+// ordinary tests run the same functions on the stored inputs.
 #pragma once
 
 #include <span>
@@ -9,13 +9,13 @@ namespace spoonbill {
 
 struct FuzzTarget {
   const char* name;
-  // Ends the process where a property does not hold; whatever else is wrong is the sanitizers' to find.
+  // Ends the process if a property does not hold; sanitizers find other errors.
   void (*take)(std::string_view bytes);
 };
 
 std::span<const FuzzTarget> fuzz_targets();
 
-// Says what does not hold, and ends the process.
+// Prints the property that does not hold, and ends the process.
 void must_hold(bool property, const char* what);
 
 }  // namespace spoonbill

@@ -1,5 +1,4 @@
-// Of the loop's thread only counts and figures are checked, never how long something took: the machine may be
-// busy with other things.
+// The tests check only counts and values of the loop's thread, never durations: the machine may be busy.
 #include "haptic/haptic_loop.h"
 
 #include <gtest/gtest.h>
@@ -50,8 +49,8 @@ TEST(HapticLoop, CountsItsTicks) {
   EXPECT_EQ(calls, at_stop);
 }
 
-// A function that takes three and a half periods makes the loop drop at least two each time, and it is told
-// so.
+// A function that takes three and a half periods makes the loop drop at least two ticks each time; the loop
+// reports them to the function.
 TEST(HapticLoop, DropsWhatItMissesAndSaysSo) {
   std::atomic<std::uint64_t> calls = 0, dropped = 0, told_too_few = 0;
   LoopSettings settings;
@@ -126,7 +125,8 @@ TEST(HapticLoop, RefusesWhatItCannotRun) {
   EXPECT_EQ(loop.error().message, "haptic loop: period_s is 1e-06, must be 1e-04 to 1");
 }
 
-// In a process that gave up what root may do: ends with 0 when the loop runs, says so, and names the remedy.
+// Runs in a process that gave up root's rights. Exits with 0 if the loop runs, reports the missing right and
+// names the remedy.
 void run_without_rights() {
   const rlimit none{0, 0};
   setrlimit(RLIMIT_RTPRIO, &none);

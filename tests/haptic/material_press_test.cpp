@@ -15,7 +15,7 @@
 namespace spoonbill {
 namespace {
 
-// The lowest place of the upper side under the sphere, m.
+// Returns the height of the lowest point of the upper side under the sphere, m.
 double bottom_of_dent(const Surface& surface) {
   constexpr int around = 256, along = 220;
   double lowest = 1.0;
@@ -67,7 +67,7 @@ class ScriptedPress {
 
   double dent_m() const { return first_top_m_ - bottom_of_dent(simulation_.surface()); }
   double deepest_m() const { return deepest_m_; }
-  // On the material.
+  // Returns the force on the material, N.
   double force_n() const { return force_n_ / document_.scene.sculpting.force_scale; }
   double volume_change() const { return simulation_.lattice().volume_m3() / first_volume_m3_ - 1.0; }
   const Material& material() const { return document_.scene.bodies[0].material; }

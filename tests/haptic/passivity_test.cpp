@@ -17,14 +17,14 @@
 namespace spoonbill {
 namespace {
 
-// What the sum may show of energy given, in joules: the rounding of positions to nanometres, at the highest
-// force and for the 2,000 ticks of a press (3.3 N * 0.5 nm * 2000), all to one side.
+// Bound for the energy that rounding of positions to nanometres may seem to give, in joules: at the highest
+// force and for the 2,000 ticks of a press (3.3 N * 0.5 nm * 2000), with all errors of one sign.
 constexpr double rounding_j = 3.3e-6;
 
 struct WallPress {
   Hand hand;
-  double depth_m = 0.0;       // that the target goes below the wall's surface
-  double frequency_hz = 0.0;  // in and out again
+  double depth_m = 0.0;       // depth of the target below the wall's surface
+  double frequency_hz = 0.0;  // frequency of moving in and out
 };
 
 double evenly(std::mt19937_64& random, double low, double high) {
@@ -101,7 +101,7 @@ TEST(Passivity, ARigidWallOfTheHighestStiffnessGivesBackNoMoreThanItTook) {
         << " Hz; took " << energy.taken_j << " J";
     taken_j += energy.taken_j;
   }
-  EXPECT_GT(taken_j, 0.2);  // that there was something to give back: a millijoule a press
+  EXPECT_GT(taken_j, 0.2);  // the wall took energy that it could give back: a millijoule per press
 }
 
 Scene scene_to_press() {

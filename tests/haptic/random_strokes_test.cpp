@@ -80,7 +80,7 @@ Scene random_stroke_scene(RandomValues& random, const std::vector<Material>& bun
 
 constexpr double fastest_m_per_s = 5.0;
 constexpr int stroke_ticks = 2000, rest_ticks = 1000;
-// The hand roams within this of the body's middle; what it draws out of the body reaches no further.
+// The hand stays within this distance of the body's centre, and so does material that it pulls out.
 const Vector3 roam_m(0.06, 0.03, 0.03);
 const Vector3 centre_m(0.03, 0.0, 0.0);
 constexpr double bounds_m = 0.5;
@@ -136,8 +136,8 @@ std::string in_words(const Scene& scene) {
   return words;
 }
 
-// Whether every node is finite and near: where something holds the body about its place, of a free one, which
-// may fly, about its middle.
+// Returns true if every node is finite and near: near the body's place if it is fixed, near its own centre if
+// it is free.
 bool is_in_bounds(const SpringLattice& lattice) {
   const std::vector<Vector3> nodes = lattice.positions();
   Vector3 middle = centre_m;

@@ -1,4 +1,4 @@
-// What a recording's header says about the device, also one from before the safety chain.
+// The device fields of a recording's header, also of recordings older than the safety chain.
 #include <gtest/gtest.h>
 
 #include "haptic/recording_lines.h"

@@ -29,7 +29,7 @@ void run(SafeDevice& safe, double x_n, int ticks) {
   }
 }
 
-// With the whole force there.
+// Runs until the force has ramped up to its full value.
 void engage(SafeDevice& safe) {
   run(safe, 0.0, 1000);
   run(safe, 1.0, 100);

@@ -87,7 +87,7 @@ class RandomInput {
   Vector3 force_ = Vector3::Ones();
 };
 
-// What the chain itself cannot be asked: computed from the input alone.
+// Computes from the input alone, not by the chain, whether it is a fault.
 bool is_fault(const DeviceSpecification& specification, const SafetyInput& input) {
   if (input.stale || !input.requested_n.allFinite() || !input.position_m.allFinite()) return true;
   return input.dropped_ticks >= 25 || (specification.dead_man_buttons & ~input.buttons) != 0;
@@ -147,7 +147,7 @@ TEST(SafetyAtRandom, LimitsHoldWhateverHappens) {
     }
   }
   all.expect_safe();
-  // That all of it did occur.
+  // Each case did occur.
   EXPECT_GT(all.faults, ticks / 5000);
   EXPECT_GT(all.buzzes, ticks / 100'000);
   EXPECT_GT(all.with_force, ticks / 40);

@@ -106,7 +106,7 @@ void expect_cut(const SafetyInput& fault, std::uint32_t flag) {
   EXPECT_EQ(safe.force_n, Vector3::Zero());
   EXPECT_EQ(safe.flags, flag | safety_flag_cut);
   EXPECT_EQ(safe.reset_proxy, flag == safety_flag_stalled);
-  // And what made it stays told while the force waits and ramps in again.
+  // The fault stays reported while the force waits and ramps up again.
   for (int tick = 0; tick < 100; ++tick) {
     const SafeForce waiting = make_safe(state, device, wanting(3.0));
     EXPECT_EQ(waiting.force_n, Vector3::Zero());

@@ -22,7 +22,7 @@ std::uint64_t pretended_hash(std::uint64_t tick);
 Status write_sample_recording(const std::filesystem::path& file, const std::vector<DeviceReading>& readings,
                               bool finish);
 
-// What replaying and recording again does.
+// Replays a recording and records it again.
 Status write_again(const Recording& recording, const std::filesystem::path& file);
 
 }  // namespace spoonbill

@@ -57,7 +57,7 @@ TEST(SoftPress, BothGiveWayStayApartAndComeBack) {
   EXPECT_LT(farthest, 0.3e-3) << "elastic";
 }
 
-// The same with the bundled egg, which is a mesh.
+// The bundled egg, which is a mesh, behaves the same.
 TEST(SoftPress, AMeshGivesWayTooAndComesBack) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const Script script = read_script(scripts / "soft-egg.script.json").value();
@@ -66,7 +66,7 @@ TEST(SoftPress, AMeshGivesWayTooAndComesBack) {
   VirtualDevice device = VirtualDevice::make(script.hand, script.start).value();
   CouplingState coupling;
   Snapshot snapshot;
-  // How far the lowest point of the egg is below the hand.
+  // Returns how far the lowest point of the egg is below the hand.
   const auto hangs_m = [&](double hand_m) {
     simulation.write_snapshot(snapshot);
     const std::vector<float>& y = snapshot.bodies.back().mesh.y;

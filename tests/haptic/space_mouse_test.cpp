@@ -92,7 +92,7 @@ TEST(SpaceMouse, FollowsTheDaemonsEventsUntilItLeaves) {
   EXPECT_FALSE(mouse->poll().has_value());
 }
 
-// Or it would take the buttons of the mouse beside it.
+// Otherwise it would react to the buttons of the mouse beside it.
 TEST(SpaceMouse, IsUsedWhileItsCapIsAwayFromRestOrItsMainButtonChanges) {
   Daemon daemon;
   auto mouse = SpaceMouse::open();

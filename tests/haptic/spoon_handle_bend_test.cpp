@@ -1,5 +1,5 @@
-// The job: the bundled script bends the bundled handle, and the settled shape is what the founding paper
-// says: bent near the fixed part, the rest nearly straight.
+// The bundled script bends the bundled handle, and the settled shape is as in the founding paper: bent near
+// the fixed part, nearly straight elsewhere.
 #include <gtest/gtest.h>
 
 #include <cmath>

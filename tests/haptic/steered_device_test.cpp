@@ -39,7 +39,7 @@ TEST(SteeredDevice, FollowsNothingThatIsNotFinite) {
   EXPECT_FALSE(SteeredDevice::make({}, at_x(std::nan(""))).ok());
 }
 
-// A source that says what the test wants.
+// An input source whose values the test sets.
 struct Source : InputSource {
   bool is_used() override { return used; }
   HandTarget next_target(const HandTarget& current, double) override {

@@ -70,8 +70,8 @@ double conserved_energy(const VirtualDevice& device, const Hand& hand) {
          0.5 * 1e-3 * hand.stiffness_n_per_m * x.dot(v);
 }
 
-// Pushes the handle away, lets it go and follows it for two seconds: highest and last energy over that at
-// release.
+// Pushes the handle away, releases it and follows it for two seconds: the highest and last energy, divided by
+// that at release, are checked.
 void expect_no_energy_gained(const Hand& hand) {
   VirtualDevice device = device_at_origin(hand);
   device.set_force(Vector3(3.0, 0.0, 0.0));

@@ -193,7 +193,7 @@ TEST_F(BendPictures, WhatMustShowShows) {
     edits.emplace_back([overlay](ViewSettings& view, PanelModel&) { view.overlays.*overlay = false; });
   }
   const std::vector<double> change = changes(pushed, edits);
-  EXPECT_EQ(change[0], 0.0);  // the same again is the same
+  EXPECT_EQ(change[0], 0.0);  // without a change the picture is the same
   EXPECT_GT(change[1], tolerance) << "a light moved by 5 degrees";
   EXPECT_GT(change[2], tolerance) << "one changed label";
   for (std::size_t overlay = 3; overlay < change.size(); ++overlay) {

@@ -1,4 +1,4 @@
-// Pictures out of PNG files, for comparison.
+// Reads PNG files, for comparison.
 #pragma once
 
 #include <filesystem>

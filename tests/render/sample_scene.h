@@ -21,7 +21,7 @@ inline constexpr int sample_width_px = 640, sample_height_px = 360;
 // 100 x 12 x 5 mm, its lower side at y = 0, its axis along x, the first third fixed.
 Snapshot sample_scene(const SampleSceneOptions& options = {});
 
-// Of its sphere and tube, which touch.
+// Returns the stages of the contact between the scene's sphere and its tube.
 std::shared_ptr<const ContactStages> sample_stages(const Snapshot& snapshot);
 
 }  // namespace spoonbill

@@ -172,8 +172,8 @@ TEST(ToolMesh, NormalsAreOutwardAndAgreeWithTheTriangles) {
   }
 }
 
-// The gradient of the exact distance, where it has one: half a micrometre out of each vertex of a smooth
-// shape, the distance grows along the normal as fast as the way does.
+// The normal is the gradient of the exact distance, where it exists: half a micrometre along the normal from
+// a vertex of a smooth shape, the distance has grown by half a micrometre.
 TEST(ToolMesh, NormalsOfSmoothShapesAreThoseOfTheDistance) {
   for (const ImplicitShape& shape : std::vector<ImplicitShape>{
            SphereShape{0.007}, EllipsoidShape{{0.008, 0.006, 0.010}}, CapsuleShape{0.004, 0.006},

@@ -23,10 +23,10 @@ class VirtualDisplay {
 
   const std::string& name() const { return name_; }
 
-  // The upper left part of what the display shows. Nothing manages windows here: they stand in that corner.
+  // Returns the upper left part of the display. There is no window manager: windows are in that corner.
   Image screenshot(int width_px, int height_px) const;
 
-  // What windows opened from now on take for the display's density: 96 is a scale of 1.
+  // Sets the density that windows opened later read from the display: 96 is a scale of 1.
   void set_dots_per_inch(int dots_per_inch) const;
 
  private:

@@ -77,8 +77,8 @@ class Window : public ::testing::Test {
     window_->show();
   }
 
-  // Whether the display comes to show the picture. Drawn again and again, as an interface does: Mesa may take
-  // note of a new size only after the first frame.
+  // Returns true once the display shows the picture. Draws repeatedly, as an interface does: Mesa may notice
+  // a new size only after the first frame.
   bool shows(const Image& picture) {
     return comes_true(*window_, [&] {
       renderer_->present();

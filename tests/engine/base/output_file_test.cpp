@@ -1,4 +1,4 @@
-// Files appear whole or not at all, whatever they were before.
+// An output file appears complete or not at all, whatever was at its path before.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -22,7 +22,7 @@ TEST(OutputFile, AppearsWholeAtItsCommit) {
   const auto file = folder.write("a.csv", "old");
   auto out = OutputFile::create(file);
   ASSERT_TRUE(out.ok()) << out.error().message;
-  const std::string half(100'000, 'x');  // more than is buffered
+  const std::string half(100'000, 'x');  // more than the buffer holds
   ASSERT_TRUE(out->write(half).ok());
   EXPECT_EQ(content_of(file), "old");
   ASSERT_TRUE(out->write("end").ok());

@@ -16,7 +16,7 @@ double sum_of(const BasisFunctions& basis, int derivative, int degree) {
   return sum;
 }
 
-// Sums of at most ten positive numbers below 1, each right to a few units in the last place.
+// Sums of at most ten positive numbers below 1, each accurate to a few units in the last place.
 constexpr double unity_tolerance = 1e-14;
 
 TEST(Basis, SumsToOneEverywhereForEveryDegree) {
@@ -57,7 +57,7 @@ TEST(Basis, DerivativesSumToZero) {
       for (int d = 1; d <= max_basis_derivative; ++d) {
         double magnitude = 0.0;
         for (int j = 0; j <= knots.degree(); ++j) magnitude += std::abs(basis.values[d][j]);
-        // Cancellation leaves some units in the last place of what was added.
+        // Cancellation leaves an error of a few units in the last place of the terms.
         EXPECT_NEAR(sum_of(basis, d, knots.degree()), 0.0, 1e-14 * magnitude);
       }
     }
@@ -85,10 +85,11 @@ double combination(const KnotVector& knots, const std::array<double, 8>& coeffic
 TEST(Basis, ReproducesPolynomialsFromTheirCoefficients) {
   const auto knots = KnotVector::clamped_uniform(3, 8).value();
   const std::array<double, 8> linear{0, 1.0 / 15, .2, .4, .6, .8, 14.0 / 15, 1};
-  // 2/75, 11/75 and so on: the published decimals are rounded to six digits.
+  // The exact values are 2/75, 11/75 and so on; the published decimals are rounded to six digits.
   const std::array<double, 8> square{0, 0, 2.0 / 75, 11.0 / 75, 26.0 / 75, 47.0 / 75, 65.0 / 75, 1};
   const std::array<double, 8> cube{0, 0, 0, .048, .192, .48, .8, 1};
-  // Values up to 1, derivatives up to 6, made of terms up to 600: a few units in the last place of those.
+  // Values are up to 1, and derivatives up to 6 are sums of terms up to 600: the tolerances are a few units
+  // in the last place of these numbers.
   constexpr double value_tolerance = 1e-15 * 4, derivative_tolerance = 1e-12;
   for (int i = 0; i <= 100; ++i) {
     const double u = i / 100.0;
@@ -100,7 +101,7 @@ TEST(Basis, ReproducesPolynomialsFromTheirCoefficients) {
   }
 }
 
-// B_i(u) = B_0((u - i + r) mod r) with the modulus r of the erratum, for one control point a unit of u.
+// B_i(u) = B_0((u - i + r) mod r) with the modulus r of the erratum, for one control point per unit of u.
 TEST(Basis, UniformPeriodicFunctionsAreShiftedCopies) {
   constexpr int count = 7;
   std::vector<double> units;

@@ -24,7 +24,7 @@ TEST(BlendingMatrix, RowsSumToOneAtTheLastKnotAndTheSeamToo) {
     const auto parameters = random_parameters(random, knots, 20);
     const Eigen::MatrixXd matrix = blending_matrix(knots, parameters, 0).dense();
     for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-      // At most ten positive numbers below 1.
+      // The sum has at most ten positive terms below 1.
       EXPECT_NEAR(matrix.row(i).sum(), 1.0, 1e-14);
     }
     if (knots.is_periodic()) {
@@ -39,7 +39,7 @@ TEST(BlendingMatrix, AddsUpColumnsThatAppearTwice) {
   const BlendingMatrix matrix = blending_matrix(knots, at_knot, 0);
   EXPECT_EQ(matrix.bandwidth, 4);
   const Eigen::MatrixXd dense = matrix.dense();
-  // 1/6, 4/6, 1/6 and 0 on control points 1, 0, 1, 0.
+  // The control points 1, 0, 1, 0 have the weights 1/6, 4/6, 1/6 and 0.
   EXPECT_NEAR(dense(0, 0) + dense(0, 1), 1.0, 1e-15);
   EXPECT_NEAR(std::max(dense(0, 0), dense(0, 1)), 2.0 / 3, 1e-15);
 }
@@ -76,14 +76,15 @@ TEST(BlendingMatrix, PeriodicCubicIsWellConditionedAtKnots) {
   for (const int controls : {4, 8, 16, 32}) {
     const auto knots = KnotVector::periodic_uniform(3, controls).value();
     const auto at_knots = uniform_parameters_without_seam(knots, controls);
-    // Exactly 3 in real numbers.
+    // The exact value is 3.
     EXPECT_NEAR(condition(blending_matrix(knots, at_knots, 0).dense()), 3.0, 1e-12);
     const auto twice = uniform_parameters_without_seam(knots, 2 * controls);
     EXPECT_LE(condition(blending_matrix(knots, twice, 0).dense()), 4.3);
   }
 }
 
-// The radius of a cubic periodic curve whose control polygon is regular with corners on the unit circle.
+// The radii of a cubic periodic curve whose control polygon is regular with corners on the unit circle, at
+// the knots and between them.
 TEST(BlendingMatrix, PeriodicCubicCircleHasItsRadii) {
   for (const int controls : {8, 16, 32}) {
     const auto knots = KnotVector::periodic_uniform(3, controls).value();
@@ -95,7 +96,7 @@ TEST(BlendingMatrix, PeriodicCubicCircleHasItsRadii) {
     const double at_knot = (2.0 + std::cos(turn)) / 3.0;
     const double mid_span = (23.0 * std::cos(turn / 2) + std::cos(1.5 * turn)) / 24.0;
     for (int i = 0; i < curve.rows(); ++i) {
-      // A few units in the last place of numbers near 1.
+      // The tolerance is a few units in the last place of numbers near 1.
       EXPECT_NEAR(curve.row(i).norm(), i % 2 == 0 ? at_knot : mid_span, 1e-15 * 4);
     }
   }
@@ -115,7 +116,7 @@ TEST(PseudoInverse, InvertsFromTheLeft) {
       const auto clamped = KnotVector::clamped_uniform(degree, controls).value();
       const auto periodic = KnotVector::periodic_uniform(degree, controls).value();
       for (const int factor : {2, 4}) {
-        // The condition number, up to 1e4 at degree 9, times a few units in the last place.
+        // The tolerance is the condition number, up to 1e4 at degree 9, times a few units in the last place.
         EXPECT_LT(distance_from_inverse(clamped, uniform_parameters(clamped, factor * controls)), 1e-10);
         EXPECT_LT(
             distance_from_inverse(periodic, uniform_parameters_without_seam(periodic, factor * controls)),
@@ -127,7 +128,7 @@ TEST(PseudoInverse, InvertsFromTheLeft) {
   }
 }
 
-// Where inverting A^T A fails by 125, QR loses about ten digits.
+// Inverting A^T A is wrong by 125 here; QR loses about ten digits.
 TEST(PseudoInverse, SurvivesDegreeNineWithAsManySamplesAsControlPoints) {
   const auto knots = KnotVector::clamped_uniform(9, 24).value();
   EXPECT_LT(distance_from_inverse(knots, uniform_parameters(knots, 24)), 1e-6);
@@ -138,7 +139,7 @@ TEST(PseudoInverse, IsTheLeastSquaresSolution) {
   const auto parameters = uniform_parameters(knots, 30);
   const Eigen::MatrixXd a = blending_matrix(knots, parameters, 0).dense();
   const Eigen::MatrixXd projection = a * pseudo_inverse(knots, parameters).value();
-  // Entries below 1, a condition number below 10.
+  // The entries are below 1, and the condition number is below 10.
   EXPECT_LT((projection - projection.transpose()).cwiseAbs().maxCoeff(), 1e-14);
   EXPECT_LT((projection * projection - projection).cwiseAbs().maxCoeff(), 1e-14);
 }
@@ -213,8 +214,8 @@ TEST(SchoenbergWhitney, NamesTheControlPointInAPeriodicGap) {
       << status.error().message;
 }
 
-// The condition and the rank must tell the same story for random samplings: the wrapped condition is not
-// sufficient in a periodic direction, but necessary everywhere.
+// The condition and the rank must agree for random samplings: the condition applied periodically is not
+// sufficient in a periodic direction, but it is necessary in any direction.
 TEST(SchoenbergWhitney, AgreesWithTheRank) {
   Random random(5);
   int refused = 0;

@@ -15,7 +15,7 @@ double largest_difference(Random& random, const Surface& a, const Surface& b,
                           Direction along = Direction::u) {
   double largest = 0.0;
   for (int sample = 0; sample < 60; ++sample) {
-    // On the part of the domain that both have.
+    // The surfaces are compared on the part of the domain that both have.
     const KnotVector &ka = knots_along(a, along), &kb = knots_along(b, along);
     const double t = random.uniform(kb.domain_start(), kb.domain_end());
     const KnotVector& other = along == Direction::u ? b.v : b.u;
@@ -28,8 +28,8 @@ double largest_difference(Random& random, const Surface& a, const Surface& b,
   return largest;
 }
 
-// Coordinates are below 1 m. A dual functional of degree 9 has a norm of some thousands (de Boor 1990), and
-// knots that differ fivefold in distance add to it.
+// Coordinates are below 1 m. The dual functionals of degree 9 have norms of some thousands (de Boor 1990),
+// and knot intervals that differ fivefold increase the error further.
 constexpr double same_surface = 1e-11;
 
 Direction any_direction(Random& random) {
@@ -81,8 +81,8 @@ TEST(ChangeKnots, TakesPartsAlsoAcrossASeam) {
     ASSERT_TRUE(part.ok()) << part.error().message;
     const auto cut = convert_to_finer_knots(surface, along, part.value());
     ASSERT_TRUE(cut.ok()) << cut.error().message;
-    // A short part lies far from the control points it is made of only where it is a small piece of a long
-    // one: the blossoms then lie inside that piece.
+    // The tolerance holds for short parts too: where a part is a small piece of a long span, the blossoms
+    // that give its control points are evaluated within that span.
     EXPECT_LT(largest_difference(random, surface, cut.value(), along), same_surface);
   }
 }
@@ -129,7 +129,8 @@ TEST(ChangeKnots, TheDeviationOfACoarserSurfaceIsNeverPassed) {
     ASSERT_TRUE(coarse.ok()) << coarse.error().message;
     const double seen = largest_difference(random, surface, coarse->surface, along);
     EXPECT_LE(seen, coarse->deviation_m + 1e-12);
-    // And no wild guess: control points lie within a factor of the surface that grows with the degree.
+    // Even a coarse result is bounded: control points are within a factor of the surface's size that grows
+    // with the degree.
     EXPECT_LE(coarse->deviation_m, 1.0);
   }
 }
@@ -166,7 +167,7 @@ TEST(ChangeKnots, SpareKnotsGoAndOthersStay) {
 
 TEST(ChangeKnots, SpareKnotsOfUnclampedAndOfLongDirectionsGo) {
   Random random(40);
-  // A quartic's polynomial over many pieces, unclamped, and one bump that three of the pieces make.
+  // In an unclamped direction, the four pieces of one cubic polynomial become one piece.
   const auto unclamped =
       KnotVector::open(3, {-0.3, -0.2, -0.1, 0, 0.25, 0.5, 0.75, 1, 1.1, 1.2, 1.3}).value();
   const auto single = KnotVector::open(3, {-0.3, -0.2, -0.1, 0, 1, 1.1, 1.2, 1.3}).value();

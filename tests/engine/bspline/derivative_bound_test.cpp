@@ -27,7 +27,7 @@ TEST(DerivativeBound, HoldsEveryDerivative) {
   Random random(71);
   for (int repeat = 0; repeat < 500; ++repeat) {
     const Surface surface = random_surface(random);
-    // Rounding of a sum of ten terms, each up to the magnitude of the bound.
+    // The factor covers the rounding of a sum of ten terms, each up to the magnitude of the bound.
     constexpr double above_rounding = 1.0 + 1e-12;
     const double longest_u = longest_by_u(surface) * above_rounding;
     const double longest_v = longest_by_v(surface) * above_rounding;
@@ -42,13 +42,13 @@ TEST(DerivativeBound, HoldsEveryDerivative) {
   }
 }
 
-// At a clamped end the derivative is the first control point of the derivative itself.
+// At a clamped end the derivative is the first control point of the derivative curve.
 TEST(DerivativeBound, IsReachedAtAClampedEnd) {
   const KnotVector knots = KnotVector::open(3, {2, 2, 2, 2, 3, 5, 5, 5, 5}).value();
   const std::vector<double> x = {0, 6, 7, 8, 8}, zero(5, 0.0);
   const double longest =
       DerivativeBound(knots).longest(ControlLines<double>{x.data(), zero.data(), zero.data(), 1, 1, 5});
-  // 3 * 6 / (3 - 2), by a domain of length 3.
+  // 3 * 6 / (3 - 2), divided by the length 3 of the domain
   EXPECT_DOUBLE_EQ(longest, 54.0);
 }
 

@@ -66,7 +66,7 @@ TEST(GridEvaluator, AgreesWithSinglePoints) {
       for (int j = 0; j < grid.columns(); ++j) {
         const int k = i * grid.columns() + j;
         const Vector3 position = evaluate(surface, grid.u.parameters[i], grid.v.parameters[j]).position_m;
-        // Weighted means of coordinates below 1 m.
+        // Points are weighted means of coordinates below 1 m.
         EXPECT_LT((point_of(exact, k) - position).norm(), 1e-14);
         EXPECT_LT((point_of(single, k) - position).norm(), 1e-6);
         const Vector3 normal = unit_normal(surface, grid.u.parameters[i], grid.v.parameters[j]);
@@ -115,7 +115,8 @@ TEST(GridEvaluator, PointsAloneAreTheSameBits) {
   }
 }
 
-// A sheet squeezed until, in single precision, some of its normals are rounding noise and some just not.
+// Returns a sheet squeezed until some of its normals are only rounding noise in single precision and others
+// are just above it.
 Surface squeezed_sheet(Random& random) {
   Surface surface = random_surface(random);
   const double squeeze = std::pow(10.0, random.uniform(-8.0, 0.0)), away_m = random.uniform(0.0, 2.0);
@@ -137,8 +138,9 @@ std::vector<double> some_of(Random& random, const std::vector<double>& values, i
   return some;
 }
 
-// Two rows of seven samples have no room for a block: they go with full care, while most rows of the whole
-// grid are computed as surely regular ones. Four rows stay below the number of unit_normal() calls of a pass.
+// Two rows of seven samples are too small for block evaluation: each sample is checked individually, while
+// most rows of the whole grid are known to be regular. Four rows stay below the number of unit_normal() calls
+// of a pass.
 void expect_same_bits_in_parts(Random& random, const Surface& surface) {
   const Grid grid = random_grid(random, surface, 4, random.integer(7, 60));
   const Grid part = make_grid(surface.u, surface.v, some_of(random, grid.u.parameters, 2),
@@ -160,7 +162,7 @@ TEST(GridEvaluator, EveryPartOfAGridHasTheBitsOfTheWhole) {
   for (int repeat = 0; repeat < 300; ++repeat) expect_same_bits_in_parts(random, squeezed_sheet(random));
 }
 
-// Every sample of a parallelogram is as regular as the others, and passes into noise with them.
+// All samples of a parallelogram are equally regular and become noise together.
 TEST(GridEvaluator, APartOfANarrowParallelogramHasTheBitsOfTheWhole) {
   Random random(24);
   const KnotVector line = KnotVector::clamped_uniform(1, 2).value();
@@ -256,7 +258,7 @@ TEST(GridEvaluator, SamplesBesideAPoleAgreeWithSinglePoints) {
       const int k = i * grid.columns() + j;
       const Vector3 normal = unit_normal(tube, grid.u.parameters[i], v[j]);
       EXPECT_LT((normal_of(exact, k) - normal).norm(), 1e-7) << "v = " << v[j];
-      // In single precision the ring of samples at 1e-7 is no larger than its rounding.
+      // In single precision the ring of samples at 1e-7 is no larger than its rounding error.
       EXPECT_LT((normal_of(single, k) - normal).norm(), v[j] < 1e-3 ? 0.3 : 1e-3) << "v = " << v[j];
       EXPECT_NEAR(normal_of(single, k).norm(), 1.0, 1e-6);
     }
@@ -287,7 +289,8 @@ TEST(GridEvaluator, PointsAndLinesHaveNoNormals) {
   expect_no_normals<float>(line);
 }
 
-// A tube whose surface at v = 1/2 is a single point, and whose poles are as round as a refit leaves them.
+// Returns a tube whose surface at v = 1/2 is a single point, and whose poles are only as round as after a
+// refit.
 Surface pinched_tube() {
   Surface tube = ellipsoid_tube(12, 9);
   for (int j = 3; j < 6; ++j) {

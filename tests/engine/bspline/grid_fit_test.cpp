@@ -23,7 +23,7 @@ TEST(GridFit, GivesBackTheSurfaceThatWasSampled) {
     const PointGrid points = sample_grid_points(surface, twice_as_many(surface.u), twice_as_many(surface.v));
     const auto fit = fit_grid(surface.u, surface.v, points);
     ASSERT_TRUE(fit.ok()) << fit.error().message;
-    // At twice the control points the condition number stays below 20 for these degrees.
+    // With twice as many samples as control points, the condition number stays below 20 for these degrees.
     for (std::size_t k = 0; k < surface.net.size(); ++k) {
       EXPECT_NEAR(fit->net.y[k], surface.net.y[k], 1e-13);
     }

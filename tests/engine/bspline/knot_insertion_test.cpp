@@ -24,7 +24,7 @@ int count_of(const KnotVector& knots, double knot) {
   return static_cast<int>(std::count(knots.knots().begin(), knots.knots().end(), knot));
 }
 
-// Coordinates below 1 m; knot insertion only takes weighted means of them.
+// Coordinates are below 1 m, and knot insertion takes only weighted means of them.
 constexpr double insertion_rounding = 1e-14;
 
 TEST(KnotInsertion, KeepsTheSurface) {
@@ -55,7 +55,7 @@ TEST(KnotInsertion, RaisesExistingKnots) {
     const auto finer = insert_knot(surface, Direction::v, knot, surface.v.degree());
     ASSERT_TRUE(finer.ok()) << finer.error().message;
     EXPECT_LT(largest_distance(random, surface, finer.value()), insertion_rounding);
-    // A knot as multiple as the degree pins the surface to control points.
+    // At a knot whose multiplicity is the degree, the surface passes through control points.
     const BasisFunctions basis = basis_functions(finer->v, knot);
     EXPECT_NEAR(basis.values[0][0], 1.0, 1e-15);
     EXPECT_FALSE(insert_knot(surface, Direction::v, knot, surface.v.degree() + 1).ok());
@@ -74,7 +74,7 @@ TEST(KnotInsertion, DoesNothingWhereTheKnotIsMultipleEnough) {
 }
 
 TEST(KnotInsertion, AgreesWithBoehmOnACubicByHand) {
-  // One coordinate of a Bezier curve cut at 1/2: de Casteljau's points.
+  // One coordinate of a Bezier curve split at 1/2, which gives de Casteljau's points.
   const auto u = KnotVector::clamped_uniform(3, 4).value();
   const auto v = KnotVector::clamped_uniform(1, 2).value();
   ControlNet net(4, 2);

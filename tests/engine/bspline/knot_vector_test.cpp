@@ -10,7 +10,7 @@ namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-// `part` is empty where the code alone identifies the fault.
+// `part` must occur in the message; it is empty where the code alone identifies the fault.
 void expect_refused(const Result<KnotVector>& result, ErrorCode code, const std::string& part = "") {
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().code, code) << result.error().message;

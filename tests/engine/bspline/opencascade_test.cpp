@@ -1,4 +1,4 @@
-// OpenCASCADE as an independent oracle for values, derivatives and normals.
+// OpenCASCADE is an independent reference for values, derivatives and normals.
 #include <gtest/gtest.h>
 
 #include <Geom_BSplineSurface.hxx>
@@ -20,12 +20,12 @@ namespace {
 struct OcctDirection {
   TColStd_Array1OfReal knots;
   TColStd_Array1OfInteger multiplicities;
-  std::vector<int> controls;  // our control point for each of their poles
+  std::vector<int> controls;  // the index of our control point for each OpenCASCADE pole
   bool periodic;
 };
 
-// Their periodic evaluation goes astray when a pole reaches one sample from two periods. The extended knots,
-// taken as those of an open direction whose poles repeat, are the same surface.
+// OpenCASCADE evaluates a periodic surface wrongly if a pole reaches one sample from two periods. The same
+// surface is then given to it in an open direction, with the extended knots and repeated poles.
 bool needs_unrolling(const KnotVector& knots) {
   return knots.control_point_count() <= knots.degree();
 }
@@ -43,8 +43,8 @@ OcctDirection occt_direction(const KnotVector& knots) {
   }
   int first = 0, poles = static_cast<int>(all.size()) - knots.degree() - 1;
   if (periodic) {
-    // Their seam has its multiplicity at both ends, and their first pole is the first to reach the first
-    // span.
+    // OpenCASCADE stores the seam's multiplicity at both ends, and its first pole is the first that affects
+    // the first span.
     const int at_seam = result.multiplicities(1) + result.multiplicities(count) - 1;
     result.multiplicities(1) = result.multiplicities(count) = at_seam;
     first = knots.control_index(knots.find_span(knots.domain_start()), 0);
@@ -82,8 +82,8 @@ SurfacePoint occt_point(const Geom_BSplineSurface& surface, double u, double v) 
           vector(dvv)};
 }
 
-// The largest sum of the magnitudes of all basis derivatives: what a derivative's rounding error is relative
-// to.
+// Returns the largest sum of the magnitudes of all basis derivatives, to which a derivative's rounding error
+// is relative.
 double magnitude(const KnotVector& knots, double u, int derivative) {
   const BasisFunctions basis = basis_functions(knots, knots.into_domain(u));
   double sum = 0.0;
@@ -99,7 +99,7 @@ double net_size(const ControlNet& net) {
   return largest;
 }
 
-// How many times its own relative error a tangent's rounding error shows in the direction of the normal.
+// Returns the factor by which a tangent's relative rounding error grows in the direction of the normal.
 double normal_amplification(const Surface& surface, const SurfacePoint& point, double u, double v) {
   const double size = net_size(surface.net);
   const double error =
@@ -107,12 +107,13 @@ double normal_amplification(const Surface& surface, const SurfacePoint& point, d
   return error / point.du.cross(point.dv).norm();
 }
 
-// At the end of a period we take the derivatives of its start, they those from the left.
+// At the end of a period we use the derivatives at the period's start, OpenCASCADE those from the left.
 bool has_two_tangents(const KnotVector& knots, double u) {
   return knots.is_periodic() && u == knots.domain_end();
 }
 
-// Differences relative to the size of the net (positions) and to what the basis makes of it (derivatives).
+// The tolerances are relative to the size of the net (positions), or to that size times the magnitude of the
+// basis (derivatives).
 constexpr double double_tolerance = 1e-12, single_tolerance = 1e-5;
 
 void expect_same_point(const Surface& surface, const SurfacePoint& expected, double u, double v) {
@@ -155,8 +156,8 @@ void expect_same_grid(const Surface& surface, const Grid& grid, const Geom_BSpli
       const Vector3 position(samples.x[k], samples.y[k], samples.z[k]);
       EXPECT_LE((position - expected.position_m).norm(), tolerance * size);
       ++checked.samples;
-      // Where the tangents are nearly parallel or short, the normal is not well defined in this precision:
-      // the tolerance stands for this many times the rounding of a tangent.
+      // Where the tangents are nearly parallel or short, the normal is ill-defined in this precision: the
+      // tolerance is multiplied by the amplification of a tangent's rounding error.
       if (has_two_tangents(surface.u, u) || has_two_tangents(surface.v, v)) continue;
       if (!(normal_amplification(surface, expected, u, v) < 20.0)) continue;
       ++checked.normals;

@@ -8,8 +8,8 @@
 namespace spoonbill {
 namespace {
 
-// Polynomials of degree 5 at most, on pieces scaled to -1..1, against the recursion; derivatives of surfaces
-// of about 1 m grow as the pieces get short.
+// Compares polynomials of degree 5 at most, on pieces scaled to -1..1, with the recursion. Derivatives of
+// surfaces of about 1 m grow as the pieces get shorter.
 void expect_agreement(const Surface& surface, double u, double v) {
   const PieceBasis in_u(surface.u), in_v(surface.v);
   const PiecewiseSurface pieces{&surface, &in_u, &in_v};
@@ -34,7 +34,7 @@ TEST(PieceBasis, AgreesWithTheRecursion) {
     const Surface surface = random_surface(random, u, v);
     expect_agreement(surface, random.uniform(u.domain_start(), u.domain_end()),
                      random.uniform(v.domain_start(), v.domain_end()));
-    // At knots, at both ends and beyond the seam.
+    // The surfaces are compared at knots, at both ends and beyond the seam.
     for (const double knot : u.breakpoints()) expect_agreement(surface, knot, v.domain_end());
     expect_agreement(surface, u.domain_end(), v.domain_end() + 0.25 * (v.domain_end() - v.domain_start()));
   }

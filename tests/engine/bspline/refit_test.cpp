@@ -24,7 +24,7 @@ Grid usual_grid() {
   return grid_of(u, v, 20, 29);
 }
 
-// Rows of samples as the refit takes them, with numbers in the gaps that must not matter.
+// Returns rows of samples in the layout of the refit; the numbers in the gaps must have no effect.
 AlignedVector<float> with_gaps(const DisplacementRefit& refit, const std::vector<float>& samples) {
   AlignedVector<float> rows(static_cast<std::size_t>(refit.sample_rows() * refit.sample_stride()), 1e3f);
   for (int i = 0; i < refit.sample_rows(); ++i) {
@@ -73,7 +73,8 @@ TEST(DisplacementRefit, GivesBackTheDisplacementOfControlPoints) {
   refit.control_displacement(with_gaps(refit, displacement).data(), found.data());
   for (int i = 0; i < 10; ++i) {
     for (int j = 0; j < 13; ++j) {
-      // Single precision of displacements up to 1 mm, times the inverses' norms below 10.
+      // The tolerance is the single precision of displacements up to 1 mm, times the norms of the inverses,
+      // below 10.
       EXPECT_NEAR(found[i * 13 + j], controls(i, j), 1e-8);
     }
   }
@@ -138,7 +139,7 @@ TEST(DisplacementRefit, HeldColumnsNeverMoveAndKeptEndsFollowTheirSamples) {
   constraints.fixed_columns[4] = constraints.fixed_columns[5] = 1;
   constraints.keep_first = constraints.keep_last = true;
   auto refit = DisplacementRefit::make(grid, constraints, best_instruction_set()).value();
-  // Every sample of the first column moves alike, as at a pole.
+  // All samples of the first column have the same displacement, as at a pole.
   auto samples = random_numbers(random, 20 * 29, 0.01);
   for (int i = 0; i < 20; ++i) samples[i * 29] = 0.007f;
   std::vector<float> controls(10 * 13);
@@ -146,7 +147,7 @@ TEST(DisplacementRefit, HeldColumnsNeverMoveAndKeptEndsFollowTheirSamples) {
   for (int i = 0; i < 10; ++i) {
     EXPECT_EQ(controls[i * 13 + 4], 0.0f);
     EXPECT_EQ(controls[i * 13 + 5], 0.0f);
-    // A column of the periodic inverse sums to one but for its rounding.
+    // A column of the periodic inverse sums to one up to rounding.
     EXPECT_NEAR(controls[i * 13], 0.007f, 1e-8);
   }
 }

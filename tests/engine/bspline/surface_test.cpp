@@ -42,7 +42,7 @@ TEST(Surface, WrapsAndClampsParameters) {
   EXPECT_TRUE(evaluate(surface, nan, nan).position_m.allFinite());
 }
 
-// Four centre control points 3 high over a flat net.
+// Four central control points are raised by 3 above a flat net.
 TEST(Surface, SpikeHasItsHeight) {
   const auto knots = KnotVector::clamped_uniform(3, 8).value();
   ControlNet net(8, 8);
@@ -67,7 +67,8 @@ TEST(Surface, DerivativesMatchDifferences) {
     const SurfacePoint here = evaluate(surface, u, v);
     const SurfacePoint u0 = evaluate(surface, u - h, v), u1 = evaluate(surface, u + h, v);
     const SurfacePoint v0 = evaluate(surface, u, v - h), v1 = evaluate(surface, u, v + h);
-    // Central differences: rounding of derivatives up to about 1e3 over h, and third derivatives times h.
+    // The tolerance of central differences with step h covers the rounding of derivatives up to about 1e3,
+    // divided by h, and third derivatives times h.
     const double tolerance = 1e-3;
     EXPECT_LT((here.du - (u1.position_m - u0.position_m) / (2 * h)).norm(), tolerance);
     EXPECT_LT((here.dv - (v1.position_m - v0.position_m) / (2 * h)).norm(), tolerance);

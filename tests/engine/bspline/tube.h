@@ -1,16 +1,17 @@
-// Tubes as bodies are: periodic in u, clamped in v, ending in poles where a whole ring of control points
-// coincides.
+// Tubes in the form of bodies: periodic in u, clamped in v, with poles in which a whole ring of control
+// points coincides.
 #pragma once
 
 #include "engine/bspline/surface.h"
 
 namespace spoonbill {
 
-// Near an ellipsoid with half-axes 0.02, 0.01 and 0.05 m around `centre`, its poles at z = +-0.05. The
-// surface is smooth there: the rings beside the poles lie in the tangent plane. du x dv points outward.
+// Returns a surface near an ellipsoid with half-axes 0.02, 0.01 and 0.05 m around `centre`, with poles at z =
+// +-0.05. It is smooth at the poles, because the rings beside them are in the tangent plane. du x dv points
+// outward.
 Surface ellipsoid_tube(int around, int along, const Vector3& centre = Vector3::Zero());
 
-// The same surface with the directions exchanged: poles at the ends of u.
+// Exchanges the directions of the same surface: poles are then at the ends of u.
 Surface transposed(const Surface& surface);
 
 }  // namespace spoonbill

@@ -25,7 +25,7 @@ TEST(UnitNormal, IsTheProductOfTheTangents) {
     const double v = random.uniform(surface.v.domain_start(), surface.v.domain_end());
     const SurfacePoint point = evaluate(surface, u, v);
     const Vector3 expected = point.du.cross(point.dv).normalized();
-    // The angle that rounding leaves grows as the tangents near each other; these stay well apart.
+    // The normal's rounding error grows as the tangents become parallel; these are far from it.
     EXPECT_LT((unit_normal(surface, u, v) - expected).norm(), 1e-11);
   }
 }
@@ -39,14 +39,14 @@ TEST(UnitNormal, SmoothPolesHaveOneNormal) {
       const double t = (step + 0.2) / 33;
       const Vector3 start = poles_in_v ? unit_normal(surface, t, 0.0) : unit_normal(surface, 0.0, t);
       const Vector3 end = poles_in_v ? unit_normal(surface, t, 1.0) : unit_normal(surface, 1.0, t);
-      // Exact but for rounding: the ring beside the pole lies in one plane.
+      // The normal is exact up to rounding, because the ring beside the pole is in one plane.
       EXPECT_LT((start - Vector3(0, 0, -sign)).norm(), 1e-12) << start.transpose();
       EXPECT_LT((end - Vector3(0, 0, sign)).norm(), 1e-12) << end.transpose();
     }
   }
 }
 
-// Any net: the two normals differ by the curvature along a millionth of the domain.
+// For any net, the normals at the pole and beside it differ by the curvature along a millionth of the domain.
 void expect_limits(const Surface& surface, bool poles_in_v) {
   constexpr double inside = 1e-6, tolerance = 1e-4;
   for (int step = 0; step < 15; ++step) {
@@ -89,7 +89,7 @@ TEST(UnitNormal, RingsThatCoincideToSinglePrecisionArePoles) {
   }
   for (int step = 0; step < 20; ++step) {
     const double u = (step + 0.2) / 20;
-    // The jitter over the ring's size, a few times.
+    // The tolerance is a few times the jitter divided by the ring's size.
     EXPECT_LT(angle_between(unit_normal(tube, u, 0.0), Vector3(0, 0, -1)), 1e-5);
     EXPECT_LT(angle_between(unit_normal(tube, u, 1.0), Vector3(0, 0, 1)), 1e-5);
   }
@@ -128,7 +128,7 @@ TEST(UnitNormal, AnEdgeWithParallelTangentsHasTheNormalBesideIt) {
     net.set_point(i, 2, {i + 0.6, 1.0, 0.5 + 0.2 * i});
   }
   const Surface surface = make_surface(knots, knots, net).value();
-  // du = (2, 0, 0), dvv = (0, 2, 1.4): their product, and nothing of the neighbours' normals.
+  // du = (2, 0, 0) and dvv = (0, 2, 1.4): the normal is their product, regardless of the neighbours' normals.
   EXPECT_LT((unit_normal(surface, 0.5, 0.0) - Vector3(0, -1.4, 2).normalized()).norm(), 1e-12);
 }
 

@@ -1,4 +1,4 @@
-// What careless hands and failing disks do to the bytes of a file.
+// Damage to the bytes of a file, as by careless editing or a failing disk.
 #pragma once
 
 #include <cstddef>

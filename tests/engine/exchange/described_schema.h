@@ -56,7 +56,7 @@ inline void append(Json& list, Json item) {
   list.push_back(std::move(item));
 }
 
-// Adds what a field asks of the object that holds it.
+// Adds the requirements of a field to the schema of its object.
 inline void require(const FieldForm& form, Json& object) {
   if (form.partner != nullptr) {
     object["dependentRequired"][form.partner] = Json::array({form.name});
@@ -95,7 +95,7 @@ Json object_schema(const Object& object, const Json& first = Json::object()) {
   return json;
 }
 
-// One form for each value of the choice that is the struct's first field.
+// Returns one schema for each value of the choice that is the struct's first field.
 template <class Object>
 Json choice_schema() {
   const Field<Object>& choice = fields_of<Object>.front();

@@ -1,4 +1,4 @@
-// The schema of documents says of what the tables of fields describe what the tables say.
+// The document schema agrees with the tables of fields.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -19,7 +19,7 @@ std::string text_of(const std::string& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// What each action does, of the choice among them.
+// Returns the description of each action.
 std::string actions_text() {
   std::string text;
   for (const ToolActionRow& row : tool_actions) {
@@ -28,7 +28,7 @@ std::string actions_text() {
   return text;
 }
 
-// What the table says, and of the old definition the properties that no table describes.
+// Returns the schema from the table, plus the properties of the old definition that no table describes.
 Json tool_schema(const Json& old) {
   Json tool = object_schema(Tool{});
   Json& properties = tool["properties"];
@@ -73,7 +73,7 @@ Json rewritten_schema(Json schema) {
   return schema;
 }
 
-// With SPOONBILL_APPROVE=1 it is made so.
+// With SPOONBILL_APPROVE=1 the schema file is rewritten.
 TEST(DocumentSchema, SaysWhatTheTablesOfFieldsSay) {
   const auto schema = parse_json(text_of(schema_file), schema_file);
   ASSERT_TRUE(schema.ok()) << schema.error().message;

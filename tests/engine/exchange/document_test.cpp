@@ -17,7 +17,7 @@ Document through_text(const Document& document) {
   return read.value();
 }
 
-// What the message says of a sample document after `change`.
+// Returns the error message for a sample document after `change`.
 std::string refusal(const std::function<void(Json&)>& change) {
   Json json = document_to_json(sample_document());
   change(json);
@@ -73,7 +73,7 @@ TEST(Document, RefusesWhatIsNoThickness) {
     EXPECT_EQ(message.substr(0, 36), "sample.json: body.shell_thickness_mm") << thickness;
     EXPECT_EQ(message.find('\n'), std::string::npos);
   }
-  // Only a surface's body has one.
+  // Only a tool that is a surface has a shell thickness.
   EXPECT_NE(refusal([](Json& json) { json["tool"]["shell_thickness_mm"] = 2; }).find("shell_thickness_mm"),
             std::string::npos);
 }
@@ -111,13 +111,15 @@ TEST(Document, NamesUnknownAndMissingFields) {
       "sculpting, view");
 }
 
-// Takes away each field in turn, at every depth: none that is needed may be accepted, each is named.
+// Removes each field in turn, at every depth: a document without a required field is refused, and the message
+// names the field.
 TEST(Document, NamesEveryMissingField) {
   const Json flat = document_to_json(sample_document()).flatten();
   for (const auto& item : flat.items()) {
     const Json::json_pointer pointer(item.key());
     const std::string field = pointer.back();
-    if (field == "hardening" || field == "stiffening" || field == "friction") continue;  // 0 without
+    // Optional fields, 0 by default.
+    if (field == "hardening" || field == "stiffening" || field == "friction") continue;
     if (item.key().starts_with("/view") || field.find_first_not_of("0123456789") == std::string::npos) {
       continue;
     }
@@ -178,7 +180,7 @@ TEST(Document, RefusesWrongMaterialsWithTheRange) {
             "sample.json: body.material.youngs_modulus_pa is -200000.0, must be 1 to 1e+12");
   EXPECT_EQ(with("youngs_modulus_pa", "200 kPa"),
             "sample.json: body.material.youngs_modulus_pa is \"200 kPa\", must be a number");
-  EXPECT_EQ(with("youngs_modulus_pa", nullptr),  // as JSON writes what is no number
+  EXPECT_EQ(with("youngs_modulus_pa", nullptr),  // JSON writes a number that is not finite as null
             "sample.json: body.material.youngs_modulus_pa is null, must be a number");
   EXPECT_EQ(with("density_kg_per_m3", 0),
             "sample.json: body.material.density_kg_per_m3 is 0, must be 1 to 30000");

@@ -1,5 +1,5 @@
-// A virtual tension test of the handle that comes with the program: what its lattice makes of a material
-// where the body is a bar.
+// A virtual tension test of the bundled handle: the elastic constants that its lattice achieves where the
+// body is a bar.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double strain = 1e-5;
 
-// The middle half of the handle, which is straight along x; slices across it are planes.
+// Returns the central half of the handle, which is straight along x; its slices are planes.
 LatticeMesh middle_half(const LatticeMesh& whole) {
   const int last = whole.count[2] - 1, first_slice = last / 4, last_slice = last - last / 4;
   LatticeMesh part;
@@ -38,7 +38,7 @@ double slice_x_m(const LatticeMesh& mesh, int k) {
   return mesh.nodes[static_cast<std::size_t>(mesh.index(0, 0, k))].x();
 }
 
-// Both ends are held along x and slip across it.
+// Fixes both ends along x; they are free to slip across it.
 std::vector<FixedAxis> drawn_ends(const LatticeMesh& mesh) {
   std::vector<FixedAxis> held;
   const int last = mesh.count[2] - 1;
@@ -104,7 +104,7 @@ TEST(HandleElasticity, IsTheMaterialsAtAnyResolution) {
       RecordProperty("handle_youngs_" + count, std::to_string(ratio));
       RecordProperty("handle_poisson_" + count,
                      std::to_string(measured.poissons_ratio - handle.material.poissons_ratio));
-      // So few nodes make cells too slender for springs.
+      // With so few nodes the cells are too slender for springs.
       if (springs && budget < 2000) continue;
       EXPECT_NEAR(ratio, 1.0, 0.03) << budget;
       EXPECT_NEAR(measured.poissons_ratio, handle.material.poissons_ratio, 0.02) << budget;

@@ -1,4 +1,4 @@
-// A small document made in code: a closed tube with poles at both ends, so that tests need no file.
+// A small document made in code, so that tests need no file: a closed tube with poles at both ends.
 #pragma once
 
 #include <filesystem>
@@ -11,13 +11,13 @@ namespace spoonbill {
 // 6 x 8 control points, 40 mm long, lengths as a person would write them.
 Document sample_document();
 
-// The same with every length a random double, as a deformed body has them.
+// Returns the same document with every length a random double, as in a deformed body.
 Document deformed_document(unsigned seed);
 
-// Every bit of the scene, -0 and 0 told apart.
+// Compares every bit of the scene, and distinguishes -0 from 0.
 bool same_bits(const Document& a, const Document& b);
 
-// A folder of its own, removed with everything in it.
+// A temporary folder, removed with all its contents.
 class TemporaryFolder {
  public:
   TemporaryFolder();

@@ -12,7 +12,7 @@ Material elastic_material(double youngs_modulus_pa, double poissons_ratio, doubl
 SpringLattice block(const Vector3& size_m, std::array<int, 3> counts, const Material& material,
                     InstructionSet set = InstructionSet::baseline);
 
-// Forces of the present shape, ahead by `tau_s`, with springs linearised there.
+// Computes the forces of the shape as it will be `tau_s` ahead, with springs linearised there.
 void take_forces(SpringLattice& lattice, float tau_s);
 
 // One substep without any tool: forces, kick, drift.

@@ -7,7 +7,7 @@
 
 namespace spoonbill {
 
-// Of the first material but where `is_second` says so of the middle of a cell, m.
+// Returns the first material, except in cells for whose centre (m) `is_second` is true.
 LatticeMaterials composite(const LatticeMesh& mesh, const Material& first, const Material& second,
                            const std::function<bool(const Vector3&)>& is_second);
 

@@ -1,4 +1,4 @@
-// Which cells and nodes regions make of what.
+// The materials that regions give to cells and nodes.
 #include "engine/material/lattice_materials.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What tests measure on a starting shape, without the code that made it.
+// Measures of a stock shape that are independent of the code that made it.
 #pragma once
 
 #include <functional>
@@ -32,7 +32,8 @@ Evenness evenness(const Surface& surface);
 // u.
 double seam_jump(const Surface& surface);
 
-// Whether elements that are not joined meet: the finer levels take seconds on flat faces.
+// Returns true if elements that are not neighbours intersect. Uses coarse levels only: the finer ones take
+// seconds on flat faces.
 bool is_self_intersecting(const Surface& surface, bool closed);
 
 FittedShape fitted(const Result<ExactShape>& shape, const ShapeFit& fit = {});

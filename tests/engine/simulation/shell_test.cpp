@@ -164,7 +164,7 @@ TEST(Shell, OutlastsFastStrokes) {
   }
 }
 
-// Presses at the seam or half a turn from it.
+// The tool presses the ring at its seam, or half a turn from it; the ring must yield equally.
 TEST(Shell, RingGivesWayAtItsSeamAsElsewhere) {
   const auto pressed = [](double seam_turn) {
     Scene scene = clay_bowl();

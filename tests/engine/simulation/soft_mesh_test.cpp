@@ -278,7 +278,7 @@ TEST(SoftMesh, IsRefusedWhereItCannotBe) {
   expect(soft_tool(joined(ball(), ball_mesh(10, 16, 0.006, {0.004, 0.001, 0.002})), flesh(300)),
          ErrorCode::self_intersecting, "mesh");
   expect(soft_tool(ball(), flesh(300, 0.02)), ErrorCode::too_few, "grip");
-  // The corner of the box about a ball, where there is nothing of it.
+  // This corner of the box around a ball contains no part of the ball.
   SoftTool corner = flesh(1000);
   corner.grip = {Vector3::Constant(0.0055), -Vector3::Ones().normalized()};
   expect(soft_tool(ball(), corner), ErrorCode::too_few, "grip");

@@ -24,7 +24,7 @@ TEST(TrimLoop, APolygonIsKeptToTheBit) {
   const auto polygon = to_polygon(polygon_loop(open_u, open_v, points), open_u, open_v);
   ASSERT_EQ(polygon.size(), points.size());
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(polygon[i], points[i]);
-  // Of its side lengths, to rounding.
+  // The exact area is the product of the side lengths.
   EXPECT_NEAR(signed_area(polygon), 1.6 * 1.2, 1e-14);
   EXPECT_NEAR(signed_area(backwards(polygon)), -1.6 * 1.2, 1e-14);
 }

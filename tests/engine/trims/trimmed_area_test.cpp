@@ -19,7 +19,7 @@ TrimmedArea area_of(const KnotVector& u, const KnotVector& v, const std::vector<
   return std::move(area).value();
 }
 
-// Of a fine grid between the ends, and of the ends of open directions.
+// Returns the kept fraction of the points of a fine grid, including the ends of open directions.
 double counted_share(const TrimmedArea& area, const KnotVector& u, const KnotVector& v, int count) {
   int kept = 0;
   for (int i = 0; i < count; ++i) {
@@ -42,7 +42,7 @@ TEST(TrimmedArea, AnOuterLoopKeepsWhatIsInsideAndAHoleWhatIsOutside) {
   const TrimLoop outer = polygon_loop(open_u, open_v, rectangle(0.2, -0.8, 1.8, 0.8));
   const TrimLoop hole = polygon_loop(open_u, open_v, backwards(rectangle(0.5, -0.5, 1.0, 0.0)));
   const TrimLoop island = polygon_loop(open_u, open_v, rectangle(0.6, -0.4, 0.7, -0.3));
-  // Whatever the order of the loops.
+  // The order of the loops has no effect.
   for (const auto& loops : {std::vector{outer, hole, island}, std::vector{island, hole, outer}}) {
     const TrimmedArea area = area_of(open_u, open_v, loops);
     EXPECT_FALSE(area.contains(0.1, 0.0));

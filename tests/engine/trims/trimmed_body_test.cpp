@@ -1,4 +1,4 @@
-// Trimmed shells in a simulation: what is trimmed away is not felt, the rest is.
+// Trimmed shells in a simulation: the tool feels only the part that is kept.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -136,7 +136,7 @@ TEST(TrimmedBody, IsRefusedWithLoopsThatDoNotFit) {
 TEST(TrimmedBody, TrimsStayWhenKnotsAreAdded) {
   Vector3 middle;
   Simulation simulation = simulate(sheet_scene(true, &middle));
-  // Where there is something to follow.
+  // The hand first presses the sheet, so that the refinement has a deformation to follow.
   ToolInput hand;
   for (int tick = 0; tick < 100; ++tick) {
     hand.pose.position_m = middle + Vector3(0.018, tool_radius_m - 2e-5 * tick, 0.0);

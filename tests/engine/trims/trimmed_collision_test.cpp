@@ -50,7 +50,7 @@ std::shared_ptr<const TrimmedArea> shared_area_of(const Surface& surface,
   return std::make_shared<const TrimmedArea>(TrimmedArea::make(surface.u, surface.v, loops).value());
 }
 
-// Of a circle and the polygon on it.
+// Sagitta between a circle and the polygon on it.
 const double sagitta_m = bent_hole_radius_m * (1.0 - std::cos(std::numbers::pi / hole_corners));
 
 TEST(TrimmedCollision, ASphereMeetsTheSheetBesideAHoleAndTheRimAboveIt) {

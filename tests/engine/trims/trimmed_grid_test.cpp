@@ -35,7 +35,7 @@ struct Triangle {
   }
 };
 
-// Beside `near`, by whole periods.
+// Returns the point shifted by whole periods to be beside `near`.
 Eigen::Vector2d unrolled(Eigen::Vector2d point, const Grid& grid, const Eigen::Vector2d& near) {
   for (const auto& [axis, knots] : {std::pair{0, &grid.u.knots}, std::pair{1, &grid.v.knots}}) {
     const double period = knots->domain_end() - knots->domain_start();

@@ -1,4 +1,4 @@
-// The readers, each given bytes.
+// The readers, each of which is given bytes.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ void take_cad_stream(std::string_view bytes);
 void take_values(std::string_view bytes);
 void take_table(std::string_view bytes);
 
-// One line that says something.
+// Checks that the error's message is one line and not empty.
 void must_be_one_line(const Error& error);
 
 }  // namespace spoonbill

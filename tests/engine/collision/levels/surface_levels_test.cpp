@@ -8,8 +8,8 @@
 namespace spoonbill {
 namespace {
 
-// A flat sheet leaves its corners by nothing: its spheres are no larger than its corners need, and must hold
-// them to rounding.
+// A flat sheet does not bulge beyond its corners: its bounding spheres are no larger than the corners need,
+// and must contain them up to rounding.
 TEST(SurfaceLevels, SpheresOfFlatCellsEndAtTheirCorners) {
   const KnotVector knots = KnotVector::clamped_uniform(1, 4).value();
   ControlNet net(4, 4);
@@ -64,8 +64,8 @@ TEST(SurfaceLevels, BoxesOfElementsHoldThem) {
   }
 }
 
-// Thin triangles of one plane that fan out from a point, another between them: no way from middle to middle
-// tells them apart, nor along their normals.
+// Thin triangles of one plane that fan out from a point, with another triangle between them: neither the line
+// between centres nor the normals separate them.
 TEST(PatchDistance, TellsSliversApartThatLieSideBySide) {
   const auto sliver = [](double from, double low_slope, double high_slope) {
     const double to = from + 4.0;

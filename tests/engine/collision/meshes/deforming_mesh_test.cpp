@@ -15,7 +15,7 @@
 namespace spoonbill {
 namespace {
 
-// Bent, stretched and turned, without passing through itself.
+// Returns the mesh bent, stretched and turned, but not self-intersecting.
 TriangleMesh bent(TriangleMesh mesh, double much) {
   for (Vector3& vertex : mesh.vertices_m) {
     const Vector3 at = vertex;
@@ -29,7 +29,7 @@ std::vector<TriangleMesh> deforming_solids() {
           torus_mesh(24, 12, 0.8, 0.35)};
 }
 
-// Every second one where mistakes of sign hide: near a vertex, an edge or a face.
+// Every second point is where sign errors hide: near a vertex, an edge or a face.
 Vector3 point_near(Random& random, const TriangleMesh& mesh, int index) {
   if (index % 2 == 0) return random_point(random, 1.5);
   const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(
@@ -55,7 +55,7 @@ TEST(DeformingMesh, TellsTheNearestPointAndTheSideOfItAsBruteForceDoes) {
         const auto nearest = mesh.nearest(point, 10.0);
         ASSERT_TRUE(nearest);
         EXPECT_NEAR(std::abs(nearest->gap_m), distance, 1e-12);
-        // Three random rays tell the side unless the point is on the surface to rounding.
+        // Three random rays decide the side, unless the point is on the surface up to rounding.
         if (distance > 1e-9) {
           EXPECT_EQ(nearest->gap_m < 0.0, brute_inside(now, point, random)) << distance;
         }
@@ -76,7 +76,8 @@ TEST(DeformingMesh, KnowsTheWayOutWhereAPointLiesOnItsCorner) {
   const auto corner = mesh.nearest({1, 1, 1}, 1.0);
   ASSERT_TRUE(corner);
   EXPECT_EQ(corner->gap_m, 0.0);
-  // By angles, three right ones, and not by how a square is cut in two: along the diagonal.
+  // The corner's normal is weighted by angles, here three right angles, so that it is the diagonal however
+  // the squares are split into triangles.
   EXPECT_LT((corner->normal - Vector3(1, 1, 1).normalized()).norm(), 1e-7);
 }
 

@@ -16,7 +16,7 @@
 namespace spoonbill {
 namespace {
 
-// Every second point near the surface, where mistakes of sign hide.
+// Every second point is near the surface, where sign errors hide.
 Vector3 point_about(Random& random, const TriangleMesh& mesh, int index) {
   if (index % 2 == 0) return random_point(random, 1.8);
   const auto vertex = random.integer(0, static_cast<int>(mesh.vertices_m.size()) - 1);
@@ -32,7 +32,7 @@ TriangleMesh with_hole(const TriangleMesh& mesh) {
   return without(mesh, 40, 2);
 }
 
-// Two pyramids whose tips are one vertex.
+// Returns two pyramids whose tips are the same vertex.
 TriangleMesh hourglass() {
   TriangleMesh mesh;
   mesh.vertices_m = {{0, 0, 0}};
@@ -73,7 +73,7 @@ TEST(MeshDistance, AgreesWithAllTrianglesAndWithRays) {
       const Vector3 at = point_about(random, solid.mesh, k);
       const double expected = brute_distance(solid.mesh, at);
       const double found = distance.at(at).distance_m;
-      // Rounding of coordinates near 1.
+      // The tolerance covers the rounding of coordinates near 1.
       ASSERT_NEAR(std::abs(found), expected, 1e-13) << at.transpose();
       if (expected > 1e-9) {
         ASSERT_EQ(found < 0.0, brute_inside(solid.mesh, at, random)) << at.transpose();
@@ -108,13 +108,14 @@ std::vector<NamedMesh> everything() {
       {"overlapping balls", joined(ball_mesh(8, 12, 0.7, {0.4, 0, 0}), ball_mesh(8, 12, 0.7, {-0.4, 0, 0}))});
   all.push_back({"ball and sheet", joined(ball_mesh(8, 12, 0.4), sheet_mesh(4, 0.1))});
   TriangleMesh split = box_of_triangles({-0.8, -0.8, -0.8}, {0.8, 0.8, 0.8});
-  split.triangles.push_back({0, 1, 7});  // a wall across
+  split.triangles.push_back({0, 1, 7});  // a triangle across the inside
   split.triangles.push_back({0, 7, 6});
   all.push_back({"box with a wall", split});
   return all;
 }
 
-// Continuous and never steeper than 1, through every surface and hole, near and far.
+// The distance is continuous and never changes by more than the point moves, across every surface and hole,
+// near and far.
 TEST(MeshDistance, ChangesByNoMoreThanTheWayMoved) {
   for (const NamedMesh& shape : everything()) {
     SCOPED_TRACE(shape.name);
@@ -129,12 +130,12 @@ TEST(MeshDistance, ChangesByNoMoreThanTheWayMoved) {
   }
 }
 
-// Along the gradient by the distance lies the surface; that is what a gradient of a distance is.
+// The surface is one distance away along the gradient, by the definition of a distance's gradient.
 TEST(MeshDistance, TheGradientLeadsToTheSurface) {
   for (const NamedMesh& shape : everything()) {
     SCOPED_TRACE(shape.name);
     const CleanMesh clean = cleaned(shape.mesh);
-    // Inside a plate or where parts overlap the depth is no way out.
+    // In a plate, or where parts overlap, the depth is not the distance to the outside.
     const bool depth_is_distance =
         clean.report.sheets == 0 && shape.name.find("overlapping") == std::string::npos;
     const MeshDistance distance(clean, 0.04);
@@ -166,7 +167,8 @@ TEST(MeshDistance, AFilledHoleIsAsSolidAsTheRest) {
   Random random(6);
   for (int k = 0; k < random_point_count(500); ++k) {
     const Vector3 at = random_point(random, 1.2);
-    // A fan over one square of the ball lies within its bulge.
+    // The hole over one square of the ball is closed by a fan, which differs from the ball by less than its
+    // bulge.
     ASSERT_NEAR(holed.at(at).distance_m, whole.at(at).distance_m, 0.03);
   }
 }
@@ -175,13 +177,15 @@ TEST(MeshDistance, WhatOverlapsIsOneBody) {
   const MeshDistance balls(
       cleaned(joined(ball_mesh(40, 80, 0.7, {0.4, 0, 0}), ball_mesh(40, 80, 0.7, {-0.4, 0, 0}))));
   EXPECT_NEAR(balls.at({0.0, 0.0, 0.0}).distance_m, -0.3, 2e-3);
-  EXPECT_NEAR(balls.at({-0.3, 0.0, 0.0}).distance_m, -0.6, 2e-3);  // near the other's surface
+  EXPECT_NEAR(balls.at({-0.3, 0.0, 0.0}).distance_m, -0.6, 2e-3);  // near the surface of the other ball
   const MeshDistance spindle(cleaned(torus_mesh(60, 60, 0.4, 0.7)));
-  EXPECT_GT(spindle.at({0.0, 0.0, 0.0}).distance_m, 0.2);  // round which it goes once either way
+  // The surface winds around this point once in each orientation, which makes it outside.
+  EXPECT_GT(spindle.at({0.0, 0.0, 0.0}).distance_m, 0.2);
   EXPECT_LT(spindle.at({0.5, 0.0, 0.0}).distance_m, -0.1);
-  EXPECT_GT(spindle.at({0.0, 0.65, 0.0}).distance_m, 0.01);  // in its dimple
+  EXPECT_GT(spindle.at({0.0, 0.65, 0.0}).distance_m, 0.01);  // in the dimple of the spindle
   const MeshDistance crossing(cleaned(crossing_tube(60, 24)));
-  EXPECT_NEAR(crossing.at({0.0, 0.0, 0.0}).distance_m, -0.2, 0.01);  // in it twice
+  // The surface winds around this point twice.
+  EXPECT_NEAR(crossing.at({0.0, 0.0, 0.0}).distance_m, -0.2, 0.01);
   EXPECT_LT(crossing.at({1.0, 0.0, 0.0}).distance_m, -0.15);
   EXPECT_GT(crossing.at({0.6, 0.0, 0.0}).distance_m, 0.1);
 }
@@ -214,7 +218,7 @@ TEST(MeshDistance, KnowsWhatIsConvex) {
   for (int k = 0; k < random_point_count(1000); ++k) {
     const Vector3 a = point_about(random, ball, k), b = random_point(random, 1.5);
     const DistanceSample sample = distance.at(a);
-    // The ball's corners lie within rounding of their neighbours' planes.
+    // The ball's corners are in their neighbours' planes up to rounding.
     ASSERT_LE(sample.distance_m + sample.gradient.dot(b - a), distance.at(b).distance_m + 1e-12);
   }
 }

@@ -17,7 +17,7 @@ std::uint32_t number(int index) {
   return static_cast<std::uint32_t>(index);
 }
 
-// Both triangles of the square a b c d.
+// Adds both triangles of the square a b c d.
 void add_square(TriangleMesh& mesh, int a, int b, int c, int d) {
   mesh.triangles.push_back({number(a), number(b), number(c)});
   mesh.triangles.push_back({number(a), number(c), number(d)});
@@ -112,7 +112,8 @@ TriangleMesh moebius_strip(int along) {
     }
   }
   for (int i = 0; i + 1 < along; ++i) add_square(mesh, 2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1);
-  add_square(mesh, 2 * along - 2, 1, 0, 2 * along - 1);  // half a turn later
+  // The last section joins the first turned by half a turn.
+  add_square(mesh, 2 * along - 2, 1, 0, 2 * along - 1);
   return mesh;
 }
 

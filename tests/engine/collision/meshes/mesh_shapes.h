@@ -1,4 +1,4 @@
-// Meshes of known shape, and a slow, independent answer to how far a point is from one.
+// Meshes of known shape, and a slow, independent computation of a point's distance from a mesh.
 #pragma once
 
 #include "engine/collision/meshes/triangle_mesh.h"
@@ -7,31 +7,36 @@
 namespace spoonbill {
 
 TriangleMesh box_of_triangles(const Vector3& low, const Vector3& high);
-// Rings of latitude and poles on the y axis, corners on the sphere.
+// Returns a mesh of rings of latitude, with poles on the y axis and corners on the sphere.
 TriangleMesh ball_mesh(int rings, int around, double radius_m, const Vector3& centre_m = Vector3::Zero());
-// About the y axis. A tube thicker than its way round goes through itself.
+// Returns a torus about the y axis. If the tube is thicker than the torus' radius, the torus intersects
+// itself.
 TriangleMesh torus_mesh(int along, int around, double displacement_m, double tube_m);
-// Of side x side squares over the unit square in x and y, z = height x y.
+// Returns side x side squares over the unit square in x and y, with z = height x y.
 TriangleMesh sheet_mesh(int side, double height_m);
 TriangleMesh moebius_strip(int along);
-// 0.2 thick in radius, along a figure of eight in y = 0 that crosses itself in the origin.
+// Returns a tube, 0.2 in radius, along a figure of eight in the plane y = 0 that crosses itself at the
+// origin.
 TriangleMesh crossing_tube(int along, int around);
 
 TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
-TriangleMesh turned(TriangleMesh mesh);                         // inside out
-TriangleMesh soup(const TriangleMesh& mesh);                    // each triangle with vertices of its own
-TriangleMesh without(TriangleMesh mesh, int first, int count);  // of those triangles
+TriangleMesh turned(TriangleMesh mesh);       // Turns the mesh inside out.
+TriangleMesh soup(const TriangleMesh& mesh);  // Gives each triangle vertices of its own.
+// Removes `count` triangles from the index `first` on.
+TriangleMesh without(TriangleMesh mesh, int first, int count);
 
-// Cleans what must be clean enough.
+// Returns the cleaned mesh; fails the test if it cannot be cleaned.
 CleanMesh cleaned(const TriangleMesh& mesh);
 
-// Without sign, over all triangles: each one's plane where the foot lies in it, and its three sides.
+// Returns the unsigned distance by search over all triangles: the plane of each, if the foot is inside, and
+// its three sides.
 double brute_distance(const TriangleMesh& mesh, const Vector3& point);
-// By three rays in random directions: inside when most of them leave more often than they enter.
+// Casts three rays in random directions: the point is inside if most rays leave the mesh more often than they
+// enter it.
 bool brute_inside(const TriangleMesh& mesh, const Vector3& point, Random& random);
 
 Vector3 random_point(Random& random, double extent_m);
-// Fifty times as many where every case is asked for.
+// Returns `few`, or fifty times as many in a run of all cases.
 int random_point_count(int few);
 
 }  // namespace spoonbill

@@ -37,7 +37,8 @@ TEST(TriangleMesh, ASoupOfTrianglesBecomesABox) {
 TEST(TriangleMesh, VerticesAHairApartAreOne) {
   Random random(3);
   TriangleMesh mesh = soup(ball_mesh(12, 24, 0.02));
-  for (Vector3& vertex : mesh.vertices_m) vertex += random_point(random, 4e-9);  // the tolerance is 7e-8
+  // Moves less than the tolerance of 7e-8.
+  for (Vector3& vertex : mesh.vertices_m) vertex += random_point(random, 4e-9);
   const CleanMesh clean = cleaned(mesh);
   EXPECT_EQ(clean.mesh.vertices_m.size(), 11u * 24u + 2u);
   EXPECT_EQ(clean.report.closed_parts, 1u);
@@ -82,8 +83,8 @@ TEST(TriangleMesh, DegenerateAndRepeatedTrianglesAreDropped) {
   TriangleMesh mesh = box_of_triangles(low, high);
   mesh.vertices_m.emplace_back(0.5 * (mesh.vertices_m[0] + mesh.vertices_m[7]));
   mesh.triangles.push_back({0, 0, 1});
-  mesh.triangles.push_back({0, 8, 7});          // on a line
-  mesh.triangles.push_back(mesh.triangles[2]);  // again
+  mesh.triangles.push_back({0, 8, 7});          // three vertices on a line
+  mesh.triangles.push_back(mesh.triangles[2]);  // a triangle repeated
   mesh.triangles.push_back({mesh.triangles[3][1], mesh.triangles[3][0], mesh.triangles[3][2]});
   const CleanMesh clean = cleaned(mesh);
   EXPECT_EQ(clean.report.degenerate_dropped, 2u);
@@ -112,13 +113,14 @@ TEST(TriangleMesh, AMoebiusStripIsASheet) {
 TEST(TriangleMesh, SmallHolesAreFilledAndLargeOnesMakeASheet) {
   const TriangleMesh ball = ball_mesh(20, 40, 0.02);
   const CleanMesh whole = cleaned(ball);
-  // Two squares' triangles are no neighbours: two holes.
+  // The missing triangles are in two squares that are not neighbours, so they leave two holes.
   const CleanMesh holes = cleaned(without(without(ball, 101, 2), 11, 2));
   EXPECT_EQ(holes.report.holes_filled, 2u);
   EXPECT_EQ(holes.report.open_edges, 8u);
   EXPECT_EQ(holes.report.closed_parts, 1u);
   EXPECT_NEAR(volume(holes), volume(whole), 1e-3 * volume(whole));
-  EXPECT_EQ(holes.mesh.triangles.size(), ball.triangles.size() + 4u);  // 4 for 2, twice
+  // Each of the two holes lost 2 triangles and is filled by 4.
+  EXPECT_EQ(holes.mesh.triangles.size(), ball.triangles.size() + 4u);
 
   const CleanMesh half = cleaned(without(ball, 0, 760));
   EXPECT_EQ(half.report.sheets, 1u);
@@ -129,7 +131,7 @@ TEST(TriangleMesh, AFinOnASolidIsDropped) {
   TriangleMesh mesh = box_of_triangles({0, 0, 0}, {1, 1, 1});
   mesh.vertices_m.emplace_back(1.001, 1.001, 0.5);
   mesh.triangles.push_back({3, 7, 8});
-  mesh.triangles.push_back({7, 3, 8});  // its other side
+  mesh.triangles.push_back({7, 3, 8});  // the same triangle with the opposite orientation
   const CleanMesh clean = cleaned(mesh);
   EXPECT_EQ(clean.report.duplicates_dropped, 1u);
   EXPECT_EQ(clean.report.branching_edges, 1u);
@@ -139,10 +141,11 @@ TEST(TriangleMesh, AFinOnASolidIsDropped) {
   EXPECT_EQ(clean.mesh.vertices_m.size(), 8u);
 }
 
-// A box whose top is cut otherwise than its sides: the crack between has no area and needs no triangle.
+// The top of a box is divided differently from its sides: the crack between them has no area and needs no
+// triangle.
 TEST(TriangleMesh, ACrackWithoutAreaLeavesABoxClosed) {
   TriangleMesh mesh = box_of_triangles({0, 0, 0}, {1, 1, 1});
-  mesh.vertices_m.emplace_back(0.5, 1.0, 0.0);  // on the edge from 2 to 3
+  mesh.vertices_m.emplace_back(0.5, 1.0, 0.0);  // on the edge from vertex 2 to vertex 3
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const TriangleCorners corners = mesh.triangles[t];
     if (corners != TriangleCorners{2, 7, 3}) continue;
@@ -174,7 +177,7 @@ TEST(TriangleMesh, ACavityStaysOneAndASolidInASolidIsNone) {
   EXPECT_EQ(both.report.cavities, 0u);
   EXPECT_EQ(both.report.closed_parts, 2u);
 
-  // Beside each other, one of them inside out: that one is turned.
+  // Two boxes are beside each other, and one is inside out: that one is turned.
   const CleanMesh beside = cleaned(joined(turned(box_of_triangles({2, 0, 0}, {2.5, 0.5, 0.5})), outer));
   EXPECT_EQ(beside.report.cavities, 0u);
   EXPECT_EQ(beside.report.parts_flipped, 1u);

@@ -16,7 +16,7 @@ struct TriangleCase {
   Triangle triangle;
 };
 
-// Meets in every order of the corners, and in either order of the triangles.
+// Tests all orders of the corners and both orders of the triangles.
 bool meets(const Triangle& a, const Triangle& b, double slack = 0.0) {
   const bool answer = triangles_meet(a, b, slack);
   for (int turn = 0; turn < 3; ++turn) {
@@ -58,7 +58,7 @@ TEST(Triangles, MeetWithinTheirSlack) {
   EXPECT_FALSE(meets(base, above, 0.0099));
 }
 
-// A point of each is moved onto the other's.
+// A point of one triangle is moved onto a point of the other.
 TEST(Triangles, NoCommonPointIsMissed) {
   Random random(31);
   const auto point = [&] {

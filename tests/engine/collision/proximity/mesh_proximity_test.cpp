@@ -35,7 +35,7 @@ struct Foot {
   double distance_m, u, v;
 };
 
-// From the nearest of many samples, by ever finer ones about it.
+// A surface that finds the nearest point from the nearest of many samples, with ever finer samples around it.
 class BruteSurface {
  public:
   explicit BruteSurface(const Surface& surface) : surface_(surface) {
@@ -88,7 +88,7 @@ struct EllipsoidScene {
   NestedGrid nested = make_nested_grid(surface.u, surface.v, 1).value();
 };
 
-// A mesh somewhere on the surface of the ellipsoid, a little in it or a little before it.
+// Returns a mesh at a random point of the ellipsoid, slightly inside or outside of it.
 TriangleMesh placed_mesh(Random& random, int trial) {
   const TriangleMesh shapes[] = {box_of_triangles({-0.012, -0.007, -0.009}, {0.012, 0.007, 0.009}),
                                  ball_mesh(10, 14, 0.01), torus_mesh(18, 8, 0.012, 0.004)};
@@ -157,12 +157,13 @@ TEST(MeshProximity, FindsEveryVertexThatIsNear) {
       const Vector3 normal = unit_normal(scene.surface, u, v);
       const double gap =
           normal.dot(point - evaluate(scene.surface, u, v).position_m) < 0.0 ? -distance : distance;
-      // Beyond the margin inside, it may be told or not.
+      // A vertex may or may not be reported if its depth is near the margin.
       if (std::abs(gap - margin) < 1e-6 || gap < 1e-6 - margin) continue;
       ASSERT_EQ(told[vertex] != nullptr, gap < margin) << gap;
       if (!told[vertex]) continue;
       ++found;
-      // What brute force finds lies beside the foot by the root of what it misses of the distance.
+      // The distance between the brute-force point and the foot is of the order of the square root of the
+      // brute-force error in distance.
       EXPECT_NEAR(told[vertex]->gap_m, gap, 1e-9);
       EXPECT_LT((told[vertex]->normal - normal).norm(), 1e-3);
     }

@@ -1,4 +1,4 @@
-// A ring comes near itself over its seams as it does elsewhere.
+// A ring is as near to itself across its seams as elsewhere.
 #include "engine/collision/proximity/self_proximity.h"
 
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@ namespace {
 constexpr double torus_ring_m = 0.02, torus_tube_m = 0.005, cell_m = 0.002, proximity_margin_m = 0.5 * cell_m;
 constexpr int torus_around = 12, torus_along = 24;
 
-// A torus about y, u around its tube, v along it from a control point, of `torus_along`, on. `squeeze` is the
-// share of the middle line's width along x that is left.
+// A torus about y: u runs around its tube, v along it, starting at control point `first` of `torus_along`.
+// `squeeze` is the fraction to which the centre line's width along x is reduced.
 Surface torus(int first, double squeeze = 1.0) {
   ControlNet net(torus_around, torus_along);
   const auto turn = [](int index, int count) { return 2.0 * std::numbers::pi * index / count; };
@@ -65,7 +65,7 @@ TEST(RestPairs, OfARingAreNeighboursOverTheSeamAsElsewhere) {
   EXPECT_LT(meet, pairs_seen);
 }
 
-// Of each sample in contact, in order.
+// Returns the gaps of the samples in contact, in order.
 std::vector<double> gaps_m(int first, double squeeze) {
   const Surface rest = torus(first), now = torus(first, squeeze);
   const NestedGrid nested = nested_grid_of(rest);
@@ -89,7 +89,7 @@ TEST(SelfProximity, OfARingAtRestIsNone) {
   EXPECT_TRUE(proximity.is_clear());
 }
 
-// The walls of its hole: where the seam of v is, and where it is not.
+// The walls of the ring's hole are pressed together where the seam of v is, and where it is not.
 TEST(SelfProximity, OfARingPressedTogetherIsAlikeOverTheSeam) {
   for (const double gap_m : {0.4 * proximity_margin_m, -0.4 * proximity_margin_m}) {
     const double squeeze = (torus_tube_m + 0.5 * gap_m) / torus_ring_m;

@@ -37,7 +37,7 @@ TEST(BodyTree, PicksThePairsThatALookAtAllOfThemFinds) {
 }
 
 TEST(BodyTree, BoxesThatTouchAreNear) {
-  // A third and a tenth have no exact centre and sides.
+  // A third and a tenth are not exact in binary, so neither are the centre and the sides.
   const double edge = 0.1 + 1.0 / 3.0;
   const BodyTree tree({{{0, 0, 0}, {edge, 1, 1}}, {{edge, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {1, 1, 1}}});
   EXPECT_EQ(tree.near_pairs(), (std::vector<BodyPair>{{0, 1}, {1, 2}}));
@@ -58,7 +58,7 @@ TEST(BodyTree, TheNearestAreFoundAmongFewPairs) {
     return boxes[i].gap(others[j]);
   });
   EXPECT_EQ(found, least);
-  EXPECT_LT(looks, 400);  // of 40,000
+  EXPECT_LT(looks, 400);  // of 40,000 triangles
   EXPECT_EQ(BodyTree({}).find_nearest(BodyTree(others), [](std::size_t, std::size_t) { return 0.0; }),
             std::numeric_limits<double>::infinity());
 }

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double half_plate_m = 0.5 * sheet_thickness_m;
 
-// Exact distances of two triangles: where they do not cross, the nearest points are a corner and a face or
-// two sides.
+// Computes exact distances of two triangles: if they do not cross, the nearest points are on a corner and a
+// face, or on two sides.
 double segments_apart(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
   const Vector3 ab = b - a, cd = d - c;
   double least = 1e300;
@@ -71,7 +71,7 @@ double grown_of(const CleanMesh& mesh, std::size_t t) {
   return 0.0;
 }
 
-// Negative where plates overlap.
+// Returns a negative gap where plates overlap.
 double brute_gap(const CleanMesh& a, const CleanMesh& b) {
   double least = 1e300;
   for (std::size_t s = 0; s < a.mesh.triangles.size(); ++s) {
@@ -97,7 +97,7 @@ TriangleMesh closed_part(const CleanMesh& mesh) {
   return closed;
 }
 
-// How deep the deepest vertex of one is in what is closed of the other; 0 where none is inside.
+// Returns the depth of the deepest vertex of `of` in the closed part of `in`; 0 if no vertex is inside.
 double brute_depth(const CleanMesh& of, const CleanMesh& in, Random& random) {
   const TriangleMesh closed = closed_part(in);
   if (closed.triangles.empty()) return 0.0;
@@ -122,7 +122,8 @@ TriangleMesh scaled(TriangleMesh mesh, double scale) {
   return mesh;
 }
 
-// About a metre; solids, a shell around a hollow, an open sheet, and a solid beside a sheet.
+// Returns a shape of about a metre: a solid, a shell around a hollow, an open sheet, or a solid beside a
+// sheet.
 TriangleMesh random_shape(Random& random) {
   switch (random.integer(0, 5)) {
     case 0:
@@ -163,11 +164,12 @@ void expect_sound(const MeshPairResult& result, const CleanMesh& first, const Cl
     EXPECT_LE(contact.depth_m, last);
     last = contact.depth_m;
     EXPECT_NEAR(contact.normal.norm(), 1.0, 1e-9);
-    // What is wholly inside must go farther than to the other's surface.
+    // A mesh that is completely inside the other must move further than to the other's surface.
     const Vector3 apart = contact.second_m - contact.first_m;
     EXPECT_LT(apart.cross(contact.normal).norm(), 2e-6);
     EXPECT_LT(apart.dot(contact.normal), contact.depth_m + 2e-6);
-    // One of the points is on the other mesh's surface, the other where this one is deepest.
+    // One of the two points is on the other mesh's surface; the other point is the deepest point of this
+    // mesh.
     EXPECT_LT(
         std::min(brute_distance(first.mesh, contact.first_m), brute_distance(second.mesh, contact.second_m)),
         half_plate_m + 1e-9);
@@ -212,7 +214,7 @@ TEST(MeshPair, SmallTrianglesAreNotForgotten) {
   for (const double scale : {1.0, 1e-3, 1e-5}) {
     SCOPED_TRACE(scale);
     const CleanMesh plane = cleaned(scaled(box_of_triangles({-1, -1, -1}, {1, 0, 1}), scale));
-    // A corner downward, over the inside of a triangle.
+    // A corner points down onto the inside of a triangle.
     const CleanMesh tip = cleaned(scaled(ball_mesh(6, 9, 0.5), scale));
     const MeshPairResult result = collide_meshes(plane, tip, at(0.3 * scale, 0.8 * scale, 0.1 * scale));
     EXPECT_FALSE(result.touching);
@@ -238,13 +240,13 @@ TEST(MeshPair, CubesAreAsDeepAsTheirFacesOverlap) {
   EXPECT_NEAR(collide_meshes(cube, cube, at(1.25, 0.1, 0.2)).distance_m, 0.25, 1e-12);
   EXPECT_NEAR(collide_meshes(cube, cube, at(1.3, 1.4, 0.0)).distance_m, 0.5, 1e-12);
 
-  // The diagonals of the faces are where the faces are deepest.
+  // The deepest points of the faces are on their diagonals.
   const MeshPairResult deep = collide_meshes(cube, cube, at(0.9, 0.05, 0.05));
   ASSERT_EQ(deep.contacts.size(), 1U);
   EXPECT_NEAR(deep.contacts[0].depth_m, 0.1, 1e-9);
   EXPECT_NEAR(deep.contacts[0].normal.x(), -1.0, 1e-9);
 
-  // Edge over edge, turned so that no corner is inside: both edges at x = 0.5 sqrt 2 cross.
+  // Two edges at x = 0.5 sqrt 2 cross; the cubes are turned so that no corner is inside the other.
   const double reach = std::sqrt(0.5);
   Pose edge = at(2.0 * reach - 0.02, 0.0, 0.0);
   const Quaternion upright(Eigen::AngleAxisd(M_PI / 4.0, Vector3::UnitZ()));
@@ -254,14 +256,15 @@ TEST(MeshPair, CubesAreAsDeepAsTheirFacesOverlap) {
   edge.orientation = lying;
   const MeshPairResult crossing = collide_meshes(one, cube, edge);
   ASSERT_EQ(crossing.contacts.size(), 1U);
-  // An edge 0.02 behind the other is that times cos 45 degrees behind either of its faces.
+  // An edge 0.02 behind the other is 0.02 cos 45 degrees behind either of the other's faces.
   EXPECT_NEAR(crossing.contacts[0].depth_m, 0.02 * std::sqrt(0.5), 1e-9);
 }
 
 TEST(MeshPair, ABarThroughABallIsFoundByItsEdges) {
   const CleanMesh ball = cleaned(ball_mesh(40, 80, 0.5));
   const CleanMesh bar = cleaned(box_of_triangles({-2.0, 0.3, -0.01}, {2.0, 1.3, 0.01}));
-  // No corner of the bar is inside, and of the ball those that are within the bar are no deeper than it.
+  // No corner of the bar is inside the ball, and the corners of the ball inside the bar are no deeper than
+  // the bar's own edge.
   const MeshPairResult result = collide_meshes(bar, ball, Pose());
   ASSERT_EQ(result.contacts.size(), 1U);
   const double flatter = 0.5 * (1.0 - std::cos(3.15 / 40));
@@ -288,7 +291,7 @@ TEST(MeshPair, OneInsideTheOtherLeavesThroughTheNearestWall) {
   EXPECT_TRUE(inside.contained);
   ASSERT_EQ(inside.contacts.size(), 1U);
   EXPECT_NEAR(inside.contacts[0].depth_m, 0.1 + 0.6, 1e-12);
-  EXPECT_NEAR(inside.contacts[0].normal.z(), 1.0, 1e-12);  // the room moves up
+  EXPECT_NEAR(inside.contacts[0].normal.z(), 1.0, 1e-12);  // the room around the body moves up
 
   CleanMesh there = posed(small, pose);
   const MeshPairResult around = collide_meshes(there, room, Pose());
@@ -296,14 +299,14 @@ TEST(MeshPair, OneInsideTheOtherLeavesThroughTheNearestWall) {
   EXPECT_NEAR(around.contacts[0].depth_m, 0.7, 1e-12);
   EXPECT_NEAR(around.contacts[0].normal.z(), -1.0, 1e-12);
 
-  // In a hollow it is outside.
+  // A body inside a hollow is outside the solid.
   const CleanMesh hollow = cleaned(
       joined(box_of_triangles({-2, -2, -2}, {2, 2, 2}), turned(box_of_triangles({-1, -1, -1}, {1, 1, 1}))));
   const MeshPairResult free = collide_meshes(hollow, small, pose);
   EXPECT_FALSE(free.touching);
   EXPECT_NEAR(free.distance_m, 0.1, 1e-12);
 
-  // One part inside, another outside and nearer to the wall.
+  // One part is inside the box, and another is outside and nearer to the wall.
   const CleanMesh two = cleaned(joined(box_of_triangles({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}),
                                        box_of_triangles({1.01, 0.0, 0.0}, {1.2, 0.1, 0.1})));
   const MeshPairResult half = collide_meshes(room, two, Pose());
@@ -321,7 +324,7 @@ TEST(MeshPair, SheetsArePlates) {
 
   const CleanMesh ball = cleaned(ball_mesh(40, 80, 0.02));
   Pose over = at(0.05, 0.05, 0.0202);
-  over.orientation = Quaternion(Eigen::AngleAxisd(M_PI / 2.0, Vector3::UnitX()));  // a pole downward
+  over.orientation = Quaternion(Eigen::AngleAxisd(M_PI / 2.0, Vector3::UnitX()));  // turns a pole downwards
   const MeshPairResult resting = collide_meshes(sheet, ball, over);
   ASSERT_EQ(resting.contacts.size(), 1U);
   EXPECT_NEAR(resting.contacts[0].depth_m, 0.3e-3, 1e-9);
@@ -329,7 +332,7 @@ TEST(MeshPair, SheetsArePlates) {
 }
 
 TEST(MeshPair, EachRegionIsAContact) {
-  // A fork of two tines on a block.
+  // The shape is a fork: two tines on a block.
   const CleanMesh tines = cleaned(joined(box_of_triangles({0.0, -0.01, 0.0}, {0.01, 0.1, 0.01}),
                                          box_of_triangles({0.05, -0.02, 0.0}, {0.06, 0.1, 0.01})));
   const CleanMesh block = cleaned(box_of_triangles({-1, -1, -1}, {1, 0, 1}));

@@ -10,12 +10,13 @@ namespace {
 
 constexpr int sample_count = 4000;
 constexpr double unit_tolerance = 1e-6;
-// Of the way between two samples, and of the box's size for rounding.
+// growth_tolerance is relative to the distance between two samples, rounding to the box's size.
 constexpr double growth_tolerance = 1e-6, rounding = 1e-11;
-constexpr double difference_step = 1e-6;  // of the box's size
+constexpr double difference_step = 1e-6;  // relative to the box's size
 constexpr double difference_tolerance = 1e-3, most_misfits = 0.02;
 
-// The fractions of k in three bases (Halton 1960): even, and the same on every machine.
+// Returns the digits of k in three bases, mirrored (Halton 1960): evenly distributed, and the same on every
+// machine.
 Vector3 spread(int k) {
   Vector3 result;
   const int bases[3] = {2, 3, 5};
@@ -106,7 +107,7 @@ Status check_signed_distance(const SignedDistance& solid, const Box& where) {
     const Vector3 here = point(k), other = point(sample_count + 1 - k);
     const DistanceSample sample = solid.at(here);
     if (Status status = check_alone(solid, here, sample); !status) return status;
-    // Far, at hand and close.
+    // Pairs of samples are far, near and very near.
     for (const double share : {1.0, 0.05, 0.001}) {
       const Vector3 there = here + share * (other - here);
       if (Status status = check_both(solid, here, sample, there, size); !status) return status;

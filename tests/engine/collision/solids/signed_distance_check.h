@@ -1,4 +1,4 @@
-// Whether a signed distance keeps what signed_distance.h promises, as far as samples can tell.
+// Checks by samples that a signed distance satisfies the conditions of signed_distance.h.
 #pragma once
 
 #include "engine/base/result.h"
@@ -6,12 +6,12 @@
 
 namespace spoonbill {
 
-// Samples `where`, which should reach around the solid, in the solid's own frame; the same samples every
-// time. Refused, by the first that fails: a distance or gradient that is not finite, a gradient that is not
-// of unit length, a distance that changes by more than the way moved, a point inside the solid but outside
-// its bounds, a solid that says it is convex and has a tangent above its distance (or one that fails its
-// stated concavity), and a gradient that does not fit the distance's differences in more than a fiftieth of
-// the samples: the few are its kinks. Not for the tick.
+// Samples the box `where` in the solid's own frame; it should enclose the solid. The samples are the same
+// each time. Returns an Error for the first condition that fails: the distance and gradient are finite; the
+// gradient has unit length; the distance changes by no more than the point moves; inside points are within
+// the bounds; a solid that claims to be convex has no tangent above its distance (or satisfies its stated
+// concavity); and the gradient fits differences of the distance in all but a fiftieth of the samples, because
+// distances have kinks. Not for the tick.
 Status check_signed_distance(const SignedDistance& solid, const Box& where);
 
 }  // namespace spoonbill

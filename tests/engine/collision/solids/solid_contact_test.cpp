@@ -1,4 +1,4 @@
-// Contact of solids with surfaces where both have a closed form.
+// Contact of solids with surfaces that have a closed form.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,7 +59,8 @@ TEST(SolidContact, SphereOnAPlane) {
   expect_contact({flat(), SphereShape{0.02}, {{0.013, 0.023, 0.021}, {}}}, -0.003, Vector3::UnitY());
 }
 
-// The nearest point of y = b r^2 to (0, c): the lowest one while c < 1 / (2 b), then a ring.
+// The nearest point of y = b r^2 to (0, c) is the lowest one while c < 1 / (2 b); beyond, the nearest points
+// form a ring.
 TEST(SolidContact, SphereInABowl) {
   const double bend = 20.0;
   const Surface bowl = quadric_sheet(0.08, bend, bend, 14);
@@ -94,8 +95,8 @@ TEST(SolidContact, CylinderAcrossACylinder) {
   }
 }
 
-// Two rings linked, one shifted until the tubes nearly touch on one side: every point of the tool's ring is
-// its own radius from the other's but for the shift.
+// Two linked rings, one shifted until the tubes nearly touch on one side. Before the shift, every point of
+// the tool's ring is equally far from the other ring.
 TEST(SolidContact, TorusLinkedWithATorus) {
   const Surface ring = round_torus(0.06, 0.01);
   const Quaternion upright = about(Vector3::UnitX(), right);
@@ -106,7 +107,7 @@ TEST(SolidContact, TorusLinkedWithATorus) {
   }
 }
 
-// The depth is that of the surface in the tool: under an edge, by the nearer face.
+// The depth is that of the surface in the tool: under an edge, it is measured to the nearer face.
 TEST(SolidContact, BoxOnAPlaneByFaceEdgeAndCorner) {
   const Vector3 half(0.02, 0.03, 0.025);
   const double depth = 0.002;
@@ -117,7 +118,7 @@ TEST(SolidContact, BoxOnAPlaneByFaceEdgeAndCorner) {
   box(Quaternion::Identity(), 0.03, depth);
   box(about(Vector3::UnitY(), 0.3), 0.03, depth);
   for (const double tilt : {0.25 * std::numbers::pi, 0.5}) {
-    // Below the edge, the point that is as far from both faces.
+    // The deepest point, below the edge, is equally far from both faces.
     const double lowest = half.y() * std::cos(tilt) + half.x() * std::sin(tilt);
     const double width = depth * (1.0 / std::tan(tilt) + std::tan(tilt));
     const double expected = width * std::sin(tilt) * std::cos(tilt) / (std::sin(tilt) + std::cos(tilt));
@@ -128,7 +129,7 @@ TEST(SolidContact, BoxOnAPlaneByFaceEdgeAndCorner) {
   box(corner, half.sum() / std::sqrt(3.0), depth / std::sqrt(3.0));
 }
 
-// An edge across a ridge: the surface falls away along the edge and to both sides.
+// An edge lies across a ridge: the surface falls away along the edge and to both sides.
 TEST(SolidContact, BoxEdgeOnADome) {
   const double depth = 0.002;
   const Surface dome = quadric_sheet(0.1, -3.0, -5.0, 12);
@@ -157,7 +158,7 @@ TEST(SolidContact, HalfSpaceOnADome) {
                  0.004, Vector3::UnitY());
 }
 
-// Above a plane, any convex solid is as high as its support says.
+// A convex solid's height above a plane is given by its support function.
 TEST(SolidContact, ConvexSolidsAboveAPlaneAreAsHighAsTheirSupport) {
   Random random(41);
   const Surface sheet = quadric_sheet(0.5, 0.0, 0.0, 12);

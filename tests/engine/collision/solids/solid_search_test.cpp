@@ -1,4 +1,4 @@
-// Contact of random surfaces with random solids against dense sampling, and what is easily missed.
+// Contact of random surfaces and solids compared with dense sampling, and cases that a search easily misses.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@
 namespace spoonbill {
 namespace {
 
-// The point of least distance of dense samples, refined around the best of them.
+// Returns the point of least distance among dense samples, refined around the best sample.
 Vector3 dense_nearest(const Surface& surface, const ToolShape& tool, int count) {
   double best = 1e300, best_u = 0.0, best_v = 0.0;
   double step_u = (surface.u.domain_end() - surface.u.domain_start()) / count;
@@ -50,7 +50,7 @@ KnotVector random_knots_to_degree_5(Random& random) {
   return random_knots(random, degree, kinds[random.integer(0, 2)]);
 }
 
-// A pose that brings a random point of the surface near or into the solid.
+// Returns a pose that brings a random point of the surface near or into the solid.
 Pose pose_near_contact(Random& random, const Surface& surface, const Box& bounds) {
   const double u = random.uniform(surface.u.domain_start(), surface.u.domain_end());
   const double v = random.uniform(surface.v.domain_start(), surface.v.domain_end());
@@ -77,8 +77,8 @@ TEST(SolidSearch, AgreesWithDenseSampling) {
     const Pose pose = pose_near_contact(random, surface, solid->bounds());
     const ToolShape tool = ToolShape::solid(*solid, pose);
     const CollisionResult result = collider.collide(surface, tool, 0.0, false);
-    // A superquadric takes a hundred times as long as the others, and can say that it is deeper than it is:
-    // then what counts is the distance that follows from its support.
+    // A superquadric takes a hundred times as long as the other shapes and may overstate its depth: its
+    // distance is found from its support function instead.
     const Vector3 at = dense_nearest(surface, tool, kind == 6 ? 30 : 120);
     double reference = tool.distance(at);
     if (kind == 6 && reference < std::min(-result.nearest.depth_m, 0.0) - 1e-6) {
@@ -99,7 +99,7 @@ TEST(SolidSearch, AgreesWithDenseSampling) {
   EXPECT_LT(touching, trials);
 }
 
-// What only keeps the promise of changing by no more than the way.
+// A distance that guarantees only that it changes by no more than the point moves.
 class BareTorus final : public SignedDistance {
  public:
   DistanceSample at(const Vector3& point_m) const override { return torus_->at(point_m); }
@@ -128,7 +128,7 @@ TEST(SolidSearch, ASolidOfWhichLittleIsKnownIsFoundToItsWiderTolerance) {
   }
 }
 
-// Needles thinner than any cell, through the sheet and just over it.
+// Needles thinner than any cell pass through the sheet or just above it.
 TEST(SolidSearch, ANeedleBetweenSamplesIsFound) {
   Random random(53);
   const auto needle = make_signed_distance(CapsuleShape{1e-4, 0.05});
@@ -171,7 +171,8 @@ TEST(SolidSearch, AToolFarLargerThanTheModelIsFound) {
           .found);
 }
 
-// Wholly inside, touching nothing: the way out through the nearest wall, along its normal.
+// The tool is completely inside and touches nothing: the result is the displacement through the nearest wall,
+// along its normal.
 TEST(SolidSearch, AToolWhollyInsideIsFoundWithItsWayOut) {
   const Surface tube = round_tube(0.02, 0.06);
   const ImplicitShape shapes[] = {
@@ -186,7 +187,7 @@ TEST(SolidSearch, AToolWhollyInsideIsFoundWithItsWayOut) {
       const CollisionResult result = search(tube, shape, pose, true);
       ASSERT_TRUE(result.found) << shape.index();
       const SurfaceContact& wall = result.nearest;
-      // Behind the wall's plane the solid reaches as far as its support says.
+      // The support function gives how far the solid reaches behind the wall's plane.
       const double behind =
           wall.normal.dot(wall.point_m - pose.position_m) + support(shape, turn.conjugate() * -wall.normal);
       EXPECT_NEAR(wall.depth_m, behind, 2e-7) << shape.index();
@@ -199,7 +200,7 @@ TEST(SolidSearch, AToolWhollyInsideIsFoundWithItsWayOut) {
 TEST(SolidSearch, TouchingAnEdgeAPoleOrByATangentIsFound) {
   const Surface sheet = quadric_sheet(0.1, 0.0, 0.0, 8);
   const Quaternion none = Quaternion::Identity();
-  // Over the sheet's edge and its corner.
+  // The tool is beyond the sheet's edge, then beyond its corner.
   const CollisionResult edge =
       search(sheet, CapsuleShape{0.01, 0.02}, {{0.1 + 0.0099, 0.0, 0.03}, none}, false);
   ASSERT_TRUE(edge.found);
@@ -208,10 +209,10 @@ TEST(SolidSearch, TouchingAnEdgeAPoleOrByATangentIsFound) {
       search(sheet, SphereShape{0.01}, {{0.1 + 0.0069, 0.0, 0.1 + 0.0069}, none}, false);
   ASSERT_TRUE(corner.found);
   EXPECT_NEAR(corner.nearest.depth_m, 0.01 - 0.0069 * std::sqrt(2.0), 1e-9);
-  // A pole, where all of u is one point.
+  // The tool is beyond a pole, where all values of u are one point.
   for (const bool turned : {false, true}) {
     const Surface tube = ellipsoid_tube(12, 12), body = turned ? transposed(tube) : tube;
-    // With its directions exchanged, its normals point inwards.
+    // The surface with exchanged directions has normals that point inwards.
     const CollisionResult pole =
         search(body, BoxShape{Vector3::Constant(0.01)}, {{0.0, 0.0, 0.05 + 0.0095}, none}, !turned);
     ASSERT_TRUE(pole.found);
@@ -223,7 +224,7 @@ TEST(SolidSearch, TouchingAnEdgeAPoleOrByATangentIsFound) {
     EXPECT_NEAR(at.tangent_u.dot(at.normal), 0.0, 1e-9);
     EXPECT_NEAR(at.tangent_u.dot(at.tangent_v), 0.0, 1e-9);
   }
-  // Tangent, a hair in and a hair out.
+  // The solid is almost tangent, slightly inside or slightly outside.
   for (const double gap : {-2e-6, 3e-6}) {
     EXPECT_EQ(search(sheet, CylinderShape{0.01, 0.02}, {{0.0, 0.02 + gap, 0.0}, none}, false).found,
               gap < 0.0);

@@ -12,8 +12,8 @@
 namespace spoonbill {
 namespace {
 
-// A flat clamped cubic sheet over the unit square with 8 x 8 control points, the four in its centre raised to
-// z = 3.
+// Returns a flat clamped cubic sheet over the unit square with 8 x 8 control points, of which the central
+// four are raised to z = 3.
 Surface spike() {
   const KnotVector knots = KnotVector::clamped_uniform(3, 8).value();
   ControlNet net(8, 8);
@@ -27,8 +27,7 @@ Surface spike() {
   return make_surface(knots, knots, net).value();
 }
 
-// The cover of the whole sheet from one cell: no inner breakpoint counts, so the bound is taken over all
-// elements.
+// One cell covers the whole sheet: it ignores the inner breakpoints, so the bound is taken over all elements.
 TEST(SurfaceBounds, ASpikeEscapesTheSphereOfItsCornersButNotTheBoundedOne) {
   const Surface surface = spike();
   const Vector3 peak = evaluate(surface, 0.5, 0.5).position_m;
@@ -78,7 +77,7 @@ TEST(SurfaceCollider, SpheresCoverTheirPatches) {
   }
 }
 
-// The least distance of dense samples, refined around the best of them.
+// Returns the least distance of dense samples, refined around the best sample.
 double dense_distance(const Surface& surface, const ToolShape& tool) {
   constexpr int count = 160;
   double best = 1e300, best_u = 0.0, best_v = 0.0;
@@ -105,8 +104,8 @@ double dense_distance(const Surface& surface, const ToolShape& tool) {
   return best;
 }
 
-// Random surfaces of every kind against spheres, points and planes near them: the answer is never worse than
-// dense sampling's, and its point lies on the surface.
+// Random surfaces of every kind against spheres, points and planes near them: the distance is never worse
+// than by dense sampling, and the point found is on the surface.
 TEST(SurfaceCollider, AgreesWithDenseSampling) {
   const int trials = random_cases(150, 4000);
   Random random(5);
@@ -122,7 +121,7 @@ TEST(SurfaceCollider, AgreesWithDenseSampling) {
                                             : ToolShape::sphere(at, 0.0);
     const double reference = dense_distance(surface, tool);
     const CollisionResult result = collider.collide(surface, tool, 0.0, false);
-    // The collider proves 2e-5 m; where it found nothing it only promises that nothing is deeper than 1e-6 m.
+    // The collider guarantees 2e-5 m; if it finds nothing, it guarantees only that no depth exceeds 1e-6 m.
     if (result.found || reference < -1e-6) {
       ASSERT_TRUE(result.found) << trial << " distance " << reference;
       EXPECT_LE(-result.nearest.depth_m, reference + 2e-5) << trial;
@@ -141,13 +140,13 @@ TEST(SurfaceCollider, KnowsTheInsideOfAClosedBody) {
   const CollisionResult apart =
       collider.collide(surface, ToolShape::sphere({0.0, outside, 0.0}, 0.0), 0.0, true);
   EXPECT_FALSE(apart.found);
-  const double top = outside + apart.nearest.depth_m;  // where the surface is
+  const double top = outside + apart.nearest.depth_m;  // height of the surface
   const CollisionResult inside =
       collider.collide(surface, ToolShape::sphere({0.0, 0.004, 0.0}, 0.0), 0.0, true);
   EXPECT_TRUE(inside.found);
   EXPECT_NEAR(inside.nearest.depth_m, top - 0.004, 1e-9);
   EXPECT_GT(inside.nearest.normal.y(), 0.9);
-  // Wholly inside, touching nothing: still found.
+  // A sphere that is completely inside and touches nothing is found too.
   EXPECT_TRUE(collider.collide(surface, ToolShape::sphere({0.0, 0.0, 0.0}, 0.001), 0.0, true).found);
 }
 

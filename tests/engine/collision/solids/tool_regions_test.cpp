@@ -31,7 +31,7 @@ struct Asked {
 
 const Quaternion along_x(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3::UnitZ()));
 
-// Two crests and a dale: y = 0.01 cos of x, by its control points.
+// Returns two crests and a trough: y = 0.01 cos of x, approximated by control points.
 Surface waves() {
   Surface sheet = quadric_sheet(0.1, 0.0, 0.0, 24);
   for (std::size_t k = 0; k < sheet.net.size(); ++k) {
@@ -53,7 +53,7 @@ TEST(ToolRegions, ARodOverWavesTouchesEachCrest) {
   std::vector<double> places;
   for (const ToolContactRegion& region : regions) {
     places.push_back(region.deepest.point_m.x());
-    // The crests differ a little, by where the control points fall.
+    // The crests differ slightly, depending on the positions of the control points.
     EXPECT_NEAR(region.deepest.depth_m, 0.001, 1e-4);
     EXPECT_NEAR(region.deepest.normal.y(), 1.0, 1e-3);
     EXPECT_LE(region.range.u0, region.deepest.u);
@@ -69,7 +69,8 @@ TEST(ToolRegions, ARodOverWavesTouchesEachCrest) {
   EXPECT_NEAR(places[2], 0.08, 2e-3);
 }
 
-// Every sample that the tool holds is in some region's range, and each region's deepest point in the tool.
+// Every sample inside the tool is in the range of a region, and each region's deepest point is inside the
+// tool.
 TEST(ToolRegions, HoldEverySampleInTheTool) {
   Random random(61);
   for (int trial = 0; trial < 60; ++trial) {
@@ -96,7 +97,8 @@ TEST(ToolRegions, HoldEverySampleInTheTool) {
   }
 }
 
-// Over the seam of the periodic direction it is one region, which says the whole of that direction.
+// Contact across the seam of the periodic direction is one region, whose range is the whole of that
+// direction.
 TEST(ToolRegions, HangTogetherOverASeam) {
   const Surface tube = round_tube(0.02, 0.06);
   Asked asked(tube);
@@ -128,7 +130,7 @@ TEST(ToolRegions, AreNoneWhereNothingTouches) {
   EXPECT_TRUE(asked.regions(sheet, ToolShape::sphere({0.0, 0.1, 0.0}, 0.05)).empty());
 }
 
-// Whichever way a sphere is given.
+// A sphere gives the same regions as a sphere tool and as a solid.
 TEST(ToolRegions, OfASphereAndOfItsSolidAreAlike) {
   const Surface sheet = waves();
   Asked asked(sheet);

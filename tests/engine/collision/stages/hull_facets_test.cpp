@@ -43,11 +43,12 @@ void expect_closed(const HullFacets& hull) {
     }
   }
   for (const auto& [from, to] : directed) EXPECT_TRUE(directed.contains({to, from}));
-  // Euler: a closed surface without holes.
+  // Euler's formula for a closed surface without holes.
   EXPECT_EQ(corners.size() + hull.triangles.size(), directed.size() / 2 + 2);
 }
 
-// As far along any direction as the points themselves: the hull is neither too small nor too large.
+// Checks that the hull and the points reach equally far along any direction: the hull is neither too small
+// nor too large.
 void expect_farthest(Random& random, const HullFacets& hull, const std::vector<Vector3>& points) {
   const double step = largest_extent(points) * 0x1p-20;
   for (int k = 0; k < 200; ++k) {
@@ -58,7 +59,7 @@ void expect_farthest(Random& random, const HullFacets& hull, const std::vector<V
     for (const auto& triangle : hull.triangles) {
       for (const int corner : triangle) of_hull = std::max(of_hull, direction.dot(points[corner]));
     }
-    // Half a step an axis for either of both.
+    // The tolerance is half a step per axis for both hull and points.
     EXPECT_NEAR(of_hull, of_points, 2.0 * step);
   }
 }
@@ -74,7 +75,7 @@ TEST(HullFacets, OfRandomNetsAreTheirHulls) {
   }
 }
 
-// Rings that lie in planes, and poles where many points are one.
+// The points have rings in planes, and poles where many points coincide.
 TEST(HullFacets, OfTubesAreTheirHulls) {
   Random random(8);
   const Surface tube = ellipsoid_tube(12, 14);
@@ -95,7 +96,7 @@ TEST(HullFacets, OfALatticeInACubeAreTheCube) {
   EXPECT_NEAR(length, 12.0, 1e-12) << "no edge within a side";
 }
 
-// A roof of that angle on a box: its ridge is an edge from half a degree on.
+// A box with a roof whose faces bend by the given angle: the ridge counts as an edge from half a degree on.
 TEST(HullFacets, HaveEdgesWhereTheyBend) {
   for (const auto& [bend_deg, edges] : {std::pair{0.4, 12u}, {0.6, 13u}}) {
     const double height = 0.5 * std::tan(0.5 * bend_deg * std::numbers::pi / 180.0);
@@ -105,7 +106,7 @@ TEST(HullFacets, HaveEdgesWhereTheyBend) {
     points.emplace_back(0.5, height, 1.0);
     const HullFacets hull = hull_facets(points);
     expect_closed(hull);
-    // Its four slanting edges stand in for two of the box's.
+    // The four slanting edges of the roof replace two of the box's edges.
     EXPECT_EQ(hull.edges.size(), edges + 2u) << bend_deg;
   }
 }

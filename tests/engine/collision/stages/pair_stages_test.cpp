@@ -1,4 +1,4 @@
-// The stages of two round tubes that cross at a right angle, whose common curve has a closed form.
+// The stages of two round tubes that cross at a right angle; their common curve has a closed form.
 #include "engine/collision/stages/pair_stages.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double thick_m = 0.02, thin_m = 0.008, margin_m = 1e-4;
 
-// Along z, from well within the thick one, which runs along x, to above it.
+// Returns a tube along z, from well within the thick tube, which runs along x, to above it.
 Surface upright_tube() {
   Surface tube = round_tube(thin_m, 0.05);
   Surface turned = tube;
@@ -23,7 +23,7 @@ Surface upright_tube() {
   return turned;
 }
 
-// On both tubes: x^2 + y^2 = thin^2 and y^2 + z^2 = thick^2.
+// Returns a point of both tubes: x^2 + y^2 = thin^2 and y^2 + z^2 = thick^2.
 Vector3 on_both(double angle) {
   const double y = thin_m * std::sin(angle);
   return {thin_m * std::cos(angle), y, std::sqrt(thick_m * thick_m - y * y)};
@@ -95,7 +95,7 @@ TEST_F(CrossingTubes, RefineEachKeptCellInFour) {
   }
 }
 
-// Far from the curve nothing is left: how far a cell reaches is all that it may be away.
+// Far from the curve all cells are dropped: a remaining cell is no farther from the curve than its own size.
 TEST_F(CrossingTubes, DropWhatIsFarFromTheCurve) {
   for (const StageTriangle& triangle : stages_.triangles) {
     double nearest = 1e30, longest = 0.0;
@@ -116,7 +116,7 @@ TEST_F(CrossingTubes, HaveContactsOnBoth) {
     const Vector3& p = contact.at.point_m;
     const double off_thick = std::abs(std::hypot(p.y(), p.z()) - thick_m);
     const double off_thin = std::abs(std::hypot(p.x(), p.y()) - thin_m);
-    // The thin one ends in a cap within the thick one.
+    // The thin tube ends in a cap within the thick tube.
     const double off_cap = std::abs(p.z() - 0.01);
     EXPECT_LT(std::min({off_thick, off_thin, off_cap}), 1e-6);
   }

@@ -1,4 +1,4 @@
-// The stages against what sampling the surface densely shows.
+// The stages are compared with dense samples of the surface.
 #include "engine/collision/stages/tool_stages.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ struct StagesCase {
   ContactStages stages;
 };
 
-// A sphere or a box that touches the surface, or comes within the margin.
+// Returns a sphere or a box that touches the surface or comes within the margin.
 StagesCase touching_case(Random& random) {
   const Surface surface = random_surface(random);
   StagesCase made{
@@ -95,7 +95,7 @@ TEST_F(ToolStagesOfRandomSurfaces, SpheresHoldTheirPatches) {
   });
 }
 
-// Whatever was not looked at again has no point within the margin.
+// A cell that was dropped has no point within the margin.
 TEST_F(ToolStagesOfRandomSurfaces, WhatIsDroppedDoesNotMeetTheTool) {
   int dropped = 0;
   for_cases([&](const StagesCase& made) {
@@ -160,8 +160,8 @@ TEST_F(ToolStagesOfRandomSurfaces, ContactsLieInTrianglesAndKeptSpheresOfEachLev
   });
 }
 
-// A cell with a point in the tool has a triangle; a triangle is no farther from the tool than its cell's
-// surface may be, and than the smallest part that it was cut to.
+// A cell with a point in the tool has a triangle. A triangle's distance from the tool is at most that of its
+// cell's surface plus the size of the smallest part into which it was divided.
 TEST_F(ToolStagesOfRandomSurfaces, TrianglesAreThoseThatMeetTheTool) {
   for_cases([](const StagesCase& made) {
     const auto& triangles = made.stages.triangles;
@@ -192,7 +192,8 @@ TEST_F(ToolStagesOfRandomSurfaces, TrianglesAreThoseThatMeetTheTool) {
 }
 
 TEST(ToolStages, OfATrianglePairFarFromItsBilinearPatchHaveItsSlack) {
-  // x y over the unit square: the patch's middle is a quarter below the diagonal that joins the high corners.
+  // The surface is x y over the unit square: its centre is a quarter below the diagonal that joins the high
+  // corners.
   const KnotVector knots = KnotVector::clamped_uniform(1, 2).value();
   ControlNet net(2, 2);
   for (int k = 0; k < 4; ++k) net.set_point(k / 2, k % 2, {1.0 * (k / 2), 1.0 * (k % 2), k == 3 ? 1.0 : 0.0});

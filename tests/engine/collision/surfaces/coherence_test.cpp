@@ -1,4 +1,4 @@
-// What a collider keeps from one query to the next: it saves work and changes no answer.
+// A collider keeps data from one query to the next: they save work and change no result.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,14 +13,15 @@
 namespace spoonbill {
 namespace {
 
-// Either answer is proven to this.
+// Both results are guaranteed to this tolerance.
 constexpr double deepest_m = 2e-5;
 
 Vector3 random_point(Random& random, double low, double high) {
   return {random.uniform(low, high), random.uniform(low, high), random.uniform(low, high)};
 }
 
-// The sphere moves a little from query to query, and every tenth time anywhere; the surface gives way.
+// The sphere moves a little from query to query, and to a random position every tenth time; the surface
+// yields.
 TEST(Coherence, ASphereOnItsWayIsFoundAsByAColliderThatKnowsNothing) {
   Random random(301);
   int found = 0;
@@ -76,7 +77,7 @@ TEST(Coherence, ASurfaceThatDidNotMoveIsNotEvaluatedAgain) {
   EXPECT_GT(collider.collide(surface, tool, 0.0, false).samples_evaluated, 0);
 }
 
-// Two random surfaces that drift through each other: the same answer whether they touch.
+// Two random surfaces drift through each other: both colliders agree on whether they touch.
 TEST(Coherence, SurfacesThatDriftTouchAsForAColliderThatKnowsNothing) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   Random random(303);
@@ -98,7 +99,7 @@ TEST(Coherence, SurfacesThatDriftTouchAsForAColliderThatKnowsNothing) {
       EXPECT_EQ(one.touching, other.touching) << round << ' ' << step;
       EXPECT_EQ(collider.contacts().size(), fresh.contacts().size()) << round << ' ' << step;
       touching += other.touching;
-      // Proven to a ten-thousandth of the size or the distance.
+      // The distance is guaranteed to a ten-thousandth of the size or of itself.
       constexpr double nearest_m = 2e-4;
       if (other.touching || !(other.distance_m < query.reach_m - nearest_m)) continue;
       ++apart;

@@ -7,7 +7,7 @@
 namespace spoonbill {
 namespace {
 
-// A point of the net's hull, far inside or on its edge.
+// Returns a point of the net's hull, well inside or on its boundary.
 Vector3 point_of_hull(Random& random, const ControlNet& net) {
   Vector3 sum = Vector3::Zero();
   double weights = 0.0;
@@ -36,7 +36,7 @@ TEST(ConvexHulls, WithACommonPointAreNotApart) {
   }
 }
 
-// Moved until a plane across the direction has all of one before it and all of the other behind.
+// One net is moved until a plane across the direction separates the two.
 TEST(ConvexHulls, WithAPlaneBetweenAreApart) {
   Random random(42);
   for (int repeat = 0; repeat < 5000; ++repeat) {

@@ -13,7 +13,7 @@ namespace {
 struct Piece {
   Triangle triangle;
   Box box;
-  int i, j;  // of its finest cell
+  int i, j;  // indices of the finest cell
 };
 
 std::vector<double> cut(const std::vector<double>& parameters, int parts) {

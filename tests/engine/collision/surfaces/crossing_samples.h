@@ -1,13 +1,12 @@
-// An independent, slow answer to whether a surface passes through itself: the triangles between dense
-// samples.
+// An independent, slow test for a surface that intersects itself: the triangles between dense samples.
 #pragma once
 
 #include "engine/collision/levels/surface_levels.h"
 
 namespace spoonbill {
 
-// Each finest cell of the grid is cut into `parts` by `parts`. Triangles of cells that have a corner in
-// common, across a periodic seam too, are not compared.
+// Each finest cell of the grid is divided into `parts` by `parts`. Triangles of cells that share a corner,
+// also across a periodic seam, are not compared.
 bool samples_cross(const Surface& surface, const NestedGrid& nested, int parts);
 
 }  // namespace spoonbill

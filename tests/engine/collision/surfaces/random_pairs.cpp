@@ -28,7 +28,7 @@ void change_points(Surface& surface, const Change& change) {
   }
 }
 
-// Half of the sheet is turned over the other half, with a gap of a twentieth.
+// Folds half of the sheet over the other half, with a gap of a twentieth.
 Vector3 folded(const Vector3& point) {
   return point.x() < 0.0 ? point : Vector3(-point.x(), 0.05 - 0.2 * point.y(), point.z());
 }

@@ -11,10 +11,10 @@ namespace spoonbill {
 
 struct RandomPair {
   Surface first, second;
-  std::string kind;  // of both
+  std::string kind;  // kinds of both surfaces
 };
 
-// About 1 m each, turned at random, their middles up to `apart_m` from each other.
+// Returns surfaces of about 1 m, rotated at random, with centres up to `apart_m` from each other.
 RandomPair random_pair(Random& random, double apart_m);
 
 void move(Surface& surface, const Vector3& by);

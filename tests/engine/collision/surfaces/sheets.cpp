@@ -12,8 +12,8 @@ double angle(int i, int count) {
   return 2.0 * std::numbers::pi * i / count;
 }
 
-// The radius of control points on a circle whose uniform curve of degree 5 meets radius 1 at its knots: the
-// B-spline's values there are 1, 26, 66, 26 and 1 of 120.
+// Returns the radius of the control points for which a uniform curve of degree 5 is on the unit circle at its
+// knots, where the B-spline has the values 1, 26, 66, 26 and 1, divided by 120.
 double control_radius(int count) {
   const double h = angle(1, count);
   return 120.0 / (66.0 + 52.0 * std::cos(h) + 2.0 * std::cos(2.0 * h));

@@ -5,8 +5,8 @@
 
 namespace spoonbill {
 
-// y = bend_x x^2 + bend_z z^2 over -half_m to half_m in x and z, exact, of degree 2; du x dv points up. v
-// runs along x, u along z, and both are those coordinates by half_m, from 0 to 1.
+// Returns y = bend_x x^2 + bend_z z^2 over -half_m to half_m in x and z, exactly, with degree 2; du x dv
+// points up. v runs along x and u along z, both from 0 to 1.
 Surface quadric_sheet(double half_m, double bend_x, double bend_z, int controls);
 
 // A tube about x from -half_length_m to half_length_m, round to 1e-9 of its radius; u goes around it, and

@@ -27,7 +27,7 @@ PairAnswer collide(const Surface& first, const Surface& second, const PairQuery&
   return {result, collider.contacts()};
 }
 
-// z = a x^2 + b y^2 + c over a square of side 2, which a biquadratic surface is exactly.
+// Returns z = a x^2 + b y^2 + c over a square of side 2, exactly, as a biquadratic surface.
 Surface paraboloid(double a, double b, double c) {
   const KnotVector knots = KnotVector::open(2, {-1, -1, -1, 1, 1, 1}).value();
   const double abscissae[] = {-1, 0, 1}, squares[] = {1, -1, 1};  // the coefficients of x and x^2
@@ -40,7 +40,8 @@ Surface paraboloid(double a, double b, double c) {
   return make_surface(knots, knots, net).value();
 }
 
-// A closed box of the given half sides: rings of four corners, and each end drawn together in its middle.
+// Returns a closed box with the given half sides: rings of four corners, and ends whose corners coincide in
+// their centre.
 Surface box(const Vector3& half, const Vector3& centre) {
   const KnotVector around = KnotVector::periodic_uniform(1, 4).value();
   const KnotVector along = KnotVector::clamped_uniform(1, 4).value();
@@ -54,9 +55,9 @@ Surface box(const Vector3& half, const Vector3& centre) {
   return make_surface(around, along, net).value();
 }
 
-// Newton's method in double, on surfaces of a size of 1 m.
+// The tolerance of Newton's method in double precision, on surfaces of 1 m.
 constexpr double exact_m = 1e-9;
-// It ends where a step gains less than 1e-15 m, and normals are right to the square root of that.
+// Newton's method ends at steps below 1e-15 m, and normals are accurate to the square root of that.
 constexpr double exact_normal = 1e-7;
 
 TEST(SurfacePair, AParaboloidReachesThroughAPlaneByItsVertex) {
@@ -141,13 +142,13 @@ TEST(SurfacePair, ABoxInABoxLeavesByTheNearestWall) {
   const PairAnswer swapped = collide(outer, inner, query);
   ASSERT_TRUE(swapped.result.contained);
   EXPECT_LT((swapped.contacts[0].normal + Vector3(1, 0, 0)).norm(), 1e-6);
-  // Surfaces that bound nothing hold nothing.
+  // Open surfaces have no inside.
   EXPECT_FALSE(collide(inner, outer, {}).result.touching);
   const Surface beside = box({0.1, 0.1, 0.1}, {0.7, 0, 0});
   EXPECT_FALSE(collide(beside, outer, query).result.touching);
 }
 
-// 900 times smaller, in a body of 80 x 80 control points, a little off its middle.
+// The inner body is 900 times smaller, slightly off the centre of a body of 80 x 80 control points.
 TEST(SurfacePair, ATinyBodyInAFineOneLeavesByTheNearestWall) {
   PairQuery query;
   query.first_closed = query.second_closed = true;
@@ -160,7 +161,7 @@ TEST(SurfacePair, ATinyBodyInAFineOneLeavesByTheNearestWall) {
   const PairAnswer answer = collide(inner, outer, query);
   ASSERT_TRUE(answer.result.contained);
   EXPECT_FALSE(answer.result.overflow);
-  // Out by the wall that dense samples of the outer body say is nearest.
+  // The inner body leaves through the wall that is nearest by dense samples of the outer body.
   double nearest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 400; ++i) {
     for (int j = 0; j <= 400; ++j) {
@@ -197,7 +198,7 @@ TEST(SurfacePair, WhatHasNotMovedIsNotEvaluatedAgain) {
   EXPECT_EQ(collider.collide(first, second, query).samples_evaluated, 0);
   ASSERT_EQ(collider.contacts().size(), before.size());
   for (std::size_t k = 0; k < before.size(); ++k) {
-    // What Newton's method leaves that begins at its own end.
+    // The tolerance is the change when Newton's method restarts from its own result.
     EXPECT_NEAR(collider.contacts()[k].depth_m, before[k].depth_m, 1e-12);
     EXPECT_LT((collider.contacts()[k].pair.first_m - before[k].pair.first_m).norm(), 1e-9);
   }
@@ -230,8 +231,7 @@ TEST(SurfacePair, GivenSamplesAreNotEvaluatedAndTellTheSame) {
   }
 }
 
-// Their first surfaces' cells are all each other's neighbours: one region, whatever level the capacity
-// allows.
+// All cells of the first surfaces are neighbours: they are one region, whatever level the capacity allows.
 TEST(SurfacePair, CoincidentSheetsAreOneRegionAndNothingOverflows) {
   const KnotVector knots = KnotVector::clamped_uniform(3, 40).value();
   ControlNet net(40, 40);
@@ -260,7 +260,7 @@ TEST(SurfacePair, AllocatesNothing) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-// A point of one is moved onto a point of the other.
+// A point of one surface is moved onto a point of the other.
 TEST(SurfacePair, NoCommonPointIsMissed) {
   Random random(77);
   std::map<std::string, int> missed;
@@ -277,7 +277,7 @@ TEST(SurfacePair, NoCommonPointIsMissed) {
   for (const auto& [kind, count] : missed) ADD_FAILURE() << count << " missed, " << kind;
 }
 
-// Against balls around dense samples, which know nothing of hulls, levels or triangles.
+// The distance is compared with balls around dense samples, which use no hulls, levels or triangles.
 TEST(SurfacePair, AgreesWithDenseSamplesWhereTheyAreApart) {
   Random random(78);
   const int count = random_cases(50, 300);

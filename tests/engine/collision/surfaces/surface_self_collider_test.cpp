@@ -31,7 +31,7 @@ SelfAnswer collide_with_itself(const Surface& surface, bool closed = false, int 
   return {result, collider.contacts()};
 }
 
-// A curve of control points in the plane of x and z, drawn out along y from 0 to 1.
+// Returns a curve of control points in the x-z plane, extruded along y from 0 to 1.
 Surface drawn_out(const KnotVector& knots, const std::vector<Vector3>& curve) {
   const KnotVector along = KnotVector::clamped_uniform(1, 6).value();
   ControlNet net(knots.control_point_count(), 6);
@@ -56,8 +56,9 @@ Surface looped_sheet() {
   return drawn_out(knots, curve);
 }
 
-// A tube along y whose lower wall lies at z = -gap / 2 and whose upper at gap / 2, both flat for x from -3 to
-// 3; below zero they have passed each other. Its ends bulge out, du x dv points outwards.
+// Returns a tube along y whose lower wall is at z = -gap / 2 and whose upper wall is at gap / 2, both flat
+// for x from -3 to 3. A negative gap means that the walls have passed through each other. The ends bulge out,
+// and du x dv points outwards.
 Surface pressed_tube(double gap) {
   const double h = 0.5 * gap;
   const std::vector<Vector3> upper = {{4, 0, h},  {3, 0, h},  {2, 0, h},  {1, 0, h}, {0, 0, h},
@@ -70,7 +71,7 @@ Surface pressed_tube(double gap) {
   return drawn_out(KnotVector::periodic_uniform(2, static_cast<int>(curve.size())).value(), curve);
 }
 
-// The Lissajous curve of 1:2: symmetric, so that it crosses itself in the middle.
+// The curve is the Lissajous curve 1:2, which crosses itself at its centre by symmetry.
 constexpr int eight_points = 24;
 Surface figure_eight() {
   std::vector<Vector3> curve;
@@ -98,7 +99,7 @@ TEST(SurfaceSelf, SeamsAndPolesAreNoContact) {
   EXPECT_FALSE(collide_with_itself(round_torus(0.05, 0.02), true, 1).result.touching);
 }
 
-// Open knots whose ends lie on each other are a seam as well.
+// Open knots whose ends coincide form a seam as well.
 TEST(SurfaceSelf, ATubeClosedByItsEndsIsNoContact) {
   const KnotVector knots = KnotVector::clamped_uniform(3, 9).value();
   std::vector<Vector3> curve;
@@ -121,7 +122,7 @@ TEST(SurfaceSelf, ALoopCrossesWhereTheClosedFormSays) {
   const bool swapped = contact.first.u0 > 0.0;
   const ParameterRange& low = swapped ? contact.second : contact.first;
   const ParameterRange& high = swapped ? contact.first : contact.second;
-  // Cells of a quarter of 0.3, which may meet one cell beyond the crossing.
+  // The cells have a quarter of 0.3 and may meet up to one cell beyond the crossing.
   constexpr double cell = 0.075;
   EXPECT_LE(low.u0, -1.0);
   EXPECT_GE(low.u1, -1.0);
@@ -157,7 +158,7 @@ TEST(SurfaceSelf, AFigureOfEightCrossesInItsMiddle) {
   ASSERT_EQ(answer.contacts.size(), 1u);
   const PairContact& contact = answer.contacts[0];
   const bool swapped = contact.first.u0 > 0.4;
-  // The middle of a cubic basis function is two knots from its first.
+  // The peak of a cubic basis function is two knots after its start.
   const double crossing = 2.0 / eight_points;
   const ParameterRange& one = swapped ? contact.second : contact.first;
   const ParameterRange& other = swapped ? contact.first : contact.second;
@@ -189,7 +190,7 @@ TEST(SurfaceSelf, AllocatesNothing) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-// Triangles between dense samples that pass through each other, which knows nothing of cones, hulls or
+// The result is compared with intersecting triangles between dense samples, which use no cones, hulls or
 // levels.
 TEST(SurfaceSelf, NoCrossingOfDenseTrianglesIsMissed) {
   constexpr int levels = 2;

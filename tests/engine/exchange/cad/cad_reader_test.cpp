@@ -88,7 +88,7 @@ gp_Trsf moved(double x, double y, double z, double turn = 0.0) {
   return motion;
 }
 
-// A trolley at a place: a deck, and an axle of two wheels, one of them under a name of its own.
+// Writes a trolley that is placed: a deck, and an axle with two wheels, one of which has a name of its own.
 void write_trolley(const std::filesystem::path& file) {
   opencascade::handle<TDocStd_Document> document;
   XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
@@ -131,10 +131,10 @@ TEST_F(CadReader, AssembliesArePlacedAndNamed) {
   EXPECT_EQ(found.model.notes,
             std::vector<std::string>{
                 "the 12 faces of 3 solids come in as a body each; they leave joined where they still close"});
-  // To what a cylinder of 5 mm may deviate.
+  // The tolerance is the allowed deviation of a cylinder of 5 mm.
   EXPECT_LT((middle_of(found.surfaces, "wheel") - Vector3(0.1, 0.0, 0.001)).norm(), 2e-5);
   EXPECT_LT((middle_of(found.surfaces, "spare wheel") - Vector3(0.1, 0.0, 0.031)).norm(), 2e-5);
-  // The deck of 40 x 20, turned by a quarter about its corner, then moved.
+  // The deck of 40 x 20 is rotated by a quarter turn about its corner, then moved.
   EXPECT_LT((middle_of(found.surfaces, "deck") - Vector3(-0.01, 0.22, 0.0005)).norm(), 1e-9);
   std::vector<std::string> names;
   for (const CadSurface& part : found.surfaces) names.push_back(part.name);
@@ -152,7 +152,7 @@ TEST_F(CadReader, UnitsAreThoseDeclared) {
       EXPECT_EQ(found.model.unit, name);
       EXPECT_TRUE(found.model.unit_declared);
       EXPECT_LT((middle_of(found.surfaces, "") - Vector3(0.015, 0.01, 0.005)).norm(), 1e-9);
-      // Whatever the file says, its numbers are centimetres.
+      // The option overrides the file's unit: its numbers are centimetres.
       CadReading reading;
       reading.unit_m = 0.01;
       const double in_file = std::string(unit) == "mm"   ? 1e-3
@@ -165,7 +165,7 @@ TEST_F(CadReader, UnitsAreThoseDeclared) {
   }
 }
 
-// The global section with other words for the unit, in as many lines.
+// Replaces the unit in the global section without changing the number of lines.
 std::string with_unit(std::string text, const std::string& unit) {
   const std::string declared = ",1,4HINCH,";
   const std::size_t at = text.find(declared);
@@ -178,7 +178,7 @@ std::string with_unit(std::string text, const std::string& unit) {
 
 TEST_F(CadReader, AnIgesFileWithoutAUnitIsInMillimetresAndSaysSo) {
   const std::string text = content_of(box_in("in", "box.igs"));
-  // None, none by its flag, and a name that the standard does not know.
+  // The unit is missing, or its flag means none, or its name is not in the standard.
   for (const char* unit : {",,,", ",0,,", ",3,4HFOOT,", ",3,2Hmm,", ",3,,"}) {
     SCOPED_TRACE(unit);
     const Found found = read(folder_.write("none.igs", with_unit(text, unit)));
@@ -202,7 +202,7 @@ TEST_F(CadReader, AnIgesFileMayNameItsUnit) {
   }
 }
 
-// OpenCASCADE leaves such a face out and calls the file read.
+// OpenCASCADE skips such a face and reports success.
 TEST_F(CadReader, FacesThatCannotBeReadAreCounted) {
   const std::string text = content_of(box_in("mm", "box.step"));
   const std::string begin = "ADVANCED_FACE('',(";
@@ -220,7 +220,7 @@ TEST_F(CadReader, FacesThatCannotBeReadAreCounted) {
   }
 }
 
-// Two parts at a place each, in files of their own.
+// Writes two parts, each with its placement, into files of their own.
 std::filesystem::path write_in_parts(const std::filesystem::path& folder) {
   opencascade::handle<TDocStd_Document> document;
   XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
@@ -238,7 +238,7 @@ std::filesystem::path write_in_parts(const std::filesystem::path& folder) {
   return file;
 }
 
-// Which OpenCASCADE would open, wherever they lie and whatever they are.
+// OpenCASCADE would open such files, whatever their path and contents.
 TEST_F(CadReader, OtherFilesThatAFileNamesAreNotOpened) {
   const auto file = write_in_parts(folder_.path());
   const std::string text = content_of(file), before = "DOCUMENT_FILE('";
@@ -251,7 +251,7 @@ TEST_F(CadReader, OtherFilesThatAFileNamesAreNotOpened) {
   EXPECT_EQ(found.error().message, "contains no surface but names other files; export all as one");
 }
 
-// Which OpenCASCADE calls by the number that it counts the use with.
+// OpenCASCADE names such a use by its number.
 TEST_F(CadReader, AUseWithoutANameHasItsPartsName) {
   const auto file = folder_.path() / "trolley.step";
   write_trolley(file);
@@ -283,7 +283,7 @@ TEST_F(CadReader, ASlantThatExceedsTheToleranceIsATrim) {
   EXPECT_TRUE(read(file, reading).surfaces.at(0).trims.empty());
 }
 
-// The box as a representation that is shown where an operator places it.
+// Returns the box as a representation that an operator places.
 std::string placed_by(std::string text, const std::string& ratios) {
   const std::size_t end = text.rfind("ENDSEC;");
   text.insert(end,

@@ -1,4 +1,4 @@
-// Surfaces out to STEP and IGES and back, and what OpenCASCADE says of the bodies on the way.
+// Surfaces are written to STEP and IGES and read back, and OpenCASCADE checks the bodies in between.
 #include <gtest/gtest.h>
 
 #include <BRepCheck_Analyzer.hxx>
@@ -63,7 +63,7 @@ class CadRoundTrip : public testing::Test {
     EXPECT_EQ(back[0].deviation_m, 0.0);
     EXPECT_TRUE(back[0].trims.empty());
     EXPECT_EQ(back[0].trim_problem, "");
-    // A solid's face turns outwards whichever way the surface did.
+    // A solid's face is oriented outwards, whatever the orientation of the surface.
     const bool turned = known.closes && volume_by_quadrature_m3(known.surface.surface) < 0.0;
     if (turned) {
       EXPECT_NEAR(volume_by_quadrature_m3(back[0].surface), -volume_by_quadrature_m3(known.surface.surface),
@@ -133,7 +133,7 @@ TEST_F(CadRoundTrip, NamesAndTheirOrderAreKept) {
 }
 
 TEST_F(CadRoundTrip, LongNamesAreStillToldApart) {
-  // Whose letters fall on any byte of a line.
+  // The name's multi-byte letters begin at any byte of a line.
   std::string name = "\xf0\x9f\xa5\x84 ";
   while (name.size() < 190) name += name.size() % 3 == 0 ? "a" : "\xc3\xb6";
   CadModel model;
@@ -184,7 +184,8 @@ TEST_F(CadRoundTrip, BodiesThatCloseAreValidSolidsOfTheirVolume) {
       GProp_GProps properties;
       BRepGProp::VolumeProperties(shape, properties, 1e-8);
       const double ours = std::abs(volume_by_quadrature_m3(known.surface.surface));
-      // Ours is exact to rounding for cubic pieces, OpenCASCADE's adapts to its own 1e-8.
+      // Our volume is exact to rounding for cubic pieces; OpenCASCADE's adaptive quadrature has a tolerance
+      // of 1e-8.
       EXPECT_NEAR(properties.Mass() * 1e-9, ours, 1e-6 * ours);
       EXPECT_GT(properties.Mass(), 0.0);
     }
@@ -226,7 +227,7 @@ TEST_F(CadRoundTrip, FilesSayTheProgramAndNotThePerson) {
   for (const FileFormat format : {FileFormat::step, FileFormat::iges}) {
     const std::string text = write_cad(model, {format, StepSchema::ap214, "mm"})->text;
     EXPECT_NE(text.find("Spoonbill"), std::string::npos);
-    // The words that OpenCASCADE would put there.
+    // OpenCASCADE would write these words by default.
     for (const char* word : {"'Author'", "Open CASCADE Model", "Filename.iges"}) {
       EXPECT_EQ(text.find(word), std::string::npos) << word;
     }
@@ -293,7 +294,7 @@ TEST(CadNames, AreCleaned) {
   EXPECT_EQ(clean_cad_name(std::string(199, 'a') + "\xc3\xb6", "x").size(), 199u);
 }
 
-// By a pole whose points are a little apart.
+// The pole's points are slightly apart.
 TEST_F(CadRoundTrip, WhatACheckCallsClosedIsASolidAndSaysWhatItMisses) {
   Surface pole = ellipsoid_tube(10, 10);
   pole.net.set_point(3, 0, pole.net.point(3, 0) + Vector3(2e-8, 0, 0));

@@ -50,7 +50,7 @@ Surface sheet(Random& random, int u_degree, KnotKind u_kind, int v_degree, KnotK
                         random_knots(random, v_degree, v_kind));
 }
 
-// A sphere-like patch of two clamped directions: its v edges are poles, its u edges one seam.
+// Returns a ball-like patch with two clamped directions: its v edges are poles, and its u edges form a seam.
 Surface seamed_ball() {
   const Surface tube = ellipsoid_tube(8, 9);
   const KnotVector u = KnotVector::clamped_uniform(3, 9).value();
@@ -61,7 +61,7 @@ Surface seamed_ball() {
   return make_surface(u, tube.v, std::move(net)).value();
 }
 
-// The bundled bowl and handle, which have other counts and knots, as the merge command joins them.
+// Returns the bundled bowl and handle, which have different counts and knots, joined as by the merge command.
 Surface merged_spoon() {
   const std::filesystem::path models = SPOONBILL_ASSETS "/models";
   std::vector<Surface> parts;

@@ -1,4 +1,4 @@
-// Surfaces of every kind that goes to CAD systems, and how far two of them are apart.
+// Surfaces of every kind that can be exported to CAD, and the distance of two surfaces.
 #pragma once
 
 #include <string>
@@ -16,13 +16,14 @@ struct KnownSurface {
 };
 std::vector<KnownSurface> known_surfaces();
 
-// Periodic both ways, about z; normals outward.
+// Returns a surface about z that is periodic in both directions, with normals outward.
 Surface torus_like(double ring_m, double tube_m);
 
-// The largest distance at equal parameters.
+// Returns the largest distance at equal parameters.
 double largest_distance_m(const Surface& a, const Surface& b);
 
-// By the divergence theorem over Gauss points, exact for polynomial pieces of degrees up to 5.
+// Returns the volume by the divergence theorem over Gauss points, exact for polynomial pieces of degrees up
+// to 5.
 double volume_by_quadrature_m3(const Surface& surface);
 double area_by_quadrature_m2(const Surface& surface);
 

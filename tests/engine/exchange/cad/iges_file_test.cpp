@@ -1,4 +1,4 @@
-// IGES files that are damaged, or say what no other file says.
+// IGES files that are damaged or unusual.
 #include <gtest/gtest.h>
 
 #include <BRepPrimAPI_MakeBox.hxx>
@@ -13,12 +13,12 @@
 namespace spoonbill {
 namespace {
 
-// What the tests change of a file of a few entities.
+// The fields that the tests change in a file of a few entities.
 struct Entity {
   int type = 128;
   std::string parameters;
-  int placement = 0;    // the place of another, counted from 1
-  int subordinate = 0;  // 1 where only others show it
+  int placement = 0;    // the number of another entity, counted from 1
+  int subordinate = 0;  // 1 if the entity is shown only as part of others
 };
 
 std::string padded(std::string text, std::size_t length) {

@@ -1,4 +1,4 @@
-// The part of a surface that its trim loops keep: how far a point is from it, and how large it is.
+// The part of a surface that its trim loops keep: a point's distance from the part, and its area.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace spoonbill {
 
-// The distance of a point from the kept part of a surface: the nearest of a grid, followed by Gauss-Newton
-// steps.
+// Computes the distance of a point from the kept part of a surface: the nearest point of a grid, refined by
+// Gauss-Newton steps.
 class NearestKeptPoint {
  public:
   explicit NearestKeptPoint(const CadSurface& part);
@@ -24,7 +24,7 @@ class NearestKeptPoint {
 
   double polished(const Sample& start, const Vector3& from) const;
 
-  // On a loop either answer is right.
+  // Returns either value for points on a loop.
   bool is_kept(double u, double v) const;
 
   Surface surface_;
@@ -32,7 +32,8 @@ class NearestKeptPoint {
   std::vector<Sample> grid_;
 };
 
-// By quadrature; of a trimmed one by the midpoint rule over two hundred lines each way.
+// Returns the area by quadrature; for a trimmed surface by the midpoint rule over two hundred lines in each
+// direction.
 double kept_area_m2(const CadSurface& part);
 
 }  // namespace spoonbill

@@ -63,7 +63,7 @@ struct Knots {
   TColStd_Array1OfInteger multiplicities;
 };
 
-// Clamped and even, for so many poles; an inner knot of that multiplicity in the middle.
+// Returns clamped, even knots for this number of poles; the central knot has the given multiplicity.
 Knots knots_for(int poles, int degree) {
   const int inner = poles - degree - 1;
   Knots knots{TColStd_Array1OfReal(1, inner + 2), TColStd_Array1OfInteger(1, inner + 2)};
@@ -93,7 +93,7 @@ TopoDS_Face part(const Geometry& surface, double u_start, double u_end, double v
   return BRepBuilderAPI_MakeFace(surface, u_start, u_end, v_start, v_end, tolerance_mm).Face();
 }
 
-// The part of a surface inside a closed curve over its parameters.
+// Returns the part of a surface inside a closed curve in its parameter plane.
 TopoDS_Face inside(const Geometry& surface, const opencascade::handle<Geom2d_Curve>& curve) {
   const TopoDS_Edge edge = BRepBuilderAPI_MakeEdge(curve, surface);
   TopoDS_Face face = BRepBuilderAPI_MakeFace(surface, BRepBuilderAPI_MakeWire(edge).Wire(), true).Face();

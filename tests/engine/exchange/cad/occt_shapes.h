@@ -21,19 +21,20 @@ struct NamedShape {
 
 // Primitives and parts of them, sweeps, lofts, fillets, cuts, shells.
 std::vector<NamedShape> solid_shapes();
-// With cavities.
+// Solids with cavities.
 std::vector<NamedShape> hollow_solids();
 // A box with a hole drilled through it and an edge rounded.
 TopoDS_Shape drilled_box();
 // Single faces: rational, of high degrees, trimmed, offset, of revolution.
 std::vector<NamedShape> single_faces();
 
-// What comes in of a STEP file that OpenCASCADE writes into the folder. prepare_occt() must have been called.
+// Returns what is read from a STEP file that OpenCASCADE writes into the folder. prepare_occt() must have
+// been called.
 CadModel read_through_step(const TopoDS_Shape& shape, const std::filesystem::path& folder);
 
 int count_of(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind);
 
-// By OpenCASCADE's own reader of STEP or IGES.
+// Reads the shape with OpenCASCADE's own reader of STEP or IGES.
 template <class Reader>
 TopoDS_Shape shape_in(const std::filesystem::path& file) {
   Reader reader;

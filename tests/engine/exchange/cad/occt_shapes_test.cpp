@@ -39,7 +39,7 @@ Vector3 metres(const gp_Pnt& point) {
   return 1e-3 * Vector3(point.X(), point.Y(), point.Z());
 }
 
-// Points of the faces, none nearer to an edge than the classifier can tell.
+// Returns points of the faces that are far enough from the edges for the classifier.
 std::vector<Vector3> points_on(const TopoDS_Shape& shape) {
   constexpr int across = 6;
   std::vector<Vector3> points;
@@ -60,7 +60,7 @@ std::vector<Vector3> points_on(const TopoDS_Shape& shape) {
   return points;
 }
 
-// Over a fine mesh: OpenCASCADE's quadratures are a hundredth wrong on one or another of these faces.
+// Returns the area of a fine mesh: OpenCASCADE's quadratures are wrong by a hundredth on some of these faces.
 double area_m2(const TopoDS_Shape& shape) {
   const BRepMesh_IncrementalMesh mesher(shape, 0.02, false, 0.1);
   double area = 0.0;
@@ -99,7 +99,7 @@ void expect_same_shape(const TopoDS_Shape& shape, const ReadBack& back) {
   }
   EXPECT_LE(farthest, back.deviation_m + shape_file_tolerance_m);
 
-  // What is kept lies on the shape, all of it and no more.
+  // The kept parts are on the shape and have the same area.
   double area = 0.0;
   for (const CadSurface& part : back.surfaces) {
     EXPECT_EQ(part.trim_problem, "");

@@ -1,4 +1,4 @@
-// Solids that come in as a surface for each face and are meshed whole.
+// Solids that are imported as a surface for each face and are meshed whole.
 #include <gtest/gtest.h>
 
 #include <BRepGProp.hxx>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double usual_chord_m = 5e-5;
 constexpr double cubic_mm = 1e-9, square_mm = 1e-6;
-// To what faces are approximated that are no B-splines.
+// The tolerance of approximated faces, which are not B-splines.
 constexpr double import_tolerance_m = 1e-5;
 
 struct Measures {
@@ -103,7 +103,7 @@ TEST_F(SolidMeshes, ADrilledBoxIsWatertightWithinItsChord) {
 
 TEST_F(SolidMeshes, SolidsOfManyFacesAreWatertight) {
   for (const NamedShape& named : solid_shapes()) {
-    // What is one face is no solid of several.
+    // A solid with one face is not imported as a solid of several surfaces.
     if (count_of(named.shape, TopAbs_SOLID) == 0 || count_of(named.shape, TopAbs_FACE) < 2) continue;
     SCOPED_TRACE(named.name);
     expect_solid(named.shape, usual_chord_m);

@@ -1,4 +1,4 @@
-// Solids that come in as a surface for each face and go out as solids again.
+// Solids that are imported as a surface for each face and are exported as solids.
 #include <gtest/gtest.h>
 
 #include <BRepCheck_Analyzer.hxx>
@@ -16,7 +16,7 @@
 namespace spoonbill {
 namespace {
 
-// A hundredth of a millimetre on the faces of parts of 10 to 40 mm.
+// The tolerance is a hundredth of a millimetre on the faces of parts of 10 to 40 mm.
 constexpr double volume_share = 2e-3;
 
 double volume_mm3(const TopoDS_Shape& shape) {
@@ -78,7 +78,7 @@ TEST_F(SolidRoundTrip, CavitiesStayCavities) {
   }
 }
 
-// Whoever takes the ball out of the box has a shell that encloses nothing.
+// Without the ball in the box, the solid's shell encloses nothing.
 TEST_F(SolidRoundTrip, ACavityByItselfIsNoSolid) {
   CadModel model = read(hollow_solids()[1].shape);
   ASSERT_EQ(model.surfaces.size(), 7u);
@@ -108,7 +108,7 @@ TEST_F(SolidRoundTrip, FacesThatDoNotCloseKeepTheirNames) {
   }
 }
 
-// As after a copy of the bodies in a document.
+// The names are equal as after a copy of the bodies in a document.
 TEST_F(SolidRoundTrip, TwoSolidsOfOneNameAreTwo) {
   CadModel model = read(BRepPrimAPI_MakeBox(30, 20, 10).Shape());
   const std::vector<CadSurface> first = model.surfaces;

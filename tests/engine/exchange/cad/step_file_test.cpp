@@ -1,4 +1,4 @@
-// What a STEP file holds, read by a script that knows nothing of OpenCASCADE.
+// Contents of a STEP file, read by a script that does not use OpenCASCADE.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -51,7 +51,7 @@ TEST(StepFile, ScipyEvaluatesTheSameSurfaces) {
   EXPECT_LT(largest_distance_by_script(model, {FileFormat::step, StepSchema::ap214, "mm"}, "0.001"), 1e-9);
   EXPECT_LT(largest_distance_by_script(model, {FileFormat::step, StepSchema::ap242, "m"}, "1"), 1e-9);
   EXPECT_LT(largest_distance_by_script(model, {FileFormat::step, StepSchema::ap214, "in"}, "0.0254"), 1e-9);
-  // The script can tell.
+  // The script detects a small difference.
   EXPECT_GT(largest_distance_by_script(model, {FileFormat::step, StepSchema::ap214, "in"}, "0.02540001"),
             1e-8);
 }

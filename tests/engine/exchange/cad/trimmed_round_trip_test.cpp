@@ -87,7 +87,7 @@ class TrimmedRoundTrip : public testing::TestWithParam<FileFormat> {
   TemporaryFolder folder_;
 };
 
-// Points of the part lie on what came back, and the other way round.
+// Expects each point of the part to be on the surfaces read back, and each point of those to be on the part.
 void expect_covered(const CadSurface& part, const std::vector<CadSurface>& by) {
   std::vector<NearestKeptPoint> nearest(by.begin(), by.end());
   const auto kept = TrimmedArea::make(part.surface.u, part.surface.v, part.trims).value();
@@ -120,7 +120,7 @@ TEST_P(TrimmedRoundTrip, WhatIsKeptComesBack) {
       expect_covered(face, {part});
     }
     expect_covered(part, back);
-    // Both by the midpoint rule over two hundred lines.
+    // Both areas come from the midpoint rule over two hundred lines.
     EXPECT_NEAR(area, kept_area_m2(part), 5e-3 * area);
   }
 }
@@ -136,7 +136,7 @@ TEST_P(TrimmedRoundTrip, ASurfaceWithOneFaceKeepsItsParameters) {
   EXPECT_NEAR(after->remaining_fraction(), before.remaining_fraction(), 1e-6);
 }
 
-// Of a sheet nobody expects a solid.
+// A trimmed sheet gets no note, because a sheet is not expected to become a solid.
 TEST_P(TrimmedRoundTrip, WhatWouldCloseButForItsTrimsIsSaid) {
   CadModel model;
   for (const CadSurface& part : trimmed_surfaces()) model.surfaces.push_back(part);
@@ -169,7 +169,7 @@ TEST(BodyShape, FacesOfWhatWouldCloseAreTurnedOutwards) {
   }
 }
 
-// A surface that closes goes out cut in two, whose faces share their edges.
+// A closed surface is exported cut in two; the two faces share their edges.
 TEST(BodyShape, FacesOfOneSurfaceAreOneShell) {
   for (const CadSurface& part : trimmed_surfaces()) {
     SCOPED_TRACE(part.name);

@@ -78,13 +78,13 @@ TEST_F(MeshWriter, StlHoldsItsCountAndUnitNormals) {
   const NamedMesh mesh = tube("one", {0, 0, 0});
   const std::string bytes = bytes_of({mesh}, FileFormat::stl, 1e-3);
   ASSERT_EQ(bytes.size(), 84 + 50 * mesh.mesh.triangles.size());
-  EXPECT_FALSE(bytes.starts_with("solid"));  // which text files begin with
+  EXPECT_FALSE(bytes.starts_with("solid"));  // text STL files begin with this word
   for (std::size_t k = 0; k < mesh.mesh.triangles.size(); ++k) {
     float values[12];
     std::memcpy(values, bytes.data() + 84 + 50 * k, sizeof values);
     const Vector3 normal(values[0], values[1], values[2]);
     EXPECT_NEAR(normal.norm(), 1.0, 1e-6);
-    // Outward of a convex body about the origin.
+    // The normal points outward: the body is convex and contains the origin.
     EXPECT_GT(normal.dot(Vector3(values[3], values[4], values[5])), 0.0);
   }
 }
@@ -125,7 +125,8 @@ TEST_F(MeshWriter, ARefusalOfTheTakerEndsIt) {
   }
 }
 
-// A zip is whole before its first byte is written: its taker is asked while it is made, and packed.
+// A zip is complete before its first byte is written, so the progress function is called while it is built
+// and packed.
 TEST_F(MeshWriter, ThreeMfAsksWhetherToGoOn) {
   const std::vector<NamedMesh> meshes = {
       {"fine", tessellate(ellipsoid_tube(8, 10, {0, 0, 0}), {}, 2e-5).value().mesh, true}};

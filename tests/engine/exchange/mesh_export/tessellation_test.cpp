@@ -20,7 +20,7 @@
 namespace spoonbill {
 namespace {
 
-// How many edges are not run through once each way by two triangles.
+// Returns the number of edges that are not used exactly once in each direction by two triangles.
 std::size_t unmatched_edges(const TriangleMesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
   for (const TriangleCorners& corners : mesh.triangles) {
@@ -44,7 +44,7 @@ double area_of(const TriangleMesh& mesh) {
 }
 
 double distance_to_triangle(const Vector3& from, const Vector3& a, const Vector3& b, const Vector3& c) {
-  // Ericson 2005, section 5.1.5.
+  // Closest point on a triangle, Ericson 2005, section 5.1.5.
   const Vector3 ab = b - a, ac = c - a, ap = from - a, bp = from - b, cp = from - c;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp),
                d6 = ac.dot(cp);
@@ -100,7 +100,7 @@ TEST(Tessellation, BodiesThatCloseAreWatertightWithNormalsOutward) {
     if (!known.closes) continue;
     const double volume = std::abs(volume_by_quadrature_m3(known.surface.surface));
     const double area = area_by_quadrature_m2(known.surface.surface);
-    // Between the mesh and the surface lies at most the chord error over the whole area.
+    // The volumes differ by at most the chord error times the area.
     EXPECT_NEAR(enclosed_volume_m3(found->mesh), volume, 5e-5 * area);
     EXPECT_GT(enclosed_volume_m3(found->mesh), 0.0);
   }
@@ -143,7 +143,7 @@ TEST(Tessellation, AFlatSheetTakesTwoTrianglesAPiece) {
 }
 
 TEST(Tessellation, ATrimmedSurfaceStaysTrimmed) {
-  // A plate of 1 by 1 m with a hole of known area, and a tube with one across its seam.
+  // The shapes are a plate of 1 by 1 m with a hole of known area, and a tube with a hole across its seam.
   ControlNet net(2, 2);
   net.set_point(1, 0, {1, 0, 0});
   net.set_point(0, 1, {0, 1, 0});
@@ -175,7 +175,7 @@ TEST(Tessellation, ATrimmedSurfaceStaysTrimmed) {
   ASSERT_TRUE(whole);
   ASSERT_TRUE(cut) << cut.error().message;
   EXPECT_LE(cut->chord_error_m, 2e-5);
-  // Open along one loop: every edge but those of the hole is met.
+  // The mesh is open along one loop: every edge except those of the hole has two triangles.
   EXPECT_FALSE(cut->closed);
   EXPECT_GT(unmatched_edges(cut->mesh), 10u);
   EXPECT_LT(unmatched_edges(cut->mesh), cut->mesh.triangles.size() / 4);
@@ -215,7 +215,7 @@ TEST(Tessellation, NoTriangleIsWithoutArea) {
   const auto cut = tessellate(plate, {polygon_loop(line, line, corners)}, 2e-5);
   ASSERT_TRUE(cut) << cut.error().message;
   EXPECT_GT(lowest_triangle_m(cut->mesh), 1e-9);
-  // Nothing but the rim is open, and each of its corners is a vertex.
+  // Only the rim is open, and each corner of the rim is a vertex of the mesh.
   EXPECT_EQ(unmatched_edges(cut->mesh), cut->mesh.vertices_m.size());
   EXPECT_EQ(cut->mesh.triangles.size(), cut->mesh.vertices_m.size() - 2);
   EXPECT_NEAR(area_of(cut->mesh), std::numbers::pi * radius_m * radius_m, 1e-3 * area_of(cut->mesh));

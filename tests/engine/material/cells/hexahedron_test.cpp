@@ -26,7 +26,7 @@ CellCorners distorted_cell(std::uint64_t seed) {
   return corners;
 }
 
-// Of a strain, by corner.
+// Returns the displacements of the corners by a uniform strain.
 CellVector moved_by(const Eigen::Matrix3d& gradient, const CellCorners& corners) {
   CellVector moves;
   for (int c = 0; c < 8; ++c) moves.segment<3>(3 * c) = gradient * corners[static_cast<std::size_t>(c)];

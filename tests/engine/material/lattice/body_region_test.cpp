@@ -46,7 +46,7 @@ LatticeMesh bar_lattice(std::array<int, 3> counts) {
   return std::move(mesh).value();
 }
 
-// By how much two turns differ, across the seam too.
+// Returns the difference of two turns, also across the seam.
 double apart(double turn, double other) {
   const double far = std::abs(turn - other);
   return std::min(far, 1.0 - far);

@@ -17,8 +17,8 @@ namespace {
 
 constexpr double fruit_radius_m = 0.036;
 
-// All in radii of the body. A ball of half the length, whose ends are pressed in about the poles, and which
-// thins out towards its upper end.
+// The shape in radii of the body: a ball of half the length, whose ends are pressed in at the poles and which
+// narrows towards its upper end.
 struct Fruit {
   const char* name;
   double half_length;

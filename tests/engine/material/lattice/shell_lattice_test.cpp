@@ -232,7 +232,7 @@ TEST(ShellLattice, RingUnderPressureHasNoSeam) {
   EXPECT_EQ(out.front(), out.back());
 }
 
-// Drawn apart across the seam, or a quarter of a turn from it.
+// The ring is stretched across its seam, or a quarter of a turn from it.
 TEST(ShellLattice, RingDrawnAcrossItsSeamGivesWayAsElsewhere) {
   const LatticeMesh mesh = round_ring(0.02, 0.006, 0.002);
   const StaticBody body =

@@ -37,7 +37,7 @@ Surface walled_bowl(double radius_m, double wall_m, double rim) {
 
 constexpr double round_ring_m = 0.04, round_tube_m = 0.01;
 
-// Of the middles of its tube's circles.
+// Returns the nearest point on the centre line of the ring's tube.
 Vector3 middle_of_ring(const Vector3& at) {
   return round_ring_m * Vector3(at.x(), 0.0, at.z()).normalized();
 }

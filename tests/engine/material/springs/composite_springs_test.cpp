@@ -37,7 +37,7 @@ bool in_middle(const Vector3& at) {
   return std::abs(at.x() - 0.006) < 0.003 && std::abs(at.y() - 0.006) < 0.003;
 }
 
-// Of a slice, along z.
+// Returns the mean displacement of a slice along z.
 double mean_displacement_m(const SpringLattice& lattice, int k) {
   double sum = 0.0;
   for (int i = 0; i < 5; ++i) {
@@ -51,7 +51,7 @@ double strain_between(const SpringLattice& lattice, int from, int to) {
   return (mean_displacement_m(lattice, to) - mean_displacement_m(lattice, from)) / apart_m;
 }
 
-// Held at z = 0 and drawn at the other end by an even stress, until it rests.
+// Returns the bar at rest, fixed at z = 0 and stretched at the other end by a uniform stress.
 SpringLattice drawn_bar(const LatticeMaterials& materials, double stress_pa) {
   SpringLattice lattice = make_composite_springs(long_bar(), materials);
   std::vector<std::uint8_t> held(static_cast<std::size_t>(long_bar().node_count()), 0);
@@ -99,7 +99,7 @@ void shake(SpringLattice& lattice, double speed_m_per_s, unsigned seed) {
   }
 }
 
-// All that may differ between two materials does.
+// The two materials differ in every property in which materials may differ.
 LatticeMaterials all_different(const LatticeMesh& mesh) {
   Material clay = elastic_material(4e3, 0.4, 1500.0), gel = elastic_material(2e3, 0.22, 1000.0);
   clay.plastic = true;
@@ -192,7 +192,7 @@ TEST(CompositeSprings, EachMaterialIsDampedByItsOwnRatio) {
     const double little = energy_left(0.02, 0.02, of_second), much = energy_left(0.3, 0.3, of_second);
     EXPECT_LT(much, 0.7 * little);
     const double mixed = energy_left(0.02, 0.3, of_second);
-    // Waves of neither half have passed the few cells between them by then.
+    // At this time no waves have crossed the few cells between the halves.
     EXPECT_NEAR(mixed / (of_second ? much : little), 1.0, 0.05);
   }
 }

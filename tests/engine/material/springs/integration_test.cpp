@@ -283,14 +283,14 @@ class StretchedBlock {
   }
   void let_go() { lattice_.fix_nodes(std::vector<std::uint8_t>(ends_.size(), 0)); }
 
-  // Of the stretch.
+  // Returns the fraction of the stretch that remains.
   double kept() const {
     const LatticeMesh& mesh = lattice_.mesh();
     const double length =
         (lattice_.position(mesh.index(2, 2, 8)) - lattice_.position(mesh.index(2, 2, 0))).norm();
     return (length / length_m - 1.0) / strain;
   }
-  // What has crept in the middle, along it, of the strain there.
+  // Returns the creep strain in the centre, along the block, as a fraction of the strain there.
   double crept() {
     constexpr int along = 2;  // the direction of springs from a node to that with the next k
     const LatticeMesh& mesh = lattice_.mesh();

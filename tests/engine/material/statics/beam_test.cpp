@@ -18,7 +18,7 @@ struct Beam {
   double force_n;  // at the far end of x, towards -z
 };
 
-// The mean sinking of the far end, with the near one held altogether.
+// Returns the mean displacement of the far end if the near end is fixed in all directions.
 double sinking_m(const Beam& beam, const Material& material, CellKind kind) {
   const LatticeMesh mesh = box_mesh(beam.size_m, beam.counts);
   std::vector<FixedAxis> held;
@@ -50,7 +50,7 @@ CellSprings cube_without_body_diagonals(double edge_m, double youngs_modulus_pa)
   return springs;
 }
 
-// As sinking_m(), to first order, of a beam whose cells all have this stiffness.
+// Returns sinking_m() to first order, for a beam whose cells all have this stiffness.
 double linear_sinking_m(const Beam& beam, const CellMatrix& stiffness) {
   const LatticeMesh mesh = box_mesh(beam.size_m, beam.counts);
   const Eigen::Index size = 3 * static_cast<Eigen::Index>(mesh.node_count());

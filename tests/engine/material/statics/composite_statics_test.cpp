@@ -13,7 +13,8 @@ namespace {
 
 constexpr double strain = 1e-6;
 
-// Of a bar along z that is drawn out, its ends free to slip and held against sliding and turning.
+// Returns the effective modulus of a stretched bar along z, whose ends may slip but cannot slide or turn as a
+// whole.
 double youngs_modulus_along_z(const LatticeMesh& mesh, const LatticeMaterials& materials, CellKind kind) {
   Result<StaticBody> body = StaticBody::make(mesh, materials, kind);
   EXPECT_TRUE(body.ok()) << body.error().message;
@@ -51,7 +52,8 @@ bool in_parallel(const Vector3& at) {
   return at.x() > 0.004;
 }
 
-// By the second material's share of the length, or of the cross section.
+// reuss() returns the modulus of a bar in series, voigt() that of a bar in parallel. `share` is the second
+// material's fraction of the length or of the cross section.
 double reuss(double first, double second, double share) {
   return 1.0 / ((1.0 - share) / first + share / second);
 }

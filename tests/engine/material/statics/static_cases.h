@@ -1,4 +1,4 @@
-// What the static solver's tests have in common: bodies, their equilibrium, and their faces.
+// Bodies, equilibrium checks and faces shared by the tests of the static solver.
 #pragma once
 
 #include <vector>
@@ -30,7 +30,7 @@ void visit_face(const LatticeMesh& mesh, int axis, bool high, const Visit& visit
   }
 }
 
-// Held along the axis only, and in one corner and one edge just as much as keeps it from sliding and turning.
+// Fixes the base along the axis only, plus a corner and an edge just enough to prevent sliding and turning.
 std::vector<FixedAxis> slipping_base(const LatticeMesh& mesh, int axis);
 
 }  // namespace spoonbill

@@ -18,8 +18,8 @@ double size_of(const ImplicitShape& shape) {
   return make_signed_distance(shape)->bounds().size();
 }
 
-// The plane of the gradient at the distance leaves the solid on one side, and the point that it leads to is
-// of the surface. Outside, both together prove the distance; inside, that it is a local minimum.
+// Checks that the solid is on one side of the tangent plane at the foot, and that the foot is on the surface.
+// Outside, both together prove the distance; inside, they prove a local minimum.
 void expect_proven(const ImplicitShape& shape, const Vector3& point, double tolerance,
                    double inside_tolerance) {
   const auto solid = make_signed_distance(shape);
@@ -44,8 +44,8 @@ TEST(ImplicitShapes, DistancesOfConvexOnesAreProvenByTheirSupport) {
     if (trial % 5 == 0) point[random.integer(0, 2)] = 0.0;
     if (trial % 25 == 0) point = point.cwiseProduct(Vector3::Unit(random.integer(0, 2)));
     SCOPED_TRACE(trial);
-    // Inside a superquadric a search can end a little early, where the point lies in a plane of symmetry: by
-    // at most 1.1e-5 of the size in 200,000 trials.
+    // Inside a superquadric, in a plane of symmetry, the search can end slightly early: by at most 1.1e-5 of
+    // the size in 200,000 trials.
     expect_proven(shape, point, 1e-12, trial % convex_shape_kinds == 6 ? 2e-5 : 1e-12);
   }
 }
@@ -58,7 +58,7 @@ TEST(ImplicitShapes, DistancesOfConvexOnesAreTheBestOverAllDirections) {
     const Box bounds = solid->bounds();
     const Vector3 point =
         0.5 * (bounds.low + bounds.high) + (bounds.high - bounds.low).cwiseProduct(random_in_cube(random));
-    // The search over directions can end a little before the best where they make an edge.
+    // The search over directions can end slightly before the optimum if the optimum is at a ridge.
     const double found = distance_by_support(shape, point), distance = solid->at(point).distance_m;
     EXPECT_LE(found, distance + 1e-12) << trial;
     EXPECT_GE(found, distance - 1e-3 * bounds.size()) << trial;
@@ -104,7 +104,7 @@ TEST(ImplicitShapes, KeepWhatASignedDistancePromises) {
                   .ok());
 }
 
-// Thin discs and needles, on the axes, in the middle and off the rim.
+// The ellipsoids are thin discs and needles; points are on their axes, in the centre and beside the rim.
 TEST(ImplicitShapes, EllipsoidsOfAnyAxesKeepTheirDigits) {
   const Vector3 kinds[] = {{0.1, 1e-4, 0.1}, {1e-4, 0.1, 1e-4}, {0.1, 0.01, 1e-4}, {0.01, 0.01, 0.01}};
   const double shares[] = {0.0, 1e-12, 1e-6, 0.5, 1.0 - 1e-9, 1.0, 1.5, 30.0};
@@ -169,7 +169,7 @@ TEST(ImplicitShapes, AllocateNothing) {
   }
 }
 
-// A ball with one thing wrong at a time.
+// A ball's distance with one fault at a time.
 class WrongBall final : public SignedDistance {
  public:
   enum class Fault { none, not_finite, too_steep, not_unit, other_gradient, not_convex, bounds };

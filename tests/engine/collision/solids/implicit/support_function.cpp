@@ -27,7 +27,7 @@ struct SupportFunction {
   }
   double operator()(const TorusShape& s) const { return s.ring_radius_m * across(n) + s.tube_radius_m; }
   double operator()(const HalfSpaceShape&) const { return HUGE_VAL; }
-  // The dual of a norm of power q is that of q / (q - 1); of nested norms, the nested duals.
+  // The dual of a norm with exponent q has the exponent q / (q - 1); nested norms have nested duals.
   double operator()(const SuperquadricShape& s) const {
     const auto norm = [](double a, double b, double exponent) {
       const double power = 1.0 / (1.0 - 0.5 * exponent), high = std::max(a, b);

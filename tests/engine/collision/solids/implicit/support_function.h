@@ -1,5 +1,5 @@
-// What is known of a convex solid without its distance: its support function, and from it, by search over all
-// directions, the distance.
+// Properties of a convex solid that do not need its distance function: its support function, and the distance
+// found from that by a search over all directions.
 #pragma once
 
 #include "engine/collision/solids/implicit_shapes.h"
@@ -7,21 +7,22 @@
 
 namespace spoonbill {
 
-// The farthest that the solid reaches along a unit direction. Not for a torus or a half-space.
+// Returns how far the solid reaches along a unit direction. Not for a torus or a half-space.
 double support(const ImplicitShape& shape, const Vector3& direction);
 
-// The largest of direction . point - support(direction): the signed distance of a convex solid, from below,
-// by many directions and a search around the best of them.
+// Returns the maximum of direction . point - support(direction), which is the signed distance of a convex
+// solid. Searches many directions and around the best of them, so the result is a lower bound.
 double distance_by_support(const ImplicitShape& shape, const Vector3& point);
 
-// Valid, of every convex kind but the half-space in turn, 1 to 100 mm, thin ones among them.
+// Returns a valid shape of 1 to 100 mm, possibly thin. `kind` selects among the convex kinds except the
+// half-space.
 ImplicitShape random_convex_shape(Random& random, int kind);
 inline constexpr int convex_shape_kinds = 7;
 
-// Any of unit length, or within the unit cube.
+// Returns a direction of unit length; random_in_cube() returns a point in the unit cube.
 Vector3 random_direction(Random& random);
 Vector3 random_in_cube(Random& random);
-// About any axis, by less than half a turn.
+// Returns a rotation about any axis by less than half a turn.
 Quaternion random_turn(Random& random);
 
 }  // namespace spoonbill
