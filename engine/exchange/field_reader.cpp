@@ -251,9 +251,12 @@ void FieldReader::finish() {
     if (std::find(known_fields_.begin(), known_fields_.end(), item.key()) != known_fields_.end()) continue;
     std::string known;
     for (const std::string& field : known_fields_) known += (known.empty() ? "" : ", ") + field;
-    refuse(
-        "has an unknown field " + json_excerpt(Json(item.key())) + (known.empty() ? "" : "; known: " + known),
-        ErrorCode::unknown);
+    const std::string about = source_ + ": " + (path_.empty() ? "" : path_ + " ");
+    *problem_ = Error{ErrorCode::unknown,
+                      about + "has an unknown field " + json_excerpt(Json(item.key())) +
+                          (known.empty() ? "" : "; known: " + known),
+                      path_to(item.key())};
+    return;
   }
 }
 

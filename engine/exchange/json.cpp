@@ -77,7 +77,10 @@ class StrictBuilder : public nlohmann::json_sax<Json> {
                     "an object has more than " + std::to_string(field_limit) + " fields");
     }
     const auto [field, is_new] = fields.emplace(name, nullptr);
-    if (!is_new) return refuse(ErrorCode::duplicate, "field " + json_excerpt(name) + " is given twice");
+    if (!is_new) {
+      field_ = name;
+      return refuse(ErrorCode::duplicate, "field " + json_excerpt(name) + " is given twice");
+    }
     slot_ = &field->second;
     return true;
   }
@@ -94,6 +97,7 @@ class StrictBuilder : public nlohmann::json_sax<Json> {
 
   ErrorCode code() const { return code_; }
   const std::string& complaint() const { return complaint_; }
+  const std::string& field() const { return field_; }  // the field at fault; empty if there is none
   // Offset of a syntax error in bytes; nullopt if the builder itself refused the text.
   std::optional<std::size_t> error_offset() const { return error_offset_; }
   Json release_value() { return std::move(root_); }
@@ -148,6 +152,7 @@ class StrictBuilder : public nlohmann::json_sax<Json> {
   std::size_t values_ = 0;
   ErrorCode code_ = ErrorCode::malformed;
   std::string complaint_;
+  std::string field_;
   std::optional<std::size_t> error_offset_;
 };
 
@@ -293,8 +298,10 @@ Result<Json> parse_json(std::string_view text, const std::string& source) {
                  source + ": " + position_text(text, zero + 1) + ": a zero byte, which is not JSON"};
   }
   const auto read = static_cast<std::size_t>(furthest - text.data());
-  return Error{builder.code(), source + ": " + position_text(text, builder.error_offset().value_or(read)) +
-                                   ": " + to_printable_line(builder.complaint())};
+  return Error{builder.code(),
+               source + ": " + position_text(text, builder.error_offset().value_or(read)) + ": " +
+                   to_printable_line(builder.complaint()),
+               builder.field()};
 }
 
 std::string json_to_line(const Json& json) {

@@ -14,9 +14,10 @@ Status check_in_domain(const std::string& field, double parameter, const KnotVec
 Status check_point(const Load& load, std::size_t index, const Surface& surface) {
   const auto* point = std::get_if<PointLoad>(&load);
   if (point == nullptr) return {};
-  const std::string name = "loads[" + std::to_string(index) + "]: ";
-  if (Status status = check_in_domain(name + "u", point->u, surface.u); !status.ok()) return status;
-  return check_in_domain(name + "v", point->v, surface.v);
+  Status status = check_in_domain("u", point->u, surface.u);
+  if (status.ok()) status = check_in_domain("v", point->v, surface.v);
+  if (status.ok()) return {};
+  return status.error().in("loads[" + std::to_string(index) + "]");
 }
 
 }  // namespace
@@ -35,8 +36,10 @@ Status check_lattice_request(const LatticeRequest& lattice) {
   int product = 1;
   for (std::size_t direction = 0; direction < 3; ++direction) {
     const int count = (*lattice.counts)[direction];
-    const std::string name = "lattice: nodes[" + std::to_string(direction) + "]";
-    if (Status status = check_range(name, count, node_count_range); !status.ok()) return status;
+    const std::string name = "nodes[" + std::to_string(direction) + "]";
+    if (Status status = check_range(name, count, node_count_range); !status) {
+      return status.error().in("lattice");
+    }
     product *= count;
   }
   if (product <= node_budget_range.high) return {};

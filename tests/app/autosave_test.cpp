@@ -128,6 +128,7 @@ TEST(Autosave, AFullDiskKeepsTheLastWholeOne) {
   }
   const Status failed = autosave.write(handle("second"));
   ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.error().code, ErrorCode::unwritable);
   EXPECT_NE(failed.error().message.find("autosave"), std::string::npos) << failed.error().message;
   const auto found = autosave.recovered_document();
   ASSERT_TRUE(found) << found.error().message;

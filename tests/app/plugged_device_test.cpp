@@ -13,6 +13,7 @@
 #include "engine/base/assert.h"
 #include "tests/app/wait_for.h"
 #include "tests/app/workplace.h"
+#include "tests/engine/refusal.h"
 #include "tests/engine/simulation/handle.h"
 
 namespace spoonbill {
@@ -191,7 +192,7 @@ TEST(PluggedDevice, IsRefusedWhereItDoesNotAnswerOrPromisesWhatNoDeviceDoes) {
   boundless.maximum_force_n = std::nan("");
   const auto refused = start_live(std::make_unique<PluggedDevice>(hardware, boundless));
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("maximum_force_n"), std::string::npos) << refused.error().message;
+  EXPECT_EQ(Refusal(refused), Refusal(ErrorCode::out_of_range, "maximum_force_n")) << refused.error().message;
   EXPECT_FALSE(hardware->is_open);
 }
 

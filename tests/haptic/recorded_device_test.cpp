@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "haptic/recording_lines.h"
+#include "tests/engine/refusal.h"
 #include "tests/haptic/sample_recording.h"
 
 namespace spoonbill {
@@ -45,8 +46,7 @@ TEST(RecordedDevice, NamesTheFieldThatIsOutOfRange) {
     json["device"][field] = -1;
     const auto read = header_from_json(json, "bad");
     ASSERT_FALSE(read.ok()) << field;
-    EXPECT_TRUE(read.error().message.starts_with(std::string("bad: device.") + field))
-        << read.error().message;
+    EXPECT_EQ(Refusal(read), Refusal(ErrorCode::out_of_range, std::string("device.") + field));
   }
 }
 

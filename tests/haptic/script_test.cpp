@@ -8,6 +8,7 @@
 #include "tests/engine/effort.h"
 #include "tests/engine/exchange/damage.h"
 #include "tests/engine/exchange/sample_document.h"
+#include "tests/engine/refusal.h"
 
 namespace spoonbill {
 namespace {
@@ -20,9 +21,9 @@ Result<Script> compile(const std::string& steps) {
   return script_from_json(json.value(), "bend.json", "scripts");
 }
 
-std::string script_refusal(const std::string& steps) {
+Refusal script_refusal(const std::string& steps) {
   const auto script = compile(steps);
-  return script.ok() ? "accepted" : script.error().message;
+  return Refusal(script);
 }
 
 constexpr const char* start = "{\"start_mm\": [60, 40, 0]}";
@@ -97,34 +98,31 @@ TEST(Script, TakesTheHandsProperties) {
 
 TEST(Script, NamesWhatIsWrong) {
   const std::string begin = std::string(start) + ",";
-  EXPECT_EQ(script_refusal(""), "bend.json: steps is a list of 0, must be a list of 1 to 10000");
-  EXPECT_EQ(script_refusal("{\"hold_s\": 1}"),
+  EXPECT_EQ(script_refusal(""), Refusal(ErrorCode::too_few, "steps"));
+  EXPECT_EQ(script_refusal("{\"hold_s\": 1}").message,
             "bend.json: steps[0] needs a start; put a step with start_mm before it");
-  EXPECT_EQ(script_refusal("{\"grip\": true}"),
-            "bend.json: steps have no start; begin with a step with start_mm");
-  EXPECT_EQ(script_refusal(begin + start),
-            "bend.json: steps[1].start_mm must come once, before the other motions");
-  EXPECT_EQ(script_refusal(begin + "{\"move_to_mm\": [0,0,0]}"), "bend.json: steps[1].over_s is missing");
-  EXPECT_EQ(script_refusal(begin + "{\"move_to_mm\": [0,0,0], \"over_s\": 0}"),
+  EXPECT_EQ(script_refusal("{\"grip\": true}"), Refusal(ErrorCode::out_of_range, "steps"));
+  EXPECT_EQ(script_refusal(begin + start), Refusal(ErrorCode::out_of_range, "steps[1].start_mm"));
+  EXPECT_EQ(script_refusal(begin + "{\"move_to_mm\": [0,0,0]}"),
+            Refusal(ErrorCode::missing, "steps[1].over_s"));
+  EXPECT_EQ(script_refusal(begin + "{\"move_to_mm\": [0,0,0], \"over_s\": 0}").message,
             "bend.json: steps[1].over_s is 0, must be 0.001 to 600");
   EXPECT_EQ(script_refusal(begin + "{\"hold_s\": 0.0005}"),
-            "bend.json: steps[1].hold_s is 5e-04, must be whole milliseconds");
+            Refusal(ErrorCode::out_of_range, "steps[1].hold_s"));
   EXPECT_EQ(script_refusal(begin + "{\"hold_s\": 599.999},{\"hold_s\": 0.002}"),
-            "bend.json: steps[2] makes the script longer than 10 minutes; shorten it");
+            Refusal(ErrorCode::inconsistent, "steps[2]"));
   EXPECT_EQ(script_refusal(begin + "{\"hold_s\": 2},{\"at_s\": 1, \"grip\": true}"),
-            "bend.json: steps[2].at_s is before the end of the steps before it, at 2 s");
+            Refusal(ErrorCode::out_of_range, "steps[2].at_s"));
   EXPECT_EQ(script_refusal(begin + "{\"move_to_mm\": [0,0,99999], \"over_s\": 1}"),
-            "bend.json: steps[1].move_to_mm[2] is 99999, must be -10000 to 10000");
-  EXPECT_EQ(script_refusal(begin + "{\"note\": \"idle\"}"),
-            "bend.json: steps[1] has no action; known: start_mm, move_to_mm, turn_to, hold_s, grip, "
-            "at_s, command");
+            Refusal(ErrorCode::out_of_range, "steps[1].move_to_mm[2]"));
+  EXPECT_EQ(script_refusal(begin + "{\"note\": \"idle\"}"), Refusal(ErrorCode::inconsistent, "steps[1]"));
   EXPECT_EQ(script_refusal(begin + "{\"hold_s\": 1, \"over_s\": 2}"),
-            "bend.json: steps[1] has an unknown field \"over_s\"; known: hold_s");
+            Refusal(ErrorCode::unknown, "steps[1].over_s"));
   EXPECT_EQ(script_refusal(begin + "{\"command\": \"set_tool\", \"kind\": \"cube\"}"),
-            "bend.json: steps[1]: kind is \"cube\", must be point or sphere or solid");
-  EXPECT_EQ(script_refusal(begin + "5"), "bend.json: steps[1] is 5, must be an object");
+            Refusal(ErrorCode::unknown, "kind"));
+  EXPECT_EQ(script_refusal(begin + "5"), Refusal(ErrorCode::wrong_type, "steps[1]"));
   EXPECT_EQ(script_refusal(begin + "{\"turn_to\": {\"axis\": [0,0,0], \"degrees\": 3}, \"over_s\": 1}"),
-            "bend.json: steps[1].turn_to.axis is zero, must have a length");
+            Refusal(ErrorCode::degenerate, "steps[1].turn_to.axis"));
 }
 
 TEST(Script, SaysWhichModelIsMissing) {

@@ -73,6 +73,7 @@ TEST_F(ImageFiles, BrokenPngIsRefusedByName) {
   std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
   const auto cut = read_png(path);
   ASSERT_FALSE(cut);
+  EXPECT_EQ(cut.error().code, ErrorCode::malformed);
   EXPECT_NE(cut.error().message.find("broken.png"), std::string::npos);
 
   std::ofstream(path, std::ios::trunc) << "no picture at all";
@@ -84,6 +85,7 @@ TEST_F(ImageFiles, BrokenPngIsRefusedByName) {
 TEST_F(ImageFiles, AFolderThatIsMissingIsAnErrorAndLeavesNothing) {
   const auto status = write_png(folder_ / "nowhere" / "a.png", noise(8, 8, true));
   ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().code, ErrorCode::unwritable);
   EXPECT_NE(status.error().message.find("a.png"), std::string::npos);
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }

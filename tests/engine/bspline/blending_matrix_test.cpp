@@ -195,10 +195,12 @@ TEST(SchoenbergWhitney, NamesTheControlPointInAGap) {
   EXPECT_LT(Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues()(19), 1e-15);
   const Status status = check_schoenberg_whitney(knots, parameters);
   ASSERT_FALSE(status.ok());
-  EXPECT_EQ(status.error().message,
-            "control point 10 of 20 has no sample of its own between 0.4117647058823529 and "
-            "0.6470588235294118; add "
-            "samples there");
+  EXPECT_EQ(status.error().code, ErrorCode::too_few);
+  EXPECT_NE(status.error().message.find("control point 10 of 20"), std::string::npos)
+      << status.error().message;
+  EXPECT_NE(status.error().message.find("between 0.4117647058823529 and 0.6470588235294118"),
+            std::string::npos)
+      << status.error().message;
   expect_inverse_refused(knots, parameters, ErrorCode::too_few);
 }
 

@@ -2,13 +2,14 @@
 
 #include "engine/exchange/document.h"
 #include "tests/engine/exchange/sample_document.h"
+#include "tests/engine/refusal.h"
 
 namespace spoonbill {
 namespace {
 
-std::string command_refusal(const char* text) {
+Refusal command_refusal(const char* text) {
   const auto command = command_from_json(parse_json(text, "text").value(), "bend.jsonl: line 4");
-  return command.ok() ? "accepted" : command.error().message;
+  return Refusal(command);
 }
 
 TEST(Command, ReadsWhatItWrites) {
@@ -41,18 +42,17 @@ TEST(Command, KnowsItsNames) {
 }
 
 TEST(Command, NamesWhatIsWrong) {
-  EXPECT_EQ(command_refusal("{\"command\": \"fly\"}"),
+  EXPECT_EQ(command_refusal("{\"command\": \"fly\"}").message,
             "bend.jsonl: line 4: command is \"fly\", must be one of place_plane, remove_planes, set_tool, "
             "set_material, set_sculpting, set_symmetry, reset_proxy, lift_tool, keep_shape, refine_knots");
-  EXPECT_EQ(command_refusal("{}"), "bend.jsonl: line 4: command is missing");
-  EXPECT_EQ(command_refusal("{\"command\": 3}"),
-            "bend.jsonl: line 4: command is 3, must be a text in quotes");
-  EXPECT_EQ(command_refusal("[]"), "bend.jsonl: line 4: is a list of 0, must be an object");
+  EXPECT_EQ(command_refusal("{}"), Refusal(ErrorCode::missing, "command"));
+  EXPECT_EQ(command_refusal("{\"command\": 3}"), Refusal(ErrorCode::wrong_type, "command"));
+  EXPECT_EQ(command_refusal("[]"), Refusal(ErrorCode::wrong_type));
   EXPECT_EQ(command_refusal("{\"command\": \"keep_shape\", \"now\": true}"),
-            "bend.jsonl: line 4: has an unknown field \"now\"; known: command");
+            Refusal(ErrorCode::unknown, "now"));
   EXPECT_EQ(
       command_refusal("{\"command\": \"place_plane\", \"point_mm\": [1, 2, \"x\"], \"normal\": [1, 0, 0]}"),
-      "bend.jsonl: line 4: point_mm[2] is \"x\", must be a number");
+      Refusal(ErrorCode::wrong_type, "point_mm[2]"));
 }
 
 }  // namespace

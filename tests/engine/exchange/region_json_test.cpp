@@ -6,6 +6,7 @@
 #include "engine/exchange/document.h"
 #include "engine/exchange/scene_json.h"
 #include "tests/engine/exchange/sample_document.h"
+#include "tests/engine/refusal.h"
 
 namespace spoonbill {
 namespace {
@@ -62,34 +63,29 @@ TEST(RegionJson, WrongOnesAreRefusedByField) {
   const auto refusal = [](const auto& spoil) {
     Json json = document_to_json(document_with_regions());
     spoil(json["body"]["regions"]);
-    const Result<Document> read = document_from_json(json, "sample.json");
-    return read.ok() ? std::string("no refusal") : read.error().message;
+    return Refusal(document_from_json(json, "sample.json"));
   };
-  const std::string backwards = refusal([](Json& j) { j[1]["region"]["along"] = {0.7, 0.2}; });
-  EXPECT_EQ(backwards.find("sample.json: body.regions[1].region"), 0u) << backwards;
-  EXPECT_NE(backwards.find("along is [0.7, 0.2], must run from the lower to the higher"), std::string::npos)
-      << backwards;
+  const Refusal backwards = refusal([](Json& j) { j[1]["region"]["along"] = {0.7, 0.2}; });
+  EXPECT_EQ(backwards, Refusal(ErrorCode::inconsistent, "body.regions[1].region"));
+  EXPECT_NE(backwards.message.find("along is [0.7, 0.2]"), std::string::npos) << backwards;
   EXPECT_EQ(refusal([](Json& j) {
               j[1]["region"]["along"] = {0.0, 1.5};
             }),
-            "sample.json: body.regions[1].region.along is a list of 2, must be two numbers from 0 to 1");
+            Refusal(ErrorCode::out_of_range, "body.regions[1].region.along"));
   EXPECT_EQ(refusal([](Json& j) { j[0]["region"]["around"] = {0.5}; }),
-            "sample.json: body.regions[0].region.around is a list of 1, must be a list of 2");
+            Refusal(ErrorCode::too_few, "body.regions[0].region.around"));
   EXPECT_EQ(refusal([](Json& j) {
               j[0]["region"]["depth_mm"] = {-1, 2};
             }),
-            "sample.json: body.regions[0].region.depth_mm is a list of 2, must be one or two numbers from 0 "
-            "to 1000");
-  EXPECT_EQ(refusal([](Json& j) { j[1].erase("friction"); }),
-            "sample.json: body.regions[1] must have material or friction, or both");
+            Refusal(ErrorCode::out_of_range, "body.regions[0].region.depth_mm"));
+  EXPECT_EQ(refusal([](Json& j) { j[1].erase("friction"); }), Refusal(ErrorCode::missing, "body.regions[1]"));
   EXPECT_EQ(refusal([](Json& j) { j[1]["friction"] = -1; }),
-            "sample.json: body.regions[1].friction is -1, must be 0 to 5");
+            Refusal(ErrorCode::out_of_range, "body.regions[1].friction"));
   EXPECT_EQ(refusal([](Json& j) { j[0]["material"]["poissons_ratio"] = 0.5; }),
-            "sample.json: body.regions[0].material.poissons_ratio is 0.5, must be 0 to 0.49");
-  EXPECT_EQ(
-      refusal([](Json& j) { j[1]["colour"] = "red"; }),
-      "sample.json: body.regions[1] has an unknown field \"colour\"; known: region, friction, material");
-  EXPECT_EQ(refusal([](Json& j) { j = 3; }), "sample.json: body.regions is 3, must be a list of 0 to 16");
+            Refusal(ErrorCode::out_of_range, "body.regions[0].material.poissons_ratio"));
+  EXPECT_EQ(refusal([](Json& j) { j[1]["colour"] = "red"; }),
+            Refusal(ErrorCode::unknown, "body.regions[1].colour"));
+  EXPECT_EQ(refusal([](Json& j) { j = 3; }), Refusal(ErrorCode::wrong_type, "body.regions"));
 }
 
 }  // namespace

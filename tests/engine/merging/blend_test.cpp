@@ -118,8 +118,8 @@ TEST(Blend, IsMadeWhereTheThirdDerivativesDiffer) {
 TEST(Blend, PatchesThatOverlapByFarAreRefused) {
   const auto merged = merge({tube(0.0, 0.04, 0.01), tube(0.025, 0.08, 0.009)}, request_of(2));
   ASSERT_FALSE(merged.ok());
-  EXPECT_NE(merged.error().message.find("the patches overlap by 15 mm"), std::string::npos)
-      << merged.error().message;
+  EXPECT_EQ(merged.error().code, ErrorCode::mismatch);
+  EXPECT_NE(merged.error().message.find("overlap by 15 mm"), std::string::npos) << merged.error().message;
 }
 
 TEST(Blend, APatchIsNotMergedWithItself) {
@@ -128,9 +128,7 @@ TEST(Blend, APatchIsNotMergedWithItself) {
     const auto merged = merge({level_sheet(0.06, 0.1), sheet, other}, request_of(2));
     ASSERT_FALSE(merged.ok());
     EXPECT_EQ(merged.error().code, ErrorCode::duplicate);
-    EXPECT_EQ(
-        merged.error().message,
-        "patches 2 and 3 are the same surface at the same position; name one of them, or move the other");
+    EXPECT_TRUE(merged.error().message.starts_with("patches 2 and 3 ")) << merged.error().message;
   }
 }
 

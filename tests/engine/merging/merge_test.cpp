@@ -337,9 +337,8 @@ TEST(Merge, MoreThanCanBeHandledIsRefusedAtOnce) {
   std::vector<Surface> parts{level_sheet(0.0, 0.04, 150), level_sheet(0.04, 0.1, 150)};
   const auto merged = merge(parts, request_of(2));
   ASSERT_FALSE(merged.ok());
-  EXPECT_EQ(merged.error().message,
-            "the patches of a row have 297 control points together, more than 200; simplify them first, or "
-            "merge fewer");
+  EXPECT_EQ(merged.error().code, ErrorCode::too_many);
+  EXPECT_NE(merged.error().message.find("297 control points"), std::string::npos) << merged.error().message;
   const auto many = merge(std::vector<Surface>(65, parts[0]), request_of(2));
   ASSERT_FALSE(many.ok());
   EXPECT_EQ(many.error().code, ErrorCode::too_many);

@@ -203,7 +203,7 @@ TEST(Ring, StopsWhereverItIsAskedTo) {
     request.join.progress = Progress([&](double) { return asked++ < stop; });
     const auto merged = merge(square_tube(), request);
     ASSERT_FALSE(merged.ok()) << stop;
-    EXPECT_EQ(merged.error().message, "stopped");
+    EXPECT_EQ(merged.error().code, ErrorCode::cancelled);
     EXPECT_LE(asked, stop + 2);  // immediately
   }
 }

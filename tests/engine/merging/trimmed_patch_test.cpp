@@ -139,8 +139,8 @@ TEST(TrimmedPatch, MoreCornersThanAPatchHoldsAreRefusedAtOnce) {
   saw.insert(saw.end(), {{0.9, 0.9}, {0.1, 0.9}});
   const auto refused = untrimmed(wave(), {polygon(saw)}, 2e-5);
   ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(refused.error().message,
-            "its trims have corners on 99 lines, more than one patch can hold; simplify them");
+  EXPECT_EQ(refused.error().code, ErrorCode::too_many);
+  EXPECT_NE(refused.error().message.find("on 99 lines"), std::string::npos) << refused.error().message;
 }
 
 TEST(TrimmedPatch, ALoopMayCrossTheSeam) {

@@ -144,7 +144,6 @@ TEST(BodySupports, RefuseWhatHoldsNothing) {
   const Error fast = refused(oscillation({}, Vector3(0.5, 0, 0), 10.0));
   EXPECT_EQ(fast.code, ErrorCode::out_of_range);
   EXPECT_EQ(fast.field, "motion");
-  EXPECT_EQ(fast.message.substr(0, 60), "supports[0]: motion reaches 31.41592653589793 m/s, must stay");
 }
 
 // Handle of 60 mm along x, fixed over its first tenth and moved up over its last.

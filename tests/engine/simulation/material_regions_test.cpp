@@ -6,6 +6,7 @@
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/effort.h"
+#include "tests/engine/refusal.h"
 #include "tests/engine/simulation/handle.h"
 
 namespace spoonbill {
@@ -194,8 +195,8 @@ TEST(MaterialRegions, StayWhereTheyAreWhenAShapeIsKept) {
 TEST(MaterialRegions, WrongOnesAreRefused) {
   Scene scene = handle_with_regions(elastic("gel", 1e4), {far_half_of(elastic("rubber", 1e5))});
   scene.bodies[0].regions[0].region.along = {0.9, 0.1};
-  EXPECT_EQ(Simulation::make(scene, InstructionSet::baseline).error().message,
-            "regions[0].along is [0.9, 0.1], must run from the lower to the higher");
+  EXPECT_EQ(Refusal(Simulation::make(scene, InstructionSet::baseline)),
+            Refusal(ErrorCode::inconsistent, "along"));
   scene.bodies.push_back(scene.bodies[0]);
   scene.bodies[0].regions.clear();
   scene.bodies[1].name = "other";

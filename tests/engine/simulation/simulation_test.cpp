@@ -186,11 +186,14 @@ TEST(Simulation, RefusesBodiesThatAreNotClosedTubes) {
   Scene open = small_handle();
   for (int i = 0; i < open.bodies[0].surface.net.rows; ++i)
     open.bodies[0].surface.net.set_point(i, 0, {0.0, 1e-3 * i, 0.0});
-  EXPECT_NE(Simulation::make(open, InstructionSet::baseline).error().message.find("pole"), std::string::npos);
+  const Error without_pole = Simulation::make(open, InstructionSet::baseline).error();
+  EXPECT_EQ(without_pole.code, ErrorCode::inconsistent);
+  EXPECT_NE(without_pole.message.find("pole"), std::string::npos) << without_pole.message;
   Scene inward = small_handle();
   for (double& z : inward.bodies[0].surface.net.z) z = -z;
-  EXPECT_NE(Simulation::make(inward, InstructionSet::baseline).error().message.find("inward"),
-            std::string::npos);
+  const Error inside_out = Simulation::make(inward, InstructionSet::baseline).error();
+  EXPECT_EQ(inside_out.code, ErrorCode::inconsistent);
+  EXPECT_NE(inside_out.message.find("inward"), std::string::npos) << inside_out.message;
 }
 
 TEST(Simulation, OneHashForEveryInstructionSet) {

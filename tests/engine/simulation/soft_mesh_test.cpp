@@ -282,9 +282,7 @@ TEST(SoftMesh, IsRefusedWhereItCannotBe) {
   SoftTool corner = flesh(1000);
   corner.grip = {Vector3::Constant(0.0055), -Vector3::Ones().normalized()};
   expect(soft_tool(ball(), corner), ErrorCode::too_few, "grip");
-  const std::string fine = refusal(soft_tool(ball(), flesh(40000))).message;
-  EXPECT_EQ(fine.substr(0, 39), "tool: mesh: has more than 20000 triangl") << fine;
-  EXPECT_NE(fine.find("use fewer lattice nodes"), std::string::npos) << fine;
+  expect(soft_tool(ball(), flesh(40000)), ErrorCode::too_many, "mesh");
   Tool pulling = soft_tool(ball(), flesh(300));
   pulling.action = ToolAction::pull;
   expect(pulling, ErrorCode::unsupported, "action");

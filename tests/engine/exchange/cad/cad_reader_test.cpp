@@ -248,7 +248,8 @@ TEST_F(CadReader, OtherFilesThatAFileNamesAreNotOpened) {
   const auto found = read_cad(file, {}, [](const CadSurface&) { FAIL() << "a surface of another file"; });
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, ErrorCode::missing);
-  EXPECT_EQ(found.error().message, "contains no surface but names other files; export all as one");
+  EXPECT_EQ(found.error().code, ErrorCode::missing);
+  EXPECT_NE(found.error().message.find("names other files"), std::string::npos) << found.error().message;
 }
 
 // OpenCASCADE names such a use by its number.

@@ -243,7 +243,7 @@ TEST(Tessellation, StopsWhenAskedTo) {
   const auto stopped =
       tessellate(ellipsoid_tube(8, 8), {}, 1e-4, 1000000, Progress([](double) { return false; }));
   ASSERT_FALSE(stopped);
-  EXPECT_EQ(stopped.error().message, "stopped");
+  EXPECT_EQ(stopped.error().code, ErrorCode::cancelled);
   EXPECT_TRUE(tessellate(ellipsoid_tube(8, 8), {}, 1e-4, 1000000, Progress([](double) { return true; })));
 }
 

@@ -8,6 +8,7 @@
 #include "engine/material/lattice/body_lattice.h"
 #include "engine/material/lattice/shell_lattice.h"
 #include "tests/engine/material/lattice/shells.h"
+#include "tests/engine/refusal.h"
 
 namespace spoonbill {
 namespace {
@@ -207,18 +208,15 @@ TEST(BodyRegion, CellsOfAQuarterTurnHoldAQuarterOfTheBar) {
 }
 
 TEST(BodyRegion, WrongOnesAreRefusedByField) {
-  const auto refusal = [](const BodyRegion& region) { return check_region(region).error().message; };
+  const auto refusal = [](const BodyRegion& region) { return Refusal(check_region(region)); };
   EXPECT_TRUE(check_region({}).ok());
   EXPECT_TRUE(check_region({{0.2, 0.4}, {0.9, 0.1}, {0.0, 0.002}}).ok());
-  EXPECT_EQ(refusal({{0.7, 0.2}, {0.0, 1.0}, {0.0, 1.0}}),
-            "along is [0.7, 0.2], must run from the lower to the higher");
-  EXPECT_EQ(refusal({{0.0, 1.5}, {0.0, 1.0}, {0.0, 1.0}}), "along is 1.5, must be 0 to 1");
-  EXPECT_EQ(refusal({{0.0, 1.0}, {0.5, 0.5}, {0.0, 1.0}}),
-            "around is [0.5, 0.5], must run from the lower to the higher");
-  EXPECT_EQ(refusal({{0.0, 1.0}, {0.0, 1.0}, {0.002, 0.001}}),
+  EXPECT_EQ(refusal({{0.7, 0.2}, {0.0, 1.0}, {0.0, 1.0}}), Refusal(ErrorCode::inconsistent, "along"));
+  EXPECT_EQ(refusal({{0.0, 1.5}, {0.0, 1.0}, {0.0, 1.0}}), Refusal(ErrorCode::out_of_range, "along"));
+  EXPECT_EQ(refusal({{0.0, 1.0}, {0.5, 0.5}, {0.0, 1.0}}), Refusal(ErrorCode::inconsistent, "around"));
+  EXPECT_EQ(refusal({{0.0, 1.0}, {0.0, 1.0}, {0.002, 0.001}}).message,
             "depth_mm is [2, 1], must run from at least 0 to more");
-  EXPECT_EQ(refusal({{0.0, 1.0}, {0.0, 1.0}, {-0.001, 0.001}}),
-            "depth_mm is [-1, 1], must run from at least 0 to more");
+  EXPECT_EQ(refusal({{0.0, 1.0}, {0.0, 1.0}, {-0.001, 0.001}}), Refusal(ErrorCode::inconsistent, "depth_mm"));
   const double nothing = std::nan("");
   EXPECT_FALSE(check_region({{nothing, 1.0}, {0.0, 1.0}, {0.0, 1.0}}).ok());
   EXPECT_FALSE(check_region({{0.0, 1.0}, {0.0, nothing}, {0.0, 1.0}}).ok());

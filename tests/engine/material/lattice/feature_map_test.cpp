@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/engine/bspline/random_surface.h"
+#include "tests/engine/refusal.h"
 
 namespace spoonbill {
 namespace {
@@ -116,7 +117,7 @@ TEST(FeatureMap, SettingsHaveRanges) {
   EXPECT_TRUE(check_feature_map({}).ok());
   FeatureMapSettings settings;
   settings.last_rate = std::nan("");
-  EXPECT_EQ(check_feature_map(settings).error().message, "feature_map: last_rate is nan, must be 1e-06 to 1");
+  EXPECT_EQ(Refusal(check_feature_map(settings)), Refusal(ErrorCode::out_of_range, "last_rate"));
   settings = {};
   settings.first_neighbourhood = 0.1;
   EXPECT_FALSE(check_feature_map(settings).ok());
