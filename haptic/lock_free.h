@@ -17,14 +17,14 @@ namespace spoonbill {
 // Passes the newest value from one thread to another. Neither side ever waits; a value that the reader does
 // not fetch in time is overwritten.
 //
-//   writer: fill writing(), then publish().    reader: if (take()) use reading().
+//   writer: fill writing(), then publish().    reader: if (update_reading()) use reading().
 //
-// 1. The writer owns one slot, the reader another, and a third is between them. Publishing and taking swap
+// 1. The writer owns one slot, the reader another, and a third is between them. Publishing and updating swap
 //    slot numbers by one atomic exchange, which also publishes the contents of the slot.
-// 2. Exactly one thread calls writing() and publish(), exactly one calls take() and reading().
+// 2. Exactly one thread calls writing() and publish(), exactly one calls update_reading() and reading().
 // 3. After publish(), writing() is a different slot with an older value: overwrite all of it. Memory owned by
 //    a value, such as a vector's, is reused, so that nothing is allocated after a few rounds.
-// 4. reading() does not change until take() returns true.
+// 4. reading() does not change until update_reading() returns true.
 template <class T>
 class TripleBuffer {
  public:
@@ -39,7 +39,7 @@ class TripleBuffer {
   }
 
   // Returns true and updates reading() if a newer value has been published since the last call.
-  bool take() {
+  bool update_reading() {
     if ((between_.load(std::memory_order_relaxed) & fresh_bit) == 0) return false;
     readers_ = between_.exchange(readers_, std::memory_order_acq_rel) & slot_mask;
     return true;

@@ -104,7 +104,7 @@ SteeredDevice::SteeredDevice(VirtualDevice handle, const HandTarget& start)
     : handle_(std::move(handle)), mailbox_(std::make_shared<TargetMailbox>(start)), follower_(start) {}
 
 std::optional<DeviceReading> SteeredDevice::read() {
-  if (const HandTarget* target = mailbox_->take()) follower_.aim(*target);
+  if (const HandTarget* target = mailbox_->receive()) follower_.aim(*target);
   handle_.set_target(follower_.step());
   return handle_.read();
 }

@@ -113,7 +113,7 @@ class TargetMailbox {
 
   // Returns the newest target, or null if none was sent since the last call. The pointer is valid until the
   // next call. Called only by the haptic thread.
-  const HandTarget* take() { return targets_.take() ? &targets_.reading() : nullptr; }
+  const HandTarget* receive() { return targets_.update_reading() ? &targets_.reading() : nullptr; }
 
  private:
   TripleBuffer<HandTarget> targets_;

@@ -69,7 +69,7 @@ Result<CadSolids> join_solids(const CheckOptions& options, const std::vector<Bod
 
 std::vector<const Surface*> surfaces_of(const CadSolid& solid, const std::vector<Body>& all) {
   std::vector<const Surface*> surfaces;
-  for (const std::size_t body : solid.places) surfaces.push_back(&all[body].surface);
+  for (const std::size_t body : solid.surface_indices) surfaces.push_back(&all[body].surface);
   return surfaces;
 }
 
@@ -168,7 +168,8 @@ Status check(const CheckOptions& options, Console& console) {
     solids = std::move(none);
   }
   std::set<std::size_t> faces;
-  for (const CadSolid& solid : solids->solids) faces.insert(solid.places.begin(), solid.places.end());
+  for (const CadSolid& solid : solids->solids)
+    faces.insert(solid.surface_indices.begin(), solid.surface_indices.end());
   const auto solid_facts = check_solids(facts, solids.value(), all, interrupt, console);
   if (!solid_facts) return solid_facts.error().in(options.model.string());
   const auto bodies = check_bodies(facts, all, faces, interrupt, console);

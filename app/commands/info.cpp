@@ -70,7 +70,7 @@ Status add_document_and_simulation(FactSheet& facts, const Document& document, c
   simulation->write_snapshot(snapshot);
   add_simulation_facts(facts, snapshot, document.scene.bodies);
   add_elasticity_facts(facts, simulation.value());
-  add_notes(facts, simulation->remarks());
+  add_notes(facts, simulation->warnings());
   add_cell_facts(facts, simulation.value(), maps.reports());
   return {};
 }

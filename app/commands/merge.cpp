@@ -239,8 +239,8 @@ void add_tight_fillet(const Surface& merged, const Joint& corner, const std::str
 void add_merge_notes(const MergeOptions& options, const MergeOutcome& outcome,
                      std::vector<std::string>& notes) {
   if (options.request.join.blend_m > 0.0) add_unused_blends(outcome.merged.joints, notes);
-  for (const auto& [a, b, why] : outcome.merged.left_open) {
-    notes.push_back(edges_text(a, b) + " touch too and stay open: " + why);
+  for (const auto& [a, b, reason] : outcome.merged.left_open) {
+    notes.push_back(edges_text(a, b) + " touch too and stay open: " + reason);
   }
   const Surface& surface = outcome.merged.surface;
   if (find_closing(surface).closedness == Closedness::solid &&

@@ -61,7 +61,7 @@ Status record_input(const RecordOptions& options, const RecordingHeader& header,
     return Session::make(header.document, model, header.device, options.instruction_set, maps.watch());
   }();
   if (!session) return session.error();
-  for (const std::string& note : session->simulation.remarks()) console.err << note << '\n';
+  for (const std::string& note : session->simulation.warnings()) console.err << note << '\n';
   auto writer = RecordingWriter::create(options.out, header);
   if (!writer) return writer.error();
   const std::size_t command_count = input.commands.size();

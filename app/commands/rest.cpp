@@ -34,7 +34,8 @@ void add_rest_body(FactSheet& facts, const Body& body, const RestShape& shape, J
   const Vector3 displacement = shape.result.displacement_m[furthest], position = shape.mesh.nodes[furthest];
   facts.add("Body", body.name, "", nullptr);
   facts.add("  Fixed nodes",
-            std::to_string(shape.held_nodes) + " of " + std::to_string(shape.mesh.node_count()), "", nullptr);
+            std::to_string(shape.fixed_nodes) + " of " + std::to_string(shape.mesh.node_count()), "",
+            nullptr);
   facts.add("  Displaced",
             "at most " + short_length_text(displacement.norm()) + ", at " + position_text(position), "",
             nullptr);
@@ -51,7 +52,7 @@ void add_rest_body(FactSheet& facts, const Body& body, const RestShape& shape, J
   }
   list.push_back({{"name", body.name},
                   {"nodes", shape.mesh.node_count()},
-                  {"held_nodes", shape.held_nodes},
+                  {"held_nodes", shape.fixed_nodes},
                   {"largest_displacement_m", displacement.norm()},
                   {"displacement_m", components_json(displacement)},
                   {"displaced_m", components_json(position)},

@@ -88,7 +88,7 @@ void FrameLog::add(const ShownFrame& shown) {
   const Json line = {{"frame", ++frames_},
                      {"tick", shown.tick},
                      {"session", shown.session},
-                     {"deed", shown.edit_count},
+                     {"edit", shown.edit_count},
                      {"recording", shown.recording},
                      {"in_stroke", shown.in_stroke},
                      {"can_undo", shown.can_undo},

@@ -68,7 +68,7 @@ struct ShownFrame {
   bool can_undo = false;
   bool can_redo = false;
   bool pressing = false;  // the stroke button is down on the picture
-  std::string prompt;     // "file", "lump", "question", or empty
+  std::string prompt;     // "file", "shape", "question", or empty
   std::string typed;      // text of the file prompt
   double pointer_x_px = 0.0;
   double pointer_y_px = 0.0;

@@ -224,7 +224,7 @@ ShownFrame Editor::shown_frame(const LiveFrame& frame) const {
   shown.can_redo = frame.facts.can_redo;
   shown.pressing = hand_.is_pressing();
   shown.prompt = file_prompt_.is_open()                      ? "file"
-                 : shape_prompt_.is_open()                   ? "lump"
+                 : shape_prompt_.is_open()                   ? "shape"
                  : unsaved_.is_open() || recovery_.is_open() ? "question"
                                                              : "";
   if (file_prompt_.is_open()) shown.typed = file_prompt_.typed();

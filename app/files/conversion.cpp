@@ -210,7 +210,7 @@ class Mesher {
   Status mesh() {
     CadSolids solids = join_solids();
     std::map<std::size_t, CadSolid*> starts;
-    for (CadSolid& solid : solids.solids) starts[solid.places.front()] = &solid;
+    for (CadSolid& solid : solids.solids) starts[solid.surface_indices.front()] = &solid;
     const std::set<std::size_t> loose(solids.loose.begin(), solids.loose.end());
     for (std::size_t k = 0; k < model_.surfaces.size(); ++k) {
       if (const auto solid = starts.find(k); solid != starts.end()) {

@@ -41,7 +41,7 @@ Result<std::filesystem::path> state_folder() {
   return folder;
 }
 
-std::optional<FileLock> FileLock::take(const std::filesystem::path& file) {
+std::optional<FileLock> FileLock::acquire(const std::filesystem::path& file) {
   while (true) {
     const int descriptor = open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
     if (descriptor < 0) return std::nullopt;

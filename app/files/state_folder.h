@@ -17,7 +17,7 @@ Result<std::filesystem::path> state_folder();
 class FileLock {
  public:
   // Returns nothing if this or another process holds the lock, or if the file cannot be created.
-  static std::optional<FileLock> take(const std::filesystem::path& file);
+  static std::optional<FileLock> acquire(const std::filesystem::path& file);
 
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&& other) noexcept;

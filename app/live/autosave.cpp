@@ -84,7 +84,7 @@ AutosaveClaim AutosaveClaim::acquire(const std::filesystem::path& folder, const 
   std::optional<AutosaveClaim> first_free;
   for (int number = 1; number <= windows_limit; ++number) {
     Autosave autosave(folder, of, number);
-    auto lock = FileLock::take(autosave.file().string() + ".lock");
+    auto lock = FileLock::acquire(autosave.file().string() + ".lock");
     if (!lock) continue;
     std::error_code problem;
     const bool exists = std::filesystem::exists(autosave.file(), problem);

@@ -108,7 +108,7 @@ bool Journal::process_pending() {
     entry = std::monostate{};  // freed here, because the queue returns the slot to the haptic thread
     worked = true;
   }
-  if (!scenes_.take()) return worked;
+  if (!scenes_.update_reading()) return worked;
   store(scenes_.reading());
   return true;
 }

@@ -65,7 +65,7 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const Document& document
   LiveFrame first;
   write_snapshot(made, first.snapshot);
   write_facts(made, first.facts);
-  const std::vector<std::string> notes = made.simulation.remarks();
+  const std::vector<std::string> notes = made.simulation.warnings();
   const LiveScene first_scene{made.title, make_session_document(made).scene};
   std::unique_ptr<LiveSession> live(
       new LiveSession(std::move(session).value(), std::move(device), settings, first, first_scene));
@@ -148,7 +148,7 @@ bool LiveSession::save(std::filesystem::path file) {
 }
 
 const LiveFrame& LiveSession::frame() {
-  exchange_.frames.take();
+  exchange_.frames.update_reading();
   return exchange_.frames.reading();
 }
 

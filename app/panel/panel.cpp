@@ -190,7 +190,8 @@ void draw_material(const PanelModel& model, const Theme& theme, PanelAnswer& ans
     if (is_field(field, &Material::youngs_modulus_pa)) fact_row("Effective E", effective_modulus_text(model));
   }
   bool damping_changed = field_row(field_of(&Sculpting::damping_per_s), sculpting, answer.refusal);
-  damping_changed |= switch_row("After touch", after_touch_text(material), "no ringing", sculpting.settles);
+  damping_changed |=
+      switch_row("After touch", after_touch_text(material), "no ringing", sculpting.is_critically_damped);
   fact_row("Mass", mass_text(model));
   if (changed) request_material(std::move(material), answer);
   if (damping_changed) answer.requests.emplace_back(Command(SetSculpting{sculpting}));

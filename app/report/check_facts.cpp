@@ -157,11 +157,12 @@ std::string faces_text(std::size_t count) {
 // Adds the mass of a solid whose faces all have the same material. With several materials it is unknown which
 // part is made of which.
 void add_solid_mass(FactSheet& facts, const CadSolid& solid, const std::vector<Body>& bodies, Json& json) {
-  const Material& material = bodies[solid.places.front()].material;
-  const bool is_same = std::all_of(solid.places.begin(), solid.places.end(), [&](std::size_t body) {
-    const Material& other = bodies[body].material;
-    return other.name == material.name && other.density_kg_per_m3 == material.density_kg_per_m3;
-  });
+  const Material& material = bodies[solid.surface_indices.front()].material;
+  const bool is_same =
+      std::all_of(solid.surface_indices.begin(), solid.surface_indices.end(), [&](std::size_t body) {
+        const Material& other = bodies[body].material;
+        return other.name == material.name && other.density_kg_per_m3 == material.density_kg_per_m3;
+      });
   if (!is_same) {
     facts.add("  Mass", "unknown: its faces have several materials; give them the same", "", nullptr);
     return;
@@ -289,8 +290,8 @@ Json add_solid_check_facts(FactSheet& facts, const CadSolid& solid, const SolidC
                {"sound", problems.empty()},
                {"problems", problems},
                {"bodies", Json::array()}};
-  for (const std::size_t body : solid.places) json["bodies"].push_back(bodies[body].name);
-  facts.add("Solid", solid.name + ": closed, " + faces_text(solid.places.size()), "", nullptr);
+  for (const std::size_t body : solid.surface_indices) json["bodies"].push_back(bodies[body].name);
+  facts.add("Solid", solid.name + ": closed, " + faces_text(solid.surface_indices.size()), "", nullptr);
   for (const std::string& problem : problems) facts.add("  Problem", problem, "", nullptr);
   if (solid.gap_m > least_gap_m) {
     facts.add("  Gaps", "up to " + short_length_text(solid.gap_m) + " between faces", "", nullptr);

@@ -80,7 +80,8 @@ void add_body(FactSheet& facts, const FittedBody& body, Json& list) {
 std::string unfitted_island_text(const UnfittedIsland& island) {
   const auto along = [&](int axis) { return millimetres_text(island.centre_m[axis]); };
   return "the island of " + size_text(island.size_m) + " about " + along(0) + ", " + along(1) + ", " +
-         along(2) + " was skipped, with " + count_text(island.points, "point", "points") + ": " + island.why;
+         along(2) + " was skipped, with " + count_text(island.points, "point", "points") + ": " +
+         island.reason;
 }
 
 void append_float(std::string& bytes, double number) {

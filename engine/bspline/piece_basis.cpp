@@ -72,7 +72,7 @@ int PieceBasis::find_piece(double u) const {
   return piece;
 }
 
-void PieceBasis::take(double u, Values& values) const {
+void PieceBasis::evaluate(double u, Values& values) const {
   SPOONBILL_ASSERT_DEBUG(u >= breaks_.front() && u <= breaks_.back());
   const int piece = find_piece(u);
   values.controls = controls_.data() + piece * (degree_ + 1);
@@ -116,8 +116,8 @@ SurfacePoint evaluate(const PiecewiseSurface& surface, double u, double v) {
   SPOONBILL_ASSERT_DEBUG(surface.surface != nullptr && surface.u != nullptr && surface.v != nullptr);
   const Surface& whole = *surface.surface;
   PieceBasis::Values bu, bv;
-  surface.u->take(whole.u.into_domain(u), bu);
-  surface.v->take(whole.v.into_domain(v), bv);
+  surface.u->evaluate(whole.u.into_domain(u), bu);
+  surface.v->evaluate(whole.v.into_domain(v), bv);
   const double* const controls[3] = {whole.net.x.data(), whole.net.y.data(), whole.net.z.data()};
   SurfacePoint point;
   for (int axis = 0; axis < 3; ++axis) {

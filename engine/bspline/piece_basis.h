@@ -23,7 +23,7 @@ class PieceBasis {
     std::array<std::array<double, 12>, 3> value;
   };
   // Computes the values and both derivatives at u, which must be in the domain.
-  void take(double u, Values& values) const;
+  void evaluate(double u, Values& values) const;
 
   // Computes value[0] alone at u, which must be in the domain.
   void evaluate_values(double u, Values& values) const;

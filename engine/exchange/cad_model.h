@@ -61,7 +61,7 @@ struct CadFileContent {
 struct CadSolid {
   std::string name;
   // Indices into CadModel::surfaces of its faces, ascending, including the faces of its cavities.
-  std::vector<std::size_t> places;
+  std::vector<std::size_t> surface_indices;
   TriangleMesh mesh;           // watertight; normals out of the material
   double chord_error_m = 0.0;  // largest distance of samples of faces and edges from their triangles
   double gap_m = 0.0;          // widest gap between two faces that share an edge

@@ -24,8 +24,9 @@ struct Counts {
 // Reads the JSON line of a solid.
 void read_head(FieldReader& reader, std::size_t surfaces, CadSolid& solid, Counts& counts) {
   solid.name = clean_cad_name(reader.text("name"), "solid");
-  solid.places = read_surface_indices(reader, "places", surfaces);
-  if (solid.places.empty()) reader.refuse("places", "is empty, must name a surface", ErrorCode::too_few);
+  solid.surface_indices = read_surface_indices(reader, "places", surfaces);
+  if (solid.surface_indices.empty())
+    reader.refuse("places", "is empty, must name a surface", ErrorCode::too_few);
   solid.chord_error_m = reader.number("chord_error_m", length_range_m);
   solid.gap_m = reader.number("gap_m", length_range_m);
   solid.volume_m3 = reader.number("volume_m3", measure_range);
@@ -95,7 +96,7 @@ Result<CadSurface> cad_surface_from_json(std::string_view text, const std::strin
 
 std::string cad_solid_to_bytes(const CadSolid& solid) {
   const Json head = {{"name", clean_cad_name(solid.name, "solid")},
-                     {"places", solid.places},
+                     {"places", solid.surface_indices},
                      {"chord_error_m", solid.chord_error_m},
                      {"gap_m", solid.gap_m},
                      {"volume_m3", solid.volume_m3},

@@ -104,14 +104,14 @@ Status fit_islands(std::vector<FitPoints> islands, const FitRequest& request, Sc
       continue;
     }
     if (stopped || count == 1.0) return body.error();
-    unfitted.why = body.error().message;
+    unfitted.reason = body.error().message;
     result.other_islands += unfitted.points;
     result.unfitted.push_back(std::move(unfitted));
   }
   if (!result.bodies.empty()) return {};
   return Error(ErrorCode::not_converged,
                "none of its " + std::to_string(islands.size()) +
-                   " islands can be fitted; the largest: " + result.unfitted.front().why);
+                   " islands can be fitted; the largest: " + result.unfitted.front().reason);
 }
 
 }  // namespace

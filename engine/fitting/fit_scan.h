@@ -36,7 +36,7 @@ struct FittedBody {
 struct UnfittedIsland {
   std::size_t points = 0;
   Vector3 size_m = Vector3::Zero(), centre_m = Vector3::Zero();  // size and centre of its bounding box
-  std::string why;
+  std::string reason;
 };
 
 struct ScanFit {

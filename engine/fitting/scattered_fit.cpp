@@ -180,7 +180,7 @@ std::vector<SpanBasis> span_bases(const PieceBasis& basis) {
     const double length = breaks[s + 1] - breaks[s], midpoint = 0.5 * (breaks[s] + breaks[s + 1]);
     for (int side = 0; side < 2; ++side) {
       PieceBasis::Values& values = spans[s].at[side];
-      basis.take(midpoint + (side == 0 ? -gauss : gauss) * length, values);
+      basis.evaluate(midpoint + (side == 0 ? -gauss : gauss) * length, values);
       for (int k = 0; k <= basis.degree(); ++k) {
         values.value[1][k] *= length;
         values.value[2][k] *= length * length;
@@ -223,7 +223,7 @@ std::vector<PieceBasis::Values> ring_bases(const PieceBasis& u_basis) {
     const double length = breaks[s + 1] - breaks[s];
     const auto at = [&](double fraction) {
       PieceBasis::Values values;
-      u_basis.take(breaks[s] + fraction * length, values);
+      u_basis.evaluate(breaks[s] + fraction * length, values);
       return values;
     };
     // A cubic's second derivative is linear within a span, so two values determine it.

@@ -321,7 +321,8 @@ void stabilise_strained_nodes(Relaxation& relaxation, float h) {
 // many substeps.
 Linearised choose_linearisation(const SpringLattice& lattice, const RelaxSettings& settings, int substeps) {
   const bool one = settings.iterations * substeps == 1;
-  return one && !settings.settles && !lattice.is_damped_further() ? Linearised::forces : Linearised::tangents;
+  return one && !settings.is_critically_damped && !lattice.is_damped_further() ? Linearised::forces
+                                                                               : Linearised::tangents;
 }
 
 // Linearises all springs at the start of a tick and chooses its substeps.
@@ -380,7 +381,7 @@ void choose_damping(Relaxation& relaxation, const RelaxSettings& settings) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     double& damping = relaxation.damping_per_s[at];
     damping = settings.damping_per_s;
-    if (!settings.settles) continue;
+    if (!settings.is_critically_damped) continue;
     const double quotient = relaxation.has_springs(at)
                                 ? rayleigh_quotient(relaxation.lattice(at), relaxation.view[at])
                                 : relaxation.lattices[at].implicit_solver->rayleigh_quotient();

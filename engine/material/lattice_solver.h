@@ -73,8 +73,8 @@ struct RelaxSettings {
   std::uint64_t tick = 0;             // tick number
   int iterations = 1;                 // relaxation steps
   double step_s = relaxation_step_s;  // material time of each step
-  double damping_per_s = 0.0;         // mass-proportional; the minimum if `settles`
-  bool settles = false;               // true: each body is critically damped, see critical_damping_per_s()
+  double damping_per_s = 0.0;         // mass-proportional; the minimum if `is_critically_damped`
+  bool is_critically_damped = false;  // true: each body is critically damped, see critical_damping_per_s()
 };
 
 // A lattice that relax() advances, its solver, supports and gravity. Pointers must stay valid during the

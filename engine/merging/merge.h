@@ -31,7 +31,7 @@ struct MergedJoint {
 
 struct OpenEdges {
   PatchEdge a, b;
-  std::string why;
+  std::string reason;
 };
 
 struct Merged {

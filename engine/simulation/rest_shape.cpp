@@ -104,7 +104,7 @@ Result<RestShape> compute_rest_shape(const Scene& scene, int body, const Progres
   Result<StaticResult> result = rest_under_load(body_at_rest.value(), loads, fixed, settings);
   if (!result.ok()) return result.error();
   RestShape shape{state->lattice.mesh(), std::move(result).value(), definition.surface};
-  shape.held_nodes = static_cast<int>(fixed.size() / 3);
+  shape.fixed_nodes = static_cast<int>(fixed.size() / 3);
   measure(body_at_rest.value(), loads, shape);
   for (int n = 0; n < shape.mesh.node_count(); ++n) {
     state->lattice.set_displacement(n, shape.result.displacement_m[static_cast<std::size_t>(n)]);

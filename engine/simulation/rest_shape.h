@@ -12,7 +12,7 @@ struct RestShape {
   LatticeMesh mesh;  // undeformed
   StaticResult result;
   Surface surface;  // deformed
-  int held_nodes = 0;
+  int fixed_nodes = 0;
   Vector3 load_n = Vector3::Zero();      // sum of gravity and loads on the deformed body
   Vector3 reaction_n = Vector3::Zero();  // sum over all fixed nodes
   int furthest_node = 0;                 // node with the largest displacement

@@ -141,7 +141,7 @@ void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
                    body.supports.begin_tick(body.lattice, end_s, tick_s)};
   }
   const RelaxSettings settings{s.tick, iterations, relaxation_step_s, s.scene.sculpting.damping_per_s,
-                               s.scene.sculpting.settles};
+                               s.scene.sculpting.is_critically_damped};
   s.relaxed = relax({lattices.data(), s.stepped_count()}, settings, tools, &s.between,
                     s.scene.ground ? &s.ground_contact.contacts() : nullptr);
 }
@@ -216,7 +216,7 @@ void Simulation::write_scene(Scene& scene) const {
   }
 }
 
-std::vector<std::string> Simulation::remarks() const {
+std::vector<std::string> Simulation::warnings() const {
   std::vector<std::string> warnings;
   for (const Body& body : state_->scene.bodies) {
     const auto at = static_cast<std::size_t>(&body - state_->scene.bodies.data());

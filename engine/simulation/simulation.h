@@ -117,7 +117,7 @@ class Simulation {
   Status restore(const ShapeState& shape);
 
   // Warnings about the bodies' lattices, at most one line per body (describe_lattice_warning()).
-  std::vector<std::string> remarks() const;
+  std::vector<std::string> warnings() const;
 
   // Lattice and current surface of a body of the scene, for studies and tests.
   const SpringLattice& lattice(int body = 0) const;

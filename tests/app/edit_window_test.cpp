@@ -233,7 +233,7 @@ TEST_F(EditWindow, BeginsAnewWithALump) {
     return wait_shown([&](const Json& frame) { return frame["prompt"] == prompt; }) && wait_frames(2);
   };
   EXPECT_TRUE(hands("key ctrl+shift+n"));
-  ASSERT_TRUE(wait_prompt("lump"));
+  ASSERT_TRUE(wait_prompt("shape"));
   press("Return");
   ASSERT_TRUE(wait_shown([&](const Json& frame) { return frame["session"].get<int>() > session; }));
   ASSERT_TRUE(wait_frames(2));

@@ -65,7 +65,7 @@ class Side {
   }
 
   const LiveFrame& frame() {
-    exchange_->frames.take();
+    exchange_->frames.update_reading();
     return exchange_->frames.reading();
   }
 

@@ -143,14 +143,14 @@ TEST(Panel, OffersASolidWhereTheToolHasABody) {
 
 TEST(Panel, LetsBodiesSettleAndSwingAgain) {
   PanelModel model = full_model();
-  for (const bool settles : {true, false}) {
+  for (const bool is_critically_damped : {true, false}) {
     const auto requests = click_once(model, 275.0F, 309.0F);
     ASSERT_EQ(requests.size(), 1U);
     const auto* command = std::get_if<Command>(&requests[0]);
     ASSERT_NE(command, nullptr);
     const auto* set = std::get_if<SetSculpting>(command);
     ASSERT_NE(set, nullptr);
-    EXPECT_EQ(set->sculpting.settles, settles);
+    EXPECT_EQ(set->sculpting.is_critically_damped, is_critically_damped);
     EXPECT_EQ(set->sculpting.damping_per_s, model.sculpting.damping_per_s);
     model.sculpting = set->sculpting;
   }

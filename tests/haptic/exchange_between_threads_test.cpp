@@ -33,7 +33,7 @@ TEST(TripleBufferThreads, ValuesAreWholeAndNeverGoBack) {
   });
   std::uint64_t last = 0, torn = 0, backward = 0, unchanged = 0;
   while (last < count) {
-    if (!buffer.take()) {
+    if (!buffer.update_reading()) {
       std::this_thread::yield();
       continue;
     }
@@ -47,7 +47,7 @@ TEST(TripleBufferThreads, ValuesAreWholeAndNeverGoBack) {
   EXPECT_EQ(torn, 0u);
   EXPECT_EQ(backward, 0u);
   EXPECT_EQ(unchanged, 0u);
-  EXPECT_FALSE(buffer.take());
+  EXPECT_FALSE(buffer.update_reading());
 }
 
 TEST(BoundedQueueThreads, EveryValueArrivesOnceAndInOrder) {

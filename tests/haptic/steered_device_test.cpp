@@ -61,7 +61,7 @@ TEST(HandInputs, TheSourceThatWasUsedLastLeads) {
   const auto frame = [&] {
     inputs.update(mouse, 0.02);
     inputs.update(cap, 0.02);
-    const HandTarget* target = mailbox->take();
+    const HandTarget* target = mailbox->receive();
     return target != nullptr ? target->pose.position_m.x() : -1.0;
   };
   EXPECT_EQ(frame(), 1.0);

@@ -9,7 +9,7 @@ namespace {
 
 TEST(TripleBuffer, StartsWithTheInitialValueAndNothingNew) {
   TripleBuffer<std::string> buffer("first");
-  EXPECT_FALSE(buffer.take());
+  EXPECT_FALSE(buffer.update_reading());
   EXPECT_EQ(buffer.reading(), "first");
   EXPECT_EQ(buffer.writing(), "first");
 }
@@ -17,12 +17,12 @@ TEST(TripleBuffer, StartsWithTheInitialValueAndNothingNew) {
 TEST(TripleBuffer, TheReaderSeesNothingBeforePublishAndNothingTwice) {
   TripleBuffer<int> buffer(0);
   buffer.writing() = 7;
-  EXPECT_FALSE(buffer.take());
+  EXPECT_FALSE(buffer.update_reading());
   buffer.publish();
   EXPECT_EQ(buffer.reading(), 0);
-  EXPECT_TRUE(buffer.take());
+  EXPECT_TRUE(buffer.update_reading());
   EXPECT_EQ(buffer.reading(), 7);
-  EXPECT_FALSE(buffer.take());
+  EXPECT_FALSE(buffer.update_reading());
   EXPECT_EQ(buffer.reading(), 7);
 }
 
@@ -32,23 +32,23 @@ TEST(TripleBuffer, TheNewestWins) {
     buffer.writing() = value;
     buffer.publish();
   }
-  EXPECT_TRUE(buffer.take());
+  EXPECT_TRUE(buffer.update_reading());
   EXPECT_EQ(buffer.reading(), 10);
-  EXPECT_FALSE(buffer.take());
+  EXPECT_FALSE(buffer.update_reading());
 }
 
 TEST(TripleBuffer, WritingNeverTouchesWhatIsRead) {
   TripleBuffer<int> buffer(0);
   buffer.writing() = 1;
   buffer.publish();
-  ASSERT_TRUE(buffer.take());
+  ASSERT_TRUE(buffer.update_reading());
   for (int value = 2; value < 20; ++value) {
     buffer.writing() = value;
     EXPECT_EQ(buffer.reading(), 1);
     buffer.publish();
     EXPECT_EQ(buffer.reading(), 1);
   }
-  ASSERT_TRUE(buffer.take());
+  ASSERT_TRUE(buffer.update_reading());
   EXPECT_EQ(buffer.reading(), 19);
 }
 

@@ -382,12 +382,12 @@ class SolidMesher {
   Status add_joined(const std::string& name, const JoinedSolid& joined,
                     const std::vector<std::size_t>& indices) {
     CadSolid solid = measure_solid(name, joined);
-    for (const std::size_t part : joined.parts) solid.places.push_back(indices[part]);
+    for (const std::size_t part : joined.parts) solid.surface_indices.push_back(indices[part]);
     auto found = mesh_shape(joined.shape, remaining_, joined.gap_m);
     if (!found) return found.error().in("'" + name + "'");
     if (!found.value() || !has_same_volume(found.value().value(), solid)) {
       result_.notes.push_back("OpenCASCADE cannot make a watertight mesh of '" + name + "'");
-      result_.loose.insert(result_.loose.end(), solid.places.begin(), solid.places.end());
+      result_.loose.insert(result_.loose.end(), solid.surface_indices.begin(), solid.surface_indices.end());
       return {};
     }
     solid.mesh = std::move(found.value()->mesh);

@@ -11,7 +11,7 @@ namespace {
 CadSolid tetrahedron() {
   CadSolid solid;
   solid.name = "wedge";
-  solid.places = {0, 2, 3};
+  solid.surface_indices = {0, 2, 3};
   solid.mesh.vertices_m = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 1.0 / 3.0}};
   solid.mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
   solid.chord_error_m = 1e-5;
@@ -29,7 +29,7 @@ TEST(CadSolidStream, KeepsEveryBit) {
   const auto back = cad_solid_from_bytes(cad_solid_to_bytes(solid), surfaces, "part.json");
   ASSERT_TRUE(back) << back.error().message;
   EXPECT_EQ(back->name, solid.name);
-  EXPECT_EQ(back->places, solid.places);
+  EXPECT_EQ(back->surface_indices, solid.surface_indices);
   EXPECT_EQ(back->mesh.vertices_m, solid.mesh.vertices_m);
   EXPECT_EQ(back->mesh.triangles, solid.mesh.triangles);
   EXPECT_EQ(back->chord_error_m, solid.chord_error_m);
@@ -53,7 +53,7 @@ TEST(CadSolidStream, RefusesWhatIsNoSolid) {
   far.mesh.vertices_m[1].x() = 1e7;
   EXPECT_FALSE(cad_solid_from_bytes(cad_solid_to_bytes(far), surfaces, "part.json"));
   CadSolid nowhere = tetrahedron();
-  nowhere.places.clear();
+  nowhere.surface_indices.clear();
   EXPECT_FALSE(cad_solid_from_bytes(cad_solid_to_bytes(nowhere), surfaces, "part.json"));
 }
 

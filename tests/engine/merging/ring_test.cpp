@@ -105,7 +105,7 @@ TEST(Ring, ASharpSeamIsRoundedWithinTheToleranceAsTheJointsAre) {
   const auto merged = merge(square_tube(), request_of(1, tolerance_m));
   ASSERT_TRUE(merged.ok()) << merged.error().message;
   const Surface& surface = merged->surface;
-  ASSERT_TRUE(surface.u.is_periodic()) << merged->left_open[0].why;
+  ASSERT_TRUE(surface.u.is_periodic()) << merged->left_open[0].reason;
   EXPECT_LE(merged->deviation_m, tolerance_m);
   EXPECT_GT(merged->deviation_m, 0.0);
   const double start = surface.u.domain_start(), end = surface.u.domain_end();
@@ -128,7 +128,7 @@ TEST(Ring, WhatCannotBeClosedStaysOpen) {
   ASSERT_TRUE(merged.ok()) << merged.error().message;
   EXPECT_FALSE(merged->surface.u.is_periodic());
   ASSERT_EQ(merged->left_open.size(), 1U);
-  EXPECT_NE(merged->left_open[0].why.find("apart"), std::string::npos) << merged->left_open[0].why;
+  EXPECT_NE(merged->left_open[0].reason.find("apart"), std::string::npos) << merged->left_open[0].reason;
   MergeRequest chosen = request_of(2, 5e-5);
   chosen.chosen = {{{0, Side::u_end}, {1, Side::u_start}}, {{1, Side::u_end}, {0, Side::u_start}}};
   const auto refused = merge(shifted, chosen);

@@ -158,7 +158,7 @@ Scene moved_handle() {
 TEST(BodySupports, MoveTheSkin) {
   Scene scene = moved_handle();
   scene.bodies[0].supports[1] = ramp({{0.9, 1.0}}, Vector3(0, 0.002, 0), 0.3);
-  scene.sculpting.settles = true;
+  scene.sculpting.is_critically_damped = true;
   Simulation simulation = simulate(scene);
   const Vector3 before = evaluate(simulation.surface(), 0.0, 0.06).position_m;
   for (int tick = 0; tick < 2000; ++tick) simulation.advance(far_away);

@@ -46,7 +46,7 @@ void LoadedBlock::tick(double damping_per_s, const Vector3& gravity_m_per_s2, Gr
   RelaxSettings settings;
   settings.tick = static_cast<std::uint64_t>(std::lround(time_s / tick_s));
   settings.damping_per_s = damping_per_s;
-  settings.settles = settles;
+  settings.is_critically_damped = is_critically_damped;
   relax(std::array{relaxed}, settings, {}, nullptr, ground);
 }
 

@@ -31,7 +31,7 @@ class LoadedBlock {
   BodySupports supports;
   BodyLoads loads;
   double load_share = 1.0;
-  bool settles = false;
+  bool is_critically_damped = false;
   double time_s = 0.0;
 
   // Returns the mean displacement of the nodes of a slice.

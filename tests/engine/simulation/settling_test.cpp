@@ -66,7 +66,7 @@ TEST(Settling, AReleasedBodyComesBackWithoutSwinging) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     LoadedBlock bar = pushed_bar(stepping), swinging = pushed_bar(stepping);
-    bar.settles = true;
+    bar.is_critically_damped = true;
     for (int tick = 0; tick < 4000; ++tick) {
       bar.tick(0.0);
       swinging.tick(20.0);
@@ -101,7 +101,7 @@ TEST(Settling, AStrokeAllocatesNothingAndEndsAtRest) {
   scene.bodies[0].material = silicone();
   scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
   scene.sculpting.damping_per_s = 0.0;
-  scene.sculpting.settles = true;
+  scene.sculpting.is_critically_damped = true;
   Simulation simulation = simulate(scene);
   simulation.advance(above(0.055, 0.0095));
   const std::size_t before = allocation_count();

@@ -53,7 +53,8 @@ void take_cad_solid(std::string_view bytes) {
   const auto solid = cad_solid_from_bytes(bytes, surfaces, "fuzzed");
   if (!solid) return must_be_one_line(solid.error());
   for (const Vector3& vertex : solid->mesh.vertices_m) must_hold(vertex.allFinite(), "vertices are finite");
-  for (const std::size_t place : solid->places) must_hold(place < surfaces, "a face is one of the model's");
+  for (const std::size_t place : solid->surface_indices)
+    must_hold(place < surfaces, "a face is one of the model's");
   const std::string written = cad_solid_to_bytes(solid.value());
   const auto back = cad_solid_from_bytes(written, surfaces, "written");
   must_hold(back.ok(), "what is written can be read");

@@ -75,7 +75,7 @@ class SolidMeshes : public testing::Test {
     EXPECT_TRUE(solids.loose.empty());
     ASSERT_EQ(solids.solids.size(), 1u);
     const CadSolid& solid = solids.solids[0];
-    EXPECT_EQ(solid.places.size(), static_cast<std::size_t>(count_of(shape, TopAbs_FACE)));
+    EXPECT_EQ(solid.surface_indices.size(), static_cast<std::size_t>(count_of(shape, TopAbs_FACE)));
     expect_watertight(solid.mesh);
     EXPECT_LE(solid.chord_error_m, chord_m + solid.gap_m);
     const Measures whole = measures_of(shape);
