@@ -24,6 +24,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <gp_XYZ.hxx>
 #include <optional>
 #include <utility>
 
@@ -48,7 +50,13 @@ std::array<gp_Pnt2d, 4> project_to_sides(const gp_Pnt2d& point, const ParameterB
           gp_Pnt2d(point.X(), box.v_end)};
 }
 
-// Returns true where all samples of the edge are on one side of the box.
+// Returns the nearest point of a box.
+gp_Pnt2d clamp_into(const gp_Pnt2d& point, const ParameterBox& box) {
+  return {std::clamp(point.X(), box.u_start, box.u_end), std::clamp(point.Y(), box.v_start, box.v_end)};
+}
+
+// Returns true where all samples of the edge are on one side of the box. An edge that overshoots the box
+// counts as the side that it overshoots, to within the same distance.
 bool is_on_side(const TopoDS_Edge& edge, const TopoDS_Face& face, const ParameterBox& box, double tolerance) {
   double first = 0.0, last = 0.0;
   const auto curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
@@ -59,8 +67,9 @@ bool is_on_side(const TopoDS_Edge& edge, const TopoDS_Face& face, const Paramete
   const double reach = std::max(tolerance, BRep_Tool::Tolerance(edge));
   std::array<bool, 4> is_near{true, true, true, true};
   for (int i = 0; i <= samples_per_edge; ++i) {
-    const gp_Pnt2d uv = curve->Value(first + (last - first) * i / samples_per_edge);
-    const gp_Pnt position = surface->Value(uv.X(), uv.Y());
+    const gp_Pnt2d sample = curve->Value(first + (last - first) * i / samples_per_edge);
+    const gp_Pnt position = surface->Value(sample.X(), sample.Y());
+    const gp_Pnt2d uv = clamp_into(sample, box);
     const std::array<gp_Pnt2d, 4> sides = project_to_sides(uv, box);
     for (std::size_t side = 0; side < sides.size(); ++side) {
       const gp_Pnt2d& projected = sides[side];
@@ -305,6 +314,22 @@ double snap_bound(double bound, double full, double length) {
   return std::abs(bound - full) < 1e-7 * length ? full : bound;
 }
 
+bool is_polynomial(const Geometry& surface);
+
+// Cuts off what lies beyond the end of a polynomial surface, where OpenCASCADE cannot cut it out. Edges
+// overshoot such an end by the rounding of their file, or by its tolerance. A periodic direction has no end.
+void clip_to_surface(const Geometry& surface, const ParameterBox& full, ParameterBox& box) {
+  if (!is_polynomial(surface)) return;
+  if (!surface->IsUPeriodic()) {
+    box.u_start = std::clamp(box.u_start, full.u_start, full.u_end);
+    box.u_end = std::clamp(box.u_end, full.u_start, full.u_end);
+  }
+  if (!surface->IsVPeriodic()) {
+    box.v_start = std::clamp(box.v_start, full.v_start, full.v_end);
+    box.v_end = std::clamp(box.v_end, full.v_start, full.v_end);
+  }
+}
+
 Result<ParameterBox> find_parameter_box(const TopoDS_Face& face, const Geometry& surface) {
   ParameterBox box, full;
   BRepTools::UVBounds(face, box.u_start, box.u_end, box.v_start, box.v_end);
@@ -314,6 +339,7 @@ Result<ParameterBox> find_parameter_box(const TopoDS_Face& face, const Geometry&
       return Error{ErrorCode::unsupported, "has no finite extent; trim it in the CAD system"};
     }
   }
+  clip_to_surface(surface, full, box);
   const double u_length = box.u_end - box.u_start, v_length = box.v_end - box.v_start;
   if (!(u_length > 0.0 && v_length > 0.0)) {
     return Error{ErrorCode::degenerate, "has no extent; remove it in the CAD system"};
@@ -451,7 +477,40 @@ Result<FaceSurface> convert(const TopoDS_Face& face, double scale, double tolera
   return result;
 }
 
+constexpr int place_samples = 8;
+
+// Returns the mean of samples of the face's edges, in the face's unit; nullopt where there is none.
+std::optional<gp_XYZ> find_middle(const TopoDS_Face& face) {
+  gp_XYZ sum(0.0, 0.0, 0.0);
+  int count = 0;
+  for (TopExp_Explorer edges(face, TopAbs_EDGE); edges.More(); edges.Next()) {
+    double first = 0.0, last = 0.0;
+    const auto curve = BRep_Tool::Curve(TopoDS::Edge(edges.Current()), first, last);
+    if (curve.IsNull()) continue;
+    for (int k = 0; k < place_samples; ++k) {
+      sum += curve->Value(first + (last - first) * (k + 0.5) / place_samples).XYZ();
+      ++count;
+    }
+  }
+  if (count == 0 || !std::isfinite(sum.Modulus())) return {};
+  return sum / count;
+}
+
 }  // namespace
+
+std::string face_place_text(const TopoDS_Face& face, double scale) {
+  try {
+    const auto middle = find_middle(face);
+    if (!middle) return {};
+    std::array<char, 128> text{};
+    std::snprintf(text.data(), text.size(), "(%.4g, %.4g, %.4g) mm",
+                  millimetres_per_metre * scale * middle->X(), millimetres_per_metre * scale * middle->Y(),
+                  millimetres_per_metre * scale * middle->Z());
+    return text.data();
+  } catch (const Standard_Failure&) {
+    return {};
+  }
+}
 
 Result<FaceSurface> convert_face(const TopoDS_Face& face, double scale, double tolerance_m) {
   try {

@@ -20,9 +20,14 @@ struct FaceSurface {
 
 // Converts a face. B-spline and Bezier surfaces, planes and extrusions of such curves are converted exactly;
 // rational surfaces, those of a degree above max_degree and all others are approximated. A spline with trim
-// loops stays whole, any other surface is cut to the face's range of parameters. `scale` is the length of one
+// loops stays whole, any other surface is cut to the face's range of parameters. What edges overshoot a
+// polynomial surface is cut off. `scale` is the length of one
 // unit of the face in metres. Refused: a face without a surface or of infinite extent, a tolerance that needs
 // too many control points.
 Result<FaceSurface> convert_face(const TopoDS_Face& face, double scale, double tolerance_m);
+
+// Returns the middle of the face's edges as "(1, 2, 3) mm", so that a person finds the face; empty where the
+// edges have no finite places.
+std::string face_place_text(const TopoDS_Face& face, double scale);
 
 }  // namespace spoonbill
