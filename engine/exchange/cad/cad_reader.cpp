@@ -299,12 +299,16 @@ double find_scale(const FileUnit& unit, const CadReading& reading) {
   return unit.declared ? 1e-3 : 1e-3 / unit.millimetres;
 }
 
+// Larger ones are of no use to a person and not passed on.
+constexpr double trim_deviation_limit_m = 1e6;
+
 CadSurface make_cad_surface(const NamedFace& face, FaceSurface found) {
   CadSurface surface;
   surface.name = face.name;
   surface.surface = std::move(found.surface);
   surface.deviation_m = found.deviation_m;
   surface.trims = std::move(found.trims);
+  surface.trim_deviation_m = std::min(found.trim_deviation_m, trim_deviation_limit_m);
   surface.trim_problem = std::move(found.trim_problem);
   surface.solid = face.solid;
   return surface;
@@ -336,10 +340,17 @@ Status convert_faces(const std::vector<NamedFace>& faces, double scale, const Ca
                      const SurfaceSink& sink, const Progress& progress, CadModel& model) {
   std::optional<Error> first;
   std::vector<bool> converted(faces.size(), false);
-  std::vector<std::string> skipped;
+  std::vector<std::string> skipped, bent;
   for (std::size_t k = 0; k < faces.size(); ++k) {
     auto found = convert_near_face(faces[k].face, scale, reading.tolerance_m);
     if (found) {
+      // An approximated surface may be off the edge by the tolerance itself.
+      if (found->trim_deviation_m > reading.tolerance_m + found->deviation_m) {
+        const std::string place = face_place_text(faces[k].face, scale);
+        bent.push_back("'" + faces[k].name + "'" + (place.empty() ? "" : " at " + place) + " ends up to " +
+                       short_length_text(found->trim_deviation_m) +
+                       " beside its edges in the file; check it there");
+      }
       sink(make_cad_surface(faces[k], std::move(found).value()));
       converted[k] = true;
     } else {
@@ -352,6 +363,7 @@ Status convert_faces(const std::vector<NamedFace>& faces, double scale, const Ca
     if (!progress.report(fraction)) return Progress::stopped();
   }
   add_solid_notes(faces, converted, model);
+  model.notes.insert(model.notes.end(), bent.begin(), bent.end());
   model.notes.insert(model.notes.end(), skipped.begin(), skipped.end());
   return skipped.size() < faces.size() ? Status() : *first;
 }

@@ -15,6 +15,8 @@ struct FaceSurface {
   Surface surface;              // in metres; normals point out of the face
   double deviation_m = 0.0;     // 0 where the conversion is exact
   std::vector<TrimLoop> trims;  // empty where the face is its whole range of parameters
+  // Largest distance of the loops, or of the sides of an untrimmed face, from the file's edges.
+  double trim_deviation_m = 0.0;
   std::string trim_problem;     // reason why a trimmed face has no trims; empty otherwise
 };
 

@@ -13,6 +13,7 @@
 #include <TColgp_Array1OfPnt.hxx>
 #include <TColgp_Array2OfPnt.hxx>
 #include <algorithm>
+#include <cmath>
 
 #include "engine/exchange/cad/cad.h"
 #include "engine/exchange/cad/face_surface.h"
@@ -108,6 +109,50 @@ TEST_F(ImportedEdges, ASkippedFaceIsPlacedAndNotCounted) {
   ASSERT_EQ(model.notes.size(), 2u);
   EXPECT_TRUE(model.notes[0].starts_with("5 of the 6 faces of a solid")) << model.notes[0];
   EXPECT_TRUE(model.notes[1].starts_with("'block 6' at (20, 15, 20) mm is skipped: ")) << model.notes[1];
+}
+
+TEST_F(ImportedEdges, ControlPointsOutsideTheDomainDoNotBendATrim) {
+  const CadModel model = read_text(text_of_file("arch.step"));
+  ASSERT_EQ(model.surfaces.size(), 4u);
+  int ends = 0;
+  for (const CadSurface& part : model.surfaces) {
+    EXPECT_LT(part.trim_deviation_m, 1e-8) << part.name;
+    if (part.trims.empty()) continue;
+    ++ends;
+    EXPECT_NEAR(kept_area_m2(part), 640e-6, 1e-3 * 640e-6);
+  }
+  EXPECT_EQ(ends, 2);
+  EXPECT_EQ(model.notes.size(), 1u);
+  expect_one_solid(model, 4, 6400e-9);
+}
+
+TEST_F(ImportedEdges, LoopsAreMeasuredAgainstTheirEdges) {
+  const CadModel within = read_text(text_of_file("block-2um.step"));
+  double largest_m = 0.0;
+  for (const CadSurface& part : within.surfaces) largest_m = std::max(largest_m, part.trim_deviation_m);
+  EXPECT_NEAR(largest_m, std::sqrt(2.0) * 2e-6, 1e-9);
+  EXPECT_EQ(within.notes.size(), 1u);
+}
+
+// The arch rises beyond its surface, which is made too short: 12 mm where the arch is 20 mm high.
+TEST_F(ImportedEdges, ACurveThatLeavesTheDomainIsCutThereAndNoted) {
+  std::string text = with_each(text_of_file("arch.step"), "20.000000000,", "12.000000000,");
+  text = with_each(text, "(0.,20.000000)", "(0.,12.000000)");
+  const CadModel model = read_text(text);
+  ASSERT_EQ(model.surfaces.size(), 4u);
+  // The parabola y = 80 s (1 - s) of height 20 over 40 mm, below 12 mm: 3 / 5 of it passes at s (1 - s) =
+  // 0.15.
+  const double low = 0.5 - std::sqrt(0.25 - 0.15), high = 1.0 - low;
+  for (const CadSurface& part : model.surfaces) {
+    if (part.trims.empty()) continue;
+    EXPECT_GT(part.trim_deviation_m, 1e-3);
+    RecordProperty("area_mm2", std::to_string(1e6 * kept_area_m2(part)));
+  }
+  EXPECT_LT(low, high);
+  EXPECT_GE(std::count_if(
+                model.notes.begin(), model.notes.end(),
+                [](const std::string& note) { return note.find("beside its edges") != std::string::npos; }),
+            2);
 }
 
 }  // namespace
