@@ -250,16 +250,21 @@ void add_material_facts(FactSheet& facts, const Material& material) {
   facts.add("Material", material_text(material), "material", material_to_json(material));
 }
 
+// Smaller distances from the edges of a CAD file are the rounding of the file.
+constexpr double shown_trim_deviation_m = 1e-9;
+
 void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces) {
   Json bodies = Json::array();
   Box all = extent_of(surfaces.front().surface, surfaces.front().trims);
-  double deviation_m = 0.0;
+  double deviation_m = 0.0, trim_deviation_m = 0.0;
   for (const CadSurface& part : surfaces) {
     const Box extent = extent_of(part.surface, part.trims);
     const Vector3 size = extent.high - extent.low;
     all = joined(all, extent);
     std::string text = size_text(size) + ", " + net_text(part.surface);
     if (!part.trims.empty()) text += ", trimmed by " + std::to_string(part.trims.size());
+    if (part.trim_deviation_m >= shown_trim_deviation_m)
+      text += ", ends within " + millimetres_with_digits(part.trim_deviation_m, 2) + " of its edges";
     if (part.deviation_m > 0.0)
       text += ", approximated within " + millimetres_with_digits(part.deviation_m, 2);
     const std::string number = surfaces.size() > 1 ? " " + std::to_string(bodies.size() + 1) : "";
@@ -269,14 +274,21 @@ void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces
                       {"u", short_direction_json(part.surface.u)},
                       {"v", short_direction_json(part.surface.v)},
                       {"deviation_m", part.deviation_m},
+                      {"trim_deviation_m", part.trim_deviation_m},
                       {"trims", part.trims.size()},
                       {"trim_problem", part.trim_problem}});
     deviation_m = std::max(deviation_m, part.deviation_m);
+    trim_deviation_m = std::max(trim_deviation_m, part.trim_deviation_m);
   }
   const Vector3 size = all.high - all.low;
   facts.add("Size", size_text(size), "size_mm", size_json(size));
   facts.add("", "", "bodies", std::move(bodies));
   facts.add("", "", "deviation_m", deviation_m);
+  if (trim_deviation_m >= shown_trim_deviation_m) {
+    facts.add("Edges", "within " + millimetres_with_digits(trim_deviation_m, 2) + " of those in the file", "",
+              nullptr);
+  }
+  facts.add("", "", "trim_deviation_m", trim_deviation_m);
 }
 
 void add_unit_facts(FactSheet& facts, const std::string& unit, bool declared) {

@@ -26,6 +26,8 @@ struct CadSurface {
   // Thickness of the material behind the surface; 0: none. Exported meshes include the walls of this shell,
   // CAD files do not.
   double shell_thickness_m = 0.0;
+  // Largest distance of the trims, or of an untrimmed surface's sides, from the edges in the file.
+  double trim_deviation_m = 0.0;
   std::string solid = {};  // solid of several faces that this surface belongs to; empty: none
 };
 

@@ -66,6 +66,7 @@ Json cad_surface_to_json(const CadSurface& surface) {
   json["surface"] = surface_to_json(surface.surface);
   add_trims(surface.trims, json["surface"]);
   json["deviation_m"] = surface.deviation_m;
+  json["trim_deviation_m"] = surface.trim_deviation_m;
   json["trim_problem"] = clean_cad_name(surface.trim_problem, "");
   json["solid"] = clean_cad_name(surface.solid, "");
   return json;
@@ -86,6 +87,7 @@ Result<CadSurface> cad_surface_from_json(std::string_view text, const std::strin
   if (surface) result.trims = read_trims(surface_reader, *surface);
   surface_reader.finish();
   result.deviation_m = reader.number("deviation_m", {0.0, 1e3});
+  result.trim_deviation_m = reader.number("trim_deviation_m", {0.0, 1e6});
   result.trim_problem = reader.text("trim_problem");
   result.solid = reader.text("solid");
   reader.finish();

@@ -24,11 +24,12 @@ void set_file_unit(std::string_view unit);
 
 using SurfaceSink = std::function<void(CadSurface)>;
 
-// Passes the surface of each face of the file to the sink, one after the other, positioned as the file's
-// assemblies place it. Returns the unit and the notes of the whole file, without surfaces. Notes report an
-// unknown unit, faces that OpenCASCADE lost or that cannot be converted, other files that the file names
-// (they are not opened), and solids that are separated into faces. Refused: a file that OpenCASCADE cannot
-// read, that has no face that can be converted, or that has more faces than the limit.
+// Passes the surface of each face of the file to the sink, one after the other, where the file's assemblies
+// place it. Returns the unit and the notes of the whole file, without surfaces. Notes report an unknown unit,
+// faces that OpenCASCADE lost or that cannot be converted, faces that end beside their edges by more than the
+// tolerance, other files that this one names (they are not
+// opened), and solids that are separated into faces. Refused: a file that OpenCASCADE cannot read, without
+// faces that can be converted, or with more faces than the limit.
 Result<CadModel> read_cad(const std::filesystem::path& file, const CadReading& reading,
                           const SurfaceSink& sink, const Progress& progress = {});
 

@@ -19,6 +19,7 @@
 #include <exception>
 #include <new>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -40,12 +41,6 @@ struct NamedFace {
   TopoDS_Face face;
   std::string name;   // name of the face, of its body or of its product; unique within the file
   std::string solid;  // unique name of the face's solid, if that has several faces; otherwise empty
-};
-
-struct NamedFaces {
-  std::vector<NamedFace> faces;
-  int solids = 0;           // solids of more than one face
-  int faces_of_solids = 0;  // total number of faces of these solids
 };
 
 using Shapes = opencascade::handle<XCAFDoc_ShapeTool>;
@@ -100,16 +95,16 @@ class FaceCollector {
     }
   }
 
-  NamedFaces release_faces() {
+  std::vector<NamedFace> release_faces() {
     std::vector<std::string> names;
-    for (const NamedFace& face : found_.faces) names.push_back(face.name);
+    for (const NamedFace& face : found_) names.push_back(face.name);
     names = make_names_unique(names, "face");
-    for (std::size_t k = 0; k < names.size(); ++k) found_.faces[k].name = std::move(names[k]);
+    for (std::size_t k = 0; k < names.size(); ++k) found_[k].name = std::move(names[k]);
     std::vector<std::string> solids;
     for (const Solid& solid : solids_) solids.push_back(solid.name);
     solids = make_names_unique(solids, "solid");
     for (std::size_t s = 0; s < solids.size(); ++s) {
-      for (std::size_t k = solids_[s].first; k < solids_[s].end; ++k) found_.faces[k].solid = solids[s];
+      for (std::size_t k = solids_[s].first; k < solids_[s].end; ++k) found_[k].solid = solids[s];
     }
     return std::move(found_);
   }
@@ -119,14 +114,12 @@ class FaceCollector {
     const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
     if (shape.IsNull()) return;
     for (TopExp_Explorer solids(shape, TopAbs_SOLID); solids.More(); solids.Next()) {
-      const std::size_t before = found_.faces.size();
+      const std::size_t before = found_.size();
       const std::string name = shape_name(label, solids.Current(), part_name);
       add_faces(label, TopExp_Explorer(solids.Current(), TopAbs_FACE), location, name);
-      const auto count = static_cast<int>(found_.faces.size() - before);
+      const auto count = static_cast<int>(found_.size() - before);
       if (count < 2) continue;
-      solids_.push_back({name, before, found_.faces.size()});
-      ++found_.solids;
-      found_.faces_of_solids += count;
+      solids_.push_back({name, before, found_.size()});
     }
     add_faces(label, TopExp_Explorer(shape, TopAbs_FACE, TopAbs_SOLID), location, part_name);
   }
@@ -135,7 +128,7 @@ class FaceCollector {
                  const std::string& body_name) {
     for (; faces.More(); faces.Next()) {
       const std::string name = shape_name(label, faces.Current(), body_name);
-      found_.faces.push_back({TopoDS::Face(faces.Current().Moved(location)), name, {}});
+      found_.push_back({TopoDS::Face(faces.Current().Moved(location)), name, {}});
     }
   }
 
@@ -153,12 +146,12 @@ class FaceCollector {
   };
 
   Shapes shapes_;
-  NamedFaces found_;
+  std::vector<NamedFace> found_;
   std::vector<Solid> solids_;
 };
 
-// Returns the faces of a document, positioned as its assemblies place them, each with the most specific name.
-NamedFaces collect_faces(const opencascade::handle<TDocStd_Document>& document) {
+// Returns the faces of a document where its assemblies place them, each with the most specific name.
+std::vector<NamedFace> collect_faces(const opencascade::handle<TDocStd_Document>& document) {
   const Shapes shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
   TDF_LabelSequence roots;
   shapes->GetFreeShapes(roots);
@@ -279,13 +272,24 @@ void add_loss_notes(const Content& content, CadModel& model) {
   }
 }
 
-// Adds a note about the solids of the file: each face of a solid becomes a body.
-void add_solid_notes(const NamedFaces& named, CadModel& model) {
-  if (named.solids == 0) return;
-  const std::string faces = std::to_string(named.faces_of_solids);
-  model.notes.push_back("the " + faces + " faces of " +
-                        (named.solids == 1 ? "a solid" : std::to_string(named.solids) + " solids") +
-                        " come in as a body each; they leave joined where they still close");
+// Adds a note about solids, each face of which becomes a body. Counts the faces that came in.
+void add_solid_notes(const std::vector<NamedFace>& faces, const std::vector<bool>& converted,
+                     CadModel& model) {
+  std::set<std::string> solids;
+  int read = 0, all = 0;
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    if (faces[k].solid.empty()) continue;
+    ++all;
+    if (!converted[k]) continue;
+    ++read;
+    solids.insert(faces[k].solid);
+  }
+  if (read == 0) return;
+  const std::string counted = read < all ? std::to_string(read) + " of the " : "the ";
+  model.notes.push_back(counted + std::to_string(all) + " faces of " +
+                        (solids.size() == 1 ? "a solid" : std::to_string(solids.size()) + " solids") +
+                        (read == 1 ? " comes in as a body" : " come in as a body each") +
+                        "; they leave joined where they still close");
 }
 
 // Returns the length in metres of one unit of OpenCASCADE's numbers, which are millimetres. A unit that the
@@ -295,12 +299,16 @@ double find_scale(const FileUnit& unit, const CadReading& reading) {
   return unit.declared ? 1e-3 : 1e-3 / unit.millimetres;
 }
 
+// Larger ones are of no use to a person and not passed on.
+constexpr double trim_deviation_limit_m = 1e6;
+
 CadSurface make_cad_surface(const NamedFace& face, FaceSurface found) {
   CadSurface surface;
   surface.name = face.name;
   surface.surface = std::move(found.surface);
   surface.deviation_m = found.deviation_m;
   surface.trims = std::move(found.trims);
+  surface.trim_deviation_m = std::min(found.trim_deviation_m, trim_deviation_limit_m);
   surface.trim_problem = std::move(found.trim_problem);
   surface.solid = face.solid;
   return surface;
@@ -326,25 +334,38 @@ Result<FaceSurface> convert_near_face(const TopoDS_Face& face, double scale, dou
   return found;
 }
 
-// Passes the surfaces of all faces to the sink; notes report faces that cannot be converted. Fails if no face
-// can be converted.
+// Passes the surfaces of all faces to the sink; notes report solids, and faces that cannot be converted.
+// Fails where that is all of them.
 Status convert_faces(const std::vector<NamedFace>& faces, double scale, const CadReading& reading,
                      const SurfaceSink& sink, const Progress& progress, CadModel& model) {
   std::optional<Error> first;
-  std::size_t converted = 0;
+  std::vector<bool> converted(faces.size(), false);
+  std::vector<std::string> skipped, bent;
   for (std::size_t k = 0; k < faces.size(); ++k) {
     auto found = convert_near_face(faces[k].face, scale, reading.tolerance_m);
     if (found) {
+      // An approximated surface may be off the edge by the tolerance itself.
+      if (found->trim_deviation_m > reading.tolerance_m + found->deviation_m) {
+        const std::string place = face_place_text(faces[k].face, scale);
+        bent.push_back("'" + faces[k].name + "'" + (place.empty() ? "" : " at " + place) + " ends up to " +
+                       short_length_text(found->trim_deviation_m) +
+                       " beside its edges in the file; check it there");
+      }
       sink(make_cad_surface(faces[k], std::move(found).value()));
-      ++converted;
+      converted[k] = true;
     } else {
       if (!first) first = found.error().in("'" + faces[k].name + "'");
-      model.notes.push_back("'" + faces[k].name + "' is skipped: " + found.error().message);
+      const std::string place = face_place_text(faces[k].face, scale);
+      skipped.push_back("'" + faces[k].name + "'" + (place.empty() ? "" : " at " + place) +
+                        " is skipped: " + found.error().message);
     }
     const double fraction = static_cast<double>(k + 1) / static_cast<double>(faces.size());
     if (!progress.report(fraction)) return Progress::stopped();
   }
-  return converted > 0 ? Status() : *first;
+  add_solid_notes(faces, converted, model);
+  model.notes.insert(model.notes.end(), bent.begin(), bent.end());
+  model.notes.insert(model.notes.end(), skipped.begin(), skipped.end());
+  return skipped.size() < faces.size() ? Status() : *first;
 }
 
 Result<CadModel> read(const std::filesystem::path& file, const CadReading& reading, const SurfaceSink& sink,
@@ -353,8 +374,7 @@ Result<CadModel> read(const std::filesystem::path& file, const CadReading& readi
       reading.format == FileFormat::step ? read_step(file, progress) : read_iges(file, progress);
   if (!content) return content.error();
   if (!progress.report(transfer_fraction)) return Progress::stopped();
-  const NamedFaces named = collect_faces(content->document);
-  const std::vector<NamedFace>& faces = named.faces;
+  const std::vector<NamedFace> faces = collect_faces(content->document);
   if (faces.empty()) return no_surface_error(content.value());
   if (faces.size() > reading.face_limit) {
     return Error{ErrorCode::too_many, "has " + std::to_string(faces.size()) + " faces, more than the " +
@@ -364,7 +384,6 @@ Result<CadModel> read(const std::filesystem::path& file, const CadReading& readi
   CadModel model;
   add_unit(content->unit, reading, model);
   add_loss_notes(content.value(), model);
-  add_solid_notes(named, model);
   const Status status = convert_faces(faces, find_scale(content->unit, reading), reading, sink,
                                       progress.part(transfer_fraction, 1.0), model);
   if (!status) return status.error();

@@ -1,0 +1,32 @@
+// Reader of the loops that trim a face of a CAD file, over the parameters of its surface.
+#pragma once
+
+#include <TopoDS_Face.hxx>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "engine/bspline/surface.h"
+#include "engine/bspline/trim_loop.h"
+
+namespace spoonbill {
+
+struct FaceTrims {
+  std::vector<TrimLoop> loops;
+  // Largest distance of samples of the loops, on the surface, from the 3D curves of the file's edges.
+  double deviation_m = 0.0;
+};
+
+// Returns a loop for each wire of the face except those around the whole domain. `surface` is the face's, in
+// metres, over the face's own parameters; `scale` is the length of one unit of the face in metres. The cubic
+// pieces of a loop are within a millionth of the domain of the edges' curves, or closer where the surface
+// stretches that beyond the tolerance; splines of degree 3 and less are exact. The parts of a curve beyond an
+// open end of the domain are moved to that end. Refused: edges that have no curves over the parameters or are
+// not connected, and loops that bound no area.
+Result<FaceTrims> read_trim_loops(const TopoDS_Face& face, const Surface& surface, double scale,
+                                  double tolerance_m);
+
+// Returns the largest distance, in metres, of the sides of an untrimmed face's surface from the 3D curves of
+// its edges.
+double measure_sides(const TopoDS_Face& face, const Surface& surface, double scale, double tolerance_m);
+
+}  // namespace spoonbill
