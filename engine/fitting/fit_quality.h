@@ -84,7 +84,7 @@ struct FitErrors {
   // Distances from the data to their closest surface points: without strays, and with them. The data are the
   // given points, or points all over a mesh.
   Deviation data_to_surface, all_to_surface;
-  std::size_t strays = 0;  // points of zero trust: off the surface, unlike the points around them
+  std::size_t strays = 0;  // given points of zero trust: off the surface, unlike the points around them
   // Distances from surface samples (4 x 4 a span) to the plane of the nearest data points, or to the nearest
   // point where that is closer.
   Deviation surface_to_data;
