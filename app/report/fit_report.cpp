@@ -252,10 +252,10 @@ std::optional<bool> is_within_tolerance(const ScanFit& fit, double tolerance_m) 
 }
 
 std::string tolerance_text(const ScanFit& fit, double tolerance_m) {
-  const double left_out = left_out_share(fit);
+  const double omitted = left_out_share(fit);
   std::string text = percent_text(share_within(fit, tolerance_m)) + " of the whole scan is within " +
                      short_length_text(tolerance_m) + " of the surface";
-  if (left_out > 0.0) text += ", " + percent_text(left_out) + " was left out";
+  if (omitted > 0.0) text += "; left out: " + percent_text(omitted);
   return text;
 }
 

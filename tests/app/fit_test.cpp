@@ -285,6 +285,20 @@ TEST_F(FitTest, VerticesThatDifferByRoundingAreOne) {
   EXPECT_NEAR(json.at("joined_within_m").get<double>(), 3.9e-6, 1e-7);
 }
 
+// MeshLab writes range maps with an element of camera data before the vertices.
+TEST_F(FitTest, AnUnknownElementBeforeTheVerticesIsSkipped) {
+  for (const char* name : {"camera-binary.ply", "camera-ascii.ply"}) {
+    SCOPED_TRACE(name);
+    const Json json = json_of_fit(sample_scan(name), {"--unit", "mm", "--control", "16x16"});
+    EXPECT_EQ(json.at("kind"), "sheet");
+    EXPECT_EQ(json.at("points_used"), 651);
+    EXPECT_EQ(json.at("folds"), 0);
+    EXPECT_NEAR(json.at("size_mm")[0].get<double>(), 60.0, 0.1);
+    EXPECT_NEAR(json.at("size_mm")[1].get<double>(), 40.0, 0.1);
+    EXPECT_LT(json.at("p95_m").get<double>(), 1e-4);
+  }
+}
+
 // Vertices that are farther apart than the joining distance leave a heap of triangles.
 TEST_F(FitTest, LessThanHalfOfTheScanIsNoFitUnlessIslandsAreChosen) {
   TriangleMesh loose = ball_mesh(12, 24, 20.0);

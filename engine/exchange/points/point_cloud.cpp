@@ -7,10 +7,12 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
 #include "engine/exchange/points/number_lines.h"
+#include "engine/exchange/points/ply_file.h"
 
 namespace spoonbill {
 namespace {
@@ -191,6 +193,19 @@ Result<PointCloud> parse_text_points(std::string_view bytes) {
   auto cloud = std::move(collector).finish();
   if (cloud && !are_unit_normals) cloud->normals.clear();
   return cloud;
+}
+
+Result<PointCloud> parse_ply_points(std::string_view bytes) {
+  auto content = parse_ply(bytes);
+  if (!content) return content.error();
+  if (auto* cloud = std::get_if<PointCloud>(&content.value())) return std::move(*cloud);
+  const std::vector<Vector3>& vertices = std::get<PlyMesh>(content.value()).vertices;
+  PointCollector collector;
+  if (Status begun = collector.begin(vertices.size(), false); !begun) return begun.error();
+  for (const Vector3& vertex : vertices) {
+    if (Status added = collector.add(vertex, Vector3::Zero()); !added) return added.error();
+  }
+  return std::move(collector).finish();
 }
 
 Result<PointCloud> parse_obj_points(std::string_view bytes) {
