@@ -118,6 +118,11 @@ Error ambiguity_error(std::size_t line, std::string_view text) {
                                          "'; write decimal points, or semicolons between the numbers"};
 }
 
+Error count_error(double promised, std::size_t points) {
+  return Error{ErrorCode::inconsistent, "names " + number_text(promised) + " points and holds " +
+                                            std::to_string(points) + "; it is cut or damaged"};
+}
+
 bool is_unit(const Vector3& vector) {
   return std::abs(vector.norm() - 1.0) < 0.01;
 }
@@ -159,8 +164,9 @@ Result<PointCloud> PointCollector::finish() && {
 
 Result<PointCloud> parse_text_points(std::string_view bytes) {
   PointCollector collector;
-  std::size_t columns = 0, line_number = 0;
+  std::size_t columns = 0, line_number = 0, points = 0;
   bool has_heading = false;
+  std::optional<double> promised;  // count of points before the first one
   bytes = without_byte_order_mark(bytes);
   bool are_unit_normals = true;  // columns 4 to 6 of all points so far have length 1
   while (!bytes.empty()) {
@@ -173,6 +179,7 @@ Result<PointCloud> parse_text_points(std::string_view bytes) {
     if (is_first && (!row.all_numbers || row.count == 1)) {
       if (has_heading) return no_point_error(line_number, line);
       has_heading = true;  // names of the columns, or the count of points
+      if (row.all_numbers) promised = row.numbers[0];
       continue;
     }
     if (!row.all_numbers || row.count < 3) return no_point_error(line_number, line);
@@ -189,6 +196,10 @@ Result<PointCloud> parse_text_points(std::string_view bytes) {
     are_unit_normals = are_unit_normals && columns >= 6 && is_unit(normal);
     const Status added = collector.add({row.numbers[0], row.numbers[1], row.numbers[2]}, normal);
     if (!added) return added.error();
+    ++points;
+  }
+  if (promised && points > 0 && *promised != static_cast<double>(points)) {
+    return count_error(*promised, points);
   }
   auto cloud = std::move(collector).finish();
   if (cloud && !are_unit_normals) cloud->normals.clear();
