@@ -80,6 +80,7 @@ Status fit(const FitOptions& options, Console& console) {
   const InterruptWatch until_written;
   if (Status written = write_document(document->document, options.out); !written) return written;
   FactSheet facts;
+  add_left_out_facts(facts, file.value(), fitted.value());
   facts.add("File", options.out.string(), "file", options.out.string());
   add_scan_facts(facts, file.value(), fitted.value());
   const double tolerance_m = options.request.settings.tolerance_m;

@@ -3,6 +3,8 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <utility>
+#include <variant>
 
 #include "app/commands/command.h"
 #include "app/commands/option_set.h"
@@ -11,12 +13,11 @@
 #include "engine/exchange/file_format.h"
 #include "engine/exchange/frame_stream.h"
 #include "engine/exchange/mesh_import.h"
+#include "engine/exchange/points/ply_file.h"
 #include "engine/exchange/points/point_cloud.h"
 
 namespace spoonbill {
 namespace {
-
-constexpr std::size_t ply_header_bytes = 65536;
 
 Result<TriangleMesh> import_within_memory(const std::filesystem::path& file) {
   try {
@@ -36,16 +37,24 @@ Status send_mesh(const std::filesystem::path& file, Console& console) {
   return mesh.error().in(file.string());
 }
 
-// Sends a cloud, or a frame of kind `faces` for a mesh.
+// Sends the mesh or the cloud that a PLY file holds.
+Status send_ply(const std::string& bytes, Console& console) {
+  auto content = parse_ply(bytes);
+  if (!content) return content.error();
+  if (auto* mesh = std::get_if<PlyMesh>(&content.value())) {
+    write_mesh(console.out, {std::move(mesh->vertices), std::move(mesh->triangles)});
+  } else {
+    write_cloud(console.out, std::get<PointCloud>(content.value()));
+  }
+  return {};
+}
+
+// Sends a cloud, the mesh of a PLY file, or a frame of kind `faces` for an OBJ file that is a mesh.
 Status send_cloud(const std::filesystem::path& file, Console& console) {
   const FileFormat format = format_from_name(file);
-  // Only the header is read, because it shows whether a PLY file has faces, and the rest may be large.
-  if (format == FileFormat::ply && ply_face_count(read_first_bytes(file, ply_header_bytes)) > 0) {
-    write_frame(console.out, FrameKind::faces, {});
-    return {};
-  }
   const auto bytes = read_file(file, point_file_bytes_limit);
   if (!bytes) return bytes.error();
+  if (format == FileFormat::ply) return send_ply(bytes.value(), console);
   if (format == FileFormat::obj && obj_has_faces(bytes.value())) {
     write_frame(console.out, FrameKind::faces, {});
     return {};

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "app/files/foreign_child.h"
 #include "engine/base/file.h"
@@ -97,11 +98,8 @@ Status drop_invalid_vertices(const std::filesystem::path& file, ScanFile& scan) 
   return {};
 }
 
-Result<ScanFile> read_mesh_scan(const std::filesystem::path& file, MeshReading reading) {
-  reading.triangle_limit = scan_triangle_limit;
-  auto mesh = read_mesh_file(file, reading);
-  if (!mesh) return mesh.error();
-  ScanFile scan{{std::move(mesh->mesh.vertices_m), {}, std::move(mesh->mesh.triangles)}, mesh->unit};
+Result<ScanFile> scan_from_mesh(const std::filesystem::path& file, MeshFile mesh) {
+  ScanFile scan{{std::move(mesh.mesh.vertices_m), {}, std::move(mesh.mesh.triangles)}, mesh.unit};
   scan.points_read = scan.scan.points_m.size();
   for (const TriangleCorners& corners : scan.scan.triangles) {
     for (const std::uint32_t corner : corners) {
@@ -116,6 +114,12 @@ Result<ScanFile> read_mesh_scan(const std::filesystem::path& file, MeshReading r
   return scan;
 }
 
+Result<ScanFile> read_mesh_scan(const std::filesystem::path& file, const MeshReading& reading) {
+  auto mesh = read_mesh_file(file, reading);
+  if (!mesh) return mesh.error();
+  return scan_from_mesh(file, std::move(mesh).value());
+}
+
 ScanFile scan_from_cloud(PointCloud cloud, LengthUnit unit) {
   ScanFile scan{{std::move(cloud.points), std::move(cloud.normals), {}}, unit};
   scan.points_skipped = cloud.skipped;
@@ -128,7 +132,61 @@ ScanFile scan_from_cloud(PointCloud cloud, LengthUnit unit) {
   return scan;
 }
 
-Result<ScanFile> read_mesh_or_cloud(const std::filesystem::path& file, const MeshReading& reading) {
+// Reads the content of a frame of kind `mesh`, and converts it to metres.
+Result<MeshFile> receive_mesh(ForeignChild& child, const FrameHead& head, const std::filesystem::path& file,
+                              const MeshReading& reading) {
+  MeshCounts counts;
+  if (head.kind != FrameKind::mesh || head.bytes < sizeof counts) return child.invalid_answer();
+  if (Status got = child.read(&counts, sizeof counts); !got) return got.error();
+  if (Status status = check_mesh_counts(file, counts, reading.triangle_limit); !status) return status.error();
+  if (head.bytes != mesh_frame_bytes(counts)) return child.invalid_answer();
+  MeshFile result;
+  result.unit = reading.unit.value_or(is_in_metres(format_from_name(file)) ? metre : millimetre);
+  result.mesh.vertices_m.resize(counts.vertices);
+  result.mesh.triangles.resize(counts.triangles);
+  if (Status got = child.read(result.mesh.vertices_m); !got) return got.error();
+  if (Status got = child.read(result.mesh.triangles); !got) return got.error();
+  for (Vector3& vertex : result.mesh.vertices_m) vertex *= result.unit.metres;
+  return result;
+}
+
+// Reads the content of a frame of kind `cloud`.
+Result<PointCloud> receive_cloud(ForeignChild& child, const FrameHead& head) {
+  CloudCounts counts;
+  if (head.kind != FrameKind::cloud || head.bytes < sizeof counts) return child.invalid_answer();
+  if (Status got = child.read(&counts, sizeof counts); !got) return got.error();
+  if (!are_valid_counts(counts) || head.bytes != cloud_frame_bytes(counts)) return child.invalid_answer();
+  PointCloud cloud;
+  cloud.points.resize(counts.points);
+  cloud.normals.resize(counts.normals);
+  cloud.skipped = counts.skipped;
+  if (Status got = child.read(cloud.points); !got) return got.error();
+  if (Status got = child.read(cloud.normals); !got) return got.error();
+  return cloud;
+}
+
+// A cloud; the mesh of a PLY file; or nothing for an OBJ file that is a mesh, which another reader reads.
+using ScanContent = std::variant<std::monostate, PointCloud, MeshFile>;
+
+Result<ScanContent> read_content(const std::filesystem::path& file, const MeshReading& reading) {
+  if (Status status = check_file(file, point_file_bytes_limit, thin_cloud); !status) return status.error();
+  auto child =
+      ForeignChild::start({file, "cloud", thin_cloud},
+                          {reading.program.string(), "read-points", "--", file.string()}, reading.patience);
+  if (!child) return child.error();
+  const auto head = child->next();
+  if (!head) return head.error();
+  if (head->kind == FrameKind::faces) return ScanContent();
+  if (head->kind == FrameKind::mesh) {
+    auto mesh = receive_mesh(child.value(), head.value(), file, reading);
+    return mesh ? Result<ScanContent>(std::move(mesh).value()) : mesh.error();
+  }
+  auto cloud = receive_cloud(child.value(), head.value());
+  return cloud ? Result<ScanContent>(std::move(cloud).value()) : cloud.error();
+}
+
+Result<ScanFile> read_mesh_or_cloud(const std::filesystem::path& file, MeshReading reading) {
+  reading.triangle_limit = scan_triangle_limit;
   const FileFormat format = format_from_name(file);
   if (format == FileFormat::stl) return read_mesh_scan(file, reading);
   if (!is_cloud(format)) {
@@ -137,11 +195,14 @@ Result<ScanFile> read_mesh_or_cloud(const std::filesystem::path& file, const Mes
                      ": does not have the ending of a scan: .ply, .pcd, .xyz, .txt, .csv, .asc, "
                      ".pts, .obj or .stl"};
   }
-  auto cloud = read_cloud_file(file, reading);
-  if (!cloud) return cloud.error();
-  if (!cloud.value()) return read_mesh_scan(file, reading);
-  return scan_from_cloud(std::move(*cloud.value()),
-                         reading.unit.value_or(is_in_metres(format) ? metre : millimetre));
+  auto content = read_content(file, reading);
+  if (!content) return content.error();
+  if (auto* mesh = std::get_if<MeshFile>(&content.value())) return scan_from_mesh(file, std::move(*mesh));
+  if (auto* cloud = std::get_if<PointCloud>(&content.value())) {
+    return scan_from_cloud(std::move(*cloud),
+                           reading.unit.value_or(is_in_metres(format) ? metre : millimetre));
+  }
+  return read_mesh_scan(file, reading);
 }
 
 }  // namespace
@@ -158,42 +219,15 @@ Result<MeshFile> read_mesh_file(const std::filesystem::path& file, const MeshRea
   if (!child) return child.error();
   const auto head = child->next();
   if (!head) return head.error();
-  MeshCounts counts;
-  if (head->kind != FrameKind::mesh || head->bytes < sizeof counts) return child->invalid_answer();
-  if (Status got = child->read(&counts, sizeof counts); !got) return got.error();
-  if (Status status = check_mesh_counts(file, counts, reading.triangle_limit); !status) return status.error();
-  if (head->bytes != mesh_frame_bytes(counts)) return child->invalid_answer();
-  MeshFile result;
-  result.unit = reading.unit.value_or(format == FileFormat::ply ? metre : millimetre);
-  result.mesh.vertices_m.resize(counts.vertices);
-  result.mesh.triangles.resize(counts.triangles);
-  if (Status got = child->read(result.mesh.vertices_m); !got) return got.error();
-  if (Status got = child->read(result.mesh.triangles); !got) return got.error();
-  for (Vector3& vertex : result.mesh.vertices_m) vertex *= result.unit.metres;
-  return result;
+  return receive_mesh(child.value(), head.value(), file, reading);
 }
 
 Result<std::optional<PointCloud>> read_cloud_file(const std::filesystem::path& file,
                                                   const MeshReading& reading) {
-  if (Status status = check_file(file, point_file_bytes_limit, thin_cloud); !status) return status.error();
-  auto child =
-      ForeignChild::start({file, "cloud", thin_cloud},
-                          {reading.program.string(), "read-points", "--", file.string()}, reading.patience);
-  if (!child) return child.error();
-  const auto head = child->next();
-  if (!head) return head.error();
-  if (head->kind == FrameKind::faces) return std::optional<PointCloud>();
-  CloudCounts counts;
-  if (head->kind != FrameKind::cloud || head->bytes < sizeof counts) return child->invalid_answer();
-  if (Status got = child->read(&counts, sizeof counts); !got) return got.error();
-  if (!are_valid_counts(counts) || head->bytes != cloud_frame_bytes(counts)) return child->invalid_answer();
-  PointCloud cloud;
-  cloud.points.resize(counts.points);
-  cloud.normals.resize(counts.normals);
-  cloud.skipped = counts.skipped;
-  if (Status got = child->read(cloud.points); !got) return got.error();
-  if (Status got = child->read(cloud.normals); !got) return got.error();
-  return std::optional(std::move(cloud));
+  auto content = read_content(file, reading);
+  if (!content) return content.error();
+  if (auto* cloud = std::get_if<PointCloud>(&content.value())) return std::optional(std::move(*cloud));
+  return std::optional<PointCloud>();
 }
 
 Result<ScanFile> read_scan_file(const std::filesystem::path& file, const MeshReading& reading) {

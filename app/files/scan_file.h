@@ -51,8 +51,8 @@ struct ScanFile {
   std::size_t points_skipped = 0;  // points with a coordinate that is not a number
 };
 
-// Reads a scan: a cloud, or a mesh of at most scan_triangle_limit triangles. Errors are those of the
-// functions above, and points at infinity or farther than 100 m.
+// Reads a scan: a cloud, or a mesh (PLY in the same pass) of at most scan_triangle_limit triangles. Errors
+// are those of the functions above, and points at infinity or farther than 100 m.
 Result<ScanFile> read_scan_file(const std::filesystem::path& file, const MeshReading& reading = {});
 
 }  // namespace spoonbill

@@ -40,6 +40,26 @@ Vector3 size_of_all(const ScanFit& fit) {
   return box.extent();
 }
 
+std::size_t count_strays(const ScanFit& fit) {
+  std::size_t strays = 0;
+  for (const FittedBody& body : fit.bodies) strays += body.errors.strays;
+  return strays;
+}
+
+// Returns the number of points that were given to the fit: all that were read, less those that are not a
+// number or were joined to another.
+std::size_t count_given(const ScanFit& fit) {
+  std::size_t count = fit.outliers + fit.dust + fit.other_islands;
+  for (const FittedBody& body : fit.bodies) count += body.points_m.size();
+  return count;
+}
+
+// Returns the fraction of the given points that belong to no body.
+double left_out_share(const ScanFit& fit) {
+  const double given = static_cast<double>(std::max<std::size_t>(1, count_given(fit)));
+  return static_cast<double>(fit.outliers + fit.dust + fit.other_islands) / given;
+}
+
 void add_body(FactSheet& facts, const FittedBody& body, Json& list) {
   const std::string kind(name_of(body.kind));
   facts.add("Body",
@@ -135,36 +155,50 @@ Deviation deviation_of_all(const ScanFit& fit) {
   return compute_deviation(std::move(distances));
 }
 
+void add_left_out_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit) {
+  const double share = left_out_share(fit);
+  std::string text;
+  const auto add_part = [&](std::size_t count, const char* what) {
+    if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + what;
+  };
+  add_part(fit.outliers, "outliers");
+  add_part(fit.dust, "in specks");
+  add_part(fit.other_islands, "on other islands");
+  if (!text.empty()) text = percent_text(share) + " of the scan's points: " + text;
+  facts.add(text.empty() ? "" : "Left out", text, "left_out_share", share);
+  facts.add("", "", "points_left_out",
+            {{"not_a_number", file.points_skipped},
+             {"joined", fit.joined},
+             {"outliers", fit.outliers},
+             {"strays", count_strays(fit)},
+             {"specks", fit.dust},
+             {"other_islands", fit.other_islands}});
+}
+
 void add_scan_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit) {
   facts.add("Unit", std::string(file.unit.name) + " (of the scan's numbers; --unit overrides it)", "unit",
             std::string(file.unit.name));
   const Vector3 size = size_of_all(fit);
   facts.add("Size", size_text(size), "size_mm", millimetres_json(size));
+  const std::size_t strays = count_strays(fit);
   std::size_t used = 0;
-  std::size_t strays = 0;
-  for (const FittedBody& body : fit.bodies) {
-    strays += body.errors.strays;
-    used += body.points_m.size() - body.errors.strays;
-  }
+  for (const FittedBody& body : fit.bodies) used += body.points_m.size();
+  used -= std::min(used, strays);
   std::string text = std::to_string(used) + " used of " + std::to_string(file.points_read) + " read";
-  const auto add_skipped = [&](std::size_t count, const char* why) {
+  const auto add_skipped = [&](std::size_t count, const std::string& why) {
     if (count > 0) text += ", " + std::to_string(count) + " " + why;
   };
   add_skipped(file.points_skipped, "not a number");
-  add_skipped(fit.joined, "duplicate");
+  add_skipped(fit.joined, "joined to another within " + short_length_text(fit.joining_distance_m));
   add_skipped(fit.outliers, "outliers");
   add_skipped(strays, "stray points off the surface");
   add_skipped(fit.dust, "in specks");
   add_skipped(fit.other_islands, "on other islands");
   facts.add("Points", text, "points_read", file.points_read);
+  facts.add("", "", "points_distinct", fit.distinct);
   facts.add("", "", "points_used", used);
-  facts.add("", "", "points_left_out",
-            {{"not_a_number", file.points_skipped},
-             {"joined", fit.joined},
-             {"outliers", fit.outliers},
-             {"strays", strays},
-             {"specks", fit.dust},
-             {"other_islands", fit.other_islands}});
+  const bool is_mesh = fit.joining_distance_m > 0.0;
+  facts.add("", "", "joined_within_m", is_mesh ? Json(fit.joining_distance_m) : Json(nullptr));
   facts.add("Islands", std::to_string(fit.islands), "islands", fit.islands);
 }
 
@@ -187,24 +221,58 @@ std::optional<std::string> find_detail_note(const ScanFit& fit) {
          "have a handle or a hole, so fit its parts; fine detail needs more control points";
 }
 
-// Returns true if 95 % of each body's points except strays are within the tolerance; nothing for a tolerance
-// of 0.
+namespace {
+
+// Returns the fraction of the whole scan that is within the tolerance. Points that were left out are not.
+double share_within(const ScanFit& fit, double tolerance_m) {
+  double within = 0.0;
+  for (const FittedBody& body : fit.bodies) {
+    const std::vector<double>& distances = body.errors.distance_m;
+    const auto near = std::count_if(distances.begin(), distances.end(),
+                                    [&](double distance) { return distance <= tolerance_m; });
+    // The distances of a coarse mesh are those of points all over it.
+    if (!distances.empty()) {
+      within += static_cast<double>(body.points_m.size()) * static_cast<double>(near) /
+                static_cast<double>(distances.size());
+    }
+  }
+  return within / static_cast<double>(std::max<std::size_t>(1, count_given(fit)));
+}
+
+bool is_body_within(const FittedBody& body, double tolerance_m) {
+  return body.errors.data_to_surface.p95_m <= tolerance_m;
+}
+
+// Returns true if 95 % of the whole scan is within the tolerance, and 95 % of each body's points except
+// strays; nothing for a tolerance of 0.
 std::optional<bool> is_within_tolerance(const ScanFit& fit, double tolerance_m) {
   if (tolerance_m <= 0.0) return std::nullopt;
-  return std::all_of(fit.bodies.begin(), fit.bodies.end(), [&](const FittedBody& body) {
-    return body.errors.data_to_surface.p95_m <= tolerance_m;
-  });
+  const bool are_bodies = std::all_of(fit.bodies.begin(), fit.bodies.end(),
+                                      [&](const auto& body) { return is_body_within(body, tolerance_m); });
+  return are_bodies && share_within(fit, tolerance_m) >= 0.95;
 }
+
+std::string tolerance_text(const ScanFit& fit, double tolerance_m) {
+  const double omitted = left_out_share(fit);
+  std::string text = percent_text(share_within(fit, tolerance_m)) + " of the whole scan is within " +
+                     short_length_text(tolerance_m) + " of the surface";
+  if (omitted > 0.0) text += "; left out: " + percent_text(omitted);
+  return text;
+}
+
+}  // namespace
 
 std::vector<std::string> find_fit_shortcomings(const ScanFit& fit, double tolerance_m) {
   std::vector<std::string> notes;
+  bool are_bodies_within = true;
   for (std::size_t k = 0; k < fit.bodies.size(); ++k) {
     const FittedBody& body = fit.bodies[k];
     const std::string which =
         fit.bodies.size() == 1 ? "the surface" : "the surface of body " + std::to_string(k + 1);
     const double p95_m = body.errors.data_to_surface.p95_m;
-    if (tolerance_m > 0.0 && p95_m > tolerance_m) {
-      notes.push_back(which + " is not within the tolerance: 95 % of the scan is within " +
+    if (tolerance_m > 0.0 && !is_body_within(body, tolerance_m)) {
+      are_bodies_within = false;
+      notes.push_back(which + " is not within the tolerance: 95 % of the points fitted to it are within " +
                       short_length_text(p95_m) + " of it, not " + short_length_text(tolerance_m) +
                       "; allow more control points with --control, unless the scan is that noisy");
     }
@@ -213,6 +281,10 @@ std::vector<std::string> find_fit_shortcomings(const ScanFit& fit, double tolera
                       std::to_string(body.folds.samples) +
                       " samples; try fewer control points or another --kind");
     }
+  }
+  if (are_bodies_within && is_within_tolerance(fit, tolerance_m) == false) {
+    notes.push_back("the scan as a whole is not within the tolerance: " + tolerance_text(fit, tolerance_m) +
+                    "; --islands all fits every part");
   }
   if (fit.flipped_normals > 0) {
     notes.push_back("the normals of " + count_text(fit.flipped_normals, "point", "points") +
@@ -242,7 +314,10 @@ void add_fit_facts(FactSheet& facts, const ScanFit& fit, double tolerance_m) {
   facts.add("", "", "control", {first.surface.net.rows, first.surface.net.columns});
   facts.add("", "", "folds", folds);
   const std::optional<bool> within = is_within_tolerance(fit, tolerance_m);
-  facts.add("", "", "within_tolerance", within ? Json(*within) : Json(nullptr));
+  facts.add(within ? "Within tolerance" : "",
+            within ? (*within ? "yes: " : "no: ") + tolerance_text(fit, tolerance_m) : "", "within_tolerance",
+            within ? Json(*within) : Json(nullptr));
+  facts.add("", "", "within_tolerance_share", within ? Json(share_within(fit, tolerance_m)) : Json(nullptr));
   facts.add("", "", "max_m", all.max_m);
   facts.add("", "", "p95_m", all.p95_m);
   facts.add("", "", "mean_m", all.mean_m);

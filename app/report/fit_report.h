@@ -27,10 +27,16 @@ std::optional<std::string> find_detail_note(const ScanFit& fit);
 // components of the scan that were skipped or capped. A tolerance of 0 means that there is no tolerance.
 std::vector<std::string> find_fit_shortcomings(const ScanFit& fit, double tolerance_m);
 
-// Adds the unit and size of the scan, and how many of its points were used.
+// Adds what the bodies leave out of the scan: outliers, specks and other islands, as a share of its distinct
+// points. It goes before all other facts, because they are about the rest.
+void add_left_out_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit);
+
+// Adds the unit and size of the scan, how near its vertices were joined, and how many of its points were
+// used.
 void add_scan_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit);
 
-// Adds each body with its errors, and in the JSON the errors of all bodies together.
+// Adds each body with its errors, whether 95 % of the whole scan is within the tolerance, and in the JSON the
+// errors of all bodies together.
 void add_fit_facts(FactSheet& facts, const ScanFit& fit, double tolerance_m);
 
 // Writes a binary PLY file in metres. Each point of the scan (or, for a mesh, each of the samples all over

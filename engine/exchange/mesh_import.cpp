@@ -1,7 +1,6 @@
 #include "engine/exchange/mesh_import.h"
 
 #include <assimp/DefaultIOSystem.h>
-#include <assimp/MemoryIOWrapper.h>
 #include <assimp/importerdesc.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -10,166 +9,23 @@
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <map>
 #include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "engine/base/file.h"
 #include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
+#include "engine/exchange/points/ply_file.h"
 
 namespace spoonbill {
 namespace {
-
-constexpr std::size_t ply_header_bytes_limit = 65536;
-
-// Property of an element; a list is a count followed by that many numbers.
-struct PlyProperty {
-  bool is_list = false;
-  std::size_t count_bytes = 0, bytes = 0;  // size of a list's count and of each number; 0: unknown type
-};
-
-struct PlyElement {
-  std::string name;
-  std::uint64_t rows = 0;
-  std::vector<PlyProperty> properties;
-};
-
-struct PlyHeader {
-  bool is_text = false, is_big_endian = false;
-  std::vector<PlyElement> elements;
-};
-
-// Returns the size of a type; 0 for an unknown name.
-std::size_t number_bytes(const std::string& type) {
-  static const std::map<std::string, std::size_t> known = {
-      {"char", 1},  {"uchar", 1},   {"int8", 1},   {"uint8", 1},  {"short", 2}, {"ushort", 2},
-      {"int16", 2}, {"uint16", 2},  {"int", 4},    {"uint", 4},   {"int32", 4}, {"uint32", 4},
-      {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8}};
-  const auto found = known.find(type);
-  return found == known.end() ? 0 : found->second;
-}
-
-// Reads the header and leaves the stream behind its last line.
-Result<PlyHeader> read_ply_header(std::istream& stream) {
-  PlyHeader header;
-  std::size_t bytes = 0;
-  for (std::string line; std::getline(stream, line) && bytes <= ply_header_bytes_limit;) {
-    bytes += line.size() + 1;
-    std::istringstream words(line);
-    std::string keyword, name;
-    words >> keyword >> name;
-    if (keyword == "end_header") return header;
-    if (keyword == "format") {
-      header.is_text = name == "ascii";
-      header.is_big_endian = name == "binary_big_endian";
-    }
-    if (keyword == "element") {
-      header.elements.push_back({name, 0, {}});
-      words >> header.elements.back().rows;
-    }
-    if (keyword == "property" && !header.elements.empty()) {
-      PlyProperty property{name == "list", 0, number_bytes(name)};
-      std::string count_type, type;
-      if (property.is_list && words >> count_type >> type) {
-        property.count_bytes = number_bytes(count_type);
-        property.bytes = number_bytes(type);
-      }
-      header.elements.back().properties.push_back(property);
-    }
-  }
-  return Error{ErrorCode::malformed, "its header has no end within 64 KiB; it is cut or not a PLY file"};
-}
-
-bool skip(std::istream& stream, std::uint64_t numbers) {
-  std::string word;
-  while (numbers > 0 && stream >> word) --numbers;
-  return numbers == 0;
-}
-
-bool skip_list(std::istream& stream) {
-  std::string word;
-  if (!(stream >> word)) return false;
-  const double count = std::strtod(word.c_str(), nullptr);
-  return count >= 0.0 && count < 1e9 && skip(stream, static_cast<std::uint64_t>(count));
-}
-
-// Upper limit of the counts of rows and list entries: more than any file has, and too few to overflow.
-constexpr std::uint64_t row_limit = std::uint64_t{1} << 32U;
-
-bool skip_bytes(std::istream& stream, std::uint64_t bytes) {
-  stream.ignore(static_cast<std::streamsize>(bytes));
-  return static_cast<std::uint64_t>(stream.gcount()) == bytes;
-}
-
-bool skip_binary(std::istream& stream, const PlyProperty& property, bool is_big_endian) {
-  if (!property.is_list) return skip_bytes(stream, property.bytes);
-  std::uint64_t count = 0;
-  for (std::size_t k = 0; k < property.count_bytes; ++k) {
-    const int character = stream.get();
-    if (character < 0) return false;
-    const auto byte = static_cast<std::uint64_t>(character);
-    count = is_big_endian ? count << 8U | byte : count | byte << (8U * k);
-  }
-  return count < row_limit && skip_bytes(stream, count * property.bytes);
-}
-
-bool skip_text(std::istream& stream, const PlyProperty& property) {
-  return property.is_list ? skip_list(stream) : skip(stream, 1);
-}
-
-Status check_types(const PlyElement& element) {
-  for (const PlyProperty& property : element.properties) {
-    if (property.bytes > 0 && (property.count_bytes > 0 || !property.is_list)) continue;
-    return Error{ErrorCode::unknown,
-                 "its " + excerpt(element.name) + " has a property of a type that PLY does not have"};
-  }
-  return {};
-}
-
-Error truncated_error(const PlyElement& element, std::uint64_t row) {
-  return Error{ErrorCode::malformed, "it ends within " + excerpt(element.name) + " " +
-                                         std::to_string(row + 1) + " of " + std::to_string(element.rows) +
-                                         "; it is cut or damaged"};
-}
-
-// Returns the size of a row of a binary file; 0 if rows differ in size because of lists or text.
-std::size_t fixed_row_bytes(const PlyHeader& header, const PlyElement& element) {
-  std::size_t bytes = 0;
-  for (const PlyProperty& property : element.properties) {
-    if (header.is_text || property.is_list) return 0;
-    bytes += property.bytes;
-  }
-  return bytes;
-}
-
-Status check_rows(std::istream& stream, const PlyHeader& header, const PlyElement& element) {
-  // Rows without properties need no bytes, however many rows the header promises.
-  if (element.properties.empty()) return {};
-  if (Status types = check_types(element); !types && !header.is_text) return types;
-  if (const std::size_t bytes = fixed_row_bytes(header, element); bytes > 0) {
-    if (element.rows > row_limit) return truncated_error(element, row_limit);
-    const bool whole = skip_bytes(stream, element.rows * bytes);
-    return whole ? Status() : truncated_error(element, static_cast<std::uint64_t>(stream.gcount()) / bytes);
-  }
-  for (std::uint64_t row = 0; row < element.rows; ++row) {
-    for (const PlyProperty& property : element.properties) {
-      if (header.is_text ? skip_text(stream, property)
-                         : skip_binary(stream, property, header.is_big_endian)) {
-        continue;
-      }
-      return truncated_error(element, row);
-    }
-  }
-  return {};
-}
 
 // Number of bytes at the end of a file that are searched for its last line.
 constexpr std::size_t tail_bytes = 65536;
@@ -231,50 +87,14 @@ bool has_three_words(std::istream& words) {
   return static_cast<bool>(words >> word >> word >> word);
 }
 
-// Returns true for a binary PLY whose data begin, at `begin`, with the byte of a line feed. Assimp 5.2 skips
-// that byte as part of the header and reads all numbers one byte late.
-bool begins_with_line_feed(const std::string& file, std::size_t& begin) {
-  constexpr std::string_view last_line = "\nend_header\n";
-  const std::string start = read_first_bytes(file, ply_header_bytes_limit);
-  const std::size_t end = start.find(last_line);
-  if (end == std::string::npos || start.find("\nformat binary") > end) return false;
-  begin = end + last_line.size();
-  return begin < start.size() && start[begin] == '\n';
-}
-
-// Content of a file with a second line feed inserted before its data; Assimp skips one of the two.
-class PaddedStream final : public Assimp::MemoryIOStream {
- public:
-  PaddedStream(const std::string& file, std::size_t begin) : PaddedStream(read_padded(file, begin)) {}
-
- private:
-  explicit PaddedStream(std::vector<std::uint8_t>&& bytes)
-      : MemoryIOStream(bytes.data(), bytes.size()), bytes_(std::move(bytes)) {}
-
-  static std::vector<std::uint8_t> read_padded(const std::string& file, std::size_t begin) {
-    std::ifstream stream(file, std::ios::binary);
-    std::vector<std::uint8_t> bytes(std::filesystem::file_size(file) + 1, '\n');
-    auto* letters = reinterpret_cast<char*>(bytes.data());
-    stream.read(letters, static_cast<std::streamsize>(begin));
-    stream.read(letters + begin + 1, static_cast<std::streamsize>(bytes.size() - begin - 1));
-    return bytes;
-  }
-
-  std::vector<std::uint8_t> bytes_;  // storage of the base class; moving keeps its address
-};
-
-// File system that contains only one file, because a material file that it names could be a device, a pipe or
-// a secret.
+// File system that contains only one file: a material that the file names could be a device, a pipe or a
+// secret.
 class SingleFileIo final : public Assimp::DefaultIOSystem {
  public:
   explicit SingleFileIo(std::string file) : file_(std::move(file)) {}
   bool Exists(const char* name) const override { return file_ == name && DefaultIOSystem::Exists(name); }
   Assimp::IOStream* Open(const char* name, const char* mode) override {
     if (file_ != name) return nullptr;
-    std::size_t begin = 0;
-    if (format_from_name(file_) == FileFormat::ply && begins_with_line_feed(file_, begin)) {
-      return new PaddedStream(file_, begin);
-    }
     return DefaultIOSystem::Open(name, mode);
   }
 
@@ -343,25 +163,25 @@ Result<TriangleMesh> collect_triangles(const aiScene& scene) {
   return mesh;
 }
 
+Result<TriangleMesh> import_ply_mesh(const std::filesystem::path& file) {
+  const auto bytes = read_file(file, point_file_bytes_limit);
+  if (!bytes) return bytes.error();
+  auto content = parse_ply(bytes.value());
+  if (!content) return content.error();
+  if (auto* mesh = std::get_if<PlyMesh>(&content.value())) {
+    return TriangleMesh{std::move(mesh->vertices), std::move(mesh->triangles)};
+  }
+  return Error{ErrorCode::too_few, "has no triangles; export a surface mesh"};
+}
+
 // Checks for damage that Assimp does not report.
 Status check_complete(const std::filesystem::path& file) {
   const FileFormat format = format_from_name(file);
-  if (format == FileFormat::ply) return check_ply(file);
   if (format == FileFormat::stl) return check_text_stl(file);
   return format == FileFormat::obj ? check_last_obj_line(file) : Status();
 }
 
 }  // namespace
-
-Status check_ply(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  const Result<PlyHeader> header = read_ply_header(stream);
-  if (!header.ok()) return header.error();
-  for (const PlyElement& element : header->elements) {
-    if (Status status = check_rows(stream, header.value(), element); !status.ok()) return status;
-  }
-  return {};
-}
 
 Status check_text_stl(const std::filesystem::path& file) {
   std::error_code ignored;
@@ -388,6 +208,7 @@ Status check_last_obj_line(const std::filesystem::path& file) {
 }
 
 Result<TriangleMesh> import_mesh(const std::filesystem::path& file) {
+  if (format_from_name(file) == FileFormat::ply) return import_ply_mesh(file);
   if (Status status = check_complete(file); !status.ok()) return status.error();
   Assimp::Importer importer;
   importer.SetIOHandler(new SingleFileIo(file.string()));  // owned by the importer

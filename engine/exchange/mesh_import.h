@@ -1,6 +1,6 @@
-// Import of triangle meshes from foreign files through Assimp, after checks that the file is complete. A
-// hostile file can take over the process, so call these functions in a child process with limits. Each Error
-// says what is wrong, without the file's name.
+// Import of triangle meshes from foreign files: PLY by parse_ply() of points/ply_file.h, STL and OBJ through
+// Assimp after checks that the file is complete. A hostile file can take over the process, so call these
+// functions in a child process with limits. Each Error says what is wrong, without the file's name.
 #pragma once
 
 #include <filesystem>
@@ -11,13 +11,9 @@
 namespace spoonbill {
 
 // Reads the triangles of an STL, OBJ or PLY file; polygons are triangulated, points and lines are ignored.
-// Coordinates are in the file's own unit (not yet metres) and single precision. Other files that the file
-// names are not opened.
+// Coordinates are in the file's own unit (not yet metres), those of STL and OBJ in single precision. Other
+// files that this one names are not opened.
 Result<TriangleMesh> import_mesh(const std::filesystem::path& file);
-
-// Checks that a PLY file contains the rows that its header promises. Assimp invents the rest of a truncated
-// file, hangs or crashes.
-Status check_ply(const std::filesystem::path& file);
 
 // Checks that an STL file in text form ends with `endsolid`, with or without a name and a line feed. Binary
 // files are accepted: Assimp checks their length.

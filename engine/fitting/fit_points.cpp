@@ -19,9 +19,28 @@ namespace {
 constexpr std::size_t least_scan_points = 30;
 constexpr std::size_t neighbours_per_node = 9;
 
-void join_coincident_vertices(Scan& scan) {
-  const JoinedVertices joined = join_vertices(
-      scan.points_m, std::max(vertex_joining_fraction * bounding_diagonal_m(scan.points_m), 1e-12));
+// Vertices nearer than this fraction of the median edge are one. It is above the rounding of files with few
+// digits, and below any edge that a scanner resolves.
+constexpr double joining_edge_fraction = 1e-3;
+
+// Returns the distance within which the vertices of a mesh are joined.
+double joining_distance_m(const Scan& scan) {
+  constexpr std::size_t most_measured = 1'000'000;
+  std::vector<double> lengths;
+  const std::size_t stride = 1 + scan.triangles.size() / most_measured;
+  for (std::size_t t = 0; t < scan.triangles.size(); t += stride) {
+    const auto& [a, b, c] = scan.triangles[t];
+    for (const auto& [from, to] : {NodePair(a, b), NodePair(b, c), NodePair(c, a)}) {
+      const double length_m = (scan.points_m[to] - scan.points_m[from]).norm();
+      if (length_m > 0.0) lengths.push_back(length_m);
+    }
+  }
+  const double rounding_m = vertex_joining_fraction * bounding_diagonal_m(scan.points_m);
+  return std::max({joining_edge_fraction * median(std::move(lengths)), rounding_m, 1e-12});
+}
+
+void join_near_vertices(Scan& scan, double distance_m) {
+  const JoinedVertices joined = join_vertices(scan.points_m, distance_m);
   std::vector<TriangleCorners> remaining;
   remaining.reserve(scan.triangles.size());
   for (TriangleCorners corners : scan.triangles) {
@@ -203,7 +222,8 @@ Result<FitPoints> make_fit_points(Scan scan) {
   fit.weights.assign(scan.points_m.size(), 1.0);
   if (is_mesh) {
     fit.joined = scan.points_m.size();
-    join_coincident_vertices(scan);
+    fit.joining_distance_m = joining_distance_m(scan);
+    join_near_vertices(scan, fit.joining_distance_m);
     fit.joined -= scan.points_m.size();
   }
   fit.given_m = scan.points_m;

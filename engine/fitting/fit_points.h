@@ -29,14 +29,16 @@ struct FitPoints {
   std::vector<BoundaryLoop> boundary_loops;  // longest first
   // Number of nodes at the end of the graph that have no points and span holes and gaps.
   std::size_t spanning_nodes = 0;
-  std::size_t outliers = 0;         // number of given points removed as outliers, or of a mesh's spikes
-  std::size_t joined = 0;           // mesh vertices merged with another at the same position
+  std::size_t outliers = 0;         // given points removed as outliers; spikes of a mesh
+  std::size_t joined = 0;           // mesh vertices merged with another within the joining distance
+  double joining_distance_m = 0.0;  // 0 for a cloud, whose points are not joined
   std::size_t flipped_normals = 0;  // given points whose normals were flipped to agree with their neighbours
 };
 
-// Prepares a scan. Meshes: joins vertices, flattens spikes, refines triangles to the nodes' spacing and
-// computes vertex normals. Clouds: thins by voxels, removes outliers and flips inconsistent normals. Fails
-// with fewer than 30 points, or if all points coincide or are collinear.
+// Prepares a scan. Meshes: joins vertices nearer than a thousandth of the median edge, flattens spikes,
+// refines triangles to the nodes' spacing and computes vertex normals. Clouds: thins by voxels, removes
+// outliers and flips inconsistent normals. Fails with fewer than 30 points, or if all points coincide or are
+// collinear.
 Result<FitPoints> make_fit_points(Scan scan);
 
 // Replaces the nodes by a subset of the points, without edges, and returns the nodes' parameters. `uv` holds

@@ -259,7 +259,9 @@ void measure_data(const FittedSurface& fit, const FitPoints& points, FitErrors& 
     errors.is_stray.push_back(fit.trust[fitted] == 0.0);
     if (!errors.is_stray.back()) trusted.push_back(found.distance_m);
   }
-  errors.strays = errors.positions_m.size() - trusted.size();
+  const auto is_stray = [&](std::uint32_t fitted) { return fit.trust[fitted] == 0.0; };
+  errors.strays = static_cast<std::size_t>(
+      std::count_if(points.representative.begin(), points.representative.end(), is_stray));
   errors.data_to_surface = compute_deviation(std::move(trusted));
   errors.all_to_surface = compute_deviation(errors.distance_m);
 }

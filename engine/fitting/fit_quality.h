@@ -84,9 +84,9 @@ struct FitErrors {
   // Distances from the data to their closest surface points, without strays (data_to_surface) and with them
   // (all_to_surface). The data are the given points, or points all over a mesh.
   Deviation data_to_surface, all_to_surface;
-  std::size_t strays = 0;  // points of zero trust: they are off the surface, unlike the points around them
-  // Distances from surface samples (4 x 4 per span) to the plane of the nearest data points, or to the
-  // nearest point where that is closer.
+  std::size_t strays = 0;  // given points of zero trust: off the surface, unlike the points around them
+  // Distances from surface samples (4 x 4 a span) to the plane of the nearest data points, or to the nearest
+  // point where that is closer.
   Deviation surface_to_data;
   double unseen_fraction = 0.0;  // fraction of samples without data nearby, which surface_to_data ignores
   // Values for each data point, for pictures: position, surface parameters, distance, and the stray flag.

@@ -16,6 +16,10 @@ namespace {
 // Smallest number of points: a component needs 30 nodes, and each node of a cloud three points.
 constexpr std::size_t least_cloud_points = 90;
 
+IslandChoice island_choice(const FitRequest& request) {
+  return request.islands.value_or(IslandChoice::largest);
+}
+
 Result<FittedBody> fit_body(FitPoints island, const Parameterisation& start, FitSettings settings,
                             const Progress& progress) {
   settings.progress = progress;
@@ -45,7 +49,7 @@ Result<FittedBody> fit_from_profile(FitPoints island, Parameterisation start, co
 }
 
 Result<FittedBody> fit_from_kind(FitPoints island, const FitRequest& request, const Progress& progress) {
-  if (request.islands == IslandChoice::bridge && island.spanning_nodes > 0 &&
+  if (island_choice(request) == IslandChoice::bridge && island.spanning_nodes > 0 &&
       request.kind.value_or(ShapeKind::closed) != ShapeKind::closed) {
     return Error(ErrorCode::inconsistent, "bridged islands make a closed body; leave --kind out", "kind");
   }
@@ -114,6 +118,32 @@ Status fit_islands(std::vector<FitPoints> islands, const FitRequest& request, Sc
                    " islands can be fitted; the largest: " + result.unfitted.front().reason);
 }
 
+std::size_t count_distinct(std::vector<Vector3> points_m) {
+  const auto is_before = [](const Vector3& a, const Vector3& b) {
+    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+  };
+  std::sort(points_m.begin(), points_m.end(), is_before);
+  return static_cast<std::size_t>(std::unique(points_m.begin(), points_m.end()) - points_m.begin());
+}
+
+// Returns an error if the bodies use less than half of the distinct points.
+Status check_points_used(const ScanFit& fit) {
+  std::vector<Vector3> points_m;
+  std::size_t strays = 0;
+  for (const FittedBody& body : fit.bodies) {
+    points_m.insert(points_m.end(), body.points_m.begin(), body.points_m.end());
+    strays += body.errors.strays;
+  }
+  const std::size_t of_bodies = count_distinct(std::move(points_m));
+  const std::size_t used = of_bodies - std::min(of_bodies, strays);
+  if (2 * used >= fit.distinct) return {};
+  return Error(ErrorCode::too_few,
+               "only " + std::to_string(used) + " of its " + std::to_string(fit.distinct) +
+                   " distinct points take part in the fit, which found " + std::to_string(fit.islands) +
+                   " islands; choose which with --islands, or repair the scan and join its vertices",
+               "--islands");
+}
+
 }  // namespace
 
 Result<ScanFit> fit_scan(Scan scan, const FitRequest& request) {
@@ -127,10 +157,13 @@ Result<ScanFit> fit_scan(Scan scan, const FitRequest& request) {
   }
   auto points = make_fit_points(std::move(scan));
   if (!points) return points.error();
+  const std::size_t distinct = count_distinct(points->given_m);
   Islands islands = split_islands(points.value());
   ScanFit result;
   result.islands = islands.islands.size();
+  result.distinct = distinct;
   result.joined = points->joined;
+  result.joining_distance_m = points->joining_distance_m;
   result.outliers = points->outliers;
   result.flipped_normals = points->flipped_normals;
   result.dust = islands.dust_points;
@@ -138,12 +171,14 @@ Result<ScanFit> fit_scan(Scan scan, const FitRequest& request) {
     return Error(ErrorCode::degenerate,
                  "its points form no connected surface; they are too few or too noisy");
   }
-  if (Status chosen = choose_islands(islands.islands, request.islands, result); !chosen) {
+  if (Status chosen = choose_islands(islands.islands, island_choice(request), result); !chosen) {
     return chosen.error();
   }
   if (Status fitted = fit_islands(std::move(islands.islands), request, result); !fitted) {
     return fitted.error();
   }
+  if (request.islands) return result;
+  if (Status used = check_points_used(result); !used) return used.error();
   return result;
 }
 

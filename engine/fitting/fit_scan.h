@@ -19,8 +19,8 @@ enum class IslandChoice { largest, bridge, all };
 
 struct FitRequest {
   FitSettings settings;
-  std::optional<ShapeKind> kind;  // default: detected
-  IslandChoice islands = IslandChoice::largest;
+  std::optional<ShapeKind> kind;        // default: detected
+  std::optional<IslandChoice> islands;  // default: the largest, which must hold half of the scan
 };
 
 struct FittedBody {
@@ -44,8 +44,11 @@ struct ScanFit {
   std::size_t islands = 0;               // number of connected components found
   std::vector<UnfittedIsland> unfitted;  // largest first; only with IslandChoice::all
   std::size_t open_bridged = 0;  // bridged components with open ends away from the gaps, which were capped
-  // Numbers of points left out: duplicates, outliers, points of tiny components, points of components that
-  // were not fitted.
+  // Number of points at different positions; of a mesh its vertices after joining within the distance.
+  std::size_t distinct = 0;
+  double joining_distance_m = 0.0;  // 0 for a cloud
+  // Points left out: duplicates, outliers, points of tiny components, points of components that were not
+  // fitted.
   std::size_t joined = 0, outliers = 0, dust = 0, other_islands = 0;
   // Number of cloud points whose normals were flipped to agree with their neighbours. Flipping is needed when
   // all normals face the scanner.
@@ -53,8 +56,9 @@ struct ScanFit {
 };
 
 // Fits a scan with finite points. Fails, with advice, on too few points (a cloud needs at least 90) and on a
-// shape that cannot be parameterised as the requested kind. It also fails if components cannot be bridged, or
-// on a request to stop. With IslandChoice::all, single failures are listed in `unfitted`.
+// shape that cannot be parameterised as the requested kind. Fails if less than half of the distinct points
+// take part, unless the request chooses islands. Fails also if components cannot be bridged, or on
+// a request to stop. With IslandChoice::all, single failures are listed in `unfitted`.
 Result<ScanFit> fit_scan(Scan scan, const FitRequest& request);
 
 }  // namespace spoonbill

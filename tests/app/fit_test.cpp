@@ -14,6 +14,7 @@
 #include "engine/exchange/document.h"
 #include "tests/app/mesh_texts.h"
 #include "tests/app/process.h"
+#include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/collision/meshes/mesh_shapes.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/fitting/clouds.h"
@@ -265,6 +266,89 @@ TEST_F(FitTest, PointsOnALineAreNoSurface) {
     EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
     EXPECT_NE(outcome.err.find("on one line"), std::string::npos) << outcome.err;
   }
+}
+
+std::string sample_scan(const std::string& name) {
+  return std::string(SPOONBILL_SCAN_SAMPLES) + "/" + name;
+}
+
+// The vertices of its triangles differ by up to 0.2 micrometres.
+TEST_F(FitTest, VerticesThatDifferByRoundingAreOne) {
+  const Json json = json_of_fit(sample_scan("unwelded-hemisphere.stl"));
+  EXPECT_EQ(json.at("islands"), 1);
+  EXPECT_EQ(json.at("kind"), "sheet");
+  EXPECT_EQ(json.at("folds"), 0);
+  EXPECT_NEAR(json.at("size_mm")[0].get<double>(), 40.0, 0.1);
+  EXPECT_NEAR(json.at("size_mm")[2].get<double>(), 20.0, 0.1);
+  EXPECT_EQ(json.at("points_used"), json.at("points_distinct"));
+  // The median edge is 3.9 mm.
+  EXPECT_NEAR(json.at("joined_within_m").get<double>(), 3.9e-6, 1e-7);
+}
+
+// MeshLab writes range maps with an element of camera data before the vertices.
+TEST_F(FitTest, AnUnknownElementBeforeTheVerticesIsSkipped) {
+  for (const char* name : {"camera-binary.ply", "camera-ascii.ply"}) {
+    SCOPED_TRACE(name);
+    const Json json = json_of_fit(sample_scan(name), {"--unit", "mm", "--control", "16x16"});
+    EXPECT_EQ(json.at("kind"), "sheet");
+    EXPECT_EQ(json.at("points_used"), 651);
+    EXPECT_EQ(json.at("folds"), 0);
+    EXPECT_NEAR(json.at("size_mm")[0].get<double>(), 60.0, 0.1);
+    EXPECT_NEAR(json.at("size_mm")[1].get<double>(), 40.0, 0.1);
+    EXPECT_LT(json.at("p95_m").get<double>(), 1e-4);
+  }
+}
+
+// Vertices that are farther apart than the joining distance leave a heap of triangles.
+TEST_F(FitTest, LessThanHalfOfTheScanIsNoFitUnlessIslandsAreChosen) {
+  TriangleMesh loose = ball_mesh(12, 24, 20.0);
+  const TriangleMesh ball = loose;
+  loose.vertices_m.clear();
+  Random random(3);
+  for (TriangleCorners& corners : loose.triangles) {
+    for (std::uint32_t& corner : corners) {
+      const auto shift = [&] { return random.uniform(-0.05, 0.05); };
+      loose.vertices_m.push_back(ball.vertices_m[corner] + Vector3(shift(), shift(), shift()));
+      corner = static_cast<std::uint32_t>(loose.vertices_m.size() - 1);
+    }
+  }
+  const std::string scan = write("loose.stl", binary_stl(loose));
+  const Outcome outcome = fit(scan);
+  EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(out()));
+
+  // The largest ball has 900 of 2,300 points.
+  Scan balls = ellipsoid_cloud(900, {0.02, 0.02, 0.02});
+  append(balls, ellipsoid_cloud(700, {0.01, 0.01, 0.01}), {0.1, 0.0, 0.0});
+  append(balls, ellipsoid_cloud(700, {0.01, 0.01, 0.01}), {0.2, 0.0, 0.0});
+  const std::string three = write("three.xyz", xyz_of(balls, 1e3));
+  EXPECT_TRUE(is_clean_failure(fit(three, {"--control", "8x8"})));
+  EXPECT_EQ(json_of_fit(three, {"--control", "8x8", "--islands", "largest"}).at("islands"), 3);
+}
+
+// Repeated points on another island do not outweigh the largest one.
+TEST_F(FitTest, TheHalfIsOfDistinctPoints) {
+  Scan balls = ellipsoid_cloud(900, {0.02, 0.02, 0.02});
+  for (const double x_m : {0.1, 0.1, 0.2, 0.2}) {
+    append(balls, ellipsoid_cloud(300, {0.01, 0.01, 0.01}), {x_m, 0.0, 0.0});
+  }
+  const Json json =
+      json_of_fit(write("repeated.xyz", xyz_of(balls, 1e3)), {"--control", "8x8", "--kind", "closed"});
+  EXPECT_EQ(json.at("points_distinct"), 1500);
+  EXPECT_NEAR(json.at("size_mm")[0].get<double>(), 40.0, 0.2);
+}
+
+TEST_F(FitTest, TheToleranceIsThatOfTheWholeScan) {
+  const std::string scan = sample_scan("two-balls.xyz");
+  const Json json = json_of_fit(scan, {"--tolerance", "1mm"});
+  EXPECT_EQ(json.at("within_tolerance"), false);
+  EXPECT_NEAR(json.at("left_out_share").get<double>(), 1200.0 / 2700.0, 1e-12);
+  EXPECT_LT(json.at("within_tolerance_share").get<double>(), 0.56);
+  const Outcome text = fit(scan, {"--tolerance", "1mm"});
+  EXPECT_TRUE(text.out.starts_with("Left out ")) << text.out;
+  const Json all = json_of_fit(scan, {"--tolerance", "1mm", "--islands", "all"});
+  EXPECT_EQ(all.at("within_tolerance"), true);
+  EXPECT_EQ(all.at("left_out_share"), 0.0);
 }
 
 // An STL file repeats each vertex for every triangle around it.

@@ -220,8 +220,9 @@ TEST_F(MeshFileTest, AFileWithoutPermissionIsRefused) {
 
 TEST_F(MeshFileTest, DamagedContentIsRefused) {
   const std::string stl = binary_stl(box);
-  expect_refusal(write("truncated.stl", stl.substr(0, stl.size() - 30)), ErrorCode::malformed);
-  expect_refusal(write("head.stl", stl.substr(0, 60)), ErrorCode::malformed);
+  expect_refusal(write("truncated.stl", stl.substr(0, stl.size() - 30)), "cannot be read as STL");
+  expect_refusal(write("head.stl", stl.substr(0, 60)), "cannot be read as STL");
+  expect_refusal(write("surplus.stl", stl + stl.substr(84, 50)), "cannot be read as STL");
   std::string countless = stl;
   countless.replace(80, 4, "\xff\xff\xff\xff");
   expect_refusal(write("countless.stl", countless), ErrorCode::malformed);

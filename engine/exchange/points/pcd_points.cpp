@@ -66,6 +66,10 @@ struct HeaderLines {
   std::optional<std::uint64_t> width, height, points;
 };
 
+bool is_product(std::uint64_t product, std::uint64_t a, std::uint64_t b) {
+  return a == 0 ? product == 0 : product / a == b && product % a == 0;
+}
+
 Result<PcdHeader> make_header(const HeaderLines& lines, std::string_view data, std::string_view body) {
   PcdHeader header{{}, 0, data, body};
   const std::size_t count = lines.fields.size();
@@ -91,6 +95,9 @@ Result<PcdHeader> make_header(const HeaderLines& lines, std::string_view data, s
   }
   if (lines.points) {
     header.points = *lines.points;
+    if (lines.width && lines.height && !is_product(*lines.points, *lines.width, *lines.height)) {
+      return Error{ErrorCode::inconsistent, "its POINTS are not WIDTH times HEIGHT; it is damaged"};
+    }
   } else if (lines.width && lines.height && *lines.width <= point_limit && *lines.height <= point_limit) {
     header.points = *lines.width * *lines.height;
   } else {
@@ -139,7 +146,15 @@ Error truncated_error(std::uint64_t point, std::uint64_t points) {
                                          " of " + std::to_string(points) + "; it is cut or damaged"};
 }
 
-// Collects all points. `number(point, field)` returns a coordinate, or nullopt if the file ends early.
+// Returns an error if more than blanks or zeros, as padding has, follow the last point.
+Status check_rest(std::string_view rest, std::uint64_t points) {
+  constexpr std::string_view padding("\0 \t\r\v\f\n", 7);
+  if (rest.find_first_not_of(padding) == std::string_view::npos) return {};
+  return Error{ErrorCode::inconsistent, "holds more than the " + std::to_string(points) +
+                                            " points that its header names; it is damaged"};
+}
+
+// Collects all points. `number(point, field)` returns a coordinate, or nullopt where the file ends early.
 template <class Number>
 Result<PointCloud> collect_points(const PcdHeader& header, const Number& number) {
   const std::array<int, 6> columns = find_coordinate_fields(header.fields);
@@ -188,6 +203,9 @@ Result<PointCloud> read_text_body(PcdHeader header) {
     return row[header.fields[field].offset];
   };
   auto cloud = collect_points(header, number);
+  if (cloud) {
+    if (Status ended = check_rest(rest, header.points); !ended) return ended.error();
+  }
   const bool has_comma = !cloud && word.find(',') != std::string_view::npos;
   return has_comma ? comma_error(rows_read, word) : std::move(cloud);
 }
@@ -204,6 +222,10 @@ Result<PointCloud> read_binary_body(PcdHeader header) {
   const std::uint64_t available = stride == 0 ? 0 : header.body.size() / stride;
   if (header.points <= point_limit && header.points > available) {
     return truncated_error(available, header.points);
+  }
+  if (header.points <= available) {
+    const Status ended = check_rest(header.body.substr(header.points * stride), header.points);
+    if (!ended) return ended.error();
   }
   return collect_points(header, [&](std::uint64_t point, std::size_t field) -> std::optional<double> {
     const PcdField& values = header.fields[field];

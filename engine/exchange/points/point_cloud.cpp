@@ -7,10 +7,12 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
 #include "engine/exchange/points/number_lines.h"
+#include "engine/exchange/points/ply_file.h"
 
 namespace spoonbill {
 namespace {
@@ -116,6 +118,11 @@ Error ambiguity_error(std::size_t line, std::string_view text) {
                                          "'; write decimal points, or semicolons between the numbers"};
 }
 
+Error count_error(double promised, std::size_t points) {
+  return Error{ErrorCode::inconsistent, "names " + number_text(promised) + " points and holds " +
+                                            std::to_string(points) + "; it is cut or damaged"};
+}
+
 bool is_unit(const Vector3& vector) {
   return std::abs(vector.norm() - 1.0) < 0.01;
 }
@@ -157,8 +164,9 @@ Result<PointCloud> PointCollector::finish() && {
 
 Result<PointCloud> parse_text_points(std::string_view bytes) {
   PointCollector collector;
-  std::size_t columns = 0, line_number = 0;
+  std::size_t columns = 0, line_number = 0, points = 0;
   bool has_heading = false;
+  std::optional<double> promised;  // count of points before the first one
   bytes = without_byte_order_mark(bytes);
   bool are_unit_normals = true;  // columns 4 to 6 of all points so far have length 1
   while (!bytes.empty()) {
@@ -170,7 +178,8 @@ Result<PointCloud> parse_text_points(std::string_view bytes) {
     const bool is_first = columns == 0;
     if (is_first && (!row.all_numbers || row.count == 1)) {
       if (has_heading) return no_point_error(line_number, line);
-      has_heading = true;  // a heading gives the names of the columns, or the number of points
+      has_heading = true;  // names of the columns, or the count of points
+      if (row.all_numbers) promised = row.numbers[0];
       continue;
     }
     if (!row.all_numbers || row.count < 3) return no_point_error(line_number, line);
@@ -187,10 +196,27 @@ Result<PointCloud> parse_text_points(std::string_view bytes) {
     are_unit_normals = are_unit_normals && columns >= 6 && is_unit(normal);
     const Status added = collector.add({row.numbers[0], row.numbers[1], row.numbers[2]}, normal);
     if (!added) return added.error();
+    ++points;
+  }
+  if (promised && points > 0 && *promised != static_cast<double>(points)) {
+    return count_error(*promised, points);
   }
   auto cloud = std::move(collector).finish();
   if (cloud && !are_unit_normals) cloud->normals.clear();
   return cloud;
+}
+
+Result<PointCloud> parse_ply_points(std::string_view bytes) {
+  auto content = parse_ply(bytes);
+  if (!content) return content.error();
+  if (auto* cloud = std::get_if<PointCloud>(&content.value())) return std::move(*cloud);
+  const std::vector<Vector3>& vertices = std::get<PlyMesh>(content.value()).vertices;
+  PointCollector collector;
+  if (Status begun = collector.begin(vertices.size(), false); !begun) return begun.error();
+  for (const Vector3& vertex : vertices) {
+    if (Status added = collector.add(vertex, Vector3::Zero()); !added) return added.error();
+  }
+  return std::move(collector).finish();
 }
 
 Result<PointCloud> parse_obj_points(std::string_view bytes) {

@@ -46,21 +46,20 @@ class PointCollector {
   bool with_normals_ = false;
 };
 
-// Reads the vertices of a PLY file, text or binary of either byte order: x, y, z and optionally nx, ny, nz of
-// any type. Faces are ignored. Refused: missing vertices, a file that ends before its last vertex.
+// Reads the vertices of a PLY file and their normals, as parse_ply() in ply_file.h does; the normals of a
+// mesh are left out.
 Result<PointCloud> parse_ply_points(std::string_view bytes);
-// Returns the number of faces that the header of a PLY file promises; 0 without such a header.
-std::uint64_t ply_face_count(std::string_view bytes);
 
 // Reads the points of a PCD file (version 0.5 to 0.7): text, binary, or binary compressed. The fields
-// normal_x, normal_y and normal_z are its normals.
+// normal_x, normal_y and normal_z are its normals. Refused: POINTS that are not WIDTH times HEIGHT, fewer or
+// more points than the header names.
 Result<PointCloud> parse_pcd_points(std::string_view bytes);
 
-// Reads one point from each line: x, y, z separated by blanks, commas or semicolons, followed by a normal if
-// three further columns have length 1 in all lines. Between semicolons "12,5" is a number with a decimal
-// comma. Ignored: other columns, comments (#, //), a byte order mark, and, before the first point, one line
-// of words or of a single number (the count of points). Refused: a comma within a word if blanks separate the
-// words, since the comma may separate numbers or mark decimals.
+// Reads one point from each line: x, y, z separated by blanks, commas or semicolons, followed by a normal
+// where three further columns have length 1 in all lines. Between semicolons "12,5" is a number with a
+// decimal comma. Ignored: other columns, comments (#, //), a byte order mark, and before the first point one
+// line of words or of one number, the count. Refused: a count that is not that of the points; a comma within
+// a word where blanks separate the words, since it may separate numbers or be decimal.
 Result<PointCloud> parse_text_points(std::string_view bytes);
 
 // Reads the `v` lines of an OBJ file; its `vn` lines are their normals if there are as many of them.

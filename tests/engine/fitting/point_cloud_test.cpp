@@ -223,6 +223,43 @@ TEST(TextPoints, RefusesEachDamageWithItsReason) {
   expect_refusal(parse_text_points("1 2 1e999\n"), "infinity");
 }
 
+// A count that a file declares is that of its points, whatever the format.
+TEST(PointFiles, DeclaredCountsAreChecked) {
+  const auto expect_code = [](const Result<PointCloud>& cloud, ErrorCode code) {
+    ASSERT_FALSE(cloud);
+    EXPECT_EQ(cloud.error().code, code) << cloud.error().message;
+  };
+  std::string points;
+  for (int k = 0; k < 399; ++k) points += std::to_string(k) + " 1 2\n";
+  for (const char* count : {"1500", "398", "1e9", "-1", "399.5", "nan"}) {
+    expect_code(parse_text_points(std::string(count) + "\n" + points), ErrorCode::inconsistent);
+  }
+  ASSERT_TRUE(parse_text_points("399\n" + points));
+  // Points without numbers count.
+  const auto gaps = parse_text_points("3\n1 2 3\nnan nan nan\n4 5 6\n");
+  ASSERT_TRUE(gaps) << gaps.error().message;
+  EXPECT_EQ(gaps->skipped, 1U);
+
+  const std::string ply_start = "ply\nformat ascii 1.0\nelement vertex ";
+  const std::string ply_end = "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+  ASSERT_TRUE(parse_ply_points(ply_start + "399" + ply_end + points));
+  expect_code(parse_ply_points(ply_start + "398" + ply_end + points), ErrorCode::inconsistent);
+  expect_code(parse_ply_points(ply_start + "400" + ply_end + points), ErrorCode::malformed);
+
+  const std::string pcd_start = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS ";
+  ASSERT_TRUE(parse_pcd_points(pcd_start + "399\nDATA ascii\n" + points));
+  expect_code(parse_pcd_points(pcd_start + "398\nDATA ascii\n" + points), ErrorCode::inconsistent);
+  expect_code(parse_pcd_points(pcd_start + "400\nDATA ascii\n" + points), ErrorCode::malformed);
+  expect_code(parse_pcd_points(pcd_start + "399\nWIDTH 40\nHEIGHT 10\nDATA ascii\n" + points),
+              ErrorCode::inconsistent);
+  std::string numbers;
+  for (int k = 0; k < 9; ++k) put(numbers, static_cast<float>(k + 1));
+  ASSERT_TRUE(parse_pcd_points(pcd_start + "3\nDATA binary\n" + numbers));
+  ASSERT_TRUE(parse_pcd_points(pcd_start + "3\nDATA binary\n" + numbers + std::string(4096, '\0')));
+  expect_code(parse_pcd_points(pcd_start + "2\nDATA binary\n" + numbers), ErrorCode::inconsistent);
+  expect_code(parse_pcd_points(pcd_start + "4\nDATA binary\n" + numbers), ErrorCode::malformed);
+}
+
 TEST(ObjPoints, TakesVerticesAndKnowsFaces) {
   expect_two_points(parse_obj_points("# cloud\nv 1.5 -2.25 3\nvn 0 0 1\nv 2.5 -2.25 3\nvn 0 0 1\n"), true);
   EXPECT_FALSE(obj_has_faces("v 1 2 3\nvn 0 0 1\n"));

@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <variant>
 
 #include "engine/exchange/mesh_import.h"
+#include "engine/exchange/points/ply_file.h"
 #include "engine/exchange/points/point_cloud.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/targets/targets.h"
@@ -49,8 +51,19 @@ void take_points(std::string_view bytes) {
   }
 }
 
+// Meshes and clouds.
 void take_ply(std::string_view bytes) {
-  take_file(bytes, [](const std::filesystem::path& file) { return check_ply(file); });
+  const auto content = parse_ply(bytes);
+  if (!content) return must_be_one_line(content.error());
+  if (const auto* cloud = std::get_if<PointCloud>(&content.value())) return take_cloud(*cloud, bytes.size());
+  const PlyMesh& mesh = std::get<PlyMesh>(content.value());
+  must_hold(mesh.vertices.size() <= bytes.size(), "a small file holds few vertices");
+  must_hold(mesh.triangles.size() <= bytes.size(), "a small file holds few triangles");
+  for (const auto& corners : mesh.triangles) {
+    for (const std::uint32_t corner : corners) {
+      must_hold(corner < mesh.vertices.size(), "corners are vertices");
+    }
+  }
 }
 
 // The first byte chooses the form.

@@ -1,0 +1,20 @@
+// Polygons cut into triangles.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/base/geometry.h"
+
+namespace spoonbill {
+
+// Appends the triangles of a polygon of three or more corners, which are indices of `points`. Ears are
+// clipped in the plane of the polygon's area (Meisters 1975), so a concave one is covered once. A polygon
+// without area or that crosses itself is cut all the same, into as many triangles. The time is at most
+// proportional to the square of the number of corners.
+void cut_polygon(std::span<const std::uint32_t> corners, const std::vector<Vector3>& points,
+                 std::vector<std::array<std::uint32_t, 3>>& triangles);
+
+}  // namespace spoonbill
