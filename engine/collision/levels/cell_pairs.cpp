@@ -228,7 +228,10 @@ void CellPairs::collect_pairs(double reach, int level) {
   pairs_.clear();
   limit_ = level == 0 ? cell_pair_capacity : fine_pair_capacity;
   overflow_ = false;
-  visit_near_elements(reach, [&](const CellPair& pair) { refine(pair, reach, level); });
+  visit_near_elements(reach, [&](const CellPair& pair) {
+    refine(pair, reach, level);
+    return !overflow_;
+  });
 }
 
 void CellPairs::refine(const CellPair& elements, double reach, int level) {

@@ -188,7 +188,8 @@ class CellPairs {
     }
   }
 
-  // Calls visit(pair) for all elements whose boxes are within `reach` of each other, in metres.
+  // Calls visit(pair) for all elements whose boxes are within `reach` of each other, in metres, until it
+  // returns false.
   template <class Visit>
   void visit_near_elements(double reach, const Visit& visit) {
     node_pairs_.clear();
@@ -198,7 +199,7 @@ class CellPairs {
       node_pairs_.pop_back();
       if (!first_tree_.box(nodes[0]).is_near(second_tree_.box(nodes[1]), reach)) continue;
       if (first_tree_.node(nodes[0]).is_leaf() && second_tree_.node(nodes[1]).is_leaf()) {
-        visit(elements(nodes));
+        if (!visit(elements(nodes))) return;
         continue;
       }
       const ElementTree::Node& a = first_tree_.node(nodes[0]);

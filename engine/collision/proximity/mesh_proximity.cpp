@@ -13,6 +13,8 @@ namespace spoonbill {
 namespace {
 
 constexpr std::size_t near_mesh_capacity = 4096;
+// Limit of the surface points evaluated for vertices in one search, some fifty milliseconds.
+constexpr int vertex_evaluation_capacity = 1 << 17;
 
 // Box of the control net, which contains the surface.
 Box net_box(const ControlNet& net) {
@@ -56,6 +58,7 @@ void MeshProximity::find(const Surface& surface, const DeformingMesh& mesh, doub
   SPOONBILL_ASSERT(margin_m >= 0.0);
   ++search_;
   least_gap_m_ = infinity;
+  budget_.evaluations_left = vertex_evaluation_capacity;
   overflow_ = false;
   candidates_.clear();
   samples_.clear();
@@ -154,8 +157,8 @@ void MeshProximity::offer(const ElementTree::Node& element, const Vector3& point
 }
 
 VertexNearSurface MeshProximity::nearest_to_vertex(std::uint32_t vertex, const Vector3& point, double u,
-                                                   double v) const {
-  const NearestPoint nearest = nearest_point(levels_.pieces(), point, u, v);
+                                                   double v) {
+  const NearestPoint nearest = nearest_point(levels_.pieces(), point, u, v, &budget_);
   const Vector3 normal = unit_normal(levels_.surface(), nearest.u, nearest.v);
   return {vertex, nearest.u, nearest.v, normal, (point - nearest.at.position_m).dot(normal)};
 }

@@ -57,9 +57,8 @@ class MeshProximity {
   // Returns the vertices of the mesh near the surface that the last find() found.
   const std::vector<VertexNearSurface>& mesh_vertices() const { return vertices_; }
   double least_gap_m() const { return least_gap_m_; }  // infinite if nothing is near
-  // Returns true if a capacity was exceeded, so that points may be missing. Remedy: fewer control points or a
-  // smaller margin.
-  bool overflow() const { return overflow_; }
+  // A capacity was exceeded, and points may be missing. Remedy: fewer control points or a smaller margin.
+  bool overflow() const { return overflow_ || budget_.is_spent(); }
 
  private:
   // One near vertex of a patch and the point nearest to it on the surface's sample triangles.
@@ -76,7 +75,7 @@ class MeshProximity {
   void collect_samples(const ElementTree::Node& element, const DeformingMesh& mesh, double margin);
   void offer(const ElementTree::Node& element, const Vector3& point, Candidate& candidate);
   void resolve_patches(const DeformingMesh& mesh, double margin);
-  VertexNearSurface nearest_to_vertex(std::uint32_t vertex, const Vector3& point, double u, double v) const;
+  VertexNearSurface nearest_to_vertex(std::uint32_t vertex, const Vector3& point, double u, double v);
   std::uint32_t find_deepest_vertex(int patch, const DeformingMesh& mesh, const Vector3& normal) const;
 
   SurfaceLevels levels_;
@@ -96,6 +95,7 @@ class MeshProximity {
   std::vector<int> pending_;  // working memory: nodes of the tree
   std::uint32_t search_ = 0, elements_ = 0;
   double least_gap_m_ = 0.0;
+  PolishBudget budget_{0};  // left in the last search
   bool overflow_ = false;
 };
 

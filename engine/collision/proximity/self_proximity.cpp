@@ -231,6 +231,9 @@ constexpr int positions_around = 24;
 // the margin until a control point has moved by half the extra distance.
 constexpr double lead_cells = 1.0;
 constexpr std::size_t element_pair_capacity = 1 << 14;
+// Limit of the element pairs compared in one search, some fifty milliseconds: a body crumpled to a point has
+// all of its elements near each other.
+constexpr int element_test_capacity = 1 << 23;
 // Number of elements whose cells are cached; beyond it the cache is cleared.
 constexpr int slot_capacity = 1024;
 
@@ -305,9 +308,10 @@ void SelfProximity::find(const Surface& surface, double margin_m) {
   if (is_still_clear(surface.net)) return;
   find_near_elements(margin_m);
   if (nearby_.empty()) {
+    const bool missing = missing_elements_;
     find_near_elements(margin_m + lead_cells * cell_m_);
-    clear_ = nearby_.empty();
-    missing_elements_ = false;  // these are too far away to count
+    clear_ = nearby_.empty() && !missing_elements_;
+    missing_elements_ = missing || (nearby_.empty() && missing_elements_);  // the others are too far away
     if (clear_) clear_net_ = surface.net;
     return;
   }
@@ -331,6 +335,7 @@ void SelfProximity::find_near_elements(double reach) {
   const auto& rings = rings_.find_near(levels.surface().net, levels.bounds(), reach);
   if (rings.empty()) return;
   const int elements_u = levels.bounds().elements_u(), elements_v = levels.bounds().elements_v();
+  int tests_left = element_test_capacity;
   for (int e = 0; e < elements_u; ++e) {
     levels.element_boxes(e, boxes_.data() + e * elements_v, bulges_.data() + e * elements_v);
   }
@@ -339,6 +344,9 @@ void SelfProximity::find_near_elements(double reach) {
   for (const auto& [ring, other] : rings) {
     for (int one = 0; one < elements_u; ++one) {
       const Box& box = boxes_[one * elements_v + ring];
+      tests_left -= elements_u;
+      missing_elements_ = tests_left < 0;
+      if (missing_elements_) return;
       for (int two = ring == other ? one + 1 : 0; two < elements_u; ++two) {
         if (!box.is_near(boxes_[two * elements_v + other], reach)) continue;
         if (!rest_.can_meet(centre_sample(one, ring), centre_sample(two, other))) continue;

@@ -50,6 +50,9 @@ NearestOnCell nearest_on_cell(const Vector3& point, const PatchCorners& at) {
 namespace {
 
 constexpr std::size_t near_surface_capacity = 4096;
+// Limit of the surface points evaluated in one search, some fifty milliseconds. Points of smooth bodies take
+// about five each; those of crumpled ones would take thousands.
+constexpr int evaluation_capacity = 1 << 17;
 
 }  // namespace
 
@@ -62,6 +65,7 @@ NearPoints::NearPoints(const NestedGrid& nested) : levels_(nested) {
 
 bool NearPoints::begin(const Surface& surface) {
   ++generation_;
+  budget_.evaluations_left = evaluation_capacity;
   least_gap_m_ = infinity;
   overflow_ = false;
   near_.clear();
@@ -117,7 +121,8 @@ void NearPoints::compute_nearest(const SurfaceLevels& other, double outside, dou
   SPOONBILL_ASSERT(std::abs(outside) == 1.0);
   SPOONBILL_ASSERT(margin_m >= 0.0);
   for (NearPoint& near : near_) {
-    const NearestPoint nearest = nearest_point(other.pieces(), near.point_m, near.other_u, near.other_v);
+    const NearestPoint nearest =
+        nearest_point(other.pieces(), near.point_m, near.other_u, near.other_v, &budget_);
     near.other_u = nearest.u;
     near.other_v = nearest.v;
     near.normal = outside * unit_normal(other.surface(), nearest.u, nearest.v);
@@ -148,12 +153,14 @@ void NearPoints::add_between_samples(const SurfaceLevels& other, double outside)
   for (std::size_t s = 0; s < samples; ++s) {
     const NearPoint& near = near_[s];
     if (!is_local_deepest(near)) continue;
+    if (budget_.is_spent()) return;
     if (near_.size() == near_surface_capacity) {
       overflow_ = true;
       return;
     }
-    const DeepestPair deepest = deepest_pair(levels_.pieces(), other.pieces(),
-                                             {near.u, near.v, near.other_u, near.other_v}, outside, infinity);
+    const DeepestPair deepest =
+        deepest_pair(levels_.pieces(), other.pieces(), {near.u, near.v, near.other_u, near.other_v}, outside,
+                     infinity, &budget_);
     const PairParameters& at = deepest.pair.at;
     near_.push_back({-1, at.u, at.v, at.s, at.t, deepest.pair.first_m, deepest.normal, -deepest.depth_m});
     least_gap_m_ = std::min(least_gap_m_, -deepest.depth_m);

@@ -8,6 +8,7 @@
 
 #include "engine/collision/levels/cell_pairs.h"
 #include "engine/collision/levels/surface_levels.h"
+#include "engine/collision/surfaces/pair_polish.h"
 
 namespace spoonbill {
 
@@ -71,8 +72,8 @@ class NearPoints {
   const SurfaceLevels& levels() const { return levels_; }
   const std::vector<NearPoint>& points() const { return near_; }
   double least_gap_m() const { return least_gap_m_; }  // infinite if nothing is near
-  // Returns true if a capacity was exceeded, so that points may be missing.
-  bool overflow() const { return overflow_; }
+  // A capacity was exceeded, and points may be missing or not yet the nearest.
+  bool overflow() const { return overflow_ || budget_.is_spent(); }
 
  private:
   bool is_local_deepest(const NearPoint& near) const;
@@ -82,6 +83,7 @@ class NearPoints {
   std::vector<std::uint32_t> indexed_at_;  // generation in which that index was set
   std::vector<NearPoint> near_;
   std::uint32_t generation_ = 0;
+  PolishBudget budget_{0};  // left in the search since begin()
   double least_gap_m_ = 0.0;
   bool overflow_ = false;
 };

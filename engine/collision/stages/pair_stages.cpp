@@ -89,6 +89,7 @@ int PairStages::add_spheres(double margin_m, int first_surface, ContactStages& s
   pairs.visit_near_elements(margin_m, [&](const CellPair& pair) {
     within[0].mark(pair.first);
     within[1].mark(pair.second);
+    return true;
   });
   for (int side = 0; side < 2; ++side) {
     within[side].add_to(stages);

@@ -82,11 +82,16 @@ struct Problem {
   }
 };
 
+bool is_spent(const PolishBudget* budget) {
+  return budget != nullptr && budget->is_spent();
+}
+
 // Takes one accepted Levenberg-Marquardt step. offer(parameters) returns true if the value decreased. Returns
 // false if no step is found.
 template <int size, class Offer>
-bool descend(const Problem<size>& problem, double& damping, const Offer& offer) {
-  for (int tries = 0; tries < max_tries; ++tries) {
+bool descend(const Problem<size>& problem, double& damping, const Offer& offer,
+             const PolishBudget* budget = nullptr) {
+  for (int tries = 0; tries < max_tries && !is_spent(budget); ++tries) {
     const auto step = problem.step(damping);
     if (step.allFinite()) {
       if (!(-0.5 * problem.gradient.dot(step) > problem.least_promise)) return false;
@@ -158,11 +163,16 @@ SurfacePair nearest_pair(const PiecewiseSurface& first, const PiecewiseSurface& 
   return {{at[0], at[1], at[2], at[3]}, a.position_m, b.position_m};
 }
 
-NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point, double u, double v) {
+NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point, double u, double v,
+                           PolishBudget* budget) {
   Problem<2> problem;
   problem.knots = {&surface.u->knots(), &surface.v->knots()};
   problem.parameters = {problem.knots[0]->into_domain(u), problem.knots[1]->into_domain(v)};
-  SurfacePoint at = evaluate(surface, problem.parameters[0], problem.parameters[1]);
+  const auto evaluate_at = [&](const Vector2& parameters) {
+    if (budget != nullptr) --budget->evaluations_left;
+    return evaluate(surface, parameters[0], parameters[1]);
+  };
+  SurfacePoint at = evaluate_at(problem.parameters);
   double distance = (at.position_m - point).norm(), damping = least_damping;
   for (int steps = 0; steps < max_polish_steps && distance > least_polish_gain_m; ++steps) {
     const Vector3 difference = at.position_m - point;
@@ -171,15 +181,16 @@ NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point
     problem.curvature = first_form(at) + along(at, difference);
     problem.speed << at.du.norm(), at.dv.norm();
     const double before = distance;
-    const bool moved = descend(problem, damping, [&](const Vector2& next) {
-      const SurfacePoint there = evaluate(surface, next[0], next[1]);
+    const auto offer = [&](const Vector2& next) {
+      const SurfacePoint there = evaluate_at(next);
       const double next_distance = (there.position_m - point).norm();
       if (!(next_distance < distance)) return false;
       problem.parameters = next;
       distance = next_distance;
       at = there;
       return true;
-    });
+    };
+    const bool moved = descend(problem, damping, offer, budget);
     if (!moved || !(distance < before - least_polish_gain_m)) break;
   }
   return {problem.parameters[0], problem.parameters[1], at};
@@ -210,10 +221,10 @@ bool is_oblique(const Vector3& difference, const Vector3& normal) {
 }
 
 DepthPoint evaluate_depth(const PiecewiseSurface& first, const PiecewiseSurface& second,
-                          const PairParameters& from, double outside) {
+                          const PairParameters& from, double outside, PolishBudget* budget = nullptr) {
   DepthPoint result;
   result.a = evaluate(first, from.u, from.v);
-  const NearestPoint nearest = nearest_point(second, result.a.position_m, from.s, from.t);
+  const NearestPoint nearest = nearest_point(second, result.a.position_m, from.s, from.t, budget);
   result.at = {from.u, from.v, nearest.u, nearest.v};
   result.b = nearest.at;
   result.normal = outside * unit_normal(second, nearest.at, nearest.u, nearest.v);
@@ -244,9 +255,9 @@ double depth_behind(const PiecewiseSurface& first, const PiecewiseSurface& secon
 }
 
 DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from,
-                         double outside, double enough_m) {
+                         double outside, double enough_m, PolishBudget* budget) {
   SPOONBILL_ASSERT_DEBUG(std::abs(outside) == 1.0);
-  DepthPoint best = evaluate_depth(first, second, from, outside);
+  DepthPoint best = evaluate_depth(first, second, from, outside, budget);
   Problem<2> problem;
   problem.knots = {&first.u->knots(), &first.v->knots()};
   problem.least_promise = least_promise_m;
@@ -257,13 +268,14 @@ DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& 
     problem.curvature = along(best.a, best.normal) + distance_curvature(best);
     problem.speed << best.a.du.norm(), best.a.dv.norm();
     const double before = best.depth;
-    const bool moved = descend(problem, damping, [&](const Vector2& next) {
+    const auto offer = [&](const Vector2& next) {
       const DepthPoint there =
-          evaluate_depth(first, second, {next[0], next[1], best.at.s, best.at.t}, outside);
+          evaluate_depth(first, second, {next[0], next[1], best.at.s, best.at.t}, outside, budget);
       if (!(there.depth > best.depth)) return false;
       best = there;
       return true;
-    });
+    };
+    const bool moved = descend(problem, damping, offer, budget);
     if (!moved || !(best.depth > before + least_polish_gain_m)) break;
   }
   return {{best.at, best.a.position_m, best.b.position_m}, best.normal, best.depth};

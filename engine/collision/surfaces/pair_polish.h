@@ -26,13 +26,23 @@ struct SurfacePair {
 // stay within the domains.
 SurfacePair nearest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from);
 
+// Number of surface points that the searches of one owner may still evaluate, which bounds the time of a
+// tick. A search that uses it up returns its best point so far.
+struct PolishBudget {
+  int evaluations_left;
+
+  bool is_spent() const { return evaluations_left <= 0; }
+};
+
 // A point on a surface with its parameters.
 struct NearestPoint {
   double u, v;
   SurfacePoint at;
 };
-// Finds the locally nearest point of a surface, starting from the parameters u, v.
-NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point, double u, double v);
+// Finds the locally nearest point of a surface, starting from the parameters u, v. Without a budget, the
+// number of steps alone limits it.
+NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point, double u, double v,
+                           PolishBudget* budget = nullptr);
 
 // Result of deepest_pair().
 struct DeepestPair {
@@ -56,7 +66,7 @@ double depth_behind(const PiecewiseSurface& first, const PiecewiseSurface& secon
 // Therefore
 //   Hess d = -c^T I^-1 II (I - d II)^-1 c,   f_uu = -(A_uu . n) - Hess d.
 DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from,
-                         double outside, double enough_m);
+                         double outside, double enough_m, PolishBudget* budget = nullptr);
 
 // One region in which the surfaces cross or touch.
 struct PairContact {

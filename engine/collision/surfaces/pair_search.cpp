@@ -106,6 +106,9 @@ namespace {
 
 constexpr std::size_t pair_capacity = 1024;
 constexpr int max_depth = 40;
+// Limit of the patches split in one query, a few seconds. Surfaces that fit snugly or are crumpled would be
+// cut down everywhere to the size of the tolerance.
+constexpr int split_capacity = 1 << 20;
 
 }  // namespace
 
@@ -117,6 +120,7 @@ PairSearch::PairSearch(SurfaceLevels& first, SurfaceLevels& second, const PairJu
 
 void PairSearch::begin() {
   forget_best();
+  splits_left_ = split_capacity;
   overflow_ = false;
 }
 
@@ -166,7 +170,7 @@ void PairSearch::search(const LevelCell& a, const LevelCell& b, double tolerance
       offer({0.5 * (pair.a.u0 + pair.a.u1), 0.5 * (pair.a.v0 + pair.a.v1), 0.5 * (pair.b.u0 + pair.b.u1),
              0.5 * (pair.b.v0 + pair.b.v1)});
     }
-    if (pair.depth == max_depth || pairs_.size() + 4 > pair_capacity) {
+    if (pair.depth == max_depth || pairs_.size() + 4 > pair_capacity || splits_left_ <= 0) {
       overflow_ = true;
       continue;
     }
@@ -189,6 +193,7 @@ std::array<PairSearch::Patch, 4> PairSearch::cut(const PiecewiseSurface& surface
 }
 
 void PairSearch::split(const Pair& pair) {
+  --splits_left_;
   const int depth = pair.depth + 1;
   if (pair.a.size() >= pair.b.size()) {
     for (const Patch& part : cut(first_->pieces(), pair.a)) pairs_.push_back({part, pair.b, depth});

@@ -46,7 +46,7 @@ class PairSearch {
   // the best pair is within `enough_m`. Both values are in metres; the tolerance must be positive.
   void search(const LevelCell& a, const LevelCell& b, double tolerance_m, double enough_m);
 
-  // True if a search exceeded a capacity and skipped some patches.
+  // True if the searches since begin() exceeded a capacity and skipped some patches.
   bool overflow() const { return overflow_; }
 
  private:
@@ -71,6 +71,7 @@ class PairSearch {
   std::vector<Pair> pairs_;
   SurfacePair best_;
   double best_distance_m_ = 0.0;
+  int splits_left_ = 0;  // until the next begin()
   bool overflow_ = false;
 };
 
