@@ -34,17 +34,20 @@ void add_rest_body(FactSheet& facts, const Body& body, const RestShape& shape, J
   const Vector3 displacement = shape.result.displacement_m[furthest], position = shape.mesh.nodes[furthest];
   facts.add("Body", body.name, "", nullptr);
   facts.add("  Fixed nodes",
-            std::to_string(shape.fixed_nodes) + " of " + std::to_string(shape.mesh.node_count()), "",
-            nullptr);
+            std::to_string(shape.held_nodes) + " of " + std::to_string(shape.mesh.node_count()), "", nullptr);
+  const bool nothing_moves = shape.result.is_fixed_everywhere && displacement.isZero(0.0);
   facts.add("  Displaced",
-            "at most " + short_length_text(displacement.norm()) + ", at " + position_text(position), "",
-            nullptr);
+            nothing_moves
+                ? "everything is fixed: nothing moves"
+                : "at most " + short_length_text(displacement.norm()) + ", at " + position_text(position),
+            "", nullptr);
   facts.add("  Loads", newtons_text(shape.load_n.norm()) + " together", "", nullptr);
   facts.add("  Reactions", newtons_text(shape.reaction_n.norm()) + " together", "", nullptr);
   facts.add("  Strain",
-            "at most " + percent_text(std::abs(shape.largest_strain)) +
-                (shape.largest_strain < 0.0 ? " compression" : " tension") + ", at " +
-                position_text(shape.largest_strain_position_m),
+            nothing_moves ? "none"
+                          : "at most " + percent_text(std::abs(shape.largest_strain)) +
+                                (shape.largest_strain < 0.0 ? " compression" : " tension") + ", at " +
+                                position_text(shape.largest_strain_position_m),
             "", nullptr);
   add_elastic_note(body.material, facts);
   for (const MaterialRegion& region : body.regions) {
@@ -52,7 +55,8 @@ void add_rest_body(FactSheet& facts, const Body& body, const RestShape& shape, J
   }
   list.push_back({{"name", body.name},
                   {"nodes", shape.mesh.node_count()},
-                  {"held_nodes", shape.fixed_nodes},
+                  {"held_nodes", shape.held_nodes},
+                  {"fixed_everywhere", shape.result.is_fixed_everywhere},
                   {"largest_displacement_m", displacement.norm()},
                   {"displacement_m", components_json(displacement)},
                   {"displaced_m", components_json(position)},
@@ -85,6 +89,7 @@ Status rest(const RestOptions& options, Console& console) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
     ProgressBar bar(console, "Bending " + body.name, false);
+    bar.show(0.0);
     const auto shape = compute_rest_shape(scene, static_cast<int>(b), Progress([&](double fraction) {
                                             bar.show(fraction);
                                             return true;

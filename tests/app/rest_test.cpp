@@ -99,6 +99,37 @@ TEST(Rest, RefusesBodiesThatNothingHolds) {
   EXPECT_EQ(run({"rest"}).code, exit_wrong_use);
 }
 
+// Held by a support or behind a plane, at every node.
+TEST(Rest, SaysWhereEverythingIsFixed) {
+  const Workplace place;
+  Document document = elastic_document(place);
+  document.scene.sculpting.gravity_m_per_s2 = Vector3(0, -9.81, 0);
+  Body& body = document.scene.bodies[0];
+  const auto expect_still = [&] {
+    const Outcome outcome = rest_of(place, document);
+    ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+    const Json facts = json_of(outcome.out)["bodies"][0];
+    EXPECT_EQ(facts["fixed_everywhere"], true);
+    EXPECT_EQ(facts["held_nodes"], facts["nodes"]);
+    EXPECT_EQ(facts["largest_displacement_m"], 0.0);
+    EXPECT_EQ(facts["largest_strain"], 0.0);
+    EXPECT_EQ(facts["newton_steps"], 0);
+    EXPECT_LT((vector_of(facts["load_n"]) + vector_of(facts["reaction_n"])).norm(), 1e-9);
+    const Outcome lines = run({"rest", place.text("loaded.json")});
+    EXPECT_NE(lines.out.find("everything is fixed: nothing moves"), std::string::npos) << lines.out;
+  };
+  document.scene.planes = {FixingPlane{Vector3(0, 100, 0), Vector3(0, 1, 0)}};
+  expect_still();
+  document.scene.planes.clear();
+  body.supports = {{{}, {}}};
+  expect_still();
+  body.supports[0].motion = SupportMotion{};
+  body.supports[0].motion->displacement_m = Vector3(0, 0.003, 0);
+  const Outcome moved = rest_of(place, document);
+  ASSERT_EQ(moved.code, exit_done) << moved.err;
+  EXPECT_NEAR(json_of(moved.out)["bodies"][0]["largest_displacement_m"].get<double>(), 0.003, 1e-12);
+}
+
 TEST(Rest, TellsAPersonInLines) {
   const Workplace place;
   Document document = elastic_document(place);

@@ -25,12 +25,21 @@ constexpr double min_decrease = 1e-4;
 // Relative rounding error of an energy that is a sum over cells.
 constexpr double rounding = 1e-13;
 
+// Factors that know their cost before any number is computed.
+class StiffnessFactors : public Eigen::SimplicialLDLT<StaticSystem::Stiffness> {
+ public:
+  // Returns the number of multiplications of a factorisation. Valid after analyzePattern().
+  double work() const { return m_nonZerosPerCol.cast<double>().squaredNorm(); }
+};
+
 class Equilibrium {
  public:
   Equilibrium(StaticSystem& system, const StaticLoads& loads, const StaticSettings& settings)
       : system_(&system), loads_(&loads), settings_(&settings) {
     factors_.analyzePattern(system.stiffness());
   }
+
+  double work() const { return factors_.work(); }
 
   // Returns whether every motion is fixed, in the rest shape.
   bool is_fixed() {
@@ -112,7 +121,7 @@ class Equilibrium {
   StaticSystem* system_;
   const StaticLoads* loads_;
   const StaticSettings* settings_;
-  Eigen::SimplicialLDLT<StaticSystem::Stiffness> factors_;
+  StiffnessFactors factors_;
   int steps_ = 0;
   bool cancelled_ = false;
 };
@@ -129,6 +138,17 @@ Status check_fixed(const StaticBody& body, const std::vector<FixedAxis>& fixed) 
     }
   }
   return {};
+}
+
+// Suggests a number of nodes at which the body needs no more than the limit. In a lattice that is refined in
+// all directions alike the work grows with the number of nodes to the power of at most 7/3, as in a band.
+Error too_large(int nodes, double work, double limit) {
+  constexpr double reserve = 0.9, exponent = 3.0 / 7.0;
+  const int enough = static_cast<int>(reserve * nodes * std::pow(limit / work, exponent)) / 100 * 100;
+  return Error{ErrorCode::too_many,
+               "lattice: " + std::to_string(nodes) + " nodes in this shape take too long to bend; about " +
+                   std::to_string(std::max(enough, 100)) + " would do, as node_budget or counts",
+               "lattice"};
 }
 
 StaticResult make_result(StaticSystem& system, const StaticLoads& loads, const std::vector<FixedAxis>& fixed,
@@ -154,7 +174,17 @@ Result<StaticResult> rest_under_load(const StaticBody& body, const StaticLoads& 
   SPOONBILL_ASSERT(settings.tolerance > 0.0 && settings.step_limit >= 1);
   if (const Status status = check_fixed(body, fixed); !status.ok()) return status.error();
   StaticSystem system(body, fixed);
+  if (system.is_fixed_everywhere()) {
+    Coordinates moved = system.rest();
+    system.set_fixed(1.0, moved);
+    StaticResult result = make_result(system, loads, fixed, moved);
+    result.is_fixed_everywhere = true;
+    return result;
+  }
   Equilibrium equilibrium(system, loads, settings);
+  if (equilibrium.work() > settings.work_limit) {
+    return too_large(body.mesh().node_count(), equilibrium.work(), settings.work_limit);
+  }
   if (!equilibrium.is_fixed()) {
     return Error{ErrorCode::too_few,
                  "supports: the body can move or turn freely; fix at least three nodes that are not in line",

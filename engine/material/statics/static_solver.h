@@ -10,6 +10,9 @@ struct StaticSettings {
   // Largest accepted unbalanced force, relative to the forces of the cells on the nodes.
   double tolerance = 1e-8;
   int step_limit = 400;  // Newton steps in total
+  // Most multiplications for one factor of the stiffness matrix; a body that needs more is refused before any
+  // of them. The default takes a few seconds each, and a body takes about five.
+  double work_limit = 1e10;
   // Progress, reported after each step. It may decrease where the loads must grow more slowly. Cancelling it
   // makes rest_under_load() fail.
   Progress progress = {};
@@ -20,11 +23,13 @@ struct StaticResult {
   std::vector<Vector3> reaction_n;      // by node: reaction of its fixed axes; 0 for free nodes
   double energy_j = 0.0;                // stored in the cells
   int newton_steps = 0;
+  bool is_fixed_everywhere = false;  // no node is free to move
 };
 
 // Minimises the potential energy by Newton's method with sparse Cholesky factors, halving each step until
 // the energy falls. The loads grow in steps if that does not converge at once. Fails on a fixed axis
-// outside the body, supports that leave the body free to move, and loads without an equilibrium.
+// outside the body, supports that leave the body free to move, a body too large for the work limit, and
+// loads without an equilibrium. A body that is fixed everywhere has the displacement of its fixed axes.
 Result<StaticResult> rest_under_load(const StaticBody& body, const StaticLoads& loads,
                                      const std::vector<FixedAxis>& fixed,
                                      const StaticSettings& settings = {});

@@ -19,6 +19,7 @@ class StaticSystem {
   using Stiffness = Eigen::SparseMatrix<double>;
 
   const StaticBody& body() const { return *body_; }
+  bool is_fixed_everywhere() const { return free_count_ == 0; }
 
   Coordinates rest() const { return Coordinates::Zero(static_cast<Eigen::Index>(free_.size())); }
   // Sets the fixed coordinates to this fraction of their displacements.

@@ -214,5 +214,40 @@ TEST(StaticSolver, RefusesWhatCannotRest) {
   EXPECT_EQ(refusal({{0, 0, std::nan("")}}).code, ErrorCode::out_of_range);
 }
 
+TEST(StaticSolver, NothingMovesWhereEverythingIsFixed) {
+  const LatticeMesh mesh = box_mesh({0.02, 0.02, 0.02}, {3, 3, 3});
+  const StaticBody body = body_of(mesh, elastic_material(1e5, 0.3, 1000.0), CellKind::hexahedra);
+  StaticLoads loads;
+  loads.gravity_m_per_s2 = {0.0, -9.81, 0.0};
+  for (const Vector3& moved : {Vector3(0, 0, 0), Vector3(0, 0.001, 0)}) {
+    std::vector<FixedAxis> held;
+    for (int n = 0; n < mesh.node_count(); ++n) fix_node(n, moved, held);
+    const Result<StaticResult> result = rest_under_load(body, loads, held);
+    ASSERT_TRUE(result.ok()) << result.error().message;
+    EXPECT_TRUE(result->is_fixed_everywhere);
+    Vector3 borne = Vector3::Zero();
+    for (const Vector3& reaction : result->reaction_n) borne += reaction;
+    EXPECT_NEAR(borne.y(), 0.02 * 0.02 * 0.02 * 1000.0 * 9.81, 1e-8);
+    for (const Vector3& displacement : result->displacement_m) EXPECT_EQ(displacement, moved);
+  }
+}
+
+TEST(StaticSolver, RefusesMoreWorkThanItsLimit) {
+  StaticSettings settings;
+  settings.work_limit = 2e6;
+  const auto rest = [&](int along) {
+    const LatticeMesh mesh = box_mesh({0.02, 0.02, 0.02}, {along, along, along});
+    const StaticBody body = body_of(mesh, elastic_material(1e5, 0.3, 1000.0), CellKind::hexahedra);
+    std::vector<FixedAxis> held;
+    visit_face(mesh, 1, false, [&](int node, double) { fix_node(node, Vector3::Zero(), held); });
+    return rest_under_load(body, {}, held, settings);
+  };
+  const Result<StaticResult> large = rest(8);
+  ASSERT_FALSE(large.ok());
+  EXPECT_EQ(large.error().code, ErrorCode::too_many) << large.error().message;
+  EXPECT_EQ(large.error().field, "lattice");
+  EXPECT_TRUE(rest(4).ok());
+}
+
 }  // namespace
 }  // namespace spoonbill
