@@ -58,6 +58,7 @@ bool is_on_side(const TopoDS_Edge& edge, const TopoDS_Face& face, const Paramete
   const auto curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
   if (curve.IsNull()) return false;
   const auto surface = BRep_Tool::Surface(face);
+  if (surface.IsNull()) return false;
   const double u_reach = side_fraction * (box.u_end - box.u_start);
   const double v_reach = side_fraction * (box.v_end - box.v_start);
   const double reach = std::max(tolerance, BRep_Tool::Tolerance(edge));
