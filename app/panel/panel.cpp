@@ -24,6 +24,7 @@ PanelModel make_panel_model(const SessionFacts& facts, const Snapshot& snapshot,
 
   model.tool = facts.tool;
   model.sculpting = facts.sculpting;
+  model.has_ground = facts.has_ground;
   model.material = facts.material;
   model.region_count = facts.region_count;
   model.effective_youngs_modulus_pa = snapshot.bodies.front().material.effective_youngs_modulus_pa;
@@ -40,6 +41,7 @@ PanelModel make_panel_model(const SessionFacts& facts, const Snapshot& snapshot,
     model.mass_kg += body.material.mass_kg;
     model.fixed_node_count += static_cast<int>(std::count(fixed.begin(), fixed.end(), std::uint8_t{1}));
     model.node_count += static_cast<int>(fixed.size());
+    model.unheld_count += std::count(fixed.begin(), fixed.end(), std::uint8_t{1}) == 0 ? 1 : 0;
   }
 
   model.overlays = view.overlays;
@@ -202,12 +204,23 @@ std::string residual_text(double residual_m) {
   return rounded_text(1e3 * residual_m, 3, " mm error");
 }
 
+// Says what becomes of bodies that nothing fixes, and offers to let them go.
+void draw_unheld(const PanelModel& model, PanelAnswer& answer) {
+  if (model.unheld_count == 0) return;
+  Sculpting sculpting = model.sculpting;
+  const char* const place = keeps_place(sculpting, model.has_ground) ? "kept in place" : "moves";
+  if (switch_row("Unfixed", place, "free", sculpting.free)) {
+    answer.requests.emplace_back(Command(SetSculpting{sculpting}));
+  }
+}
+
 void draw_fixtures(const PanelModel& model, const Theme& theme, PanelAnswer& answer) {
   const RowGroup group("Fixtures", theme);
   if (!group) return;
   fact_row("Fixed nodes", std::to_string(model.fixed_node_count) + " of " + std::to_string(model.node_count) +
                               ", " + std::to_string(model.plane_count) +
                               (model.plane_count == 1 ? " plane" : " planes"));
+  draw_unheld(model, answer);
   ImGui::BeginDisabled(!(model.residual_m > 0.0));
   if (button_row("Surface", residual_text(model.residual_m), "Add knots")) {
     answer.requests.emplace_back(Command(RefineKnots{model.residual_body}));

@@ -33,6 +33,8 @@ struct PanelModel {
   int plane_count = 0;
   int fixed_node_count = 0;
   int node_count = 0;
+  int unheld_count = 0;      // bodies without fixed nodes
+  bool has_ground = false;
 
   double residual_m = 0.0;  // largest distance by which a surface lags behind its lattice
   int residual_body = 0;    // index of that surface's body in the scene

@@ -92,8 +92,9 @@ std::string size_text(const Vector3& size_m) {
 }
 
 std::vector<std::string> flag_texts(std::uint32_t flags) {
-  constexpr std::array<std::pair<std::uint32_t, const char*>, 5> meanings = {{
+  constexpr std::array<std::pair<std::uint32_t, const char*>, 6> meanings = {{
       {tick_flag_failed, "Internal fault: undo, or save"},
+      {tick_flag_body_limited, "Body cannot follow: move the tool away"},
       {tick_flag_nodes_slowed, "Too stiff for real time: soften E"},
       {tick_flag_speed_capped, "Speed cap met: move more slowly"},
       {tick_flag_contact_overflow, "Contact too large: use a smaller tool"},

@@ -228,6 +228,7 @@ void write_facts(const Session& session, SessionFacts& facts) {
   facts.material = scene.bodies[0].material;
   facts.region_count = static_cast<int>(scene.bodies[0].regions.size());
   facts.sculpting = scene.sculpting;
+  facts.has_ground = scene.ground.has_value();
   facts.symmetry = scene.symmetry;
   facts.can_undo = session.history.can_undo();
   facts.can_redo = session.history.can_redo();

@@ -114,6 +114,7 @@ struct SessionFacts {
   int region_count = 0;  // number of regions of the first body; the material, too, is that of the first body
   Sculpting sculpting;
   Symmetry symmetry;
+  bool has_ground = false;
   bool can_undo = false;
   bool can_redo = false;
   bool in_stroke = false;

@@ -39,7 +39,8 @@
 //      "soft": {"material": {...}, "lattice": {...},              optional, rigid
 //        "grip": {"point_mm": [0, 1, 0], "normal": [0, -1, 0]}}},   in the tool's frame
 //    "sculpting": {"damping_per_s": 4, "gravity_m_per_s2": [0, 0, 0], "force_scale": 1,
-//      "settles": true},                                         optional, false: oscillates
+//      "settles": true,                                          optional, false: oscillates
+//      "free": false},                     optional, false: a body that nothing fixes keeps its place
 //    "ground": {"point_mm": [0, 0, 0], "normal": [0, 1, 0], "friction": 0.5},       optional
 //    "symmetry": {"on": true, "point_mm": [0, 0, 0], "normal": [0, 0, 1]},          optional
 //    "view": {...}}                                              optional
@@ -113,7 +114,7 @@ Result<Material> read_material(const std::filesystem::path& file);
 //   {"command": "set_tool", "kind", "action", "radius_mm", "iterations", and for a solid "solid", "soft"}
 //   {"command": "keep_shape"}
 //   {"command": "set_material", "name", "source", "youngs_modulus_pa", ..., and optionally "body": 1}
-//   {"command": "set_sculpting", "damping_per_s", "gravity_m_per_s2", "force_scale", optionally "settles"}
+//   {"command": "set_sculpting", "damping_per_s", "gravity_m_per_s2", "force_scale", optionally "settles", "free"}
 //   {"command": "set_symmetry", "on", "point_mm", "normal"}
 //   {"command": "reset_proxy"}
 //   {"command": "lift_tool"}

@@ -269,6 +269,12 @@ bool begin_supports(Relaxation& relaxation) {
   return limited;
 }
 
+bool is_carried(std::size_t at, std::span<const TouchingTool> tools) {
+  return std::any_of(tools.begin(), tools.end(), [&](const TouchingTool& tool) {
+    return tool.motion.carried.body == static_cast<int>(at);
+  });
+}
+
 // Returns the velocity to which the speed cap of a lattice is relative, m/s.
 Vector3 frame_velocity(const Relaxation& relaxation, std::size_t at, std::span<const TouchingTool> tools) {
   for (const TouchingTool& tool : tools) {
@@ -284,14 +290,30 @@ Vector3 frame_velocity(const Relaxation& relaxation, std::size_t at, std::span<c
   return Vector3(sum[0] * inverse, sum[1] * inverse, sum[2] * inverse);
 }
 
+// Gives a body without fixed nodes the momentum back that capping took from it. Without that, a body pressed
+// unevenly would be driven on by its own cap.
+void restore_momentum(const SpringLattice& lattice, const LatticeView& view, const Vector3& mean) {
+  float sum[4];
+  lattice.kernels().momentum(view, lattice.free_mass(), sum);
+  if (!(sum[3] > 0.0f)) return;
+  const Vector3 lost = mean - Vector3(sum[0], sum[1], sum[2]) / sum[3];
+  for (int n = 0; n < view.padded_count; ++n) {
+    set_velocity(view, n, Vector3(view.vx[n], view.vy[n], view.vz[n]) + view.free_node[n] * lost);
+  }
+}
+
 // Returns whether a node reached the speed cap.
 bool drift(Relaxation& relaxation, float h, std::span<const TouchingTool> tools) {
   bool capped = false;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) continue;
-    relaxation.drifted[at] = drift(relaxation.lattice(at), relaxation.view[at], h, relaxation.cap[at],
-                                   frame_velocity(relaxation, at, tools));
-    capped |= relaxation.drifted[at].speed_square > 1.0f;
+    const Vector3 frame = frame_velocity(relaxation, at, tools);
+    relaxation.drifted[at] = drift(relaxation.lattice(at), relaxation.view[at], h, relaxation.cap[at], frame);
+    if (!(relaxation.drifted[at].speed_square > 1.0f)) continue;
+    capped = true;
+    if (!relaxation.lattice(at).has_fixed_nodes() && !is_carried(at, tools)) {
+      restore_momentum(relaxation.lattice(at), relaxation.view[at], frame);
+    }
   }
   return capped;
 }

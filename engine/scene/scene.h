@@ -24,7 +24,10 @@ struct Sculpting {
   double force_scale = 1.0;  // newtons at the hand per newton of contact
   // Damps each body critically as well, so that it comes to rest without ringing
   // (critical_damping_per_s()).
-  bool is_critically_damped = false;
+  bool settles = false;
+  // Lets a body that nothing fixes move away. Without it, and without gravity and ground, the body keeps its
+  // mean position and orientation, as in a gentle hand (keeps_place()).
+  bool free = false;
 };
 
 // Symmetric sculpting: a second tool is the mirror image of the hand's tool in a plane.
@@ -48,6 +51,14 @@ struct Scene {
   std::optional<Ground> ground = {};
 };
 
+// Returns true if bodies that no plane or support fixes keep their mean position and orientation.
+inline bool keeps_place(const Sculpting& sculpting, bool has_ground) {
+  return !sculpting.free && !has_ground && sculpting.gravity_m_per_s2.isZero(0.0);
+}
+inline bool keeps_place(const Scene& scene) {
+  return keeps_place(scene.sculpting, scene.ground.has_value());
+}
+
 // Limits of files, commands and the panel's sliders, within which every solver stays finite.
 inline constexpr Range<int> body_count_range{1, 1000};        // in a document
 inline constexpr Range<int> sculpted_body_count_range{1, 8};  // in a simulation
@@ -64,7 +75,8 @@ inline constexpr auto fields_of<Sculpting> = std::to_array<Field<Sculpting>>({
                  FieldUnit::metre_per_s2),
     number_field("force_scale", &Sculpting::force_scale, force_scale_range, FieldUnit::times)
         .with_slider({"Force scale", {0.01, 100.0}, true}),
-    switch_field("settles", &Sculpting::is_critically_damped).optional(),
+    switch_field("settles", &Sculpting::settles).optional(),
+    switch_field("free", &Sculpting::free).optional(),
 });
 
 template <>

@@ -17,6 +17,7 @@
 #include "engine/material/lattice/feature_map.h"
 #include "engine/material/springs/spring_lattice.h"
 #include "engine/scene/scene.h"
+#include "engine/simulation/body_hold.h"
 #include "engine/simulation/body_loads.h"
 #include "engine/simulation/body_mapping.h"
 #include "engine/simulation/smoothing.h"
@@ -31,6 +32,7 @@ struct BodyState {
   std::vector<std::uint8_t> fixed, touched;            // one byte per node
   std::optional<ImplicitSolver> implicit_solver = {};  // for materials too stiff for the lattice's springs
   bool implicit_suspended = false;
+  BodyHold hold = BodyHold(1);  // for the number of nodes of the lattice
   BodyLoads loads = {};
   BodySupports supports = {};
   double shell_thickness_m = 0.0;                // 0 for a solid

@@ -38,6 +38,15 @@ Error name_body(const Body& body, const Scene& scene, const Error& error) {
   return scene.bodies.size() == 1 ? error : error.in("body \"" + body.name + "\"");
 }
 
+// Returns the diagonal of the box around the bodies at rest, in metres.
+double measure_size_m(const std::vector<BodyState>& bodies, std::size_t count) {
+  Box box;
+  for (std::size_t b = 0; b < count; ++b) {
+    for (const Vector3& node : bodies[b].lattice.mesh().nodes) box.include(node);
+  }
+  return (box.high - box.low).norm();
+}
+
 }  // namespace
 
 Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const FeatureMapWatch& watch) {
@@ -58,6 +67,7 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
   std::vector<BodySelfContact> self = make_self_contacts(bodies);
   BodyGroundContact ground_contact({bodies.data(), scene.ground ? scene.bodies.size() : 0});
   std::vector<std::shared_ptr<const ToolBody>> retired_bodies = {find_model_body(scene.tool)};
+  const double scene_size_m = measure_size_m(bodies, scene.bodies.size());
   return Simulation(std::make_unique<State>(State{std::move(scene),
                                                   set,
                                                   std::move(bodies),
@@ -70,6 +80,8 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
                                                   std::move(ground_contact),
                                                   false,
                                                   0.0,
+                                                  scene_size_m,
+                                                  false,
                                                   std::move(retired_bodies),
                                                   {}}));
 }
@@ -146,8 +158,24 @@ void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
                     s.scene.ground ? &s.ground_contact.contacts() : nullptr);
 }
 
+// Largest distance of a node from its body's mean position, as a fraction of the scene's size.
+constexpr double reach_fraction = 1.0;
+
+// Keeps the bodies in the scene after all else has moved them; BodyHold::begin() must precede.
+void hold_bodies(Simulation::State& s) {
+  s.bodies_limited = false;
+  const double reach_m = reach_fraction * s.scene_size_m;
+  for (std::size_t b = 0; b < s.scene.bodies.size(); ++b) {
+    BodyState& body = s.bodies[b];
+    ImplicitSolver* const solver = body.active_solver();
+    s.bodies_limited |= body.hold.limit(body.lattice, solver, reach_m);
+    if (keeps_place(s.scene) && !body.lattice.has_fixed_nodes()) body.hold.keep_pose(body.lattice, solver);
+  }
+}
+
 std::uint32_t collect_flags(const Simulation::State& s) {
   std::uint32_t flags = tick_flag_none;
+  if (s.bodies_limited) flags |= tick_flag_body_limited;
   if (s.relaxed.nodes_slowed) flags |= tick_flag_nodes_slowed;
   if (s.relaxed.speed_capped) flags |= tick_flag_speed_capped;
   if (s.tool.contact.overflow() || s.mirrored.contact.overflow() || s.pairs_overflow) {
@@ -190,11 +218,13 @@ Reaction Simulation::advance(const ToolInput& input) {
     tools[1] = touch(s, s.mirrored, make_mirrored_hold(s.scene.symmetry, input), input.coupling_n_per_m);
   }
   find_contacts_between(s, hold);
+  for (BodyState& body : s.scene_bodies()) body.hold.begin(body.lattice);
   relax_bodies(s, {tools.data(), both ? std::size_t{2} : std::size_t{1}});
   if (const auto reform = find_kernel(s.scene.tool.action).reform) {
     reform(s, s.tool);
     if (both) reform(s, s.mirrored);
   }
+  hold_bodies(s);
   for (std::size_t b = 0; b < s.stepped_count(); ++b) s.bodies[b].update_skin();
   measure_residuals(s);
   ++s.tick;

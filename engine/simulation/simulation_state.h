@@ -48,7 +48,9 @@ struct Simulation::State {
   std::vector<BodySelfContact> self;   // by body
   BodyGroundContact ground_contact;    // of the scene's bodies; of none without a ground
   bool pairs_overflow = false;
-  double tool_gap_m = 0.0;  // smallest gap of a soft tool to a body; infinite if it is not near
+  double tool_gap_m = 0.0;      // smallest gap of a soft tool to a body; infinite if it is not near
+  double scene_size_m = 0.0;    // diagonal of the box around the bodies at rest
+  bool bodies_limited = false;  // a lattice could not follow in the last tick
   // Bodies and triangles of replaced tools. Snapshots share them, and no tick may free the last reference.
   std::vector<std::shared_ptr<const ToolBody>> retired_bodies;
   std::vector<std::shared_ptr<const std::vector<TriangleCorners>>> retired_triangles;

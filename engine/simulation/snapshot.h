@@ -113,6 +113,7 @@ enum TickFlag : std::uint32_t {
   tick_flag_contact_overflow = 1u << 2,  // too many contact points for the workspace: use a smaller tool
   tick_flag_force_limited = 1u << 3,     // the device's force limit was reached: lower the force scale
   tick_flag_failed = 1u << 4,            // an internal fault aborted the tick: undo the stroke, or save
+  tick_flag_body_limited = 1u << 5,  // a body could not follow and kept its last shape: move the tool away
 };
 
 struct Snapshot {

@@ -10,6 +10,7 @@
 #include "engine/collision/levels/cell_pairs.h"
 #include "engine/collision/levels/surface_levels.h"
 #include "engine/collision/meshes/deforming_mesh.h"
+#include "engine/collision/surfaces/pair_polish.h"
 
 namespace spoonbill {
 

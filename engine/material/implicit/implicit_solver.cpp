@@ -437,6 +437,22 @@ void ImplicitSolver::end_step(SpringLattice& lattice, const GroundPush& on_groun
   }
   body_.move(step_s_);
   write_velocities(lattice);
+  write_displacements(lattice);
+}
+
+void ImplicitSolver::move_rigidly(const RigidMove& move, SpringLattice& lattice) {
+  for (int n = 0; n < body_.node_count(); ++n) {
+    if (body_.mesh().joined(n) != n) continue;
+    const Vector3& rest = body_.mesh().nodes[static_cast<std::size_t>(n)];
+    const Vector3 position = rest + body_.displacement(n), velocity = body_.velocity(n);
+    body_.set_displacement(n, move.moved(position) - rest);
+    body_.set_velocity(n, move.slowed(position, velocity));
+  }
+  write_velocities(lattice);
+  write_displacements(lattice);
+}
+
+void ImplicitSolver::write_displacements(SpringLattice& lattice) {
   for (int n = 0; n < lattice.mesh().node_count(); ++n) {
     if (lattice.is_fixed(n)) continue;
     const auto at = static_cast<std::size_t>(n);

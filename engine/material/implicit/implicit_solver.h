@@ -92,6 +92,19 @@ class ImplicitGroundContacts {
 // narrow band. Compact bodies get fewer. Hexahedra need few nodes, since each can bend.
 inline constexpr int implicit_node_budget = 500;
 
+// A rigid move of a body at one time, which also takes a rigid motion off its velocities.
+struct RigidMove {
+  Vector3 from_m = Vector3::Zero(), to_m = Vector3::Zero();  // position of the centre, before and after
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();        // about the centre
+  Vector3 velocity_m_per_s = Vector3::Zero(), spin_rad_per_s = Vector3::Zero();  // taken off, before the turn
+
+  Vector3 moved(const Vector3& position_m) const { return to_m + turn * (position_m - from_m); }
+  // Returns the velocity of a point that was at `position_m` with the velocity `before`.
+  Vector3 slowed(const Vector3& position_m, const Vector3& before) const {
+    return turn * (before - velocity_m_per_s - spin_rad_per_s.cross(position_m - from_m));
+  }
+};
+
 // Implicit solver of a lattice: a coarser block of hexahedra that the lattice's nodes follow. Drawing,
 // contacts and supports use the lattice.
 //
@@ -116,6 +129,9 @@ class ImplicitSolver {
   void fix_nodes(std::span<const std::uint8_t> fixed);
   // Sets displacements and velocities from the lattice.
   void adopt_shape(const SpringLattice& lattice);
+
+  // Moves the block and the lattice that follows it. No node may be fixed.
+  void move_rigidly(const RigidMove& move, SpringLattice& lattice);
 
   // Adopts the positions of lattice nodes that something else has moved permanently, relative to the block.
   void adopt_moved_nodes(const SpringLattice& lattice);
@@ -160,6 +176,7 @@ class ImplicitSolver {
  private:
   ImplicitSolver(ImplicitBody body, int nodes, double mass_kg);
   void write_velocities(SpringLattice& lattice);
+  void write_displacements(SpringLattice& lattice);
   double collect_impulses(const SpringLattice& lattice);
   void update_contact_mass(double measured, SpringLattice& lattice);
   bool follows_fixed(const GridPoint& follower) const;

@@ -48,7 +48,7 @@ optional = {
     "regions": {"material", "friction"},
     "supports": {"motion"},
     "tool": {"soft"},
-    "sculpting": {"settles"},
+    "sculpting": {"settles", "free"},
     "view": {"camera", "overlays", "see_through_body", "ground_mm"},
     "camera": {"yaw_deg", "pitch_deg", "field_of_view_deg"},
 }

@@ -1,0 +1,128 @@
+#include "engine/simulation/body_hold.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <cmath>
+
+#include "engine/base/assert.h"
+
+namespace spoonbill {
+namespace {
+
+// Least extent in the second direction, as a fraction of the first, that determines an orientation.
+constexpr double least_second_extent = 1e-6;
+// Largest turn of a sound body in a tick, rad. Beyond it the shape has lost its orientation, for instance by
+// turning inside out, and the turn means nothing.
+constexpr double largest_turn_rad = 0.2;
+
+struct MassCentre {
+  Vector3 rest_m = Vector3::Zero(), position_m = Vector3::Zero(), velocity_m_per_s = Vector3::Zero();
+  double mass_kg = 0.0;
+};
+
+MassCentre find_mass_centre(const SpringLattice& lattice) {
+  MassCentre centre;
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    const auto mass = static_cast<double>(lattice.mass(n));
+    centre.mass_kg += mass;
+    centre.rest_m += mass * lattice.mesh().nodes[static_cast<std::size_t>(n)];
+    centre.position_m += mass * lattice.position(n);
+    centre.velocity_m_per_s += mass * lattice.velocity(n);
+  }
+  SPOONBILL_ASSERT_DEBUG(centre.mass_kg > 0.0);
+  centre.rest_m /= centre.mass_kg;
+  centre.position_m /= centre.mass_kg;
+  centre.velocity_m_per_s /= centre.mass_kg;
+  return centre;
+}
+
+// Returns the angular velocity of a rigid body with the lattice's angular momentum, rad/s.
+Vector3 find_spin(const SpringLattice& lattice, const MassCentre& centre) {
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  Vector3 momentum = Vector3::Zero();
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    const auto mass = static_cast<double>(lattice.mass(n));
+    const Vector3 arm = lattice.position(n) - centre.position_m;
+    inertia += mass * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
+    momentum += mass * arm.cross(lattice.velocity(n));
+  }
+  const double size = inertia.trace();
+  if (!(size > 0.0)) return Vector3::Zero();
+  inertia += 1e-9 * size * Eigen::Matrix3d::Identity();  // a rod does not resist a spin about itself
+  return inertia.ldlt().solve(momentum);
+}
+
+}  // namespace
+
+BodyHold::BodyHold(int nodes) : displacements_m_(static_cast<std::size_t>(nodes), Vector3::Zero()) {
+  SPOONBILL_ASSERT(nodes > 0);
+}
+
+BodyHold::MeanPose BodyHold::measure(const SpringLattice& lattice) {
+  const MassCentre centre = find_mass_centre(lattice);
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    const Vector3 rest = lattice.mesh().nodes[static_cast<std::size_t>(n)] - centre.rest_m;
+    moments +=
+        static_cast<double>(lattice.mass(n)) * (lattice.position(n) - centre.position_m) * rest.transpose();
+  }
+  MeanPose pose;
+  pose.centre_m = centre.position_m;
+  if (!moments.allFinite()) return pose;
+  const Eigen::JacobiSVD<Eigen::Matrix3d> parts(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = (parts.matrixU() * parts.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
+  const Vector3 extents = parts.singularValues();
+  pose.has_turn = extents[1] + sign * extents[2] > least_second_extent * extents[0];
+  pose.turn = parts.matrixU() * Vector3(1.0, 1.0, sign).asDiagonal() * parts.matrixV().transpose();
+  return pose;
+}
+
+void BodyHold::begin(const SpringLattice& lattice) {
+  SPOONBILL_ASSERT(displacements_m_.size() == static_cast<std::size_t>(lattice.mesh().node_count()));
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    displacements_m_[static_cast<std::size_t>(n)] = lattice.displacement(n);
+  }
+  if (!lattice.has_fixed_nodes()) pose_ = measure(lattice);
+}
+
+bool BodyHold::limit(SpringLattice& lattice, ImplicitSolver* solver, double reach_m) const {
+  SPOONBILL_ASSERT_DEBUG(reach_m > 0.0);
+  const Vector3 centre = find_mass_centre(lattice).position_m;
+  bool follows = centre.allFinite();
+  for (int n = 0; n < lattice.mesh().node_count() && follows; ++n) {
+    follows =
+        (lattice.position(n) - centre).squaredNorm() <= reach_m * reach_m && lattice.velocity(n).allFinite();
+  }
+  if (follows) return false;
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    lattice.set_displacement(n, displacements_m_[static_cast<std::size_t>(n)]);
+    lattice.set_velocity(n, Vector3::Zero());
+  }
+  if (solver != nullptr) solver->adopt_shape(lattice);
+  return true;
+}
+
+void BodyHold::keep_pose(SpringLattice& lattice, ImplicitSolver* solver) const {
+  SPOONBILL_ASSERT_DEBUG(!lattice.has_fixed_nodes());
+  const MeanPose now = measure(lattice);
+  const MassCentre centre = find_mass_centre(lattice);
+  RigidMove move;
+  move.from_m = now.centre_m;
+  move.to_m = pose_.centre_m;
+  move.velocity_m_per_s = centre.velocity_m_per_s;
+  move.spin_rad_per_s = find_spin(lattice, centre);
+  if (now.has_turn && pose_.has_turn) {
+    const Eigen::Matrix3d back = pose_.turn * now.turn.transpose();
+    if (Eigen::AngleAxisd(back).angle() < largest_turn_rad) move.turn = back;
+  }
+  if (solver != nullptr) return solver->move_rigidly(move, lattice);
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    if (lattice.mesh().joined(n) != n) continue;
+    const Vector3 position = lattice.position(n), velocity = lattice.velocity(n);
+    lattice.set_displacement(n, move.moved(position) - lattice.mesh().nodes[static_cast<std::size_t>(n)]);
+    lattice.set_velocity(n, move.slowed(position, velocity));
+  }
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,42 @@
+// What keeps a body in the scene through one tick: the place of a body that nothing fixes, and the return to
+// its last good shape where its lattice cannot follow. Allocates only on construction; one owner, the body.
+#pragma once
+
+#include <vector>
+
+#include "engine/base/geometry.h"
+#include "engine/material/implicit/implicit_solver.h"
+#include "engine/material/springs/spring_lattice.h"
+
+namespace spoonbill {
+
+class BodyHold {
+ public:
+  explicit BodyHold(int nodes);
+
+  // Remembers the displacements and the mean pose at the start of a tick.
+  void begin(const SpringLattice& lattice);
+
+  // Restores the start of the tick, at rest, if a node is not finite or farther than `reach_m` from the
+  // body's mean position. Returns whether it did. `solver` is null where the springs step.
+  bool limit(SpringLattice& lattice, ImplicitSolver* solver, double reach_m) const;
+
+  // Returns the body to its mean position and orientation at the start of the tick, as a gentle hand would
+  // that holds it everywhere, and removes its linear and angular momentum. The lattice must have no fixed
+  // nodes. The mean orientation is the rotation that fits the rest shape best (Kabsch 1976), so that it does
+  // not drift with a sequence of deformations.
+  void keep_pose(SpringLattice& lattice, ImplicitSolver* solver) const;
+
+ private:
+  struct MeanPose {
+    Vector3 centre_m = Vector3::Zero();
+    Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+    bool has_turn = false;  // false for a body without extent in two directions
+  };
+  static MeanPose measure(const SpringLattice& lattice);
+
+  std::vector<Vector3> displacements_m_;
+  MeanPose pose_;
+};
+
+}  // namespace spoonbill
