@@ -12,6 +12,7 @@
 #include "engine/base/result.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/json.h"
+#include "engine/inspection/mass_properties.h"
 #include "engine/scene/scene.h"
 #include "haptic/device.h"
 #include "haptic/recording.h"
@@ -68,6 +69,7 @@ struct Session {
   CouplingState coupling;
   StrokeHistory history;
   ViewChoice view;
+  std::vector<BodyMass> masses = {};  // by body, of the document: sculpting moves material and keeps its mass
 
   DeviceSpecification device;
   DeviceReading reading;                 // from the last tick
@@ -112,6 +114,7 @@ struct SessionFacts {
   Tool tool;
   Material material;
   int region_count = 0;  // of the first body, like the material
+  double mass_kg = 0.0;  // of all bodies
   Sculpting sculpting;
   Symmetry symmetry;
   bool can_undo = false;
