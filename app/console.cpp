@@ -1,20 +1,14 @@
 #include "app/console.h"
 
 #include <ctime>
+#include <string_view>
+
+#include "engine/base/text.h"
 
 namespace spoonbill {
 
 std::string one_line(const std::string& text) {
-  std::string line = text.substr(0, text.find('\n'));
-  for (std::size_t k = 0; k < line.size(); ++k) {
-    const auto letter = static_cast<unsigned char>(line[k]);
-    // Control characters U+0080 to U+009F in UTF-8, which some terminals obey.
-    const bool is_wide_control =
-        letter == 0xc2 && k + 1 < line.size() && static_cast<unsigned char>(line[k + 1]) < 0xa0;
-    if (letter < ' ' || letter == 127) line[k] = '?';
-    if (is_wide_control) line.replace(k, 2, "?");
-  }
-  return line;
+  return without_controls(std::string_view(text).substr(0, text.find('\n')));
 }
 
 InterruptWatch::InterruptWatch() {
@@ -40,7 +34,7 @@ void InterruptWatch::answer() {
 }
 
 ProgressBar::ProgressBar(Console& console, std::string label, bool is_forced)
-    : console_(&console), label_(std::move(label)), visible_(console.err_is_terminal || is_forced) {}
+    : console_(&console), label_(escaped(label)), visible_(console.err_is_terminal || is_forced) {}
 
 ProgressBar::~ProgressBar() {
   if (visible_ && console_->err_is_terminal && shown_percent_ >= 0) console_->err << '\n';

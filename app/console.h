@@ -21,7 +21,7 @@ struct Console {
   bool err_is_terminal = false;
 };
 
-// Returns the first line of the text with every control character replaced by '?'. Messages quote files,
+// Returns the first line of the text without_controls(). Messages quote files,
 // whose content could otherwise drive the terminal.
 std::string one_line(const std::string& text);
 

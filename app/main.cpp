@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
     spoonbill::Console console{std::cout, std::cerr, isatty(STDERR_FILENO) != 0};
     return spoonbill::run_program(arguments, console, spoonbill::version_with_commit());
   } catch (const std::exception& exception) {
-    std::cerr << "spoonbill: " << exception.what() << '\n';
+    std::cerr << "spoonbill: " << spoonbill::one_line(exception.what()) << '\n';
     return spoonbill::exit_failed;
   }
 }

@@ -23,7 +23,7 @@ Status edit_model(const EditSettings& settings, Console& console) {
   auto editor = Editor::make(settings);
   if (!editor) return editor.error();
   const LoopFigures figures = editor.value()->figures();
-  if (!figures.notice.empty()) console.err << "spoonbill: " << figures.notice << '\n';
+  if (!figures.notice.empty()) console.err << "spoonbill: " << one_line(figures.notice) << '\n';
   return editor.value()->run();
 }
 

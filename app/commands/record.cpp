@@ -61,7 +61,7 @@ Status record_input(const RecordOptions& options, const RecordingHeader& header,
     return Session::make(header.document, model, header.device, options.instruction_set, maps.watch());
   }();
   if (!session) return session.error();
-  for (const std::string& note : session->simulation.warnings()) console.err << note << '\n';
+  for (const std::string& note : session->simulation.remarks()) console.err << one_line(note) << '\n';
   auto writer = RecordingWriter::create(options.out, header);
   if (!writer) return writer.error();
   const std::size_t command_count = input.commands.size();
@@ -116,7 +116,7 @@ Status record_live(const RecordOptions& options, const Script& script, const Doc
   const bool stopped = interrupt.requested();
   if (stopped) interrupt.answer();
   if (!report) return report.error();
-  for (const Notice& notice : report->notices) console.err << "spoonbill: " << notice.text << '\n';
+  for (const Notice& notice : report->notices) console.err << "spoonbill: " << one_line(notice.text) << '\n';
   if (stopped) return stopped_recording(report->loop.ticks);
   FactSheet facts;
   facts.add("Recording", options.out.string(), "out", options.out.string());
@@ -152,7 +152,7 @@ Status record_script(const RecordOptions& options, Console& console) {
 Status record_again(const RecordOptions& options, Console& console) {
   const auto recording = read_recording(options.source);
   if (!recording) return recording.error();
-  if (!recording->notice.empty()) console.err << "spoonbill: " << recording->notice << '\n';
+  if (!recording->notice.empty()) console.err << "spoonbill: " << one_line(recording->notice) << '\n';
   PlaybackDevice device(recording->header.device, recording->readings);
   LockstepInput input;
   input.device = &device;

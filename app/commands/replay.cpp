@@ -204,7 +204,7 @@ Status replay_file(const ReplayOptions& options, Console& console) {
     return Error{ErrorCode::inconsistent,
                  options.rerecord.string() + ": is the source itself; choose another name", "--rerecord"};
   }
-  if (!recording->notice.empty()) console.err << "spoonbill: " << recording->notice << '\n';
+  if (!recording->notice.empty()) console.err << "spoonbill: " << one_line(recording->notice) << '\n';
   return replay_recording(options, recording.value(), console);
 }
 

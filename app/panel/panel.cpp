@@ -27,6 +27,7 @@ PanelModel make_panel_model(const SessionFacts& facts, const Snapshot& snapshot,
   model.has_ground = facts.has_ground;
   model.material = facts.material;
   model.region_count = facts.region_count;
+  model.mass_kg = facts.mass_kg;
   model.effective_youngs_modulus_pa = snapshot.bodies.front().material.effective_youngs_modulus_pa;
   model.implicit_nodes = snapshot.bodies.front().material.implicit_nodes;
   for (std::size_t b = 0; b < snapshot.bodies.size(); ++b) {
@@ -38,7 +39,6 @@ PanelModel make_panel_model(const SessionFacts& facts, const Snapshot& snapshot,
   model.plane_count = static_cast<int>(snapshot.planes.size());
   for (const BodySnapshot& body : snapshot.bodies) {
     const auto& fixed = body.lattice.fixed;
-    model.mass_kg += body.material.mass_kg;
     model.fixed_node_count += static_cast<int>(std::count(fixed.begin(), fixed.end(), std::uint8_t{1}));
     model.node_count += static_cast<int>(fixed.size());
     model.unheld_count += std::count(fixed.begin(), fixed.end(), std::uint8_t{1}) == 0 ? 1 : 0;

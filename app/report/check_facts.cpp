@@ -68,11 +68,6 @@ void add_thickness(FactSheet& facts, const SurfaceCheck& check, Json& json) {
                       {"opposite_m", position_json(thin.opposite_m)}};
 }
 
-bool has_material_regions(const Body& body) {
-  return std::any_of(body.regions.begin(), body.regions.end(),
-                     [](const MaterialRegion& region) { return region.material.has_value(); });
-}
-
 std::string names_text(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
@@ -82,22 +77,17 @@ std::string names_text(const std::vector<std::string>& names) {
 // Adds the mass of a body with its material regions. If its regions cannot be evaluated, the body's own
 // material counts everywhere and the line says why.
 void add_mass(FactSheet& facts, const Body& body, double volume_m3, const Vector3& centre_m, Json& json) {
-  MaterialMix mix{body.material.density_kg_per_m3, Vector3::Zero(), {body.material.name}};
-  std::string note;
-  if (has_material_regions(body)) {
-    const auto found = compute_material_mix(body);
-    if (found) mix = found.value();
-    if (!found) note = ", regions ignored: " + found.error().message;
-  }
-  const double mass_kg = volume_m3 * mix.density_kg_per_m3;
-  const Vector3 mass_centre_m = centre_m + mix.mass_offset_m;
+  const BodyMass mass = mass_of_volume(body, volume_m3, centre_m);
   facts.add("  Volume", volume_text(volume_m3), "", nullptr);
-  facts.add("  Mass", grams_text(mass_kg) + " of " + names_text(mix.materials) + note, "", nullptr);
-  facts.add("  Centre of mass", position_text(mass_centre_m), "", nullptr);
+  facts.add("  Mass",
+            grams_text(mass.mass_kg()) + " of " + names_text(mass.mix.materials) +
+                (mass.note.empty() ? "" : ", " + mass.note),
+            "", nullptr);
+  facts.add("  Centre of mass", position_text(mass.centre_m), "", nullptr);
   json["volume_m3"] = volume_m3;
-  json["mass_kg"] = mass_kg;
-  json["materials"] = mix.materials;
-  json["centre_of_mass_m"] = position_json(mass_centre_m);
+  json["mass_kg"] = mass.mass_kg();
+  json["materials"] = mass.mix.materials;
+  json["centre_of_mass_m"] = position_json(mass.centre_m);
 }
 
 void add_content(FactSheet& facts, const Body& body, CheckedAs as, const TrimmedArea& area,
@@ -235,7 +225,8 @@ std::vector<std::string> find_problems(const Body& body, CheckedAs as, const Sur
     problems.push_back(std::string(spot.folds ? "folds over" : "has no area") + " at " +
                        position_text(spot.position_m));
   }
-  const double sharpest = check.curvature.largest.curvature_per_m;
+  if (!check.curvature.exists && check.surface_defects.empty()) problems.emplace_back("has no area");
+  const double sharpest = check.curvature.exists ? check.curvature.largest.curvature_per_m : 0.0;
   if (body.shell_thickness_m && *body.shell_thickness_m * sharpest >= 1.0) {
     problems.push_back("its shell is thicker than its smallest convex radius, " +
                        short_length_text(1.0 / sharpest));
@@ -260,9 +251,11 @@ Json add_check_facts(FactSheet& facts, const Body& body, CheckedAs as, const Tri
   json["closedness"] = name_of(check.closing.closedness);
   json["gap_m"] = check.closing.gap_m;
   add_content(facts, body, as, area, check, json);
-  json["curvature"] = curvature_facts(facts, check.curvature);
-  json["smallest_convex_radius_m"] = radius_json(check.curvature.largest.curvature_per_m);
-  json["smallest_concave_radius_m"] = radius_json(-check.curvature.smallest.curvature_per_m);
+  if (check.curvature.exists) {
+    json["curvature"] = curvature_facts(facts, check.curvature);
+    json["smallest_convex_radius_m"] = radius_json(check.curvature.largest.curvature_per_m);
+    json["smallest_concave_radius_m"] = radius_json(-check.curvature.smallest.curvature_per_m);
+  }
   json["bending"] = check.bending;
   facts.add("  Bending", number_text(std::round(100.0 * check.bending) / 100.0) + " (a ball has 25.13)", "",
             nullptr);

@@ -10,6 +10,7 @@
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trimmed_area.h"
 #include "engine/exchange/scene_json.h"
+#include "engine/inspection/mass_properties.h"
 #include "engine/inspection/surface_check.h"
 
 namespace spoonbill {
@@ -165,14 +166,16 @@ std::string three_text(const double (&values)[3], double scale, int decimals) {
          " / " + decimals_text(scale * values[2], decimals);
 }
 
-Json add_simulated_body(FactSheet& facts, const std::string& suffix, const BodySnapshot& body) {
+Json add_simulated_body(FactSheet& facts, const std::string& suffix, const BodySnapshot& body,
+                        const std::optional<BodyMass>& mass) {
   const LatticeSnapshot& lattice = body.lattice;
   const auto fixed = std::count(lattice.fixed.begin(), lattice.fixed.end(), std::uint8_t{1});
   facts.add("Lattice" + suffix,
             std::to_string(lattice.count[0]) + " x " + std::to_string(lattice.count[1]) + " x " +
                 std::to_string(lattice.count[2]) + " nodes, " + std::to_string(fixed) + " of them fixed",
             "", nullptr);
-  facts.add("Mass" + suffix, grams_text(body.material.mass_kg) + " (of the lattice)", "", nullptr);
+  if (mass) facts.add("Mass" + suffix, grams_text(mass->mass_kg()), "", nullptr);
+  facts.add("Lattice mass" + suffix, grams_text(body.material.lattice_mass_kg), "", nullptr);
   facts.add("Effective E" + suffix, modulus_text(body.material.effective_youngs_modulus_pa), "", nullptr);
   const int implicit = body.material.implicit_nodes;
   facts.add(
@@ -180,10 +183,13 @@ Json add_simulated_body(FactSheet& facts, const std::string& suffix, const BodyS
       implicit > 0 ? "implicit, " + std::to_string(implicit) + " nodes of hexahedra" : "explicit springs", "",
       nullptr);
   const Json counts = {lattice.count[0], lattice.count[1], lattice.count[2]};
-  return {{"lattice", {{"nodes", counts}, {"node_count", lattice.x.size()}, {"fixed_node_count", fixed}}},
-          {"mass_kg", body.material.mass_kg},
-          {"felt_youngs_modulus_pa", body.material.effective_youngs_modulus_pa},
-          {"solver", {{"kind", implicit > 0 ? "implicit" : "explicit"}, {"implicit_nodes", implicit}}}};
+  Json json = {
+      {"lattice", {{"nodes", counts}, {"node_count", lattice.x.size()}, {"fixed_node_count", fixed}}},
+      {"lattice_mass_kg", body.material.lattice_mass_kg},
+      {"felt_youngs_modulus_pa", body.material.effective_youngs_modulus_pa},
+      {"solver", {{"kind", implicit > 0 ? "implicit" : "explicit"}, {"implicit_nodes", implicit}}}};
+  if (mass) json["mass_kg"] = mass->mass_kg();
+  return json;
 }
 
 Json add_body_cells(FactSheet& facts, const std::string& suffix, const LatticeMesh& mesh,
@@ -332,16 +338,22 @@ void add_elasticity_facts(FactSheet& facts, const Simulation& simulation) {
 
 void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot, const std::vector<Body>& bodies) {
   Json list = Json::array();
-  double mass_kg = 0.0;
+  double mass_kg = 0.0, lattice_mass_kg = 0.0;
+  bool is_whole = true;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const std::string suffix = bodies.size() == 1 ? "" : " of " + bodies[b].name;
-    list.push_back(add_simulated_body(facts, suffix, snapshot.bodies[b]));
-    mass_kg += snapshot.bodies[b].material.mass_kg;
+    const std::optional<BodyMass> mass = compute_body_mass(bodies[b]);
+    list.push_back(add_simulated_body(facts, suffix, snapshot.bodies[b], mass));
+    is_whole = is_whole && mass;
+    mass_kg += mass ? mass->mass_kg() : 0.0;
+    lattice_mass_kg += snapshot.bodies[b].material.lattice_mass_kg;
   }
   if (bodies.size() == 1) add_single_body(facts, list.front());
   for (std::size_t b = 0; b < bodies.size(); ++b) list[b]["body"] = bodies[b].name;
   facts.add("", "", "simulated", list);
-  facts.add(bodies.size() == 1 ? "" : "Mass", grams_text(mass_kg) + " together", "mass_kg", mass_kg);
+  const char* const label = bodies.size() == 1 ? "" : "Mass";
+  if (is_whole) facts.add(label, grams_text(mass_kg) + " together", "mass_kg", mass_kg);
+  facts.add("", "", "lattice_mass_kg", lattice_mass_kg);
 }
 
 MapProgress::MapProgress(Console& console, bool is_forced)

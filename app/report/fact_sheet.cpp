@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/base/text.h"
+
 namespace spoonbill {
 
 void FactSheet::add(const std::string& label, const std::string& text, const std::string& field, Json value) {
@@ -11,13 +13,13 @@ void FactSheet::add(const std::string& label, const std::string& text, const std
 
 void FactSheet::print(std::ostream& out, bool as_json) const {
   if (as_json) {
-    out << json_to_line(json_) << '\n';
+    out << escaped(json_to_line(json_)) << '\n';
     return;
   }
   std::size_t width = 0;
   for (const auto& [label, text] : lines_) width = std::max(width, label.size());
   for (const auto& [label, text] : lines_) {
-    out << label << std::string(width - label.size() + 2, ' ') << text << '\n';
+    out << escaped(label) << std::string(width - label.size() + 2, ' ') << escaped(text) << '\n';
   }
 }
 

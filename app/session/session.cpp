@@ -137,6 +137,11 @@ struct RequestApplier {
   }
 };
 
+// Only a face of a solid has no mass of its own.
+BodyMass mass_of_session(const Body& body) {
+  return compute_body_mass(body).value_or(BodyMass());
+}
+
 }  // namespace
 
 Result<Session> Session::make(const Document& document, const std::string& source, DeviceSpecification device,
@@ -146,15 +151,13 @@ Result<Session> Session::make(const Document& document, const std::string& sourc
   auto simulation = Simulation::make(document.scene, set, watch);
   if (!simulation) return simulation.error().in(source);
   StrokeHistory history(simulation.value());
-  return Session{document.name,
-                 std::move(simulation).value(),
-                 CouplingState(),
-                 std::move(history),
-                 view.value(),
-                 std::move(device),
-                 DeviceReading(),
-                 tick_flag_none,
-                 {}};
+  std::vector<BodyMass> masses;
+  for (const Body& body : document.scene.bodies) masses.push_back(mass_of_session(body));
+  return Session{document.name,     std::move(simulation).value(),
+                 CouplingState(),   std::move(history),
+                 view.value(),      std::move(masses),
+                 std::move(device), DeviceReading(),
+                 tick_flag_none,    {}};
 }
 
 TickResult advance(Session& session, const DeviceReading& reading) {
@@ -227,6 +230,10 @@ void write_facts(const Session& session, SessionFacts& facts) {
   facts.tool = scene.tool;
   facts.material = scene.bodies[0].material;
   facts.region_count = static_cast<int>(scene.bodies[0].regions.size());
+  facts.mass_kg = 0.0;
+  for (std::size_t b = 0; b < session.masses.size(); ++b) {
+    facts.mass_kg += session.masses[b].mass_kg(scene.bodies[b].material.density_kg_per_m3);
+  }
   facts.sculpting = scene.sculpting;
   facts.has_ground = scene.ground.has_value();
   facts.symmetry = scene.symmetry;

@@ -12,6 +12,7 @@
 #include "engine/base/result.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/json.h"
+#include "engine/inspection/mass_properties.h"
 #include "engine/scene/scene.h"
 #include "haptic/device.h"
 #include "haptic/recording.h"
@@ -68,6 +69,7 @@ struct Session {
   CouplingState coupling;
   StrokeHistory history;
   ViewChoice view;
+  std::vector<BodyMass> masses = {};  // by body, of the document: sculpting moves material and keeps its mass
 
   DeviceSpecification device;
   DeviceReading reading;                 // from the last tick
@@ -111,7 +113,8 @@ struct SessionFacts {
   std::string title;
   Tool tool;
   Material material;
-  int region_count = 0;  // number of regions of the first body; the material, too, is that of the first body
+  int region_count = 0;  // of the first body, like the material
+  double mass_kg = 0.0;  // of all bodies
   Sculpting sculpting;
   Symmetry symmetry;
   bool has_ground = false;

@@ -37,14 +37,71 @@ std::string position_text(const Vector3& point_m) {
   return text.data();
 }
 
+namespace {
+
+// Returns the length of the UTF-8 character at the start of the text and sets its number; 0 if it is none.
+std::size_t read_character(std::string_view text, unsigned& number) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned>(static_cast<unsigned char>(text[k])); };
+  const unsigned first = byte(0);
+  const std::size_t length = first < 0x80   ? 1
+                             : first < 0xC2 ? 0
+                             : first < 0xE0 ? 2
+                             : first < 0xF0 ? 3
+                             : first < 0xF5 ? 4
+                                            : 0;
+  if (length == 0 || length > text.size()) return 0;
+  number = length == 1 ? first : first & (0xFFU >> (length + 1));
+  for (std::size_t k = 1; k < length; ++k) {
+    if ((byte(k) & 0xC0U) != 0x80U) return 0;
+    number = number << 6U | (byte(k) & 0x3FU);
+  }
+  const bool is_surrogate = number >= 0xD800 && number <= 0xDFFF;
+  const bool is_overlong = (length == 3 && number < 0x800) || (length == 4 && number < 0x10000);
+  return is_surrogate || is_overlong || number > 0x10FFFF ? 0 : length;
+}
+
+bool is_unprintable(unsigned number) {
+  const auto within = [&](unsigned low, unsigned high) { return number >= low && number <= high; };
+  return within(0x00, 0x1F) || within(0x7F, 0x9F) || number == 0x061C || within(0x200E, 0x200F) ||
+         within(0x2028, 0x202E) || within(0x2066, 0x2069);
+}
+
+template <class Replacement>
+std::string replace_unprintable(std::string_view text, const Replacement& replacement) {
+  std::string result;
+  result.reserve(text.size());
+  while (!text.empty()) {
+    unsigned number = static_cast<unsigned char>(text[0]);
+    const std::size_t length = read_character(text, number);
+    if (length == 0 || is_unprintable(number)) {
+      result += replacement(number);
+    } else {
+      result += text.substr(0, length);
+    }
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+  return replace_unprintable(text, [](unsigned number) {
+    std::array<char, 8> escape{};
+    std::snprintf(escape.data(), escape.size(), "\\u%04x", number & 0xFFFFU);
+    return std::string(escape.data());
+  });
+}
+
+std::string without_controls(std::string_view text) {
+  return replace_unprintable(text, [](unsigned) { return std::string("?"); });
+}
+
 std::string excerpt(std::string_view text, std::size_t longest) {
   if (longest < text.size()) {
     while (longest > 0 && (static_cast<unsigned char>(text[longest]) & 0xC0U) == 0x80U) --longest;
   }
-  std::string line(text.substr(0, longest));
-  std::replace_if(
-      line.begin(), line.end(), [](unsigned char letter) { return letter < ' ' || letter == 127; }, '?');
-  return line;
+  return without_controls(text.substr(0, longest));
 }
 
 }  // namespace spoonbill

@@ -24,8 +24,17 @@ std::string length_text(double length_m);
 // Returns a point with tenths of a millimetre, such as "(10.0, -5.2, 0.0) mm"; zeros have no sign.
 std::string position_text(const Vector3& point_m);
 
+// Returns the text with every character that could drive a terminal, end its line or reorder what it shows
+// written as JSON escapes it, such as "\u001b": control characters (U+0000 to U+001F, U+007F to U+009F),
+// marks of direction and line separators. A byte that is not UTF-8 becomes "\u00" and its two digits. Names
+// in files can hold all of these. Also valid for the text of a JSON document without line breaks.
+std::string escaped(std::string_view text);
+
+// Returns the text with the characters that escaped() escapes replaced by "?".
+std::string without_controls(std::string_view text);
+
 // Returns the beginning of a text for quotation in a message: at most `longest` bytes, no UTF-8 character cut
-// in two, each control character replaced by "?".
+// in two, without_controls().
 std::string excerpt(std::string_view text, std::size_t longest = 40);
 
 }  // namespace spoonbill

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "engine/base/assert.h"
+#include "engine/bspline/collapsed_edges.h"
 
 namespace spoonbill {
 namespace {
@@ -14,8 +15,6 @@ namespace {
 // Fractions of a piece that are left out at knots and at collapsed edges.
 constexpr double off_knots = 1e-6;
 constexpr double off_poles = 1e-2;
-// Largest extent of a collapsed edge, as a fraction of the net's size.
-constexpr double collapsed = 1e-9;
 // Number of best cells that are refined.
 constexpr std::size_t searched = 12;
 constexpr std::size_t cells_between_reports = 256;
@@ -74,7 +73,7 @@ bool is_collapsed(const ControlNet& net, bool of_u, bool last) {
   const int count = of_u ? net.columns : net.rows, line = last ? (of_u ? net.rows : net.columns) - 1 : 0;
   const auto at = [&](int k) { return of_u ? net.point(line, k) : net.point(k, line); };
   for (int k = 1; k < count; ++k) {
-    if ((at(k) - at(0)).norm() > collapsed * size) return false;
+    if ((at(k) - at(0)).norm() > collapsed_edge_fraction * size) return false;
   }
   return true;
 }
@@ -164,35 +163,58 @@ std::optional<PrincipalCurvatures> compute_principal_curvatures(const SurfacePoi
   return PrincipalCurvatures{mean - spread, mean + spread};
 }
 
+bool has_extent(const Surface& surface) {
+  constexpr double least_size_m = 1e-9;
+  return bounding_box(surface.net).size() > least_size_m;
+}
+
+namespace {
+
+// Curvatures of a surface of this size. A radius of less than a collapsed edge, as at a cusp, is no radius.
+std::optional<PrincipalCurvatures> physical_curvatures(const SurfacePoint& point, double size_m) {
+  const auto found = compute_principal_curvatures(point);
+  if (!found) return std::nullopt;
+  const double sharpest = std::max(std::abs(found->smallest), std::abs(found->largest));
+  return sharpest * size_m * collapsed_edge_fraction <= 1.0 ? found : std::nullopt;
+}
+
+}  // namespace
+
 CurvatureRange find_curvature_range(const Surface& surface, const TrimmedArea& area,
                                     const Progress& progress) {
   SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   const std::vector<PieceCell> cells = piece_cells(surface, samples_per_span);
-  const auto extreme = [&](bool largest) {
+  const double size_m = bounding_box(surface.net).size();
+  if (!has_extent(surface)) return {};
+  const auto extreme = [&](bool largest) -> std::optional<CurvatureExtreme> {
     const auto value = [&](double u, double v) {
       constexpr double none = std::numeric_limits<double>::infinity();
       if (!area.contains(u, v)) return none;
-      const auto found = compute_principal_curvatures(evaluate(surface, u, v));
+      const auto found = physical_curvatures(evaluate(surface, u, v), size_m);
       if (!found) return none;
       return largest ? -found->largest : found->smallest;
     };
     const ParameterMinimum found =
         find_minimum(cells, value, largest ? progress.part(0.5, 1.0) : progress.part(0.0, 0.5));
+    if (!std::isfinite(found.value)) return std::nullopt;
     return CurvatureExtreme{largest ? -found.value : found.value, found.u, found.v,
                             position(surface, found.u, found.v)};
   };
-  const CurvatureExtreme smallest = extreme(false);
-  return {smallest, extreme(true)};
+  const auto smallest = extreme(false), largest = extreme(true);
+  if (!smallest || !largest) return {};
+  return {*smallest, *largest, true};
 }
 
 double compute_bending_energy(const Surface& surface, const TrimmedArea& area) {
   SPOONBILL_ASSERT_DEBUG(is_valid(surface));
+  if (!has_extent(surface)) return 0.0;
+  const double size_m = bounding_box(surface.net).size();
   double sum = 0.0;
   for (const PieceCell& cell : piece_cells(surface, 2 * samples_per_span)) {
     if (!area.contains(cell.centre_u(), cell.centre_v())) continue;
     // Midpoint rule, because the integrand is not smooth at knots, poles and trims.
     const SurfacePoint point = evaluate(surface, cell.centre_u(), cell.centre_v());
-    const auto found = compute_principal_curvatures(point);
+    const auto found = physical_curvatures(point, size_m);
     if (!found) continue;
     const double squares = found->smallest * found->smallest + found->largest * found->largest;
     sum += squares * point.du.cross(point.dv).norm() * (cell.u1 - cell.u0) * (cell.v1 - cell.v0);

@@ -53,12 +53,18 @@ struct CurvatureExtreme {
 
 struct CurvatureRange {
   CurvatureExtreme smallest, largest;
+  bool exists = false;  // false: no part of the surface has a curvature, and the extremes mean nothing
 };
 
-// Finds the extremes over all pieces, on both sides of each knot, except within a hundredth of a piece from a
-// pole. A smooth extreme is found with a relative accuracy of a millionth.
+// Finds the extremes over all pieces, on both sides of each knot, except within a hundredth of a piece
+// from a pole. A smooth extreme has a relative accuracy of a millionth. None exists on a surface without
+// extent or area, or if `progress` stopped the search. Radii below a millionth of the
+// surface's size are left out.
 CurvatureRange find_curvature_range(const Surface& surface, const TrimmedArea& area = {},
                                     const Progress& progress = {});
+
+// Returns whether the surface is larger than a point, for which coordinates hold rounding alone.
+bool has_extent(const Surface& surface);
 
 // Returns the integral of the squared principal curvatures over the area, a dimensionless measure that is
 // small for fair surfaces. It is 8 pi for a ball of any size.

@@ -11,6 +11,7 @@
 #include "engine/bspline/grid.h"
 #include "engine/bspline/trimmed_area.h"
 #include "engine/inspection/curvature.h"
+#include "engine/inspection/surface_check.h"
 #include "engine/material/lattice/body_lattice.h"
 #include "engine/material/lattice_materials.h"
 
@@ -175,6 +176,7 @@ Result<MaterialMix> compute_material_mix(const Body& body) {
   const auto materials = lattice_materials(mesh.value(), body.material, body.regions);
   if (!materials) return materials.error();
   Sums sums;
+  double own_volume_m3 = 0.0;
   std::set<std::size_t> found;
   for (int k = 0; k + 1 < mesh->count[2]; ++k) {
     for (int i = 0; i + 1 < mesh->count[0]; ++i) {
@@ -186,6 +188,7 @@ Result<MaterialMix> compute_material_mix(const Body& body) {
         const double mass = volume * materials->materials[material].density_kg_per_m3;
         found.insert(material);
         sums.volume_m3 += volume;
+        if (material == 0) own_volume_m3 += volume;
         sums.mass_kg += mass;
         sums.volume_moment += volume * find_centroid(corners);
         sums.mass_moment += mass * find_centroid(corners);
@@ -194,10 +197,41 @@ Result<MaterialMix> compute_material_mix(const Body& body) {
   }
   if (!(sums.volume_m3 > 0.0)) return Error{ErrorCode::degenerate, "the lattice of the body has no volume"};
   MaterialMix mix;
+  mix.own_fraction = own_volume_m3 / sums.volume_m3;
+  mix.own_density_kg_per_m3 = body.material.density_kg_per_m3;
   mix.density_kg_per_m3 = sums.mass_kg / sums.volume_m3;
   mix.mass_offset_m = sums.mass_moment / sums.mass_kg - sums.volume_moment / sums.volume_m3;
   for (const std::size_t material : found) mix.materials.push_back(materials->materials[material].name);
   return mix;
+}
+
+BodyMass mass_of_volume(const Body& body, double volume_m3, const Vector3& centre_m) {
+  BodyMass mass;
+  mass.volume_m3 = volume_m3;
+  mass.mix.density_kg_per_m3 = mass.mix.own_density_kg_per_m3 = body.material.density_kg_per_m3;
+  mass.mix.materials = {body.material.name};
+  const bool is_mixed = std::any_of(body.regions.begin(), body.regions.end(),
+                                    [](const MaterialRegion& region) { return region.material.has_value(); });
+  if (is_mixed) {
+    auto mix = compute_material_mix(body);
+    if (mix) mass.mix = std::move(mix).value();
+    if (!mix) mass.note = "regions ignored: " + mix.error().message;
+  }
+  mass.centre_m = centre_m + mass.mix.mass_offset_m;
+  return mass;
+}
+
+std::optional<BodyMass> compute_body_mass(const Body& body) {
+  const auto trim = make_trimmed_area(body);
+  if (!trim) return std::nullopt;
+  const TrimmedArea area = trim.value() ? *trim.value() : TrimmedArea();
+  if (body.shell_thickness_m) {
+    const ShellMass shell = compute_shell_mass(body.surface, *body.shell_thickness_m, area);
+    return mass_of_volume(body, shell.volume_m3, shell.centre_m);
+  }
+  if (!area.is_whole() || find_closing(body.surface).closedness != Closedness::solid) return std::nullopt;
+  const EnclosedMass mass = compute_enclosed_mass(body.surface);
+  return mass_of_volume(body, std::abs(mass.volume_m3), mass.centre_m);
 }
 
 }  // namespace spoonbill

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,8 @@ ShellMass compute_shell_mass(const Surface& surface, double thickness_m, const T
 // Mass of a body made of several materials.
 struct MaterialMix {
   double density_kg_per_m3 = 0.0;           // mean over the body
+  double own_density_kg_per_m3 = 0.0;       // of the body's own material
+  double own_fraction = 1.0;                // of the volume: of the body's own material
   Vector3 mass_offset_m = Vector3::Zero();  // from the centre of the volume to the centre of mass
   std::vector<std::string> materials;       // names of the materials in use, the body's own first
 };
@@ -65,5 +68,26 @@ struct MaterialMix {
 // Sums over the cells of the body's lattice, each with the material of its region. Refuses a body for
 // which no lattice can be made, and regions that lattice_materials() refuses.
 Result<MaterialMix> compute_material_mix(const Body& body);
+
+// Mass of a body, the same number wherever the program states it: the exact volume times the mean density.
+// The mass of the body's lattice, which forces move, differs by the cells' error.
+struct BodyMass {
+  double volume_m3 = 0.0;
+  Vector3 centre_m = Vector3::Zero();  // of mass
+  MaterialMix mix;
+  std::string note;  // says why the regions do not count, if they cannot be evaluated; else empty
+
+  double mass_kg() const { return volume_m3 * mix.density_kg_per_m3; }
+  // Returns the mass with another density of the body's own material.
+  double mass_kg(double own_density_kg_per_m3) const {
+    return mass_kg() + volume_m3 * mix.own_fraction * (own_density_kg_per_m3 - mix.own_density_kg_per_m3);
+  }
+};
+
+// Adds the materials to a volume that was computed from the body's surface.
+BodyMass mass_of_volume(const Body& body, double volume_m3, const Vector3& centre_m);
+
+// Returns nothing for a body that neither encloses its material nor is a shell with a thickness.
+std::optional<BodyMass> compute_body_mass(const Body& body);
 
 }  // namespace spoonbill

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/base/assert.h"
+#include "engine/bspline/collapsed_edges.h"
 #include "engine/bspline/knot_vector.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
 
@@ -206,9 +207,11 @@ void find_self_intersections(const Surface& surface, const TrimmedArea& area, co
 
 }  // namespace
 
-std::optional<SurfaceCheck> check_surface(const Surface& surface, const TrimmedArea& area,
+std::optional<SurfaceCheck> check_surface(const Surface& given, const TrimmedArea& area,
                                           const Progress& progress) {
-  SPOONBILL_ASSERT_DEBUG(is_valid(surface));
+  SPOONBILL_ASSERT_DEBUG(is_valid(given));
+  Surface surface = given;
+  join_collapsed_edges(surface);
   bool continues = true;
   const Progress watched([&](double fraction) { return continues = continues && progress.report(fraction); });
   SurfaceCheck check;

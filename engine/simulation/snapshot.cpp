@@ -84,7 +84,7 @@ void write_material(const Material& material, const Sculpting& sculpting, const 
   out.density_kg_per_m3 = material.density_kg_per_m3;
   out.damping_per_s = sculpting.damping_per_s;
   out.plastic = material.plastic;
-  out.mass_kg = body.lattice.mass_kg();
+  out.lattice_mass_kg = body.lattice.mass_kg();
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // The check command.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <csignal>
@@ -59,6 +60,56 @@ TEST(Check, AStraightTubeHasNoHollowRadius) {
   const Json body = check_of(place, "made.json")["bodies"][0];
   EXPECT_NEAR(body["smallest_convex_radius_m"], 0.01, 5e-4);
   EXPECT_TRUE(body["smallest_concave_radius_m"].is_null()) << body["smallest_concave_radius_m"];
+}
+
+// Single precision leaves the points of a pole some 10 nm apart.
+TEST(Check, AnEdgeOfAMillionthIsAPoint) {
+  const Workplace place;
+  Document ball = made(place, {"new", "sphere", "--radius", "20mm"});
+  const Json exact = check_of(place, "made.json")["bodies"][0];
+  ControlNet& net = ball.scene.bodies[0].surface.net;
+  for (int i = 0; i < net.rows; ++i) {
+    const Vector3 apart(1e-8 * std::sin(2.0 * i), 0.0, 1e-8 * std::cos(3.0 * i));
+    net.set_point(i, 0, net.point(i, 0) + apart);
+    net.set_point(i, net.columns - 1, net.point(i, net.columns - 1) - apart);
+  }
+  save(place, "apart.json", ball);
+  const Json facts = check_of(place, "apart.json")["bodies"][0];
+  EXPECT_EQ(facts["sound"], true) << facts["problems"];
+  for (const char* field : {"smallest_convex_radius_m", "smallest_thickness_m", "bending"}) {
+    EXPECT_NEAR(facts[field].get<double>() / exact[field].get<double>(), 1.0, 1e-3) << field;
+  }
+}
+
+bool has_null(const Json& json) {
+  if (!json.is_structured()) return json.is_null();
+  return std::any_of(json.begin(), json.end(), [](const Json& part) { return has_null(part); });
+}
+
+// To a point and to a line.
+TEST(Check, ACollapsedBodyHasNoCurvature) {
+  const Workplace place;
+  const Document ball = made(place, {"new", "sphere", "--radius", "20mm"});
+  for (const double height : {0.0, 1.0}) {
+    Document flat = ball;
+    ControlNet& net = flat.scene.bodies[0].surface.net;
+    for (int i = 0; i < net.rows; ++i) {
+      for (int j = 0; j < net.columns; ++j) {
+        net.set_point(i, j, Vector3(0.01, 0.02 + height * net.point(i, j).y(), 0.03));
+      }
+    }
+    save(place, "flat.json", flat);
+    Json facts = check_of(place, "flat.json");
+    EXPECT_EQ(facts["sound"], false);
+    Json& body = facts["bodies"][0];
+    EXPECT_FALSE(body.contains("curvature"));
+    EXPECT_FALSE(body["problems"].empty());
+    EXPECT_LT(body["area_m2"].get<double>(), 1e-12);
+    EXPECT_LT(body["bending"].get<double>(), 1e3);
+    body.erase("solid");
+    body.erase("smallest_thickness_m");
+    EXPECT_FALSE(has_null(facts)) << facts;
+  }
 }
 
 TEST(Check, SaysWhatIsWrongAndEndsWellAllTheSame) {

@@ -4,8 +4,11 @@
 #include <cmath>
 #include <sstream>
 
+#include "app/panel/panel.h"
 #include "app/program.h"
 #include "app/report/document_facts.h"
+#include "app/session/session.h"
+#include "engine/base/text.h"
 #include "engine/bspline/surface.h"
 #include "engine/exchange/document.h"
 #include "engine/simulation/simulation.h"
@@ -36,6 +39,63 @@ TEST(Info, TellsOfAModel) {
   EXPECT_GT(facts["mass_kg"], 0.0);
   EXPECT_GT(facts["felt_youngs_modulus_pa"], 0.0);
   EXPECT_NE(run({"info", place.text("model.json")}).out.find("Size"), std::string::npos);
+}
+
+// One number everywhere, from the exact volume; the lattice's own mass has its own name.
+TEST(Info, AMassIsOneNumber) {
+  const Workplace place;
+  const Document document = read_document(place.path("model.json")).value();
+  const Json facts = json_of(run({"info", place.text("model.json"), "--json"}).out);
+  const Json checked = json_of(run({"check", place.text("model.json"), "--json"}).out)["bodies"][0];
+  const double mass_kg = checked["mass_kg"];
+  EXPECT_NEAR(facts["mass_kg"], mass_kg, 1e-9 * mass_kg);
+  EXPECT_NEAR(mass_kg,
+              document.scene.bodies[0].material.density_kg_per_m3 * checked["volume_m3"].get<double>(),
+              1e-9 * mass_kg);
+  EXPECT_NE(facts["lattice_mass_kg"], facts["mass_kg"]);
+  auto session = Session::make(document, "model.json", DeviceSpecification(), InstructionSet::baseline);
+  ASSERT_TRUE(session.ok()) << session.error().message;
+  SessionFacts shown;
+  write_facts(session.value(), shown);
+  Snapshot snapshot;
+  write_snapshot(session.value(), snapshot);
+  EXPECT_NEAR(make_panel_model(shown, snapshot, {}).mass_kg, mass_kg, 1e-9 * mass_kg);
+  Material heavy = document.scene.bodies[0].material;
+  heavy.density_kg_per_m3 *= 2.0;
+  ASSERT_TRUE(apply_request(session.value(), Request(Command(SetMaterial{heavy}))).ok());
+  write_facts(session.value(), shown);
+  EXPECT_NEAR(shown.mass_kg, 2.0 * mass_kg, 1e-9 * mass_kg);
+}
+
+// Neither drives the terminal nor reorders its line, and JSON holds the same name.
+TEST(Info, EscapesControlsInNames) {
+  const Workplace place;
+  Document document = read_document(place.path("model.json")).value();
+  const std::string name = "\x1b[31mred\xc2\x9b\xe2\x80\xae\xe2\x81\xa6\xe2\x80\x8f\x7f \xc3\xa9";
+  const std::string shown = "\\u001b[31mred\\u009b\\u202e\\u2066\\u200f\\u007f \xc3\xa9";
+  document.name = document.scene.bodies[0].name = document.scene.bodies[0].material.name = name;
+  document.scene.bodies[0].supports = {{{{0.0, 0.2}}, {}}};
+  place.write("named.json", json_to_page(document_to_json(document)));
+  for (const char* command : {"info", "check", "rest"}) {
+    const Outcome lines = run({command, place.text("named.json")});
+    EXPECT_NE(lines.out.find(shown), std::string::npos) << command << lines.out << lines.err;
+    const Outcome json = run({command, place.text("named.json"), "--json"});
+    EXPECT_NE(json.out.find(shown), std::string::npos) << command;
+    for (const std::string& text : {lines.out, lines.err, json.out}) {
+      for (const char* raw : {"\x1b", "\xc2\x9b", "\xe2\x80\xae", "\xe2\x81\xa6", "\xe2\x80\x8f", "\x7f"}) {
+        EXPECT_EQ(text.find(raw), std::string::npos) << command;
+      }
+    }
+    EXPECT_EQ(json_of(json.out)["bodies"][0]["name"], name) << command;
+  }
+}
+
+TEST(Info, EscapesWhatIsNotText) {
+  EXPECT_EQ(escaped("a\x9b"
+                    "b\xc3"),
+            "a\\u009bb\\u00c3");
+  EXPECT_EQ(escaped("gr\xc3\xb6\xc3\x9f\x65\xf0\x9f\x99\x82"), "gr\xc3\xb6\xc3\x9f\x65\xf0\x9f\x99\x82");
+  EXPECT_EQ(without_controls("\n\xe2\x80\xa8"), "??");
 }
 
 // Every body is listed with the domain of its parameters, which `change` and `--bodies` need.

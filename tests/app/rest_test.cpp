@@ -76,6 +76,12 @@ TEST(Rest, SavesTheBentShapeWithoutItsLoads) {
   EXPECT_TRUE(now.loads.empty());
   ASSERT_EQ(now.supports.size(), 2u);
   EXPECT_FALSE(now.supports[1].motion);
+  const ControlNet& net = now.surface.net;
+  for (const int column : {0, net.columns - 1}) {
+    for (int i = 1; i < net.rows; ++i) {
+      EXPECT_EQ(net.point(i, column), net.point(0, column)) << "poles stay exactly together";
+    }
+  }
   const auto end_of = [](const Body& of) {
     return evaluate(of.surface, 0.0, of.surface.v.domain_end()).position_m;
   };

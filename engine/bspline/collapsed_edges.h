@@ -1,0 +1,27 @@
+// Edges of a surface that are a single point, such as poles.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "engine/bspline/surface.h"
+
+namespace spoonbill {
+
+// Largest extent of an edge that counts as a point, as a fraction of the control net's size. Single precision
+// and other programs leave the points of a pole that far apart.
+inline constexpr double collapsed_edge_fraction = 1e-6;
+
+// Control points that belong to one edge: `count` of them from index `first` on, `stride` apart.
+struct NetEdge {
+  std::size_t first = 0, stride = 1, count = 0;
+};
+
+// Returns the edges of a direction's clamped ends whose control points are a single point up to the fraction.
+std::vector<NetEdge> find_collapsed_edges(const Surface& surface);
+
+// Moves the control points of each collapsed edge to their mean, unless they already are exactly together.
+// Returns whether a point moved.
+bool join_collapsed_edges(Surface& surface);
+
+}  // namespace spoonbill
