@@ -111,7 +111,14 @@ Result<RecordingWriter> RecordingWriter::create(const std::filesystem::path& fil
 RecordingWriter::RecordingWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
 RecordingWriter::RecordingWriter(RecordingWriter&&) noexcept = default;
 RecordingWriter& RecordingWriter::operator=(RecordingWriter&&) noexcept = default;
-RecordingWriter::~RecordingWriter() = default;
+
+// A recording that is stopped holds every tick up to there.
+RecordingWriter::~RecordingWriter() {
+  if (state_ == nullptr) return;
+  const std::lock_guard lock(state_->mutex);
+  if (state_->failure.ok() && !state_->finished) [[maybe_unused]]
+    const Status flushed = state_->flush_motion();
+}
 
 const std::string& RecordingWriter::notice() const {
   return state_->notice;
