@@ -5,15 +5,15 @@
 
 #include "engine/base/text.h"
 
+#include "app/stop_signals.h"
+
 namespace spoonbill {
 
 std::string one_line(const std::string& text) {
   return without_controls(std::string_view(text).substr(0, text.find('\n')));
 }
 
-InterruptWatch::InterruptWatch() {
-  sigemptyset(&watched_);
-  sigaddset(&watched_, SIGINT);
+InterruptWatch::InterruptWatch() : watched_(stop_signals()) {
   pthread_sigmask(SIG_BLOCK, &watched_, &before_);
 }
 
@@ -22,9 +22,13 @@ InterruptWatch::~InterruptWatch() {
 }
 
 bool InterruptWatch::requested() const {
+  if (has_stop_signal()) return true;
   sigset_t pending;
   sigpending(&pending);
-  return sigismember(&pending, SIGINT) == 1;
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    if (sigismember(&pending, number) == 1 && sigismember(&watched_, number) == 1) return true;
+  }
+  return false;
 }
 
 void InterruptWatch::answer() {

@@ -25,8 +25,9 @@ struct Console {
 // whose content could otherwise drive the terminal.
 std::string one_line(const std::string& text);
 
-// Blocks SIGINT while it exists, so that Ctrl+C waits until the work reaches a point where it can stop.
-// Create it before other threads start: they inherit the signal mask. SIGTERM still ends the process at once.
+// Blocks the signals that stop a command (Ctrl+C, TERM and HUP) while it exists, so that they wait until the
+// work reaches a point where it can stop. In the program, work that does not reach one is ended by
+// watch_stop_signals(). Create it before other threads start: they inherit the signal mask.
 class InterruptWatch {
  public:
   InterruptWatch();
@@ -34,7 +35,7 @@ class InterruptWatch {
   InterruptWatch(const InterruptWatch&) = delete;
   InterruptWatch& operator=(const InterruptWatch&) = delete;
 
-  // Returns true once Ctrl+C has been pressed.
+  // Returns true once such a signal has arrived.
   bool requested() const;
 
   // Discards the pending signal, so that the process can still report that it stopped the work.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/program.h"
+#include "app/stop_signals.h"
 #include "app/version.h"
 #include "engine/base/assert.h"
 
@@ -15,6 +16,7 @@ int main(int argc, char** argv) {
   // process.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+  spoonbill::watch_stop_signals();
   // A failed assertion abandons the job in progress (a tick, a save, this command), not the process.
   spoonbill::set_assertion_handler(spoonbill::throw_failed_assertion);
   try {

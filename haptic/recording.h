@@ -10,6 +10,9 @@
 //    "buttons":[...]}                                                               motion (on one line)
 //   {"end":true,"ticks":4300,"state_hash":"fedcba9876543210"}                       last line
 //
+// The last line also has "missed":N if a live recording missed N periods of 1 ms: the performance then took
+// that much longer than its ticks, in which the replay has no part.
+//
 // Version 1. Lines are in the order of their ticks. Within a tick the order is: state hash, commands, motion.
 // The state hash is that of the simulation after ticks 0 to tick - 1, before any command of this tick. A
 // motion line covers `ticks` readings from `tick` on. It ends at the next multiple of 100, or earlier before
@@ -33,6 +36,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/file.h"
 #include "engine/base/result.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/json.h"
@@ -71,6 +75,7 @@ struct Recording {
   std::vector<TimedCommand> commands;   // in order; commands at tick readings.size() follow the last tick
   std::vector<Checkpoint> checkpoints;
   std::optional<Checkpoint> end;  // empty if the recording is truncated
+  std::uint64_t missed = 0;       // periods of 1 ms without a tick while it was recorded live
   std::string notice;             // one line for the user; empty if the recording is complete
 };
 
@@ -95,9 +100,17 @@ Result<Recording> read_recording(std::istream& in, const std::string& source);
 //   writer.commit();
 class RecordingWriter {
  public:
-  // Creates the file and writes the header. If the file exists, the recording grows as FILE.part, which can
-  // be replayed too. Errors: a path that cannot be written, a document that could not be read back.
-  static Result<RecordingWriter> create(const std::filesystem::path& file, const RecordingHeader& header);
+  // Creates the file and writes the header. The recording grows as FILE.part, which can be replayed too, and
+  // becomes FILE at commit(). Errors: a path that cannot be written, another program that records to it
+  // (ErrorCode::unavailable), a document that could not be read back.
+  static Result<RecordingWriter> create(const std::filesystem::path& file, const RecordingHeader& header,
+                                        const OutputOptions& options = {});
+
+  // One line for the user about a FILE.part that a crash left and that has another name now; mostly empty.
+  const std::string& notice() const;
+
+  // The name under which the recording grows.
+  const std::filesystem::path& written_file() const;
 
   RecordingWriter(RecordingWriter&&) noexcept;
   RecordingWriter& operator=(RecordingWriter&&) noexcept;
@@ -116,8 +129,8 @@ class RecordingWriter {
 
   Status reading(const DeviceReading& reading);
 
-  // Writes the last line and waits until the file is on the disk.
-  Status finish(std::uint64_t state_hash);
+  // Writes the last line and waits until the file is on the disk. `missed` as in Recording.
+  Status finish(std::uint64_t state_hash, std::uint64_t missed = 0);
 
   // Closes the recording and replaces an older file of its name. Must be called after finish().
   Status commit();

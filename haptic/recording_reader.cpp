@@ -144,6 +144,8 @@ class RecordingBuilder {
                                  std::to_string(next_tick()));
     }
     recording_.end = Checkpoint{ticks, read_hash(reader)};
+    constexpr std::uint64_t missed_limit = std::uint64_t{1} << 40;
+    if (reader.has("missed")) recording_.missed = reader.unsigned_integer("missed", missed_limit);
   }
 
   void add_checkpoint(FieldReader& reader) {
@@ -201,7 +203,7 @@ Result<Recording> read_recording(std::istream& in, const std::string& source) {
   auto header = read_header(*first.value(), source);
   if (!header.ok()) return header.error();
 
-  Recording recording{std::move(header).value(), {}, {}, {}, {}, {}};
+  Recording recording{std::move(header).value(), {}, {}, {}, {}, 0, {}};
   RecordingBuilder builder(recording, source);
   bool partial_line = false;
   for (;;) {

@@ -1,3 +1,5 @@
+#include <chrono>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,6 +12,8 @@
 namespace spoonbill {
 
 struct RecordingWriter::State {
+  State(OutputFile file, std::string named) : out(std::move(file)), name(std::move(named)) {}
+
   OutputFile out;
   std::string name;
   std::uint64_t ticks = 0;             // readings so far
@@ -19,6 +23,9 @@ struct RecordingWriter::State {
   std::optional<std::uint64_t> command_tick;
   Status failure;  // the first error, which persists
   bool finished = false;
+  std::string notice;
+  std::timed_mutex mutex;     // held by every member, so that a signal's thread can write what is pending
+  UnfinishedFile unfinished;  // writes the pending readings when a signal ends the process
 
   Status fail(ErrorCode code, const std::string& message) {
     failure = Error{code, name + ": " + message};
@@ -36,6 +43,16 @@ struct RecordingWriter::State {
     before = pending.back();
     pending.clear();
     return status;
+  }
+
+  // Writes the pending readings and returns the line that says where they are. Called by the thread that ends
+  // the process; the owner may be in the midst of a write, which is given a moment.
+  std::string leave() {
+    const std::unique_lock lock(mutex, std::chrono::milliseconds(200));
+    if (lock.owns_lock() && failure.ok() && !finished) [[maybe_unused]]
+      const Status flushed = flush_motion();
+    return "the recording of " + std::to_string(ticks - pending.size()) + " ticks is " +
+           out.written_file().string() + ", which can be replayed";
   }
 
   // Returns an error if the recording has failed or is finished. Called first by every member.
@@ -75,21 +92,41 @@ Status check_line(const Json& line, const std::string& source) {
 }  // namespace
 
 Result<RecordingWriter> RecordingWriter::create(const std::filesystem::path& file,
-                                                const RecordingHeader& header) {
+                                                const RecordingHeader& header, const OutputOptions& options) {
   const Json header_json = header_to_json(header);
   if (Status status = check_header(header_json, file.string()); !status.ok()) return status.error();
-  auto out = OutputFile::create_growing(file);
+  auto out = OutputFile::create_growing(file, options);
   if (!out.ok()) return out.error();
-  auto state =
-      std::make_unique<State>(State{std::move(out).value(), file.string(), 0, {}, {}, {}, {}, {}, false});
+  auto state = std::make_unique<State>(std::move(out).value(), file.string());
+  const std::filesystem::path& aside = state->out.kept_aside();
+  if (!aside.empty()) {
+    state->notice = state->out.written_file().string() + ": was left by an earlier recording; it is now " +
+                    aside.string();
+  }
   if (Status status = state->write_line(header_json); !status.ok()) return status.error();
+  state->unfinished = UnfinishedFile([raw = state.get()] { return raw->leave(); });
   return RecordingWriter(std::move(state));
 }
 
 RecordingWriter::RecordingWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
 RecordingWriter::RecordingWriter(RecordingWriter&&) noexcept = default;
 RecordingWriter& RecordingWriter::operator=(RecordingWriter&&) noexcept = default;
-RecordingWriter::~RecordingWriter() = default;
+
+// A recording that is stopped holds every tick up to there.
+RecordingWriter::~RecordingWriter() {
+  if (state_ == nullptr) return;
+  const std::lock_guard lock(state_->mutex);
+  if (state_->failure.ok() && !state_->finished) [[maybe_unused]]
+    const Status flushed = state_->flush_motion();
+}
+
+const std::string& RecordingWriter::notice() const {
+  return state_->notice;
+}
+
+const std::filesystem::path& RecordingWriter::written_file() const {
+  return state_->out.written_file();
+}
 
 std::uint64_t RecordingWriter::tick() const {
   return state_->ticks;
@@ -102,6 +139,7 @@ bool RecordingWriter::checkpoint_due() const {
 
 Status RecordingWriter::checkpoint(std::uint64_t state_hash) {
   State& state = *state_;
+  const std::lock_guard lock(state.mutex);
   if (!state.ready().ok()) return state.failure;
   if (!checkpoint_due())
     return state.fail(ErrorCode::internal, "no state hash is due at tick " + std::to_string(state.ticks));
@@ -112,6 +150,7 @@ Status RecordingWriter::checkpoint(std::uint64_t state_hash) {
 
 Status RecordingWriter::command(const Json& command) {
   State& state = *state_;
+  const std::lock_guard lock(state.mutex);
   if (!state.ready().ok()) return state.failure;
   const std::string source = state.name + ": tick " + std::to_string(state.ticks);
   if (Status status = check_command(command, source); !status.ok()) return state.failure = status;
@@ -124,6 +163,7 @@ Status RecordingWriter::command(const Json& command) {
 
 Status RecordingWriter::reading(const DeviceReading& reading) {
   State& state = *state_;
+  const std::lock_guard lock(state.mutex);
   if (!state.ready().ok()) return state.failure;
   if (state.ticks >= recording_tick_limit) {
     return state.fail(ErrorCode::too_many,
@@ -138,11 +178,13 @@ Status RecordingWriter::reading(const DeviceReading& reading) {
   return state.ticks % recording_line_ticks == 0 ? state.flush_motion() : state.failure;
 }
 
-Status RecordingWriter::finish(std::uint64_t state_hash) {
+Status RecordingWriter::finish(std::uint64_t state_hash, std::uint64_t missed) {
   State& state = *state_;
+  const std::lock_guard lock(state.mutex);
   if (!state.ready().ok()) return state.failure;
   if (!state.flush_motion().ok()) return state.failure;
-  const Json line{{"end", true}, {"ticks", state.ticks}, {"state_hash", hash_text(state_hash)}};
+  Json line{{"end", true}, {"ticks", state.ticks}, {"state_hash", hash_text(state_hash)}};
+  if (missed > 0) line["missed"] = missed;
   if (!state.write_line(line).ok()) return state.failure;
   state.finished = true;
   return state.failure = state.out.flush();
@@ -150,8 +192,11 @@ Status RecordingWriter::finish(std::uint64_t state_hash) {
 
 Status RecordingWriter::commit() {
   State& state = *state_;
+  const std::lock_guard lock(state.mutex);
   if (!state.failure.ok()) return state.failure;
-  return state.failure = state.out.commit();
+  state.failure = state.out.commit();
+  state.unfinished = {};
+  return state.failure;
 }
 
 }  // namespace spoonbill

@@ -119,15 +119,15 @@ Result<std::span<const std::uint8_t>> PngEncoder::encode(const Image& image) {
 }
 
 Status write_png(const std::filesystem::path& path, const Image& image, PngEncoder& encoder,
-                 Durability durability) {
+                 Durability durability, const OutputOptions& options) {
   const auto bytes = encoder.encode(image);
   if (!bytes) return bytes.error().in(path.string());
-  return write_file(path, {reinterpret_cast<const char*>(bytes->data()), bytes->size()}, durability);
+  return write_file(path, {reinterpret_cast<const char*>(bytes->data()), bytes->size()}, durability, options);
 }
 
-Status write_png(const std::filesystem::path& path, const Image& image) {
+Status write_png(const std::filesystem::path& path, const Image& image, const OutputOptions& options) {
   PngEncoder encoder;
-  return write_png(path, image, encoder, Durability::now);
+  return write_png(path, image, encoder, Durability::now, options);
 }
 
 void flip_rows(Image& image) {

@@ -61,9 +61,9 @@ class PngEncoder {
 
 // Encodes a picture and writes it with write_file(). Errors name the path.
 Status write_png(const std::filesystem::path& path, const Image& image, PngEncoder& encoder,
-                 Durability durability);
+                 Durability durability, const OutputOptions& options = {});
 
 // Writes a single picture, which is on the disk when the function returns.
-Status write_png(const std::filesystem::path& path, const Image& image);
+Status write_png(const std::filesystem::path& path, const Image& image, const OutputOptions& options = {});
 
 }  // namespace spoonbill

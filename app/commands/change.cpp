@@ -21,6 +21,7 @@ namespace {
 constexpr Range<double> change_tolerance_range_m{1e-9, 0.1};
 
 struct ChangeOptions {
+  OutputOptions how;
   std::filesystem::path model, out;
   ChangeRequest change;
   std::optional<int> continuity;  // if the option is given
@@ -71,6 +72,7 @@ void report_change(const ChangeOptions& options, const std::vector<Body>& bodies
 }
 
 Status change(const ChangeOptions& options, Console& console) {
+  if (Status checked = check_output(options.out, options.how); !checked) return checked;
   ChangeRequest request = options.change;
   if (options.continuity) request.continuity = *options.continuity;
   auto document = read_document_file(options.model);
@@ -97,7 +99,7 @@ Status change(const ChangeOptions& options, Console& console) {
   replace_body(bodies, index, std::move(result).value(), notes);
   // Ctrl+C waits until the file is complete.
   const InterruptWatch until_written;
-  if (Status written = write_document(document.value(), options.out); !written) return written;
+  if (Status written = write_document(document.value(), options.out, options.how); !written) return written;
   report_change(options, bodies, deviation_m, notes, console);
   return {};
 }
@@ -124,6 +126,7 @@ CommandEntry add_change(OptionSet root) {
           },
           "Change and its arguments, as listed below")
       .require();
+  add_force_option(parser, options->how);
   add_document_output(parser, options->out, "Document to write (.json)").require();
   parser.add_option("--body", options->body, "Number of the body, from 1; default: 1")
       .limit(body_count_range)

@@ -24,6 +24,14 @@ CommandOption add_document_output(OptionSet parser, std::filesystem::path& out, 
   return parser.add_parsed("--out", parse, help).show_as("FILE");
 }
 
+void add_force_option(OptionSet parser, OutputOptions& how) {
+  parser.add_flag("--force", how.replaces_read_only, "Replace the output even if it is read-only");
+}
+
+Status check_output(const std::filesystem::path& out, const OutputOptions& how) {
+  return how.replaces_read_only ? Status() : check_replaceable(out);
+}
+
 void add_instruction_set_option(OptionSet parser, InstructionSet& set) {
   std::string names;
   for (const InstructionSet available : available_instruction_sets()) {

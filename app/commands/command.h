@@ -8,6 +8,7 @@
 
 #include "app/commands/option_set.h"
 #include "app/console.h"
+#include "engine/base/file.h"
 #include "engine/base/processor.h"
 #include "engine/base/result.h"
 
@@ -45,7 +46,14 @@ void add_json_option(OptionSet parser, bool& json);
 CommandOption add_document_output(OptionSet parser, std::filesystem::path& out,
                                   const std::string& help = "Document to write (.json)");
 
-// --instruction-set: one of the sets that this processor supports; any other set is wrong use.
+// --force: also replaces a file that is read-only.
+void add_force_option(OptionSet parser, OutputOptions& how);
+
+// Returns an error if the output is read-only and may not be replaced. Called before long work; the writing
+// checks it again.
+Status check_output(const std::filesystem::path& out, const OutputOptions& how);
+
+// --instruction-set: one of the sets that this processor supports; any other is wrong use.
 void add_instruction_set_option(OptionSet parser, InstructionSet& set);
 
 }  // namespace spoonbill

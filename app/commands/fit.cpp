@@ -27,6 +27,7 @@ constexpr Range<double> fit_tolerance_range_m{1e-6, 0.1};
 constexpr double least_scale_m = 1e-6;
 
 struct FitOptions {
+  OutputOptions how;
   std::filesystem::path scan, out, errors;
   Extent control{24, 24};
   std::optional<LengthUnit> unit;
@@ -61,6 +62,8 @@ std::string document_name(const std::filesystem::path& scan) {
 }
 
 Status fit(const FitOptions& options, Console& console) {
+  if (Status checked = check_output(options.out, options.how); !checked) return checked;
+  if (Status checked = check_output(options.errors, options.how); !checked) return checked;
   std::error_code ignored;
   if (std::filesystem::equivalent(options.scan, options.errors, ignored)) {
     return Error{ErrorCode::inconsistent,
@@ -78,7 +81,7 @@ Status fit(const FitOptions& options, Console& console) {
   if (!document) return document.error().in(options.scan.string());
   // Ctrl+C waits until the files are complete.
   const InterruptWatch until_written;
-  if (Status written = write_document(document->document, options.out); !written) return written;
+  if (Status written = write_document(document->document, options.out, options.how); !written) return written;
   FactSheet facts;
   add_left_out_facts(facts, file.value(), fitted.value());
   facts.add("File", options.out.string(), "file", options.out.string());
@@ -88,7 +91,8 @@ Status fit(const FitOptions& options, Console& console) {
   if (!options.errors.empty()) {
     const double full =
         std::max(least_scale_m, tolerance_m > 0.0 ? tolerance_m : deviation_of_all(fitted.value()).p95_m);
-    if (Status written = write_error_cloud(fitted.value(), full, options.errors); !written) return written;
+    if (Status written = write_error_cloud(fitted.value(), full, options.errors, options.how); !written)
+      return written;
     facts.add("Colours", options.errors.string() + ", from 0 to " + short_length_text(full), "errors_file",
               options.errors.string());
     facts.add("", "", "errors_full_m", full);
@@ -126,6 +130,7 @@ void add_options(OptionSet parser, const std::shared_ptr<FitOptions>& options) {
       .add_option("SCAN", options->scan,
                   "Point cloud (.ply, .pcd, .xyz, .txt, .csv, .asc, .pts, .obj) or mesh (.ply, .obj, .stl)")
       .require();
+  add_force_option(parser, options->how);
   add_document_output(parser, options->out).require();
   add_parsed_option(
       parser, "--control", "UxV",

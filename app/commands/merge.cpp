@@ -39,6 +39,7 @@ constexpr double untrimming_fraction = 0.25;
 constexpr double tight_fillet_fraction = 0.8;
 
 struct MergeOptions {
+  OutputOptions how;
   std::vector<std::filesystem::path> models;
   std::filesystem::path out;
   std::string name;
@@ -363,6 +364,7 @@ Result<MergeOutcome> merge_parts(const MergeParts& parts, const MergeOptions& op
 }
 
 Status merge_models(const MergeOptions& options, Console& console) {
+  if (Status checked = check_output(options.out, options.how); !checked) return checked;
   const int models = static_cast<int>(options.models.size());
   if (Status few = check_range("the number of models", models, model_count_range); !few) return few;
   auto parts = read_parts(options);
@@ -377,7 +379,7 @@ Status merge_models(const MergeOptions& options, Console& console) {
   add_merge_notes(options, outcome.value(), parts->notes);
   // Ctrl+C waits until the file is complete.
   const InterruptWatch until_written;
-  if (Status written = write_document(document, options.out); !written) return written;
+  if (Status written = write_document(document, options.out, options.how); !written) return written;
   report_merge(options, parts.value(), outcome.value(), console);
   return {};
 }
@@ -435,6 +437,7 @@ CommandEntry add_merge(OptionSet root) {
       "Example: spoonbill merge assets/models/spoon-handle.json assets/models/spoon-bowl.json --out "
       "spoon.json");
   parser.add_option("MODEL", options->models, "Documents (.json), 1 to 64").require();
+  add_force_option(parser, options->how);
   add_document_output(parser, options->out).require();
   parser.add_option("--name", options->name, "Name of the result; default: the name of the --out file");
   add_joint_options(parser, options);

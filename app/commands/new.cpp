@@ -51,6 +51,7 @@ struct NewKind {
 };
 
 struct NewOptions {
+  OutputOptions how;
   std::optional<Extent> control;
   std::optional<double> tolerance_m;
   std::string material = "modelling-clay", name;
@@ -376,6 +377,7 @@ Result<FittedShape> fit_new_shape(const NewOptions& options, const NewShape& mad
 }
 
 Status make_new(const NewOptions& options, const NewKind& kind, Console& console) {
+  if (Status checked = check_output(options.out, options.how); !checked) return checked;
   const auto material = shipped_material(options.material);
   if (!material) return material.error();
   auto made = kind.make();
@@ -388,7 +390,7 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   const std::string name = options.name.empty() ? kind.parser.name() : options.name;
   const Document document =
       starting_document(name, fitted->surface, material.value(), made->shell_thickness_m);
-  if (Status written = write_document(document, options.out); !written) return written;
+  if (Status written = write_document(document, options.out, options.how); !written) return written;
 
   FactSheet facts;
   facts.add("File", options.out.string(), "file", options.out.string());
@@ -422,6 +424,7 @@ void add_shape_options(OptionSet parser, NewOptions& options) {
   parser.add_option("--material", options.material,
                     "Bundled material or a part of its name; default: modelling-clay");
   parser.add_option("--name", options.name, "Name of the body and the document; default: the kind of shape");
+  add_force_option(parser, options.how);
   add_document_output(parser, options.out).require();
   add_json_option(parser, options.json);
 }

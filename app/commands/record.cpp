@@ -23,6 +23,7 @@ namespace spoonbill {
 namespace {
 
 struct RecordOptions {
+  OutputOptions how;
   std::filesystem::path source;
   std::filesystem::path out;
   InstructionSet instruction_set = best_instruction_set();
@@ -31,14 +32,15 @@ struct RecordOptions {
   bool json = false;
 };
 
-constexpr std::uint64_t ticks_between_checks = 100;  // of progress and Ctrl+C
+constexpr std::uint64_t ticks_between_checks = 10;  // of progress and Ctrl+C
 
-Error stopped_recording(std::uint64_t ticks) {
-  return Error{ErrorCode::cancelled,
-               "stopped after " + std::to_string(ticks) + " ticks; the recording replays up to there"};
+Error stopped_recording(std::uint64_t ticks, const std::filesystem::path& file) {
+  return Error{ErrorCode::cancelled, "stopped after " + std::to_string(ticks) + " ticks; the recording is " +
+                                         file.string() + ", which can be replayed up to there"};
 }
 
-Status run_recording(Lockstep& lockstep, Session& session, Console& console) {
+Status run_recording(Lockstep& lockstep, Session& session, const std::filesystem::path& file,
+                     Console& console) {
   InterruptWatch interrupt;
   ProgressBar progress(console, "Recording", false);
   while (lockstep.tick() < lockstep.tick_count()) {
@@ -47,7 +49,7 @@ Status run_recording(Lockstep& lockstep, Session& session, Console& console) {
     progress.show(lockstep.tick(), lockstep.tick_count());
     if (!interrupt.requested()) continue;
     interrupt.answer();
-    return stopped_recording(lockstep.tick());
+    return stopped_recording(lockstep.tick(), file);
   }
   return lockstep.finish();
 }
@@ -61,12 +63,15 @@ Status record_input(const RecordOptions& options, const RecordingHeader& header,
     return Session::make(header.document, model, header.device, options.instruction_set, maps.watch());
   }();
   if (!session) return session.error();
-  for (const std::string& note : session->simulation.remarks()) console.err << one_line(note) << '\n';
-  auto writer = RecordingWriter::create(options.out, header);
+  for (const std::string& note : session->simulation.remarks()) console.err << note << '\n';
+  auto writer = RecordingWriter::create(options.out, header, options.how);
   if (!writer) return writer.error();
+  if (!writer->notice().empty()) console.err << "spoonbill: " << writer->notice() << '\n';
   const std::size_t command_count = input.commands.size();
+  session->keeps_documents = false;  // the replay writes them
   Lockstep lockstep(session.value(), std::move(input), &writer.value());
-  if (Status ran = run_recording(lockstep, session.value(), console); !ran) return ran;
+  if (Status ran = run_recording(lockstep, session.value(), writer->written_file(), console); !ran)
+    return ran;
   if (Status committed = writer->commit(); !committed) return committed;
 
   FactSheet facts;
@@ -87,7 +92,8 @@ std::string microseconds_text(double seconds) {
 }
 
 void add_loop_facts(const LoopFigures& loop, FactSheet& facts) {
-  facts.add("Ticks", std::to_string(loop.ticks), "ticks", loop.ticks);
+  facts.add("Ticks", std::to_string(loop.ticks) + ", also before and after the recording", "ticks",
+            loop.ticks);
   facts.add("Missed", std::to_string(loop.missed), "missed", loop.missed);
   facts.add("", "", "late", loop.late);
   facts.add("Lateness",
@@ -110,16 +116,22 @@ Status record_live(const RecordOptions& options, const Script& script, const Doc
   settings.live.instruction_set = options.instruction_set;
   settings.draw = options.draw;
   settings.recording = options.out;
+  settings.output = options.how;
   InterruptWatch interrupt;
   const auto report = perform(script, document, script.model_file.string(), settings,
                               [&interrupt] { return interrupt.requested(); });
   const bool stopped = interrupt.requested();
   if (stopped) interrupt.answer();
   if (!report) return report.error();
-  for (const Notice& notice : report->notices) console.err << "spoonbill: " << one_line(notice.text) << '\n';
-  if (stopped) return stopped_recording(report->loop.ticks);
+  for (const Notice& notice : report->notices) console.err << "spoonbill: " << notice.text << '\n';
+  if (stopped) return stopped_recording(report->loop.ticks, options.out.string() + ".part");
   FactSheet facts;
   facts.add("Recording", options.out.string(), "out", options.out.string());
+  facts.add("Recorded",
+            std::to_string(report->recorded.ticks) + " ticks, " + std::to_string(report->recorded.missed) +
+                " missed meanwhile",
+            "recorded_ticks", report->recorded.ticks);
+  facts.add("", "", "recorded_missed", report->recorded.missed);
   add_loop_facts(report->loop, facts);
   if (options.draw) facts.add("Frames", std::to_string(report->frames), "frames", report->frames);
   facts.print(console.out, options.json);
@@ -158,11 +170,13 @@ Status record_again(const RecordOptions& options, Console& console) {
   input.device = &device;
   input.tick_count = recording->readings.size();
   input.commands = recording->commands;
+  input.missed = recording->missed;
   input.source = options.source.string();
   return record_input(options, recording->header, options.source.string(), std::move(input), console);
 }
 
 Status record_source(const RecordOptions& options, Console& console) {
+  if (Status checked = check_output(options.out, options.how); !checked) return checked;
   if (Status native = check_native_name(options.source); !native) return native;
   const auto format = find_native_format(options.source);
   if (!format) return format.error();
@@ -206,6 +220,7 @@ CommandEntry add_record(OptionSet root) {
       "Example: spoonbill record assets/recordings/spoon-handle-bend.script.json --out bend.recording.jsonl");
   parser.add_option("SOURCE", options->source, "Script (.json) or recording").require();
   parser.add_option("--out", options->out, "Recording to write").require();
+  add_force_option(parser, options->how);
   CommandOption live = parser.add_flag(
       "--live", options->live, "Perform the script in real time on the 1 kHz thread, and report its timing");
   parser.add_flag("--draw", options->draw, "Also draw 60 frames per second into memory").need(live);

@@ -1,7 +1,10 @@
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "app/commands/command.h"
 #include "app/commands/option_set.h"
@@ -24,6 +27,7 @@ namespace {
 constexpr Range<int> picture_size_range{64, 7680};
 
 struct ReplayOptions {
+  OutputOptions how;
   std::filesystem::path recording;
   std::filesystem::path out;
   Extent size{1280, 720};
@@ -51,7 +55,8 @@ Error stopped_replay(const Lockstep& lockstep, InterruptWatch& interrupt) {
 }
 
 Status run_without_pictures(const Replay& replay) {
-  constexpr std::uint64_t ticks_between_checks = 100;  // of progress and Ctrl+C
+  constexpr std::uint64_t ticks_between_checks = 10;  // of progress and Ctrl+C
+  replay.session.keeps_documents = false;
   InterruptWatch interrupt;
   ProgressBar progress(replay.console, "Replaying", replay.options.progress);
   Lockstep& lockstep = replay.lockstep;
@@ -72,6 +77,7 @@ PictureRequest make_picture_request(const ReplayOptions& options, const Lockstep
   request.frame_count = frame_count(lockstep.tick_count());
   request.every = options.every;
   if (!options.no_frames) request.folder = options.out;
+  request.replaces_read_only = options.how.replaces_read_only;
   if (options.video.empty()) return request;
   if (VideoEncoder::available()) {
     request.video = options.video;
@@ -87,7 +93,6 @@ PaintingJob make_painting_job(std::uint64_t frame, Session& session, const Box& 
   PaintingJob job;
   job.frame = frame;
   write_snapshot(session, job.snapshot);
-  session.flags = tick_flag_none;
   job.view = frame_view(session.view, framed, request.width_px, request.height_px);
   SessionFacts facts;
   write_facts(session, facts);
@@ -103,7 +108,25 @@ Status write_oldest_frame(PaintingCrew& crew, const PictureRequest& request, Rep
     if (Status written = write_marked_picture(painted->picture, name, *request.folder); !written)
       return written;
   }
+  if (!painted->is_frame) return {};
   return pictures.add(painted->frame, painted->time_s, std::move(painted->picture));
+}
+
+// Runs to the tick. Writes the documents saved on the way at once, which bounds the memory for them, and adds
+// the names of the screenshots.
+Status run_and_save(const Replay& replay, const PictureRequest& request, std::uint64_t tick,
+                    const InterruptWatch& interrupt, std::vector<std::string>& names) {
+  while (!interrupt.requested()) {
+    const std::uint64_t next = std::min(replay.lockstep.tick() + 1, tick);
+    if (Status ran = replay.lockstep.run_to(next); !ran) return ran;
+    auto more = consume_marks(replay.session, request.folder);
+    if (!more) return more.error();
+    for (std::string& name : more.value()) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
+    }
+    if (replay.lockstep.tick() >= tick) return {};
+  }
+  return {};
 }
 
 Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPictures& pictures,
@@ -113,18 +136,31 @@ Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPi
   const Box framed = framed_box(start);
   PaintingCrew crew(request.width_px, request.height_px);
   ProgressBar progress(replay.console, "Drawing", replay.options.progress);
-  for (std::uint64_t frame = 0; frame < request.frame_count && !interrupt.requested();
-       frame += request.every) {
-    if (Status ran = replay.lockstep.run_to(frame_tick(frame)); !ran) return ran;
-    auto names = consume_marks(replay.session, request.folder);
-    if (!names) return names.error();
+  std::vector<std::string> names;
+  const auto paint = [&](std::uint64_t frame, bool is_frame) -> Status {
     PaintingJob job = make_painting_job(frame, replay.session, framed, request);
-    job.extra_names = std::move(names).value();
+    job.extra_names = std::exchange(names, {});
+    job.is_frame = is_frame;
+    // A picture between frames must not take a flag from the next frame.
+    if (is_frame) replay.session.flags = tick_flag_none;
     if (crew.is_full()) {
       if (Status written = write_oldest_frame(crew, request, pictures); !written) return written;
     }
     crew.start(std::move(job));
+    return {};
+  };
+  for (std::uint64_t frame = 0; frame < request.frame_count && !interrupt.requested(); ++frame) {
+    if (Status ran = run_and_save(replay, request, frame_tick(frame), interrupt, names); !ran) return ran;
+    if (interrupt.requested()) break;  // in the midst of the ticks before the frame
+    const bool is_frame = frame % request.every == 0;
+    if (!is_frame && names.empty()) continue;
+    if (Status painted = paint(frame, is_frame); !painted) return painted;
     progress.show(frame + 1, request.frame_count);
+  }
+  if (Status ran = run_and_save(replay, request, replay.lockstep.tick_count(), interrupt, names); !ran)
+    return ran;
+  if (!names.empty() && !interrupt.requested()) {
+    if (Status painted = paint(request.frame_count, false); !painted) return painted;
   }
   while (crew.in_flight() > 0) {
     if (Status written = write_oldest_frame(crew, request, pictures); !written) return written;
@@ -143,7 +179,6 @@ Status run_with_pictures(const Replay& replay, FactSheet& facts) {
   if (Status drawn = draw_frames(replay, request, pictures.value(), interrupt); !drawn) return drawn;
   if (interrupt.requested()) return stopped_replay(replay.lockstep, interrupt);
   if (Status finished = replay.lockstep.finish(); !finished) return finished;
-  if (auto late = consume_marks(replay.session, request.folder); !late) return late.error();
   if (Status finished = pictures->finish(); !finished) return finished;
 
   facts.add("Frames", std::to_string(pictures->count()), "frames", pictures->count());
@@ -167,8 +202,9 @@ Status replay_recording(const ReplayOptions& options, const Recording& recording
   if (!session) return session.error();
   std::optional<RecordingWriter> writer;
   if (!options.rerecord.empty()) {
-    auto created = RecordingWriter::create(options.rerecord, recording.header);
+    auto created = RecordingWriter::create(options.rerecord, recording.header, options.how);
     if (!created) return created.error();
+    if (!created->notice().empty()) console.err << "spoonbill: " << created->notice() << '\n';
     writer.emplace(std::move(created).value());
   }
   PlaybackDevice device(recording.header.device, recording.readings);
@@ -179,11 +215,18 @@ Status replay_recording(const ReplayOptions& options, const Recording& recording
   input.commands = recording.commands;
   input.expected = recording.checkpoints;
   input.expected_end = recording.end;
+  input.missed = recording.missed;
   input.source = source;
   Lockstep lockstep(session.value(), std::move(input), writer ? &*writer : nullptr);
 
   FactSheet facts;
   facts.add("Ticks", std::to_string(recording.readings.size()), "ticks", recording.readings.size());
+  if (recording.missed > 0) {
+    facts.add("Missed", std::to_string(recording.missed) + " ticks while it was recorded live", "missed",
+              recording.missed);
+  } else {
+    facts.add("", "", "missed", recording.missed);
+  }
   if (Status ran = run_with_pictures({options, session.value(), lockstep, console}, facts); !ran) return ran;
   if (writer) {
     if (Status committed = writer->commit(); !committed) return committed;
@@ -197,6 +240,9 @@ Status replay_recording(const ReplayOptions& options, const Recording& recording
 }
 
 Status replay_file(const ReplayOptions& options, Console& console) {
+  for (const auto& out : {options.rerecord, options.video}) {
+    if (Status checked = check_output(out, options.how); !checked) return checked;
+  }
   const auto recording = read_recording(options.recording);
   if (!recording) return recording.error();
   std::error_code ignored;
@@ -253,6 +299,7 @@ CommandEntry add_replay(OptionSet root) {
       .add_option("--rerecord", options->rerecord,
                   "Recording of the replay to write, with the same bytes; default: none")
       .show_as("FILE");
+  add_force_option(parser, options->how);
   add_instruction_set_option(parser, options->instruction_set);
   parser.add_flag("--progress", options->progress, "Show progress even if the output is not a terminal");
   add_json_option(parser, options->json);

@@ -16,6 +16,7 @@ namespace spoonbill {
 namespace {
 
 struct RestOptions {
+  OutputOptions how;
   std::filesystem::path model, out;
   bool json = false;
 };
@@ -78,6 +79,7 @@ void remove_loads(Scene& scene) {
 }
 
 Status rest(const RestOptions& options, Console& console) {
+  if (Status checked = check_output(options.out, options.how); !checked) return checked;
   auto document = read_document_file(options.model);
   if (!document) return document.error();
   Scene& scene = document->scene;
@@ -102,7 +104,7 @@ Status rest(const RestOptions& options, Console& console) {
   if (!options.out.empty()) {
     for (std::size_t b = 0; b < bent.size(); ++b) scene.bodies[b].surface = std::move(bent[b]);
     remove_loads(scene);
-    if (Status written = write_document(document.value(), options.out); !written) return written;
+    if (Status written = write_document(document.value(), options.out, options.how); !written) return written;
   }
   facts.print(console.out, options.json);
   return {};
@@ -120,6 +122,7 @@ CommandEntry add_rest(OptionSet root) {
       "have no effect, and materials that flow or creep are treated as elastic.\n"
       "Example: spoonbill rest assets/models/loaded-handle.json");
   parser.add_option("MODEL", options->model, "Document (.json)").require();
+  add_force_option(parser, options->how);
   add_document_output(parser, options->out,
                       "Document to write (.json), with the bent bodies and without the loads; default: none");
   add_json_option(parser, options->json);

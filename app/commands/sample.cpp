@@ -22,6 +22,7 @@ struct SampleOptions {
   std::filesystem::path model;
   Extent grid{50, 50};
   std::filesystem::path out;
+  OutputOptions how;
 };
 
 // Returns the text as a CSV field, quoted if it contains a comma, a quote or a line break (RFC 4180).
@@ -82,6 +83,7 @@ Status sample_all(const std::vector<Body>& bodies, Extent counts, Write write) {
 }
 
 Status sample(const SampleOptions& options, Console& console) {
+  if (Status checked = check_output(options.out, options.how); !checked) return checked;
   const auto document = read_document_file(options.model);
   if (!document) return document.error();
   const std::vector<Body>& bodies = document->scene.bodies;
@@ -96,7 +98,7 @@ Status sample(const SampleOptions& options, Console& console) {
     return Error{ErrorCode::inconsistent, options.out.string() + ": is the model itself; choose another name",
                  "--out"};
   }
-  auto file = OutputFile::create(options.out);
+  auto file = OutputFile::create(options.out, options.how);
   if (!file) return file.error();
   InterruptWatch interrupt;
   const Status sampled = sample_all(bodies, options.grid, [&](const std::string& text) -> Status {
@@ -130,6 +132,7 @@ CommandEntry add_sample(OptionSet root) {
           "Points along u and v, each from 2 to 4096; default: 50x50")
       .show_as("UxV");
   parser.add_option("--out", options->out, "CSV file to write, or - for standard output").require();
+  add_force_option(parser, options->how);
   return {parser, [options](Console& console) { return sample(*options, console); }};
 }
 

@@ -710,7 +710,7 @@ void Editor::write_screenshot() {
   window_.read_pixels(picture);
   const std::filesystem::path file =
       find_free_file(parent_folder(document_.file()), document_stem(document_.file()), ".png");
-  if (Status written = write_png(file, picture); !written) {
+  if (Status written = write_png(file, picture, {NamedBy::program}); !written) {
     return messages_.add_problem(written.error().message);
   }
   messages_.add({Notice::Kind::information, "wrote " + file.filename().string()});

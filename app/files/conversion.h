@@ -24,6 +24,7 @@ struct ConversionRequest {
   std::optional<double> tolerance_m;  // of CAD geometry that is not a B-spline; default: 0.01 mm
   std::optional<StepSchema> schema;   // default: AP214
   std::vector<int> bodies;            // bodies to convert, numbered from 1; all if empty
+  bool replaces_read_only = false;    // an existing file `out`
   std::filesystem::path cad_program;  // see CadChild::program
 };
 

@@ -149,7 +149,7 @@ class PaintingCrew::Painter {
     auto painter = FramePainter::make(width_px_, height_px_, &interface_turn_);
     if (!painter) return fail(painter.error());
     while (auto job = next_job()) {
-      PaintedFrame frame{job->frame, job->snapshot.time_s(), {}, std::move(job->extra_names)};
+      PaintedFrame frame{job->frame, job->snapshot.time_s(), {}, std::move(job->extra_names), job->is_frame};
       const Status painted = painter->paint(job->snapshot, job->view, job->panel, frame.picture);
       if (!painted) return fail(painted.error());
       const std::lock_guard lock(mutex_);

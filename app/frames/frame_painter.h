@@ -65,6 +65,7 @@ struct PaintingJob {
   ViewSettings view;
   PanelModel panel;
   std::vector<std::string> extra_names;  // names of further files of this picture
+  bool is_frame = true;                  // false if it is only painted for those files
 };
 
 // A painted frame.
@@ -73,6 +74,7 @@ struct PaintedFrame {
   double time_s = 0.0;
   Image picture;
   std::vector<std::string> extra_names;
+  bool is_frame = true;
 };
 
 // Paints frames on several threads while the owner prepares the next ones. Frames are assigned to the

@@ -1,11 +1,13 @@
 #include "app/frames/replay_pictures.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -35,14 +37,15 @@ Result<std::vector<std::string>> consume_marks(Session& session,
       continue;
     }
     const std::filesystem::path file = *folder / ("saved-" + mark.mark.name + ".json");
-    if (Status written = write_document(*mark.document, file); !written) return written.error();
+    if (Status written = write_document(*mark.document, file, {NamedBy::program}); !written)
+      return written.error();
   }
   return pictures;
 }
 
 Status write_marked_picture(const Image& picture, const std::string& name,
                             const std::filesystem::path& folder) {
-  return write_png(folder / ("picture-" + name + ".png"), picture);
+  return write_png(folder / ("picture-" + name + ".png"), picture, {NamedBy::program});
 }
 
 namespace {
@@ -67,7 +70,7 @@ std::string frame_file_name(int number) {
   return name;
 }
 
-Status prepare_frame_folder(const std::filesystem::path& folder) {
+Status prepare_frame_folder(const std::filesystem::path& folder, bool replaces_read_only) {
   namespace fs = std::filesystem;
   std::error_code error;
   fs::create_directories(folder, error);
@@ -81,6 +84,11 @@ Status prepare_frame_folder(const std::filesystem::path& folder) {
   std::vector<fs::path> old;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     if (is_output_of_earlier_run(entry.path().filename().string())) old.push_back(entry.path());
+  }
+  for (const fs::path& file : old) {
+    // A link is removed itself, whatever its target allows.
+    if (replaces_read_only || fs::is_symlink(fs::symlink_status(file, error))) continue;
+    if (Status checked = check_replaceable(file); !checked) return checked;
   }
   for (const fs::path& file : old) {
     if (!error) fs::remove(file, error);
@@ -130,8 +138,8 @@ void FrameWriter::write_frames() {
       queue_.pop_front();
       changed_.notify_all();
     }
-    const Status written =
-        write_png(folder_ / frame_file_name(frame.first), frame.second, encoder, Durability::later);
+    const Status written = write_png(folder_ / frame_file_name(frame.first), frame.second, encoder,
+                                     Durability::later, {NamedBy::program});
     if (!written) {
       const std::lock_guard lock(mutex_);
       failure_ = written;
@@ -169,6 +177,41 @@ std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& file, con
 
 }  // namespace
 
+namespace {
+
+// The file that ffmpeg writes, and the one that it becomes: the same for a pipe or device.
+struct VideoPlace {
+  std::filesystem::path unfinished, target;
+};
+
+// Makes the empty file that ffmpeg will fill, exclusively, so that no link of that name is followed. It has
+// the permissions of the file that it will replace.
+Result<VideoPlace> prepare_video(const std::filesystem::path& file) {
+  VideoPlace place{file, file};
+  std::error_code ignored;
+  const auto status = std::filesystem::status(file, ignored);
+  const bool replaces = std::filesystem::is_regular_file(status);
+  if (std::filesystem::exists(status) && !replaces) return place;
+  if (replaces) place.target = std::filesystem::canonical(file, ignored);
+  if (place.target.empty()) place.target = file;
+  // ffmpeg derives the format from the extension, which must therefore remain last.
+  place.unfinished = place.target;
+  place.unfinished.replace_filename(place.target.stem().string() + ".unfinished-" + std::to_string(getpid()) +
+                                    place.target.extension().string());
+  ::unlink(place.unfinished.c_str());
+  const int descriptor =
+      ::open(place.unfinished.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  if (descriptor < 0) {
+    return Error{ErrorCode::unwritable,
+                 file.string() + ": cannot be written: " + std::generic_category().message(errno), "video"};
+  }
+  if (replaces) ::fchmod(descriptor, static_cast<mode_t>(status.permissions()) & 0777);
+  ::close(descriptor);
+  return place;
+}
+
+}  // namespace
+
 bool VideoEncoder::available() {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path != nullptr ? path : "");
@@ -182,9 +225,9 @@ Result<VideoEncoder> VideoEncoder::start(const std::filesystem::path& file, int 
                                          int rate_numerator, int rate_denominator) {
   SPOONBILL_ASSERT(width_px > 0 && height_px > 0);
   SPOONBILL_ASSERT(rate_numerator > 0 && rate_denominator > 0);
-  // ffmpeg derives the format from the extension, which must therefore remain last.
-  std::filesystem::path unfinished = file;
-  unfinished.replace_filename(file.stem().string() + ".unfinished" + file.extension().string());
+  auto place = prepare_video(file);
+  if (!place) return place.error();
+  const std::filesystem::path& unfinished = place->unfinished;
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) {
     return Error{ErrorCode::unavailable, std::string("no pipe to ffmpeg: ") + std::strerror(errno)};
@@ -196,22 +239,41 @@ Result<VideoEncoder> VideoEncoder::start(const std::filesystem::path& file, int 
   close(ends[0]);
   if (process < 0) {
     close(ends[1]);
+    if (unfinished != place->target) std::filesystem::remove(unfinished);
     return Error{ErrorCode::unavailable, "ffmpeg does not start: install ffmpeg or omit --video", "video"};
   }
-  return VideoEncoder(file, std::move(unfinished), process, ends[1]);
+  return VideoEncoder(place->target, unfinished, process, ends[1]);
 }
+
+VideoEncoder::VideoEncoder(std::filesystem::path file, std::filesystem::path unfinished, pid_t process,
+                           int pipe)
+    : file_(std::move(file)),
+      unfinished_(std::move(unfinished)),
+      process_(process),
+      pipe_(pipe),
+      ending_([process, beside = file_ == unfinished_ ? std::filesystem::path() : unfinished_] {
+        kill(process, SIGKILL);
+        if (!beside.empty()) ::unlink(beside.c_str());
+        return std::string();
+      }) {}
 
 VideoEncoder::VideoEncoder(VideoEncoder&& other) noexcept
     : file_(std::move(other.file_)),
       unfinished_(std::move(other.unfinished_)),
       process_(std::exchange(other.process_, -1)),
-      pipe_(std::exchange(other.pipe_, -1)) {}
+      pipe_(std::exchange(other.pipe_, -1)),
+      ending_(std::move(other.ending_)) {}
 
 VideoEncoder::~VideoEncoder() {
   if (process_ < 0) return;
+  kill(process_, SIGKILL);  // the rest of the video would be encoded only to be removed
   close_and_wait();
+  remove_unfinished();
+}
+
+void VideoEncoder::remove_unfinished() {
   std::error_code ignored;
-  std::filesystem::remove(unfinished_, ignored);
+  if (unfinished_ != file_) std::filesystem::remove(unfinished_, ignored);
 }
 
 int VideoEncoder::close_and_wait() {
@@ -236,15 +298,15 @@ Status VideoEncoder::add(const Image& frame) {
 }
 
 Status VideoEncoder::finish() {
-  std::error_code ignored;
   if (const int code = close_and_wait(); code != 0) {
-    std::filesystem::remove(unfinished_, ignored);
+    remove_unfinished();
     return Error{ErrorCode::process_failed,
                  file_.string() + ": ffmpeg failed with exit code " + std::to_string(code) +
                      ": check that the folder is writable and the extension known"};
   }
+  if (unfinished_ == file_) return {};
   Status published = publish_file(unfinished_, file_);
-  if (!published) std::filesystem::remove(unfinished_, ignored);
+  if (!published) remove_unfinished();
   return published;
 }
 
@@ -271,7 +333,8 @@ std::string seconds_text(double time_s) {
 
 Result<ReplayPictures> ReplayPictures::start(const PictureRequest& request) {
   if (request.folder) {
-    if (Status prepared = prepare_frame_folder(*request.folder); !prepared) return prepared.error();
+    if (Status prepared = prepare_frame_folder(*request.folder, request.replaces_read_only); !prepared)
+      return prepared.error();
   }
   std::optional<VideoEncoder> video;
   if (request.video) {
@@ -319,7 +382,7 @@ Status ReplayPictures::finish() {
   if (Status finished = frames_->finish(); !finished) return finished;
   const auto sheet = sheet_.compose();
   if (!sheet) return sheet.error();
-  return write_png(contact_sheet_file(), sheet.value());
+  return write_png(contact_sheet_file(), sheet.value(), {NamedBy::program});
 }
 
 }  // namespace spoonbill

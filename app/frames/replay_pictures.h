@@ -17,6 +17,7 @@
 
 #include "app/session/session.h"
 #include "engine/base/result.h"
+#include "engine/base/unfinished_files.h"
 #include "render/contact_sheet.h"
 #include "render/image.h"
 
@@ -36,7 +37,8 @@ std::string frame_file_name(int number);
 
 // Makes the folder, or removes the frames and the contact sheet of an earlier run from it; other files stay.
 // Returns an error with the folder's name if it cannot be made or written.
-Status prepare_frame_folder(const std::filesystem::path& folder);
+// Refuses to remove a read-only file unless `replaces_read_only`.
+Status prepare_frame_folder(const std::filesystem::path& folder, bool replaces_read_only = false);
 
 // Writes numbered frames as PNG files on its own thread, so that encoding does not delay drawing. One thread
 // adds frames; the queue is bounded, and add() waits while it is full.
@@ -84,14 +86,15 @@ class VideoEncoder {
   Status finish();
 
  private:
-  VideoEncoder(std::filesystem::path file, std::filesystem::path unfinished, pid_t process, int pipe)
-      : file_(std::move(file)), unfinished_(std::move(unfinished)), process_(process), pipe_(pipe) {}
+  VideoEncoder(std::filesystem::path file, std::filesystem::path unfinished, pid_t process, int pipe);
   int close_and_wait();
+  void remove_unfinished();
 
   std::filesystem::path file_;
   std::filesystem::path unfinished_;
   pid_t process_;  // -1 when no process runs
   int pipe_;       // -1 when closed
+  UnfinishedFile ending_;
 };
 
 // Frames and files that a replay is to write.
@@ -102,6 +105,7 @@ struct PictureRequest {
   std::uint64_t every = 1;                      // interval between drawn frames
   std::optional<std::filesystem::path> folder;  // for frames and contact sheet
   std::optional<std::filesystem::path> video;
+  bool replaces_read_only = false;  // files of earlier runs
 };
 
 // Writes the pictures of a replay. One owner, one thread.

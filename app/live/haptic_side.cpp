@@ -213,6 +213,7 @@ void HapticSide::reset_proxy() {
 void HapticSide::start_recording(std::unique_ptr<RecordingWriter> recording) {
   recording_ = true;
   recorded_ticks_ = 0;
+  recorded_missed_ = 0;
   state_recorded_ = false;
   push(RecordingStart{std::move(recording)});
   record_state_when_due();
@@ -220,7 +221,7 @@ void HapticSide::start_recording(std::unique_ptr<RecordingWriter> recording) {
 
 void HapticSide::end_recording() {
   if (!recording_) return;
-  push(RecordedState{state_hash(*lent_.session), true});
+  push(RecordedState{state_hash(*lent_.session), true, recorded_missed_});
   recording_ = false;
 }
 
@@ -241,6 +242,7 @@ void HapticSide::advance_session(const DeviceReading& reading, std::uint64_t dro
   if (safe_device_.consume_proxy_reset()) reset_proxy();
   if (recording_) {
     push(RecordedReading{reading});
+    if (recorded_ticks_ > 0) recorded_missed_ += dropped;
     ++recorded_ticks_;
     state_recorded_ = false;
   }

@@ -177,7 +177,8 @@ class HapticSide {
   bool last_tick_failed_ = false;
   bool recording_ = false;
   std::uint64_t recorded_ticks_ = 0;
-  bool state_recorded_ = false;  // at recorded_ticks_
+  std::uint64_t recorded_missed_ = 0;  // periods without a tick since the recording's first
+  bool state_recorded_ = false;        // at recorded_ticks_
 
   std::uint64_t session_count_ = 0;
   std::uint64_t document_count_ = 0;

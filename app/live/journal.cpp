@@ -135,8 +135,11 @@ Status Journal::write_to_recording(JournalEntry& entry) {
   if (state == nullptr) return {};
   if (!state->last) return writer.checkpoint(state->state_hash);
   const std::uint64_t ticks = writer.tick();
-  if (Status finished = writer.finish(state->state_hash); !finished) return finished;
-  if (Status published = writer.commit(); !published) return published;
+  if (Status finished = writer.finish(state->state_hash, state->missed); !finished) return finished;
+  last_recording_ = {ticks, state->missed};
+  if (!leaves_unpublished_.load(std::memory_order_acquire)) {
+    if (Status published = writer.commit(); !published) return published;
+  }
   notices_->add(Notice::Kind::information, "recorded " + std::to_string(ticks / 1000) + " s");
   recording_.reset();
   is_last_complete_ = true;

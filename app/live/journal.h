@@ -86,8 +86,16 @@ struct RecordedCommand {
 struct RecordedReset {};  // reset of the proxy after a pause
 struct RecordedState {
   std::uint64_t state_hash = 0;
-  bool last = false;  // ends the recording
+  bool last = false;         // ends the recording
+  std::uint64_t missed = 0;  // with `last`: periods without a tick during the recording
 };
+
+// Ticks of a recording, and periods of 1 ms without a tick meanwhile.
+struct RecordedTicks {
+  std::uint64_t ticks = 0;
+  std::uint64_t missed = 0;
+};
+
 using JournalEntry = std::variant<std::monostate, RecordingStart, RecordedReading, RecordedCommand,
                                   RecordedReset, RecordedState>;
 
@@ -130,6 +138,10 @@ class Journal {
   void stop();
   // Returns true if the last recording was written to its end and closed. Valid after stop().
   bool is_last_recording_complete() const { return is_last_complete_; }
+  RecordedTicks last_recording() const { return last_recording_; }
+
+  // Lets recordings end as FILE.part, complete but without replacing FILE.
+  void leave_recordings_unpublished() { leaves_unpublished_.store(true, std::memory_order_release); }
 
   // Queues an entry. Returns false if the queue is full. Called by the haptic thread; does not wait or
   // allocate.
@@ -179,8 +191,10 @@ class Journal {
   std::uint64_t autosaved_change_ = 0;
   bool autosave_failed_ = false;
   bool is_last_complete_ = false;
+  RecordedTicks last_recording_;
 
   std::atomic<bool> recording_failed_{false};
+  std::atomic<bool> leaves_unpublished_{false};
   std::atomic<bool> stopping_{false};
   std::thread thread_;
 };

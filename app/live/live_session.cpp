@@ -36,11 +36,13 @@ Status restart_session(LentSession& lent, const DeviceSpecification& device, Ins
 }
 
 Status restart_and_record(LentSession& lent, const std::filesystem::path& file, const ViewChoice& view,
-                          const DeviceSpecification& device, InstructionSet set) {
+                          const DeviceSpecification& device, InstructionSet set, const OutputOptions& output,
+                          Notices& notices) {
   lent.session->view = view;
   const RecordingHeader header{lent.session->device, make_session_document(*lent.session)};
-  auto recording = RecordingWriter::create(file, header);
+  auto recording = RecordingWriter::create(file, header, output);
   if (!recording) return recording.error();
+  if (!recording->notice().empty()) notices.add(Notice::Kind::information, recording->notice());
   if (Status restarted = restart_session(lent, device, set); !restarted) return restarted;
   lent.recording = std::make_unique<RecordingWriter>(std::move(recording).value());
   return {};
@@ -129,12 +131,14 @@ bool LiveSession::open(Document document, std::string source) {
       true});
 }
 
-bool LiveSession::start_recording(std::filesystem::path file, const ViewChoice& view) {
+bool LiveSession::start_recording(std::filesystem::path file, const ViewChoice& view,
+                                  const OutputOptions& output) {
   const InstructionSet set = settings_.instruction_set;
-  return send(QueuedJob{[file = std::move(file), view, device = device_, set](LentSession& lent) {
-                          return restart_and_record(lent, file, view, device, set);
-                        },
-                        true});
+  return send(
+      QueuedJob{[this, file = std::move(file), view, device = device_, set, output](LentSession& lent) {
+                  return restart_and_record(lent, file, view, device, set, output, notices_);
+                },
+                true});
 }
 
 bool LiveSession::stop_recording() {

@@ -38,8 +38,11 @@ class LiveSession {
 
   // Restarts the session from the current shape, at rest, and records from there, so that the recording is
   // self-contained. `view` is the initial view of its replay.
-  bool start_recording(std::filesystem::path file, const ViewChoice& view);
+  bool start_recording(std::filesystem::path file, const ViewChoice& view,
+                       const OutputOptions& output = {NamedBy::program});
   bool stop_recording();
+  // Lets the recording end as FILE.part instead of replacing FILE. Called before stop_recording().
+  void leave_recording_unpublished() { journal_.leave_recordings_unpublished(); }
 
   // Saves the document of the last frame in the state of the next tick. consume_saved_document() and the
   // notices report the result. Fails if another document was opened in the meantime.
@@ -60,10 +63,11 @@ class LiveSession {
   LoopFigures figures() const { return loop_->figures(); }
 
   // Ends the haptic thread and a recording, and waits until everything is written. Afterwards only figures(),
-  // consume_notices() and is_last_recording_complete() may be called.
+  // consume_notices(), is_last_recording_complete() and last_recording() may be called.
   void stop();
   // Returns true if the last recording was written to its end.
   bool is_last_recording_complete() const { return journal_.is_last_recording_complete(); }
+  RecordedTicks last_recording() const { return journal_.last_recording(); }
 
  private:
   LiveSession(std::unique_ptr<Session> session, std::unique_ptr<Device> device, const LiveSettings& settings,

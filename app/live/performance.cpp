@@ -104,7 +104,7 @@ Result<PerformanceReport> perform(const Script& script, const Document& document
   if (!live) return live.error();
   LiveSession& session = *live.value();
   std::vector<Notice> notices = session.consume_notices();
-  session.start_recording(settings.recording, view.value());
+  session.start_recording(settings.recording, view.value(), settings.output);
   const auto recording = [](const LiveFrame& frame) { return frame.recording; };
   Status started = wait_until(session, recording, "starting the recording");
   if (!started) return started.error();
@@ -118,11 +118,13 @@ Result<PerformanceReport> perform(const Script& script, const Document& document
   Status played = play(script, session, *mailbox, painting ? &*painting : nullptr, view.value(), interrupted,
                        report.frames);
   if (!played) return played.error();
+  if (interrupted()) session.leave_recording_unpublished();
   session.stop_recording();
   const auto stopped = [](const LiveFrame& frame) { return !frame.recording; };
   if (Status ended = wait_until(session, stopped, "ending the recording"); !ended) return ended.error();
   session.stop();
   report.loop = session.figures();
+  report.recorded = session.last_recording();
   std::string last_problem = "the recording is incomplete";
   for (Notice& notice : session.consume_notices()) {
     if (notice.kind == Notice::Kind::problem) last_problem = notice.text;

@@ -17,17 +17,20 @@ struct PerformanceSettings {
   LiveSettings live;
   bool draw = false;  // 60 frames per second at 1280x720 into memory
   std::filesystem::path recording;
+  OutputOptions output;  // how the recording replaces an older file
 };
 
 // Results of a performance.
 struct PerformanceReport {
-  LoopFigures loop;
+  LoopFigures loop;        // of the whole session, so also before and after the recording
+  RecordedTicks recorded;  // of the recording alone, as its replay states them
   std::uint64_t frames = 0;
   std::vector<Notice> notices;
 };
 
 // Performs the script on the main thread; returns at its end or when `interrupted` returns true. Returns an
-// error for a model that cannot be simulated or a recording that cannot be written.
+// error for a model that cannot be simulated or a recording that cannot be written. An
+// interrupted recording stays as FILE.part.
 Result<PerformanceReport> perform(const Script& script, const Document& document, const std::string& source,
                                   const PerformanceSettings& settings,
                                   const std::function<bool()>& interrupted);

@@ -323,10 +323,11 @@ void add_fit_facts(FactSheet& facts, const ScanFit& fit, double tolerance_m) {
   facts.add("", "", "mean_m", all.mean_m);
 }
 
-Status write_error_cloud(const ScanFit& fit, double full_m, const std::filesystem::path& file) {
+Status write_error_cloud(const ScanFit& fit, double full_m, const std::filesystem::path& file,
+                         const OutputOptions& options) {
   std::size_t count = 0;
   for (const FittedBody& body : fit.bodies) count += body.errors.positions_m.size();
-  auto out = OutputFile::create(file);
+  auto out = OutputFile::create(file, options);
   if (!out) return out.error();
   if (Status written = out->write(cloud_header(count, full_m)); !written) return written;
   std::string bytes;

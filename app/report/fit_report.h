@@ -8,6 +8,7 @@
 
 #include "app/files/scan_file.h"
 #include "app/report/fact_sheet.h"
+#include "engine/base/file.h"
 #include "engine/base/result.h"
 #include "engine/fitting/fit_scan.h"
 
@@ -39,8 +40,9 @@ void add_scan_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit);
 // errors of all bodies together.
 void add_fit_facts(FactSheet& facts, const ScanFit& fit, double tolerance_m);
 
-// Writes a binary PLY file in metres. Each point of the scan (or, for a mesh, each of the samples all over
-// it) has its distance_mm and a colour from dark blue (0) through green to yellow (`full_m` and beyond).
-Status write_error_cloud(const ScanFit& fit, double full_m, const std::filesystem::path& file);
+// Writes a binary PLY file in metres. Each point of the scan, or of samples all over it if it is a mesh, has
+// its distance_mm and a colour from dark blue (0) through green to yellow (`full_m` and beyond).
+Status write_error_cloud(const ScanFit& fit, double full_m, const std::filesystem::path& file,
+                         const OutputOptions& options = {});
 
 }  // namespace spoonbill

@@ -39,7 +39,7 @@ Status Lockstep::finish() {
   if (input_.expected_end) {
     if (Status same = compare_state(*input_.expected_end); !same) return same;
   }
-  return writer_ != nullptr ? writer_->finish(state_hash(*session_)) : Status();
+  return writer_ != nullptr ? writer_->finish(state_hash(*session_), input_.missed) : Status();
 }
 
 Status Lockstep::prepare_tick() {
@@ -93,10 +93,11 @@ Status Lockstep::run_tick() {
   if (device_.consume_proxy_reset()) {
     if (Status reset = reset_proxy(); !reset) return reset;
   }
+  const TickResult result = advance(*session_, reading);
+  // Written after the tick, so that a recording that a signal ends holds whole ticks only.
   if (writer_ != nullptr) {
     if (Status written = writer_->reading(reading); !written) return written;
   }
-  const TickResult result = advance(*session_, reading);
   device_.give(result.force_n, 0);
   ++tick_;
   is_prepared_ = false;

@@ -30,7 +30,8 @@ struct LockstepInput {
   // States to compare with before the commands of their tick, ascending; may be empty.
   std::vector<Checkpoint> expected;
   std::optional<Checkpoint> expected_end;
-  std::string source;  // names the input in messages
+  std::uint64_t missed = 0;  // of a live recording, passed on to the written one
+  std::string source;        // names the input in messages
 };
 
 // Runs a session in lock-step. One owner, one thread.

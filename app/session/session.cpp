@@ -105,8 +105,10 @@ bool changes_shape_meaning(const Command& command) {
          std::holds_alternative<KeepShape>(command) || std::holds_alternative<RefineKnots>(command);
 }
 
-// Largest number of unread marks, so that a recording cannot fill the memory with documents.
+// Largest numbers of unread marks, and of different documents saved at one tick, so that a recording cannot
+// fill the memory.
 constexpr std::size_t waiting_marks_limit = 1000;
+constexpr std::size_t saves_at_tick_limit = 16;
 
 struct RequestApplier {
   Session& session;
@@ -131,8 +133,29 @@ struct RequestApplier {
       return Error{ErrorCode::too_many,
                    "more than " + std::to_string(waiting_marks_limit) + " files requested at one tick"};
     }
-    FileMark& made = session.marks.emplace_back(FileMark{mark, {}});
-    if (mark.kind == FileMarkKind::document) made.document = make_session_document(session);
+    FileMark made{mark, {}};
+    if (mark.kind == FileMarkKind::document) {
+      if (Status saved = save_document(); !saved) return saved;
+      made.document = session.saved;
+    }
+    // A later file of the same name would replace the earlier.
+    std::erase_if(session.marks, [&](const FileMark& other) {
+      return other.mark.kind == mark.kind && other.mark.name == mark.name;
+    });
+    session.marks.push_back(std::move(made));
+    return {};
+  }
+
+  // Makes the document of this moment, unless the last one is still true.
+  Status save_document() const {
+    if (session.saved != nullptr) return {};
+    if (session.saves_at_tick == saves_at_tick_limit) {
+      return Error{ErrorCode::too_many, "more than " + std::to_string(saves_at_tick_limit) +
+                                            " different documents saved at one tick"};
+    }
+    ++session.saves_at_tick;
+    session.saved = std::make_shared<const Document>(session.keeps_documents ? make_session_document(session)
+                                                                             : Document());
     return {};
   }
 };
@@ -151,18 +174,25 @@ Result<Session> Session::make(const Document& document, const std::string& sourc
   auto simulation = Simulation::make(document.scene, set, watch);
   if (!simulation) return simulation.error().in(source);
   StrokeHistory history(simulation.value());
-  std::vector<BodyMass> masses;
-  for (const Body& body : document.scene.bodies) masses.push_back(mass_of_session(body));
-  return Session{document.name,     std::move(simulation).value(),
-                 CouplingState(),   std::move(history),
-                 view.value(),      std::move(masses),
-                 std::move(device), DeviceReading(),
-                 tick_flag_none,    {}};
+  return Session{document.name,
+                 std::move(simulation).value(),
+                 CouplingState(),
+                 std::move(history),
+                 view.value(),
+                 std::move(device),
+                 DeviceReading(),
+                 tick_flag_none,
+                 {},
+                 true,
+                 {},
+                 0};
 }
 
 TickResult advance(Session& session, const DeviceReading& reading) {
   TickResult result = tick(session.simulation, session.coupling, session.device, reading);
   session.reading = reading;
+  session.saved.reset();
+  session.saves_at_tick = 0;
   session.flags |= result.flags;
   session.history.after_tick(session.simulation, result.touching);
   return result;
@@ -194,6 +224,7 @@ Document make_session_document(const Session& session) {
 }
 
 Status apply_request(Session& session, const Request& request) {
+  if (!std::holds_alternative<MarkFile>(request)) session.saved.reset();
   return std::visit(RequestApplier{session}, request);
 }
 

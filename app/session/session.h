@@ -2,6 +2,7 @@
 // two ticks.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -58,7 +59,7 @@ std::string make_mark_name(const std::string& text);
 // A requested file with its contents.
 struct FileMark {
   MarkFile mark;
-  std::optional<Document> document;  // the document at that tick; empty for a screenshot
+  std::shared_ptr<const Document> document;  // the document at that tick; null for a screenshot
 };
 
 // A simulation and all state that belongs to a session. Plain struct with one owner: the lock-step loop or
@@ -74,7 +75,10 @@ struct Session {
   DeviceSpecification device;
   DeviceReading reading;                 // from the last tick
   std::uint32_t flags = tick_flag_none;  // TickFlag bits, accumulated until the reader clears them
-  std::vector<FileMark> marks;           // accumulated until consume_marks()
+  std::vector<FileMark> marks;           // accumulated until consume_marks(); the last of each name
+  bool keeps_documents = true;           // false if the documents of marks are not written: they stay empty
+  std::shared_ptr<const Document> saved = {};  // the last mark's document while nothing has changed since
+  std::size_t saves_at_tick = 0;               // number of different documents saved at this tick
 
   // Makes a session of the document. `source` names its file in messages; `watch` receives the progress of
   // feature maps.

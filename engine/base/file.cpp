@@ -1,6 +1,7 @@
 #include "engine/base/file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -31,6 +32,7 @@ class OpenFile {
   }
 
   int descriptor() const { return descriptor_; }
+  int release() { return std::exchange(descriptor_, -1); }
   std::size_t bytes() const { return bytes_; }  // size when opened
   void set_bytes(std::size_t bytes) { bytes_ = bytes; }
 
@@ -143,6 +145,7 @@ Status save_backup(const std::filesystem::path& file) {
   const std::filesystem::path staged = file.string() + ".bak.new";
   std::error_code ignored, error;
   std::filesystem::remove(staged, ignored);
+  const UnfinishedFile unfinished(staged);
   std::filesystem::create_hard_link(file, staged, error);
   if (error) std::filesystem::copy_file(file, staged, error);
   if (!error) std::filesystem::rename(staged, backup, error);
@@ -155,35 +158,47 @@ Status save_backup(const std::filesystem::path& file) {
 
 }  // namespace
 
-Result<OutputFile> OutputFile::create(const std::filesystem::path& file) {
-  return create(file, Mode::whole);
+Status check_replaceable(const std::filesystem::path& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return {};
+  // The bits are asked too, because the administrator may write every file.
+  if ((status.st_mode & 0222) != 0 && ::access(file.c_str(), W_OK) == 0) return {};
+  return Error{ErrorCode::unwritable, file.string() + ": is read-only; choose another name or use --force"};
 }
 
-Result<OutputFile> OutputFile::create_growing(const std::filesystem::path& file) {
-  return create(file, Mode::growing);
+Result<OutputFile> OutputFile::create(const std::filesystem::path& file, const OutputOptions& options) {
+  return create(file, Mode::whole, options);
 }
 
-Result<OutputFile> OutputFile::create(const std::filesystem::path& file, Mode mode) {
+Result<OutputFile> OutputFile::create_growing(const std::filesystem::path& file,
+                                              const OutputOptions& options) {
+  return create(file, Mode::growing, options);
+}
+
+Result<OutputFile> OutputFile::create(const std::filesystem::path& file, Mode mode,
+                                      const OutputOptions& options) {
+  const bool follows = options.named_by == NamedBy::person;
   std::error_code ignored;
-  const auto status = std::filesystem::status(file, ignored);
+  const auto status =
+      follows ? std::filesystem::status(file, ignored) : std::filesystem::symlink_status(file, ignored);
   const bool replaces = std::filesystem::is_regular_file(status);
+  if (replaces && !options.replaces_read_only) {
+    if (Status checked = check_replaceable(file); !checked) return checked.error();
+  }
   OutputFile out;
   out.mode_ = mode;
   out.file_ = out.target_ = file;
   // The link itself is replaced if it cannot be resolved.
-  if (replaces) out.target_ = std::filesystem::canonical(file, ignored);
-  if (ignored) out.target_ = file;
+  if (replaces && follows) out.target_ = std::filesystem::canonical(file, ignored);
+  if (out.target_.empty()) out.target_ = file;
   out.written_ = out.target_;
-  int flags = O_WRONLY | O_CREAT | O_CLOEXEC | O_TRUNC;
-  if (mode == Mode::growing) {
-    if (replaces) out.written_ += ".part";
-  } else if (replaces || !std::filesystem::exists(status)) {
-    out.written_ += ".new-" + std::to_string(::getpid());
-    ::unlink(out.written_.c_str());  // left by a killed process with the same process ID
-    flags |= O_EXCL;                 // never follows a link of that name
+  if (follows && std::filesystem::exists(status) && !replaces) {
+    out.descriptor_ = ::open(out.written_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (out.descriptor_ < 0) return out.write_error("cannot be written");
+    return Result<OutputFile>(std::move(out));
   }
-  out.descriptor_ = ::open(out.written_.c_str(), flags, 0666);
-  if (out.descriptor_ < 0) return out.write_error("cannot be written");
+  Status opened = mode == Mode::growing ? out.open_growing() : out.open_whole();
+  if (!opened) return opened.error();
   // open() applies the process's umask, which must not remove permissions of the replaced file.
   if (replaces && ::fchmod(out.descriptor_, static_cast<mode_t>(status.permissions()) & 0777) != 0) {
     return out.write_error("cannot be given its permissions");
@@ -191,10 +206,98 @@ Result<OutputFile> OutputFile::create(const std::filesystem::path& file, Mode mo
   return Result<OutputFile>(std::move(out));
 }
 
+namespace {
+
+// O_EXCL never follows a link of that name.
+constexpr int new_file_flags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+
+// Returns true unless another process holds the file. A file system without locks counts as free.
+bool lock_file(int descriptor) {
+  return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+}
+
+bool has_name(int descriptor, const std::filesystem::path& file) {
+  struct stat opened {};
+  struct stat named {};
+  return ::fstat(descriptor, &opened) == 0 && ::lstat(file.c_str(), &named) == 0 &&
+         opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+}
+
+Error held_by_another(const std::filesystem::path& file) {
+  return {ErrorCode::unavailable,
+          file.string() + ": another program is writing it; wait for its end or choose another name"};
+}
+
+// Gives what has the name another one, FILE.1 or the first that is free. Returns that name; empty if nothing
+// has the name, or it was an empty file, which is removed.
+Result<std::filesystem::path> move_aside(const std::filesystem::path& file) {
+  const OpenFile old(::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  struct stat status {};
+  const bool is_regular =
+      old.descriptor() >= 0 && ::fstat(old.descriptor(), &status) == 0 && S_ISREG(status.st_mode);
+  if (is_regular) {
+    if (!lock_file(old.descriptor())) return held_by_another(file);
+    // Another process has moved or finished it meanwhile.
+    if (!has_name(old.descriptor(), file)) return std::filesystem::path();
+    if (status.st_size == 0) {
+      ::unlink(file.c_str());
+      return std::filesystem::path();
+    }
+  }
+  constexpr int most_kept = 1000;
+  for (int n = 1; n <= most_kept; ++n) {
+    const std::filesystem::path other = file.string() + "." + std::to_string(n);
+    if (::renameat2(AT_FDCWD, file.c_str(), AT_FDCWD, other.c_str(), RENAME_NOREPLACE) == 0) return other;
+    if (errno == ENOENT) return std::filesystem::path();
+    if (errno == EEXIST) continue;
+    // Some file systems know no RENAME_NOREPLACE.
+    std::error_code ignored;
+    if (std::filesystem::exists(std::filesystem::symlink_status(other, ignored))) continue;
+    if (::rename(file.c_str(), other.c_str()) == 0) return other;
+    break;
+  }
+  return system_error(ErrorCode::unwritable, file, "is in the way and cannot be renamed");
+}
+
+}  // namespace
+
+Status OutputFile::open_whole() {
+  written_ += ".new-" + std::to_string(::getpid());
+  ::unlink(written_.c_str());  // left by a killed process with the same process ID
+  descriptor_ = ::open(written_.c_str(), new_file_flags, 0666);
+  if (descriptor_ < 0) return write_error("cannot be written");
+  unfinished_ = UnfinishedFile(written_);
+  return {};
+}
+
+// Opens FILE.part. Its lock, which ends with the process, tells a recording in progress from what a crash
+// left.
+Status OutputFile::open_growing() {
+  written_ += ".part";
+  constexpr int most_tries = 100;  // each fails only if another process acts in the same moment
+  for (int n = 0; n < most_tries; ++n) {
+    OpenFile opened(::open(written_.c_str(), new_file_flags, 0666));
+    if (opened.descriptor() < 0 && errno != EEXIST) return write_error("cannot be written");
+    if (opened.descriptor() < 0) {
+      auto aside = move_aside(written_);
+      if (!aside) return aside.error();
+      if (!aside->empty()) kept_aside_ = std::move(aside).value();
+      continue;
+    }
+    if (!lock_file(opened.descriptor())) return held_by_another(file_);
+    if (!has_name(opened.descriptor(), written_)) continue;
+    descriptor_ = opened.release();
+    return {};
+  }
+  return held_by_another(file_);
+}
+
 OutputFile::OutputFile(OutputFile&& other) noexcept
     : file_(std::move(other.file_)),
       target_(std::move(other.target_)),
       written_(std::move(other.written_)),
+      kept_aside_(std::move(other.kept_aside_)),
+      unfinished_(std::move(other.unfinished_)),
       buffer_(std::move(other.buffer_)),
       descriptor_(std::exchange(other.descriptor_, -1)),
       mode_(other.mode_) {}
@@ -203,6 +306,8 @@ OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
   std::swap(file_, other.file_);
   std::swap(target_, other.target_);
   std::swap(written_, other.written_);
+  std::swap(kept_aside_, other.kept_aside_);
+  std::swap(unfinished_, other.unfinished_);
   std::swap(buffer_, other.buffer_);
   std::swap(descriptor_, other.descriptor_);
   std::swap(mode_, other.mode_);
@@ -261,7 +366,9 @@ Status OutputFile::finish(Durability durability, bool with_backup) {
   if (flushes && !flush_descriptor(descriptor_)) return write_error("cannot be flushed to the disk");
   if (writes_beside()) {
     std::error_code ignored;
-    if (with_backup && std::filesystem::exists(target_, ignored)) {
+    const bool keeps_old =
+        with_backup && std::filesystem::is_regular_file(std::filesystem::symlink_status(target_, ignored));
+    if (keeps_old) {
       if (Status saved = save_backup(target_); !saved) return saved;
     }
     if (::rename(written_.c_str(), target_.c_str()) != 0) {
@@ -270,26 +377,29 @@ Status OutputFile::finish(Durability durability, bool with_backup) {
       return error;
     }
     written_ = target_;
+    unfinished_ = {};
     if (flushes) flush_parent_folder(target_);
   }
   if (::close(std::exchange(descriptor_, -1)) != 0) return write_error("cannot be closed");
   return {};
 }
 
-Status write_file(const std::filesystem::path& file, std::string_view bytes, Durability durability) {
-  auto out = OutputFile::create(file);
+Status write_file(const std::filesystem::path& file, std::string_view bytes, Durability durability,
+                  const OutputOptions& options) {
+  auto out = OutputFile::create(file, options);
   if (!out) return out.error();
   if (Status written = out->write(bytes); !written) return written;
   return out->commit(durability);
 }
 
-Status replace_file(const std::filesystem::path& file, std::string_view bytes) {
+Status replace_file(const std::filesystem::path& file, std::string_view bytes, const OutputOptions& options) {
   std::error_code ignored;
   const auto status = std::filesystem::status(file, ignored);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+  const bool may_replace = options.named_by == NamedBy::program || std::filesystem::is_regular_file(status);
+  if (std::filesystem::exists(status) && !may_replace) {
     return Error{ErrorCode::unwritable, file.string() + ": is not a regular file, choose another name"};
   }
-  auto out = OutputFile::create(file);
+  auto out = OutputFile::create(file, options);
   if (!out) return out.error();
   if (Status written = out->write(bytes); !written) return written;
   return out->commit_with_backup();

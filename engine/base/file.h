@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "engine/base/result.h"
+#include "engine/base/unfinished_files.h"
 
 namespace spoonbill {
 
@@ -34,23 +35,44 @@ std::string read_last_bytes(const std::filesystem::path& file, std::size_t count
 // `later`, then flushed by one call of flush_to_disk().
 enum class Durability { now, later };
 
+// The one who has chosen a file's name. A name that a person gave may be a link, which is written through to its
+// target, or a device or pipe, which is written directly. A name that the program, a script or a recording
+// made may lie in a folder from elsewhere: whatever has that name is replaced, and never followed.
+enum class NamedBy { person, program };
+
+// How a file is written over what already has its name. A regular file without permission to write is
+// refused unless `replaces_read_only`.
+struct OutputOptions {
+  NamedBy named_by = NamedBy::person;
+  bool replaces_read_only = false;
+};
+
+// Returns an error if the name is a regular file that this process, or everybody, may not write.
+Status check_replaceable(const std::filesystem::path& file);
+
 // A file being written. One owner, one thread; never the haptic thread, because writing may block.
 class OutputFile {
  public:
   // Creates a file that appears under its name at commit(), whole; a crash at any moment leaves either the
-  // old content or the new. The new file has the permissions of the file that it replaces. A symbolic link
-  // is followed; a device or pipe is written directly. Writes are buffered, so errors may be reported as
-  // late as commit().
-  static Result<OutputFile> create(const std::filesystem::path& file);
+  // old content or the new. The new file has the permissions of the file that it replaces. Writes are
+  // buffered, so errors may be reported as late as commit().
+  static Result<OutputFile> create(const std::filesystem::path& file, const OutputOptions& options = {});
 
   // Creates a file that others may read while it grows: everything that write() has accepted survives a crash
-  // of this program. It grows under its own name if no such file exists, otherwise as FILE.part, which
-  // replaces FILE at commit(). Without commit() it remains as it is.
-  static Result<OutputFile> create_growing(const std::filesystem::path& file);
+  // of this program. It grows as FILE.part, which becomes FILE at commit() and remains without it. Refuses
+  // a file that another process is growing (ErrorCode::unavailable). A FILE.part that a crash left is kept
+  // under another name, see kept_aside().
+  static Result<OutputFile> create_growing(const std::filesystem::path& file,
+                                           const OutputOptions& options = {});
 
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&& other) noexcept;
   ~OutputFile();  // removes an uncommitted file of create()
+
+  // The name under which the file grows: FILE.part, or FILE itself for a device or pipe.
+  const std::filesystem::path& written_file() const { return written_; }
+  // The new name of what had the name FILE.part before; empty if there was none.
+  const std::filesystem::path& kept_aside() const { return kept_aside_; }
 
   Status write(std::string_view bytes);
 
@@ -67,7 +89,10 @@ class OutputFile {
   enum class Mode { whole, growing };
 
   OutputFile() = default;
-  static Result<OutputFile> create(const std::filesystem::path& file, Mode mode);
+  static Result<OutputFile> create(const std::filesystem::path& file, Mode mode,
+                                   const OutputOptions& options);
+  Status open_whole();
+  Status open_growing();
   Error write_error(const char* what) const;
   Status send(std::string_view bytes);
   Status finish(Durability durability, bool with_backup);
@@ -76,18 +101,21 @@ class OutputFile {
   std::filesystem::path file_;     // name as given, for messages
   std::filesystem::path target_;   // the file itself, links resolved
   std::filesystem::path written_;  // the file beside the target, or the target itself
-  std::string buffer_;             // unused while the file grows
+  std::filesystem::path kept_aside_;
+  UnfinishedFile unfinished_;  // while an uncommitted file of create() exists
+  std::string buffer_;         // unused while the file grows
   int descriptor_ = -1;
   Mode mode_ = Mode::whole;
 };
 
 // Writes a whole file as OutputFile::create() does.
 Status write_file(const std::filesystem::path& file, std::string_view bytes,
-                  Durability durability = Durability::now);
+                  Durability durability = Durability::now, const OutputOptions& options = {});
 
 // Same as write_file(), but keeps the replaced content as FILE.bak; for files that a user edits. Refuses
 // to replace anything but a regular file.
-Status replace_file(const std::filesystem::path& file, std::string_view bytes);
+Status replace_file(const std::filesystem::path& file, std::string_view bytes,
+                    const OutputOptions& options = {});
 
 // Flushes a file that another program has finished and renames it to `file`. Both must be in the same
 // folder.

@@ -254,7 +254,8 @@ Result<Document> read_document(const std::filesystem::path& file) {
   return document_from_json(json.value(), file.string());
 }
 
-Status write_document(const Document& document, const std::filesystem::path& file) {
+Status write_document(const Document& document, const std::filesystem::path& file,
+                      const OutputOptions& options) {
   const std::string page = json_to_page(document_to_json(document));
   if (page.size() > document_bytes_limit) {
     return Error{ErrorCode::too_many, file.string() + ": not saved, larger than 64 MiB; remove bodies"};
@@ -263,7 +264,7 @@ Status write_document(const Document& document, const std::filesystem::path& fil
   if (!read_back.ok()) return read_back.error();
   auto checked = document_from_json(read_back.value(), file.string() + ": not saved");
   if (!checked.ok()) return checked.error();
-  return replace_file(file, page);
+  return replace_file(file, page, options);
 }
 
 Result<Material> material_from_json(const Json& json, const std::string& source) {

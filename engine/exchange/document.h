@@ -67,6 +67,7 @@
 #include <filesystem>
 #include <string>
 
+#include "engine/base/file.h"
 #include "engine/base/result.h"
 #include "engine/exchange/json.h"
 #include "engine/scene/scene.h"
@@ -99,7 +100,8 @@ Result<Document> read_document(const std::filesystem::path& file);
 // Writes a document to a temporary file beside `file`, flushes it and renames it, so that a crash leaves
 // either the old or the new document complete; the old one is saved as FILE.bak. A document that could not be
 // read back is refused before any file is touched.
-Status write_document(const Document& document, const std::filesystem::path& file);
+Status write_document(const Document& document, const std::filesystem::path& file,
+                      const OutputOptions& options = {});
 
 // Convert between JSON and a single material, the content of a file in assets/materials.
 Result<Material> material_from_json(const Json& json, const std::string& source);

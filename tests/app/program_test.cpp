@@ -77,13 +77,12 @@ TEST(Program, AKilledRecordingReplaysUpToTheCut) {
   std::string script = content_of(place.path("script.json"));
   script.replace(script.rfind("\"hold_s\": 0.1"), 13, "\"hold_s\": 500");
   place.write("long.json", script);
-  const auto recording = place.path("killed.jsonl");
-  std::filesystem::remove(recording);
+  const auto recording = place.path("killed.jsonl.part");
   const Outcome whole =
       run_process(program, {"record", place.text("script.json"), "--out", place.text("whole.jsonl")});
   ASSERT_EQ(whole.code, exit_done) << whole.err;
   const auto header = content_of(place.path("whole.jsonl")).find('\n');
-  run_and_kill(program, {"record", place.text("long.json"), "--out", recording.string()}, recording,
+  run_and_kill(program, {"record", place.text("long.json"), "--out", place.text("killed.jsonl")}, recording,
                header + 2000);
   const Outcome outcome = run_process(program, {"replay", recording.string(), "--no-frames", "--json"});
   EXPECT_EQ(outcome.code, exit_done) << outcome.err;

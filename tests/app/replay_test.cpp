@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <set>
 
@@ -51,6 +52,103 @@ TEST(Replay, MakesTheFilesThatTheRecordingAskedFor) {
   const auto frame = read_png(place.path("out/frame-0003.png"));
   ASSERT_TRUE(picture && frame);
   EXPECT_EQ(picture->rgba, frame->rgba);
+}
+
+std::string mark_script(const std::string& steps) {
+  return R"({"spoonbill_script": 1, "model": "model.json", "steps": [{"start_mm": [50, 14, 0]}, {"hold_s": 0.05},)" +
+         steps + R"({"hold_s": 0.1}]})";
+}
+
+TEST(Replay, TakesAScreenshotBetweenTheFramesItDraws) {
+  const Workplace place;
+  place.write("marks.json", mark_script(R"({"command": "screenshot", "name": "early"}, {"hold_s": 0.092},
+    {"command": "screenshot", "name": "late"},)"));
+  ASSERT_EQ(run({"record", place.text("marks.json"), "--out", place.text("marks.jsonl")}).code, exit_done);
+  for (const char* every : {"1", "20"}) {
+    const Outcome outcome = run({"replay", place.text("marks.jsonl"), "--out", place.text(every), "--size",
+                                 "96x64", "--every", every});
+    ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  }
+  for (const char* name : {"picture-early.png", "picture-late.png"}) {
+    const auto each = read_png(place.path("1") / name), twentieth = read_png(place.path("20") / name);
+    ASSERT_TRUE(each && twentieth) << name;
+    EXPECT_EQ(each->rgba, twentieth->rgba) << name;
+  }
+  EXPECT_EQ(names_in(place.path("20")).count("frame-0003.png"), 0u);
+}
+
+TEST(Replay, NeverFollowsALinkInItsFolder) {
+  const Workplace place;
+  place.write("marks.json",
+              mark_script(R"({"command": "screenshot", "name": "a"}, {"command": "save", "name": "a"},)"));
+  ASSERT_EQ(run({"record", place.text("marks.json"), "--out", place.text("marks.jsonl")}).code, exit_done);
+  const auto own = place.write("own", "the person's own");
+  std::filesystem::create_directory(place.path("out"));
+  for (const char* name : {"frame-0000.png", "picture-a.png", "saved-a.json", "contact-sheet.png"}) {
+    std::filesystem::create_symlink(own, place.path("out") / name);
+    for (const std::string end : {".part", ".new", ".new-" + std::to_string(getpid())}) {
+      std::filesystem::create_symlink(own, place.path("out") / (name + end));
+    }
+  }
+  const Outcome outcome =
+      run({"replay", place.text("marks.jsonl"), "--out", place.text("out"), "--size", "96x64"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  EXPECT_EQ(content_of(own), "the person's own");
+  for (const char* name : {"frame-0000.png", "picture-a.png", "saved-a.json", "contact-sheet.png"}) {
+    EXPECT_TRUE(std::filesystem::is_regular_file(std::filesystem::symlink_status(place.path("out") / name)));
+  }
+}
+
+TEST(Replay, AReadOnlyFileIsReplacedOnlyByForce) {
+  const Workplace place;
+  const auto read_only = std::filesystem::perms(0444);
+  const std::string recording = place.record("bend.jsonl").string();
+  const auto again = place.write("again.jsonl", "old"), model = place.write("old.json", "old");
+  std::filesystem::create_directory(place.path("out"));
+  const auto frame = place.write("out/frame-0000.png", "old");
+  for (const auto& file : {again, model, frame}) std::filesystem::permissions(file, read_only);
+  const std::vector<std::vector<std::string>> commands = {
+      {"record", place.text("script.json"), "--out", again.string()},
+      {"replay", recording, "--no-frames", "--rerecord", again.string()},
+      {"replay", recording, "--out", place.text("out"), "--size", "96x64", "--every", "99"},
+      {"convert", place.text("model.json"), model.string()},
+      {"new", "sphere", "--out", model.string(), "--control", "12x12"},
+      {"sample", place.text("model.json"), "--out", again.string()}};
+  for (std::vector<std::string> command : commands) {
+    const Outcome refused = run(command);
+    EXPECT_EQ(refused.code, exit_failed) << command[0];
+    EXPECT_TRUE(is_clean_failure(refused)) << refused.err;
+  }
+  for (const auto& file : {again, model, frame}) EXPECT_EQ(content_of(file), "old");
+  for (std::vector<std::string> command : commands) {
+    command.push_back("--force");
+    EXPECT_EQ(run(command).code, exit_done) << command[0];
+  }
+  for (const auto& file : {again, model}) {
+    EXPECT_NE(content_of(file), "old");
+    EXPECT_EQ(std::filesystem::status(file).permissions(), read_only) << "the mode is kept";
+  }
+}
+
+TEST(Session, SavesAtOneTickShareADocument) {
+  auto session = Session::make(held_handle(), "test", {}, best_instruction_set());
+  ASSERT_TRUE(session);
+  for (int n = 0; n < 900; ++n) {
+    ASSERT_TRUE(apply_request(*session, MarkFile{FileMarkKind::document, std::to_string(n % 450)}));
+  }
+  ASSERT_EQ(session->marks.size(), 450u);
+  for (const FileMark& mark : session->marks) EXPECT_EQ(mark.document, session->marks[0].document);
+  // Saves with a change before each are different documents.
+  Status saved;
+  int count = 0;
+  for (; saved && count < 900; ++count) {
+    ASSERT_TRUE(apply_request(*session, RemovePlanes{}));
+    saved = apply_request(*session, MarkFile{FileMarkKind::document, std::to_string(count)});
+  }
+  EXPECT_LT(count, 30);
+  EXPECT_EQ(saved.error().code, ErrorCode::too_many);
+  advance(*session, {});
+  EXPECT_TRUE(apply_request(*session, MarkFile{FileMarkKind::document, "later"}));
 }
 
 TEST(Replay, LeavesFramesAndContactSheet) {

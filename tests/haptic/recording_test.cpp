@@ -56,7 +56,7 @@ TEST(Recording, LeavesOutWhatDoesNotChange) {
   const auto file = folder.path() / "still.jsonl";
   auto writer = RecordingWriter::create(file, sample_header()).value();
   for (int tick = 0; tick < 100; ++tick) ASSERT_TRUE(writer.reading({}).ok());
-  const std::string content = content_of(file);
+  const std::string content = content_of(file.string() + ".part");
   EXPECT_TRUE(content.ends_with("\n{\"tick\":0,\"ticks\":100}\n")) << content;
 }
 
@@ -73,7 +73,7 @@ TEST(Recording, KeepsExtremePositions) {
     for (const DeviceReading& reading : readings) ASSERT_TRUE(writer.reading(reading).ok());
     ASSERT_TRUE(writer.finish(0).ok());
   }
-  const auto recording = read_recording(file);
+  const auto recording = read_recording(file.string() + ".part");
   ASSERT_TRUE(recording.ok()) << recording.error().message;
   EXPECT_EQ(recording->readings, readings);
 }
@@ -126,7 +126,7 @@ TEST(RecordingWriter, ReportsADiskThatFillsUp) {
   ASSERT_EQ(waitpid(child, &state, 0), child);
   EXPECT_TRUE(WIFEXITED(state));
   EXPECT_EQ(WEXITSTATUS(state), 0);
-  const auto recording = read_recording(folder.path() / "a.jsonl");
+  const auto recording = read_recording(folder.path() / "a.jsonl.part");
   ASSERT_TRUE(recording.ok()) << recording.error().message;
   EXPECT_NE(recording->notice, "");
 }
@@ -167,6 +167,7 @@ TEST(RecordingWriter, KeepsACommandOfSeveralMegabytes) {
   auto writer = RecordingWriter::create(folder.path() / "a.jsonl", sample_header()).value();
   ASSERT_TRUE(writer.command(large).ok());
   ASSERT_TRUE(writer.finish(0).ok());
+  ASSERT_TRUE(writer.commit().ok());
   const auto recording = read_recording(folder.path() / "a.jsonl");
   ASSERT_TRUE(recording.ok());
   ASSERT_EQ(recording.value().commands.size(), 1u);
@@ -195,13 +196,13 @@ TEST(RecordingWriter, RefusesAStateHashOutOfPlace) {
 
 TEST(RecordingWriter, LosesATenthOfASecondWhenKilled) {
   const TemporaryFolder folder;
-  const auto file = folder.path() / "killed.jsonl";
+  const auto named = folder.path() / "killed.jsonl", file = folder.path() / "killed.jsonl.part";
   constexpr std::size_t ticks = 1777;
   const std::vector<DeviceReading> readings = sample_readings(ticks, 6);
   const pid_t child = fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
-    auto writer = RecordingWriter::create(file, sample_header());
+    auto writer = RecordingWriter::create(named, sample_header());
     for (const DeviceReading& reading : readings) {
       if (!writer->reading(reading).ok()) _exit(1);
     }
@@ -215,6 +216,81 @@ TEST(RecordingWriter, LosesATenthOfASecondWhenKilled) {
   EXPECT_GE(recording->readings.size(), ticks - 100);
   EXPECT_TRUE(std::equal(recording->readings.begin(), recording->readings.end(), readings.begin()));
   EXPECT_EQ(recording->notice, file.string() + ": is truncated after 1700 ticks; replays up to there");
+}
+
+TEST(RecordingWriter, RefusesAFileThatAnotherWrites) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.jsonl";
+  auto first = RecordingWriter::create(file, sample_header());
+  ASSERT_TRUE(first.ok());
+  ASSERT_TRUE(first->reading({}).ok());
+  const auto second = RecordingWriter::create(file, sample_header());
+  ASSERT_FALSE(second.ok());
+  EXPECT_EQ(second.error().code, ErrorCode::unavailable);
+  ASSERT_TRUE(first->finish(7).ok());
+  ASSERT_TRUE(first->commit().ok());
+  const auto recording = read_recording(file);
+  ASSERT_TRUE(recording.ok());
+  EXPECT_EQ(recording->readings.size(), 1u);
+  EXPECT_TRUE(RecordingWriter::create(file, sample_header()).ok()) << "the lock ends with the recording";
+}
+
+TEST(RecordingWriter, KeepsWhatACrashLeft) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.jsonl";
+  for (const char* left : {"one", "two"}) {
+    const auto part = folder.write("a.jsonl.part", left);
+    auto writer = RecordingWriter::create(file, sample_header());
+    ASSERT_TRUE(writer.ok());
+    EXPECT_NE(writer->notice(), "");
+    ASSERT_TRUE(writer->finish(0).ok());
+    ASSERT_TRUE(writer->commit().ok());
+    EXPECT_FALSE(std::filesystem::exists(part));
+  }
+  EXPECT_EQ(content_of(folder.path() / "a.jsonl.part.1"), "one");
+  EXPECT_EQ(content_of(folder.path() / "a.jsonl.part.2"), "two");
+  EXPECT_TRUE(read_recording(file).ok());
+}
+
+TEST(RecordingWriter, NeverFollowsALinkThatItWasNotGiven) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.jsonl", foreign = folder.write("foreign", "mine");
+  for (const bool exists : {false, true}) {
+    if (exists) folder.write("a.jsonl", "old");
+    std::filesystem::create_symlink(foreign, file.string() + ".part");
+    auto writer = RecordingWriter::create(file, sample_header());
+    ASSERT_TRUE(writer.ok());
+    ASSERT_TRUE(writer->finish(0).ok());
+    ASSERT_TRUE(writer->commit().ok());
+    EXPECT_EQ(content_of(foreign), "mine");
+    EXPECT_TRUE(read_recording(file).ok());
+  }
+}
+
+TEST(RecordingWriter, WritesThroughALinkThatItWasGivenAndKeepsTheMode) {
+  const TemporaryFolder folder;
+  const auto target = folder.write("target.jsonl", "old"), link = folder.path() / "link.jsonl";
+  std::filesystem::permissions(target, std::filesystem::perms(0600));
+  std::filesystem::create_symlink(target, link);
+  auto writer = RecordingWriter::create(link, sample_header());
+  ASSERT_TRUE(writer.ok());
+  EXPECT_EQ(writer->written_file(), std::filesystem::canonical(folder.path()) / "target.jsonl.part");
+  ASSERT_TRUE(writer->finish(0).ok());
+  ASSERT_TRUE(writer->commit().ok());
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_TRUE(read_recording(target).ok());
+  EXPECT_EQ(std::filesystem::status(target).permissions(), std::filesystem::perms(0600));
+}
+
+TEST(RecordingWriter, KeepsTheNumberOfMissedTicks) {
+  const TemporaryFolder folder;
+  auto writer = RecordingWriter::create(folder.path() / "a.jsonl", sample_header());
+  ASSERT_TRUE(writer.ok());
+  ASSERT_TRUE(writer->finish(0, 129).ok());
+  ASSERT_TRUE(writer->commit().ok());
+  const auto recording = read_recording(folder.path() / "a.jsonl");
+  ASSERT_TRUE(recording.ok());
+  EXPECT_EQ(recording->missed, 129u);
 }
 
 }  // namespace

@@ -55,7 +55,9 @@ Status write_sample_recording(const std::filesystem::path& file, const std::vect
     if (status.ok()) status = writer->reading(reading);
     if (!status.ok()) return status;
   }
-  return finish ? writer->finish(pretended_hash(writer->tick())) : Status();
+  if (!finish) return {};
+  if (Status finished = writer->finish(pretended_hash(writer->tick())); !finished) return finished;
+  return writer->commit();
 }
 
 Status write_again(const Recording& recording, const std::filesystem::path& file) {
@@ -79,7 +81,9 @@ Status write_again(const Recording& recording, const std::filesystem::path& file
     if (Status status = writer->reading(reading); !status.ok()) return status;
   }
   if (Status status = give_commands(); !status.ok()) return status;
-  return recording.end ? writer->finish(recording.end->state_hash) : Status();
+  if (!recording.end) return {};
+  if (Status finished = writer->finish(recording.end->state_hash); !finished) return finished;
+  return writer->commit();
 }
 
 }  // namespace spoonbill

@@ -50,9 +50,9 @@ TEST(OutputFile, AGrowingFileCanBeReadMeanwhileAndStays) {
     auto out = OutputFile::create_growing(file);
     ASSERT_TRUE(out.ok());
     ASSERT_TRUE(out->write("one\n").ok());
-    EXPECT_EQ(content_of(file), "one\n");
+    EXPECT_EQ(content_of(file.string() + ".part"), "one\n");
   }
-  EXPECT_EQ(content_of(file), "one\n");
+  EXPECT_EQ(content_of(file.string() + ".part"), "one\n");
 }
 
 TEST(OutputFile, AGrowingFileReplacesAnOlderAtItsCommit) {
@@ -82,6 +82,36 @@ TEST(OutputFile, KeepsTheMeaningOfWhatItReplaces) {
   }
   EXPECT_FALSE(std::filesystem::exists(real.string() + ".bak"));
   EXPECT_TRUE(flush_to_disk(folder.path()).ok());
+}
+
+TEST(OutputFile, ANameOfTheProgramsOwnIsNeverFollowed) {
+  const TemporaryFolder folder;
+  const auto foreign = folder.write("foreign", "mine"), link = folder.path() / "saved-a.json";
+  for (const auto target : {foreign, folder.path() / "missing"}) {
+    std::filesystem::remove(link);
+    std::filesystem::create_symlink(target, link);
+    ASSERT_TRUE(replace_file(link, "new", {NamedBy::program}).ok());
+    EXPECT_FALSE(std::filesystem::is_symlink(link));
+    EXPECT_EQ(content_of(link), "new");
+  }
+  EXPECT_EQ(content_of(foreign), "mine");
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "missing"));
+  const auto pipe = folder.path() / "picture-a.png";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  ASSERT_TRUE(write_file(pipe, "new", Durability::later, {NamedBy::program}).ok());
+  EXPECT_EQ(content_of(pipe), "new");
+}
+
+TEST(OutputFile, AReadOnlyFileStays) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("a.csv", "old");
+  std::filesystem::permissions(file, std::filesystem::perms(0444));
+  EXPECT_EQ(write_file(file, "new").error().code, ErrorCode::unwritable);
+  EXPECT_EQ(OutputFile::create_growing(file).error().code, ErrorCode::unwritable);
+  EXPECT_EQ(content_of(file), "old");
+  ASSERT_TRUE(write_file(file, "new", Durability::now, {NamedBy::person, true}).ok());
+  EXPECT_EQ(content_of(file), "new");
+  EXPECT_EQ(std::filesystem::status(file).permissions(), std::filesystem::perms(0444));
 }
 
 TEST(OutputFile, WritesDevicesAsTheyAre) {
