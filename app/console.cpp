@@ -3,9 +3,8 @@
 #include <ctime>
 #include <string_view>
 
-#include "engine/base/text.h"
-
 #include "app/stop_signals.h"
+#include "engine/base/text.h"
 
 namespace spoonbill {
 

@@ -33,7 +33,7 @@ struct PanelModel {
   int plane_count = 0;
   int fixed_node_count = 0;
   int node_count = 0;
-  int unheld_count = 0;      // bodies without fixed nodes
+  int unheld_count = 0;  // bodies without fixed nodes
   bool has_ground = false;
 
   double residual_m = 0.0;  // largest distance by which a surface lags behind its lattice

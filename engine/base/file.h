@@ -35,9 +35,9 @@ std::string read_last_bytes(const std::filesystem::path& file, std::size_t count
 // `later`, then flushed by one call of flush_to_disk().
 enum class Durability { now, later };
 
-// The one who has chosen a file's name. A name that a person gave may be a link, which is written through to its
-// target, or a device or pipe, which is written directly. A name that the program, a script or a recording
-// made may lie in a folder from elsewhere: whatever has that name is replaced, and never followed.
+// The one who has chosen a file's name. A name that a person gave may be a link, which is written through to
+// its target, or a device or pipe, which is written directly. A name that the program, a script or a
+// recording made may lie in a folder from elsewhere: whatever has that name is replaced, and never followed.
 enum class NamedBy { person, program };
 
 // How a file is written over what already has its name. A regular file without permission to write is

@@ -116,7 +116,8 @@ Result<Material> read_material(const std::filesystem::path& file);
 //   {"command": "set_tool", "kind", "action", "radius_mm", "iterations", and for a solid "solid", "soft"}
 //   {"command": "keep_shape"}
 //   {"command": "set_material", "name", "source", "youngs_modulus_pa", ..., and optionally "body": 1}
-//   {"command": "set_sculpting", "damping_per_s", "gravity_m_per_s2", "force_scale", optionally "settles", "free"}
+//   {"command": "set_sculpting", "damping_per_s", "gravity_m_per_s2", "force_scale", optionally "settles",
+//   "free"}
 //   {"command": "set_symmetry", "on", "point_mm", "normal"}
 //   {"command": "reset_proxy"}
 //   {"command": "lift_tool"}

@@ -24,7 +24,7 @@ struct Sculpting {
   double force_scale = 1.0;  // newtons at the hand per newton of contact
   // Damps each body critically as well, so that it comes to rest without ringing
   // (critical_damping_per_s()).
-  bool settles = false;
+  bool is_critically_damped = false;
   // Lets a body that nothing fixes move away. Without it, and without gravity and ground, the body keeps its
   // mean position and orientation, as in a gentle hand (keeps_place()).
   bool free = false;
@@ -75,7 +75,7 @@ inline constexpr auto fields_of<Sculpting> = std::to_array<Field<Sculpting>>({
                  FieldUnit::metre_per_s2),
     number_field("force_scale", &Sculpting::force_scale, force_scale_range, FieldUnit::times)
         .with_slider({"Force scale", {0.01, 100.0}, true}),
-    switch_field("settles", &Sculpting::settles).optional(),
+    switch_field("settles", &Sculpting::is_critically_damped).optional(),
     switch_field("free", &Sculpting::free).optional(),
 });
 
