@@ -168,6 +168,12 @@ struct HapticLoop::State {
   RealTimeGrant grant;
   std::thread thread;
 
+  // Ends the real-time scheduling of a thread that is too long in one tick. Runs ahead of it, and only where
+  // it is first-in-first-out.
+  std::thread watcher;
+  std::atomic<std::int64_t> tick_begin_ns{0};  // 0 between ticks
+  std::atomic<bool> fifo{false};
+
   std::atomic<bool> started{false};
   std::atomic<bool> stopping{false};
   std::atomic<std::uint64_t> late{0};
@@ -177,6 +183,7 @@ struct HapticLoop::State {
   DurationHistogram work;
 
   void run() noexcept;
+  void watch() noexcept;
   void tick_at(std::int64_t begin_ns, std::int64_t lateness_ns, LoopTick& tick);
   void end();
 };
@@ -209,7 +216,9 @@ void HapticLoop::State::tick_at(std::int64_t begin_ns, std::int64_t lateness_ns,
     late.store(late.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   }
   lateness.add(lateness_ns);
+  tick_begin_ns.store(begin_ns, std::memory_order_relaxed);
   body(tick);
+  tick_begin_ns.store(0, std::memory_order_relaxed);
   work.add(now_ns() - begin_ns);
   ++tick.index;
 }
@@ -231,9 +240,23 @@ void HapticLoop::State::run() noexcept {
   }
 }
 
+void HapticLoop::State::watch() noexcept {
+  const auto longest_ns = std::llround(longest_real_time_tick_s * 1e9);
+  while (!stopping.load(std::memory_order_acquire)) {
+    sleep_until(now_ns() + longest_ns / 5);
+    const std::int64_t begin_ns = tick_begin_ns.load(std::memory_order_relaxed);
+    if (begin_ns == 0 || now_ns() - begin_ns <= longest_ns) continue;
+    const sched_param ordinary{};
+    pthread_setschedparam(thread.native_handle(), SCHED_OTHER, &ordinary);
+    fifo.store(false, std::memory_order_relaxed);
+    return;
+  }
+}
+
 void HapticLoop::State::end() {
   if (!thread.joinable()) return;
   stopping.store(true, std::memory_order_release);
+  if (watcher.joinable()) watcher.join();
   thread.join();
   release_real_time(grant);
 }
@@ -254,6 +277,15 @@ Result<HapticLoop> HapticLoop::start(const LoopSettings& settings,
                  std::string("the haptic thread cannot be started: ") + problem.what()};
   }
   if (settings.real_time) state->grant = grant_real_time(state->thread.native_handle());
+  state->fifo.store(state->grant.fifo, std::memory_order_relaxed);
+  if (state->grant.fifo) {
+    try {
+      state->watcher = std::thread([&inner = *state] { inner.watch(); });
+      set_priority(state->watcher.native_handle(), desired_priority + 1);
+    } catch (const std::system_error&) {
+      // Without a watcher the loop runs as before.
+    }
+  }
   state->started.store(true, std::memory_order_release);
   state->started.notify_one();
   return HapticLoop(std::move(state));
@@ -290,7 +322,7 @@ LoopFigures HapticLoop::figures() const {
   figures.lateness_p999_s = state_->lateness.quantile_s(0.999);
   figures.work_mean_s = state_->work.mean_s();
   figures.work_p99_s = state_->work.quantile_s(0.99);
-  figures.fifo = state_->grant.fifo;
+  figures.fifo = state_->fifo.load(std::memory_order_relaxed);
   figures.memory_locked = state_->grant.memory_locked;
   figures.notice = state_->grant.notice;
   return figures;

@@ -51,6 +51,10 @@ class DurationHistogram {
 
 inline constexpr Range<double> loop_period_range_s{1e-4, 1.0};
 
+// Longest run of one tick with first-in-first-out scheduling. A thread that takes longer would keep the whole
+// machine waiting; it gets ordinary scheduling for the rest of its life.
+inline constexpr double longest_real_time_tick_s = 0.1;
+
 struct LoopSettings {
   double period_s = 1e-3;
   bool real_time = true;  // requests first-in-first-out scheduling and locked memory
@@ -73,7 +77,9 @@ struct LoopFigures {
   // Run time of the function.
   double work_mean_s = 0.0;
   double work_p99_s = 0.0;
-  bool fifo = false;           // true with first-in-first-out scheduling, ahead of every ordinary thread
+  // True with first-in-first-out scheduling, ahead of every ordinary thread; false again after a tick of more
+  // than longest_real_time_tick_s.
+  bool fifo = false;
   bool memory_locked = false;  // true if the memory in use at the start is locked
   std::string notice;          // one line to show to the user once; empty if everything was permitted
 };

@@ -15,6 +15,8 @@ constexpr double least_second_extent = 1e-6;
 // Largest turn of a sound body in a tick, rad. Beyond it the shape has lost its orientation, for instance by
 // turning inside out, and the turn means nothing.
 constexpr double largest_turn_rad = 0.2;
+// Moves in a tick that are left alone, so that the rounding of a body at rest keeps its bits.
+constexpr double least_move_m = 1e-9, least_turn_rad = 1e-8;
 
 struct MassCentre {
   Vector3 rest_m = Vector3::Zero(), position_m = Vector3::Zero(), velocity_m_per_s = Vector3::Zero();
@@ -106,6 +108,8 @@ bool BodyHold::limit(SpringLattice& lattice, ImplicitSolver* solver, double reac
 void BodyHold::keep_pose(SpringLattice& lattice, ImplicitSolver* solver) const {
   SPOONBILL_ASSERT_DEBUG(!lattice.has_fixed_nodes());
   const MeanPose now = measure(lattice);
+  const bool is_turned = (now.turn - pose_.turn).norm() > least_turn_rad;
+  if (!is_turned && (now.centre_m - pose_.centre_m).norm() <= least_move_m) return;
   const MassCentre centre = find_mass_centre(lattice);
   RigidMove move;
   move.from_m = now.centre_m;

@@ -159,5 +159,19 @@ TEST(HapticLoopDeathTest, AnExceptionEndsTheProgramAloud) {
   EXPECT_DEATH(throwing(), "from the tick");
 }
 
+TEST(HapticLoop, LosesRealTimeSchedulingInALongTick) {
+  std::atomic<bool> is_long{true};
+  auto loop = HapticLoop::start({}, [&](const LoopTick&) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(250);
+    while (is_long.load() && std::chrono::steady_clock::now() < end) {
+    }
+    is_long.store(false);
+  });
+  ASSERT_TRUE(loop.ok());
+  if (!loop->figures().fifo) GTEST_SKIP() << "the system does not permit real-time scheduling";
+  while (is_long.load()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_FALSE(loop->figures().fifo);
+}
+
 }  // namespace
 }  // namespace spoonbill
