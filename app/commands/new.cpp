@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -18,6 +19,7 @@
 #include "engine/base/progress.h"
 #include "engine/base/text.h"
 #include "engine/collision/surfaces/surface_self_collider.h"
+#include "engine/inspection/curvature.h"
 #include "engine/inspection/mass_properties.h"
 #include "engine/material/lattice/shell_lattice.h"
 #include "engine/scene/scene.h"
@@ -42,6 +44,7 @@ struct NewShape {
   ExactShape shape;
   std::optional<double> shell_thickness_m = {};  // of an open shape
   double reach_m = 0.0;                          // see reach_m() of a stock shape; 0 if unknown
+  int degree = 3;
 };
 
 // One subcommand of `spoonbill new`, and the function that makes its shape after parsing.
@@ -83,7 +86,7 @@ std::shared_ptr<std::vector<double>> add_size(OptionSet parser, std::size_t coun
 Result<NewShape> make_stock_shape(const StockShapeSize& size) {
   auto shape = stock_shape(size);
   if (!shape) return shape.error();
-  return NewShape{std::move(shape).value(), {}, reach_m(size)};
+  return NewShape{std::move(shape).value(), {}, reach_m(size), stock_shape_degree(size)};
 }
 
 NewKind add_sphere(OptionSet root) {
@@ -360,6 +363,22 @@ void add_shape_facts(FactSheet& facts, const ExactShape& shape, const FittedShap
   if (closed) facts.add("Volume", volume_text(mass.volume_m3), "volume_m3", mass.volume_m3);
 }
 
+// States the smallest radius of curvature beside the one that the sizes ask for, which a fit within a
+// tolerance of position may miss.
+void add_radius_facts(FactSheet& facts, const Surface& surface, double asked_m) {
+  const CurvatureRange range = find_curvature_range(surface);
+  const double sharpest = range.exists ? std::max(std::abs(range.smallest.curvature_per_m),
+                                                  std::abs(range.largest.curvature_per_m))
+                                       : 0.0;
+  constexpr double flat_per_m = 1e-3;
+  if (!(sharpest > flat_per_m)) return;
+  const bool is_asked = asked_m > 0.0 && std::isfinite(asked_m);
+  facts.add("Smallest radius",
+            short_length_text(1.0 / sharpest) + (is_asked ? ", asked: " + short_length_text(asked_m) : ""),
+            "smallest_radius_m", 1.0 / sharpest);
+  if (is_asked) facts.add("", "", "asked_radius_m", asked_m);
+}
+
 Result<FittedShape> fit_new_shape(const NewOptions& options, const NewShape& made, ShapeFit fit,
                                   Console& console) {
   ShapeJob job(console);
@@ -383,6 +402,9 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   auto made = kind.make();
   if (!made) return made.error();
   ShapeFit fit;
+  const bool too_few =
+      options.control && std::min(options.control->width, options.control->height) <= made->degree;
+  fit.degree = too_few ? 3 : made->degree;
   fit.tolerance_m = options.tolerance_m.value_or(default_tolerance_m(made->shape));
   if (options.control) fit.control_counts = {{options.control->width, options.control->height}};
   auto fitted = fit_new_shape(options, made.value(), fit, console);
@@ -397,6 +419,7 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   facts.add("Kind", kind.parser.name(), "kind", kind.parser.name());
   add_size_fact(facts, extent_of(fitted->surface));
   add_shape_facts(facts, made->shape, fitted.value(), fit.tolerance_m);
+  add_radius_facts(facts, fitted->surface, made->reach_m);
   std::vector<std::string> notes;
   if (made->shape.is_closed() && made->shape.v.periodic) {
     notes.emplace_back("a ring is sculpted in a box of cells: a lattice cannot follow it");

@@ -241,6 +241,7 @@ Result<Document> make_stock_shape_document(const StockShapeChoice& choice, const
   const auto shape = stock_shape(sized.size);
   if (!shape) return shape.error();
   ShapeFit fit;
+  fit.degree = stock_shape_degree(sized.size);
   fit.tolerance_m = std::min(stock_shape_tolerance_m, 10.0 * default_tolerance_m(shape.value()));
   auto fitted = fit_shape(shape.value(), fit);
   if (!fitted) return fitted.error();

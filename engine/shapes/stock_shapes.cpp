@@ -419,6 +419,12 @@ Result<ExactShape> stock_shape(const StockShapeSize& size) {
   return std::visit([](const auto& sizes) { return make_shape(sizes); }, size);
 }
 
+int stock_shape_degree(const StockShapeSize& size) {
+  const bool is_round = std::holds_alternative<SphereSize>(size) || std::holds_alternative<TorusSize>(size) ||
+                        std::holds_alternative<CylinderSize>(size) || std::holds_alternative<ConeSize>(size);
+  return is_round ? 5 : 3;
+}
+
 double default_tolerance_m(const ExactShape& shape) {
   SPOONBILL_ASSERT(static_cast<bool>(shape.at));
   constexpr int steps = 16;

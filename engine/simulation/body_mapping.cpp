@@ -215,7 +215,6 @@ Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& curren
     mapping.rest_ = std::move(finer_rest).value();
     mapping.current_ = std::move(finer).value();
   }
-  join_collapsed_edges(mapping.current_);
   mapping.base_ = mapping.current_;
   const KnotVector& v = mapping.rest_.v;
   RefitConstraints constraints{find_fixed_columns(v, fixed), true, true};
@@ -224,14 +223,6 @@ Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& curren
     constraints.keep_last = is_clamped(v, true);
     mapping.first_pole_ = is_pole(mapping.rest_, false);
     mapping.last_pole_ = is_pole(mapping.rest_, true);
-  }
-  for (const NetEdge& edge : find_collapsed_edges(mapping.base_)) {
-    bool is_fixed = false;
-    for (std::size_t k = 0; k < edge.count; ++k) {
-      const std::size_t column = (edge.first + k * edge.stride) % constraints.fixed_columns.size();
-      is_fixed = is_fixed || constraints.fixed_columns[column] != 0;
-    }
-    mapping.collapsed_edges_.push_back({edge, is_fixed});
   }
   Result<SampledRefit> sampled = make_sampled_refit(mapping.rest_, constraints, set);
   if (!sampled.ok()) return sampled.error();
@@ -318,24 +309,12 @@ void BodyMapping::sample_displacements(const SpringLattice& lattice) {
   }
 }
 
-void BodyMapping::join_collapsed_displacements(std::vector<float>& control) const {
-  for (const auto& [points, is_fixed] : collapsed_edges_) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < points.count; ++k) {
-      sum += static_cast<double>(control[points.first + k * points.stride]);
-    }
-    const float mean = is_fixed ? 0.0f : static_cast<float>(sum / static_cast<double>(points.count));
-    for (std::size_t k = 0; k < points.count; ++k) control[points.first + k * points.stride] = mean;
-  }
-}
-
 void BodyMapping::update(const SpringLattice& lattice) {
   sample_displacements(lattice);
   std::vector<double>* net[3] = {&current_.net.x, &current_.net.y, &current_.net.z};
   const std::vector<double>* base[3] = {&base_.net.x, &base_.net.y, &base_.net.z};
   for (int axis = 0; axis < 3; ++axis) {
     refit_.front().control_displacement(sample_[axis].data(), control_[axis].data());
-    join_collapsed_displacements(control_[axis]);
     for (std::size_t p = 0; p < net[axis]->size(); ++p) {
       (*net[axis])[p] = (*base[axis])[p] + static_cast<double>(control_[axis][p]);
     }

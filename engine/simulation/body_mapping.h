@@ -10,7 +10,6 @@
 #include "engine/base/containers.h"
 #include "engine/base/processor.h"
 #include "engine/base/result.h"
-#include "engine/bspline/collapsed_edges.h"
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/surface.h"
@@ -70,9 +69,6 @@ class BodyMapping {
   // Index of the first sample at the same point, over a seam or at a pole; otherwise the sample's own index.
   int find_twin(int row, int column) const;
   void embed(const SpringLattice& lattice);
-  // Gives the control points of each collapsed edge one displacement. The refit leaves them apart by the
-  // rounding of single precision, where curvature would be that of a grain.
-  void join_collapsed_displacements(std::vector<float>& control) const;
   // Embedding of one sample as the tick reads it, without gaps. An unused entry has weight 0.
   struct CellWeights {
     int node[8];
@@ -91,11 +87,6 @@ class BodyMapping {
   AlignedVector<float> base_moves_;        // x, y, z, 0 by sample, at make()
   AlignedVector<float> sample_[3];         // by axis, in the layout of the refit
   std::vector<float> control_[3];
-  struct CollapsedEdge {
-    NetEdge points;
-    bool is_fixed;
-  };
-  std::vector<CollapsedEdge> collapsed_edges_;
   bool first_pole_ = true, last_pole_ = true;    // whether v starts and ends with a pole
   std::vector<DisplacementRefit> refit_;         // one element once made
   std::vector<GridEvaluator<float>> evaluator_;  // one element once made

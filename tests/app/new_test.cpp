@@ -5,6 +5,7 @@
 #include <cmath>
 #include <csignal>
 #include <numbers>
+#include <utility>
 
 #include "app/program.h"
 #include "engine/exchange/document.h"
@@ -39,6 +40,32 @@ TEST(New, ReportsWhatItMade) {
   EXPECT_EQ(body.material.name, "modelling-clay");
   EXPECT_EQ(facts["control_points"][0], body.surface.net.rows);
   EXPECT_EQ(facts["control_points"][1], body.surface.net.columns);
+}
+
+// Shapes that are round as a whole keep their radii; others state what they reach of the radius asked for.
+TEST(New, RoundShapesKeepTheirRadii) {
+  const Workplace place;
+  const auto made = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "new");
+    const Outcome outcome = run(with(arguments, {"--out", place.text("round.json"), "--json"}));
+    EXPECT_EQ(outcome.code, exit_done) << outcome.err;
+    return json_of(outcome.out);
+  };
+  const std::vector<std::pair<std::vector<std::string>, double>> shapes = {
+      {{"sphere", "--radius", "20mm"}, 0.02},
+      {{"torus", "--ring", "40mm", "--tube", "10mm"}, 0.01},
+      {{"cylinder", "--radius", "20mm", "--rounding", "10mm"}, 0.01},
+      {{"cone", "--radius", "30mm"}, 0.003},
+  };
+  for (const auto& [arguments, radius_m] : shapes) {
+    const Json facts = made(arguments);
+    EXPECT_NEAR(facts["smallest_radius_m"], radius_m, 3e-3 * radius_m) << arguments[0];
+    EXPECT_NEAR(facts["asked_radius_m"], radius_m, 1e-12) << arguments[0];
+  }
+  const Json box = made({"box", "--size", "60x40x20mm", "--rounding", "3mm"});
+  EXPECT_NEAR(box["asked_radius_m"], 0.003, 1e-12);
+  EXPECT_GT(box["smallest_radius_m"], 0.0);
+  EXPECT_EQ(made({"sphere", "--control", "4x5"})["control_points"], Json::array({4, 5}));
 }
 
 TEST(New, TakesCountsMaterialAndUnits) {
