@@ -1,5 +1,6 @@
-// What keeps a body in the scene through one tick: the place of a body that nothing fixes, and the return to
-// its last good shape where its lattice cannot follow. Allocates only on construction; one owner, the body.
+// Keeps a body in the scene through one tick: holds the place of a body that nothing fixes, and returns a
+// body to its last good shape if its lattice cannot follow. Allocates only on construction; one owner, the
+// body.
 #pragma once
 
 #include <vector>
