@@ -63,7 +63,7 @@ Status record_input(const RecordOptions& options, const RecordingHeader& header,
     return Session::make(header.document, model, header.device, options.instruction_set, maps.watch());
   }();
   if (!session) return session.error();
-  for (const std::string& note : session->simulation.remarks()) console.err << note << '\n';
+  for (const std::string& note : session->simulation.warnings()) console.err << note << '\n';
   auto writer = RecordingWriter::create(options.out, header, options.how);
   if (!writer) return writer.error();
   if (!writer->notice().empty()) console.err << "spoonbill: " << writer->notice() << '\n';

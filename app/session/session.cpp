@@ -174,11 +174,14 @@ Result<Session> Session::make(const Document& document, const std::string& sourc
   auto simulation = Simulation::make(document.scene, set, watch);
   if (!simulation) return simulation.error().in(source);
   StrokeHistory history(simulation.value());
+  std::vector<BodyMass> masses;
+  for (const Body& body : document.scene.bodies) masses.push_back(mass_of_session(body));
   return Session{document.name,
                  std::move(simulation).value(),
                  CouplingState(),
                  std::move(history),
                  view.value(),
+                 std::move(masses),
                  std::move(device),
                  DeviceReading(),
                  tick_flag_none,
