@@ -87,7 +87,7 @@ TEST(OutputFile, KeepsTheMeaningOfWhatItReplaces) {
 TEST(OutputFile, ANameOfTheProgramsOwnIsNeverFollowed) {
   const TemporaryFolder folder;
   const auto foreign = folder.write("foreign", "mine"), link = folder.path() / "saved-a.json";
-  for (const auto target : {foreign, folder.path() / "missing"}) {
+  for (const std::filesystem::path& target : {foreign, folder.path() / "missing"}) {
     std::filesystem::remove(link);
     std::filesystem::create_symlink(target, link);
     ASSERT_TRUE(replace_file(link, "new", {NamedBy::program}).ok());
