@@ -205,7 +205,7 @@ TEST(PluggedDevice, DrivesTheLockStepLoopThroughTheSameChain) {
   ASSERT_TRUE(session) << session.error().message;
   auto writer = RecordingWriter::create(place.path("plugged.jsonl"), {device.specification(), document});
   ASSERT_TRUE(writer) << writer.error().message;
-  Lockstep lockstep(session.value(), {&device, 4000, {}, {}, {}, "test"}, &writer.value());
+  Lockstep lockstep(session.value(), {&device, 4000, {}, {}, {}, 0, "test"}, &writer.value());
   ASSERT_TRUE(lockstep.run_to(400));
   EXPECT_GT(hardware->noticeable_ticks, 20U);
   std::uint64_t tick = lockstep.tick();

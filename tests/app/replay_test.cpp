@@ -86,7 +86,8 @@ TEST(Replay, NeverFollowsALinkInItsFolder) {
   std::filesystem::create_directory(place.path("out"));
   for (const char* name : {"frame-0000.png", "picture-a.png", "saved-a.json", "contact-sheet.png"}) {
     std::filesystem::create_symlink(own, place.path("out") / name);
-    for (const std::string end : {".part", ".new", ".new-" + std::to_string(getpid())}) {
+    for (const std::string& end :
+         {std::string(".part"), std::string(".new"), ".new-" + std::to_string(getpid())}) {
       std::filesystem::create_symlink(own, place.path("out") / (name + end));
     }
   }
@@ -134,7 +135,7 @@ TEST(Session, SavesAtOneTickShareADocument) {
   auto session = Session::make(held_handle(), "test", {}, best_instruction_set());
   ASSERT_TRUE(session);
   for (int n = 0; n < 900; ++n) {
-    ASSERT_TRUE(apply_request(*session, MarkFile{FileMarkKind::document, std::to_string(n % 450)}));
+    ASSERT_TRUE(apply_request(session.value(), MarkFile{FileMarkKind::document, std::to_string(n % 450)}));
   }
   ASSERT_EQ(session->marks.size(), 450u);
   for (const FileMark& mark : session->marks) EXPECT_EQ(mark.document, session->marks[0].document);
@@ -142,13 +143,13 @@ TEST(Session, SavesAtOneTickShareADocument) {
   Status saved;
   int count = 0;
   for (; saved && count < 900; ++count) {
-    ASSERT_TRUE(apply_request(*session, RemovePlanes{}));
-    saved = apply_request(*session, MarkFile{FileMarkKind::document, std::to_string(count)});
+    ASSERT_TRUE(apply_request(session.value(), RemovePlanes{}));
+    saved = apply_request(session.value(), MarkFile{FileMarkKind::document, std::to_string(count)});
   }
   EXPECT_LT(count, 30);
   EXPECT_EQ(saved.error().code, ErrorCode::too_many);
-  advance(*session, {});
-  EXPECT_TRUE(apply_request(*session, MarkFile{FileMarkKind::document, "later"}));
+  advance(session.value(), {});
+  EXPECT_TRUE(apply_request(session.value(), MarkFile{FileMarkKind::document, "later"}));
 }
 
 TEST(Replay, LeavesFramesAndContactSheet) {

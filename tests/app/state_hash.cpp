@@ -19,8 +19,8 @@ Result<std::string> hash_of(const char* file) {
       Session::make(recording->header.document, file, recording->header.device, best_instruction_set());
   if (!session) return session.error();
   PlaybackDevice device(recording->header.device, recording->readings);
-  Lockstep lockstep(session.value(), {&device, recording->readings.size(), recording->commands, {}, {}, file},
-                    nullptr);
+  Lockstep lockstep(session.value(),
+                    {&device, recording->readings.size(), recording->commands, {}, {}, 0, file}, nullptr);
   if (Status ran = lockstep.run_to(lockstep.tick_count()); !ran) return ran.error();
   if (Status finished = lockstep.finish(); !finished) return finished.error();
   return hash_text(state_hash(session.value()));

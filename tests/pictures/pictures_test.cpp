@@ -71,7 +71,8 @@ class MomentPictures : public ::testing::Test {
 
     PlaybackDevice device(recording->header.device, recording->readings);
     const std::uint64_t ticks = recording->readings.size();
-    Lockstep lockstep(session.value(), {&device, ticks, recording->commands, {}, {}, "recording"}, nullptr);
+    Lockstep lockstep(session.value(), {&device, ticks, recording->commands, {}, {}, 0, "recording"},
+                      nullptr);
     const auto frame = static_cast<std::uint64_t>(moment.share * static_cast<double>(frame_count(ticks) - 1));
     EXPECT_TRUE(lockstep.run_to(frame_tick(frame)));
     session->flags = tick_flag_none;  // of many frames at once
