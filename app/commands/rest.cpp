@@ -35,7 +35,8 @@ void add_rest_body(FactSheet& facts, const Body& body, const RestShape& shape, J
   const Vector3 displacement = shape.result.displacement_m[furthest], position = shape.mesh.nodes[furthest];
   facts.add("Body", body.name, "", nullptr);
   facts.add("  Fixed nodes",
-            std::to_string(shape.fixed_nodes) + " of " + std::to_string(shape.mesh.node_count()), "", nullptr);
+            std::to_string(shape.fixed_nodes) + " of " + std::to_string(shape.mesh.node_count()), "",
+            nullptr);
   const bool nothing_moves = shape.result.is_fixed_everywhere && displacement.isZero(0.0);
   facts.add("  Displaced",
             nothing_moves
