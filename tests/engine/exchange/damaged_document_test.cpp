@@ -1,4 +1,4 @@
-// Damaged documents are read or refused in one line, and never crash the program.
+// Damaged documents must be read, or refused with a message of one line; they must never crash the program.
 #include <gtest/gtest.h>
 
 #include <random>

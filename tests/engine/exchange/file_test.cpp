@@ -71,7 +71,7 @@ TEST(File, FollowsLinksAndKeepsPermissions) {
   EXPECT_EQ(std::filesystem::status(file).permissions(), std::filesystem::perms(0640));
 }
 
-// Permissions shared with a group stay, and nothing is written through a symbolic link.
+// Permissions of the group are preserved whatever the umask, and nothing is written through a symbolic link.
 TEST(File, KeepsPermissionsThatTheMaskTakesAway) {
   const TemporaryFolder folder;
   const auto file = folder.write("shared.json", "one"), other = folder.write("other", "untouched");
@@ -147,7 +147,7 @@ TEST(File, AKillDuringASaveLeavesAWholeDocument) {
     EXPECT_TRUE(is_other || same_bits(one, read.value()));
     changed += is_other ? 1 : 0;
   }
-  EXPECT_GT(changed, 0);  // otherwise no save was completed
+  EXPECT_GT(changed, 0);  // at least one save was completed before its kill
 }
 
 TEST(File, NeverReplacesADocumentByOneThatCannotBeRead) {

@@ -1,4 +1,4 @@
-// Meshes written and read again by Assimp (STL, OBJ, PLY) and libzip (3MF).
+// Tests that meshes are the same when Assimp (STL, OBJ, PLY) or libzip (3MF) reads them back.
 #include "engine/exchange/mesh_export/mesh_writer.h"
 
 #include <gtest/gtest.h>
@@ -69,7 +69,7 @@ TEST_F(MeshWriter, AssimpReadsTheSameTriangles) {
     SCOPED_TRACE(name);
     const TriangleMesh back = read(name, bytes_of(meshes, format, unit_m));
     EXPECT_EQ(back.triangles.size(), triangles);
-    // Assimp keeps single precision.
+    // Assimp stores coordinates in single precision.
     EXPECT_NEAR(enclosed_volume_m3(back) * std::pow(unit_m, 3), volume, 1e-5 * volume);
   }
 }
@@ -125,8 +125,8 @@ TEST_F(MeshWriter, ARefusalOfTheTakerEndsIt) {
   }
 }
 
-// A zip is complete before its first byte is written, so the progress function is called while it is built
-// and packed.
+// A zip archive is complete before its first byte is written, so the progress function is called while the
+// archive is built and packed.
 TEST_F(MeshWriter, ThreeMfAsksWhetherToGoOn) {
   const std::vector<NamedMesh> meshes = {
       {"fine", tessellate(ellipsoid_tube(8, 10, {0, 0, 0}), {}, 2e-5).value().mesh, true}};

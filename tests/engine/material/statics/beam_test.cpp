@@ -1,4 +1,4 @@
-// Cantilevers at rest under load, against beam theory.
+// Tests cantilevers at rest under load against beam theory.
 #include <gtest/gtest.h>
 
 #include <Eigen/SparseCholesky>
@@ -15,10 +15,10 @@ namespace {
 struct Beam {
   Vector3 size_m;
   std::array<int, 3> counts;
-  double force_n;  // at the far end of x, towards -z
+  double force_n;  // acts at the far end of x, towards -z
 };
 
-// Returns the mean displacement of the far end if the near end is fixed in all directions.
+// Returns how far the far end sinks, as a mean, if the near end is fixed in all directions.
 double sinking_m(const Beam& beam, const Material& material, CellKind kind) {
   const LatticeMesh mesh = box_mesh(beam.size_m, beam.counts);
   std::vector<FixedAxis> held;
@@ -40,8 +40,8 @@ double euler_bernoulli_m(const Beam& beam, double youngs_modulus_pa) {
   return beam.force_n * std::pow(beam.size_m.x(), 3) / (3.0 * youngs_modulus_pa * second_moment);
 }
 
-// The springs of a cube without body diagonals: k = 2 E a / 5 of edges, which four cells share, and of face
-// diagonals, which two do.
+// Returns a cube's springs without body diagonals: k = 2 E a / 5 for each edge, which four cells share, and
+// for each face diagonal, which two cells share.
 CellSprings cube_without_body_diagonals(double edge_m, double youngs_modulus_pa) {
   CellSprings springs;
   springs.volume_m3 = edge_m * edge_m * edge_m;
@@ -80,12 +80,14 @@ double linear_sinking_m(const Beam& beam, const CellMatrix& stiffness) {
   return sum;
 }
 
-// What shear adds to the sinking by Euler and Bernoulli: 1 + 0.75 (h / L)^2 at nu = 1/4 and L = 10 h.
+// Ratio of the sinking with shear to that by Euler and Bernoulli: 1 + 0.75 (h / L)^2 at nu = 1/4 and L = 10
+// h.
 constexpr double timoshenko_ratio = 1.0075;
 
-// Springs need many cells through the thickness, hexahedra one: length ten times the height, a square cross
-// section, cubes, nu = 1/4. The published ratios to Euler and Bernoulli are of springs without body
-// diagonals; those of this lattice, which keep it from folding, make it a little stiffer.
+// Springs need many cells through the thickness, hexahedra need one. The beam is ten times as long as high,
+// with a square cross section, cubic cells and nu = 1/4. The published ratios to Euler and Bernoulli are for
+// springs without body diagonals; this lattice has body diagonals, which keep cells from folding, and is
+// slightly stiffer.
 TEST(Beam, CellsNearABeamWithTheirNumber) {
   const double published[] = {0.544, 0.812, 0.905, 0.944};
   for (int cells = 1; cells <= 4; ++cells) {
