@@ -5,7 +5,7 @@
 
 #include "tests/fuzz/fuzz_target.h"
 
-// libFuzzer's names, not ours.
+// libFuzzer prescribes the function's name.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace spoonbill;
   static const FuzzTarget* const target = [] {

@@ -137,7 +137,7 @@ TEST_F(Rendering, EveryOverlayShows) {
   }
 }
 
-// A bar on ground that the body hides is drawn all the same.
+// The scale bar on the ground is drawn even if a body hides it.
 TEST_F(Rendering, TheScaleBarShowsBeforeABody) {
   const Viewport viewport = make_viewport(sample_width_px, sample_height_px, {});
   settings_.overlays = Overlays{};
@@ -236,7 +236,7 @@ TEST_F(Rendering, MaterialsDiffer) {
   }
 }
 
-// The silhouette is smooth: between background and body lie pixels of neither colour.
+// The silhouette is smooth: between background and body there are pixels of intermediate colours.
 TEST_F(Rendering, FourSamplesSmoothTheEdges) {
   settings_.overlays = {};
   settings_.overlays.fixed_nodes = settings_.overlays.fixing_planes = settings_.overlays.ground_grid = false;

@@ -1,4 +1,5 @@
-// A display in memory (Xvfb) for tests of windows; DISPLAY names it as long as it lives. One at a time.
+// A display in memory (Xvfb) for tests of windows. DISPLAY names it while the object exists. Only one may
+// exist at a time.
 #pragma once
 
 #include <sys/types.h>
@@ -13,8 +14,8 @@ namespace spoonbill {
 
 class VirtualDisplay {
  public:
-  // Starts Xvfb under a number that it chooses itself, so that tests can run beside each other. Refused: Xvfb
-  // is not installed or does not come up.
+  // Starts Xvfb under a number that it chooses itself, so that tests can run in parallel. Fails if Xvfb is
+  // not installed or does not start.
   static Result<std::unique_ptr<VirtualDisplay>> start(int width_px, int height_px);
 
   ~VirtualDisplay();

@@ -268,7 +268,7 @@ TEST_F(CadReader, AUseWithoutANameHasItsPartsName) {
             6);
 }
 
-// One corner of the long plate is off the rectangle by a hundred-thousandth of its length.
+// One corner of the plate, which is 90 m long, is 0.5 mm off the rectangle.
 TEST_F(CadReader, ASlantThatExceedsTheToleranceIsATrim) {
   BRepBuilderAPI_MakePolygon outline(gp_Pnt(0, 0, 0), gp_Pnt(90000, 0, 0), gp_Pnt(89999.5, 900, 0),
                                      gp_Pnt(0, 900, 0), true);

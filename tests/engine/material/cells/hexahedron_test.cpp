@@ -157,7 +157,7 @@ TEST(CorotatedCell, KeepsTheDigitsOfSmallTurns) {
   Eigen::Matrix3d change;
   change << 0.0, -axis.z(), axis.y(), axis.z(), 0.0, -axis.x(), -axis.y(), axis.x(), 0.0;
   const Eigen::Matrix3d turn = nearest_turn(change);
-  // The tolerance is the relative size of the term a^3 / 6 of sin(a), about 1e-12.
+  // sin(a) differs from a by a^3 / 6, which is less than 1e-12 of a.
   EXPECT_LT((0.5 * (turn - turn.transpose()) - change).norm(), 1e-12 * change.norm());
 }
 

@@ -54,9 +54,9 @@ TEST(BoxLattice, WeighsWhatTheSolidWeighsAndIsNoFasterForItsParts) {
   }
   EXPECT_NEAR(sum / lattice.mass_kg(), 1.0, 1e-6);
   EXPECT_LT((middle / sum).norm(), 1e-3 * 0.02) << "in its middle";
-  // The moment of inertia of a ball about each axis is m r^2 2 / 5, so that this sum is m r^2 / 5. Mass at
-  // the corners of cells a quarter of the radius wide is farther out, which adds a twentieth; partly filled
-  // cells add as much again.
+  // The mass times the square of each coordinate adds up to m r^2 / 5 for a ball. Mass at the corners of
+  // cells a quarter of the radius wide is farther out, which adds a twentieth; partly filled cells add as
+  // much again.
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(inertia(axis, axis) / (sum * 0.02 * 0.02 / 5.0), 1.0, 0.15);
   }

@@ -202,7 +202,7 @@ TEST(ShellLattice, RingUnderPressureHasNoSeam) {
   const int far = mesh.count[1] - 1;
   for (int i = 0; i + 1 < mesh.count[0]; ++i) {
     for (int k = 0; k + 1 < mesh.count[2]; ++k) {
-      // The corners are in the order that faces the centre of the ring.
+      // The corners must run counter-clockwise as seen from the centre of the ring.
       PressedFace face{{mesh.index(i, far, k), mesh.index(i + 1, far, k), mesh.index(i + 1, far, k + 1),
                         mesh.index(i, far, k + 1)},
                        pressure};

@@ -233,8 +233,8 @@ TEST(CompositeSprings, OnlyThePlasticHalfKeepsItsLength) {
 }
 
 // In a bar that is held stretched, the half that creeps yields to the other half. Finally half of its shear
-// stress is gone and none of its pressure: with K = E / 1.2 and G = E / 5.2 halved, its modulus is 9 K G / (3
-// K + G) = 0.536 E.
+// stress is gone and none of its pressure: with K = E / 1.2 and half the shear modulus, G = E / 5.2, its
+// modulus is 9 K G / (3 K + G) = 0.536 E.
 TEST(CompositeSprings, OnlyTheGelCreeps) {
   Material gel = elastic_material(4e3, 0.3, 1000.0), rubber = elastic_material(4e3, 0.3, 1000.0);
   gel.relaxing_fraction = 0.5;

@@ -98,7 +98,8 @@ TEST(Beam, CellsNearABeamWithTheirNumber) {
     CellMoves none;
     none.fill(Vector3::Zero());
     const CellMatrix stiffness = plain.respond(none, Tangent::plain).tangent;
-    // Three digits are published; Poisson's ratio is free at the far end and not at the held one.
+    // The bound allows for the three published digits and for Poisson's ratio, which acts at the far end but
+    // not at the fixed end.
     EXPECT_NEAR(linear_sinking_m(beam, stiffness) / exact, published[cells - 1], 0.002) << cells;
     const double ours = sinking_m(beam, elastic_material(1e9, 0.25, 1000.0), CellKind::springs) / exact;
     EXPECT_LT(ours, published[cells - 1]);
@@ -112,10 +113,12 @@ TEST(Beam, CellsNearABeamWithTheirNumber) {
 
 struct Stiff {
   const char* name;
-  double youngs_modulus_pa, poissons_ratio, sinking_m;  // the last by Timoshenko, of the spoon-like beam
+  // `sinking_m` is that of the spoon-like beam by Timoshenko.
+  double youngs_modulus_pa, poissons_ratio, sinking_m;
 };
 
-// 100 x 12 x 3 mm under 0.2 N, within the default budget of nodes, in four materials.
+// The beam measures 100 x 12 x 3 mm, carries 0.2 N and is within the default budget of nodes; it is tested in
+// four materials.
 TEST(Beam, SpoonLikeBeamsSinkAsTimoshenkoSays) {
   const Beam beam{{0.1, 0.012, 0.003}, {51, 7, 3}, 0.2};
   EXPECT_LE(beam.counts[0] * beam.counts[1] * beam.counts[2], LatticeRequest{}.node_budget);
@@ -128,8 +131,9 @@ TEST(Beam, SpoonLikeBeamsSinkAsTimoshenkoSays) {
   }
 }
 
-// The tip of a cantilever that bends far under a force that keeps its direction: E I t'' = -P cos(t), t the
-// slope along the arc, t(0) = 0, t'(L) = 0, by shooting with the curvature at the root.
+// Returns how far the tip of a cantilever of length 1 sinks under a large force that keeps its direction,
+// where load = P L^2 / E I. Solves E I t'' = -P cos(t) for the slope t along the arc, with t(0) = 0 and t'(L)
+// = 0, by shooting with the curvature at the root.
 double elastica_sinking(double load) {
   const auto march = [&](double curvature) {
     constexpr int steps = 4000;
@@ -153,7 +157,7 @@ double elastica_sinking(double load) {
 }
 
 TEST(Beam, SiliconeBendsAsAnElastica) {
-  // Bisshopp and Drucker (1945): a load P L^2 / E I of 1 sinks the tip by 0.3017 L, of 2 by 0.4935 L.
+  // A load P L^2 / E I of 1 makes the tip sink by 0.3017 L, and of 2 by 0.4935 L (Bisshopp and Drucker 1945).
   EXPECT_NEAR(elastica_sinking(1.0), 0.3017, 1e-4);
   EXPECT_NEAR(elastica_sinking(2.0), 0.4935, 1e-4);
   const double youngs = 5e6, bending = youngs * 0.012 * std::pow(0.003, 3) / 12.0;
