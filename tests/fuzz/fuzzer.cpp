@@ -1,4 +1,4 @@
-// libFuzzer's entry for one target, whose name the build gives.
+// libFuzzer entry point for one target, whose name the build defines.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

@@ -23,8 +23,8 @@ constexpr double rounding_j = 3.3e-6;
 
 struct WallPress {
   Hand hand;
-  double depth_m = 0.0;       // depth of the target below the wall's surface
-  double frequency_hz = 0.0;  // frequency of moving in and out
+  double depth_m = 0.0;       // depth of the hand's target below the wall's surface
+  double frequency_hz = 0.0;  // frequency at which the target moves in and out
 };
 
 double evenly(std::mt19937_64& random, double low, double high) {

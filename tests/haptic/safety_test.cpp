@@ -99,7 +99,7 @@ TEST(Safety, AJumpComesInNoFasterThanTheForceMayChange) {
   EXPECT_NEAR(make_safe(state, device, wanting(-3.0)).force_n.x(), most, 1e-12);
 }
 
-// A cut is the one step that may be larger than the limit on the change.
+// A cut may change the force by more than the limit on its change; nothing else may.
 void expect_cut(const SafetyInput& fault, std::uint32_t flag) {
   SafetyState state = pressing_state(3.0);
   ASSERT_GT(3.0, device.maximum_force_rate_n_per_s * tick_s);

@@ -91,8 +91,7 @@ TEST(SpaceMouse, FollowsTheDaemonsEventsUntilItLeaves) {
   EXPECT_FALSE(mouse->poll().has_value());
 }
 
-// Buttons other than the main one do not count as use, or it would react to the buttons of the mouse beside
-// it.
+// A hand resting on the cap does not count as use of the SpaceMouse, nor do buttons other than the main one.
 TEST(SpaceMouse, IsUsedWhileItsCapIsAwayFromRestOrItsMainButtonChanges) {
   Daemon daemon;
   auto mouse = SpaceMouse::open();

@@ -60,7 +60,7 @@ TEST(MeshShading, IsSmoothOnABallAndFollowsItsShape) {
   surface.update(mesh);
   EXPECT_EQ(surface.topology_version(), version);
   for (const Drawn& each : drawn(surface)) {
-    // the exact normal of an ellipsoid
+    // `wanted` is the exact normal of an ellipsoid
     const Eigen::Vector3f wanted =
         Eigen::Vector3f(each.position.x(), 16.0f * each.position.y(), each.position.z()).normalized();
     EXPECT_GT(each.normal.dot(wanted), 0.98f);

@@ -24,7 +24,7 @@
 namespace spoonbill {
 namespace {
 
-// Two renderings of the same view agree within this in every block; see worst_block_difference().
+// Two renderings of the same view may differ by at most this in any block; see worst_block_difference().
 constexpr double tolerance = 2.0;
 
 constexpr const char* font_path = "/usr/share/fonts/truetype/roboto/unhinted/RobotoTTF/Roboto-Regular.ttf";

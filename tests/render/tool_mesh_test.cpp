@@ -185,7 +185,7 @@ TEST(ToolMesh, NormalsOfSmoothShapesAreThoseOfTheDistance) {
       const Vector3 at = mesh.vertices[i].position_m.cast<double>();
       const Vector3 normal = mesh.vertices[i].normal.cast<double>();
       constexpr double step_m = 5e-7;
-      // Positions in single precision are off by some nanometres.
+      // The bounds allow for positions in single precision, which are off by some nanometres.
       EXPECT_NEAR(distance->at(at).distance_m, 0.0, 5e-9);
       EXPECT_NEAR(distance->at(at + step_m * normal).distance_m, step_m, 1e-8);
     }

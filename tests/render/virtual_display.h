@@ -24,10 +24,10 @@ class VirtualDisplay {
 
   const std::string& name() const { return name_; }
 
-  // Returns the upper left part of the display. There is no window manager: windows are in that corner.
+  // Returns the upper left part of the display, where all windows are because there is no window manager.
   Image screenshot(int width_px, int height_px) const;
 
-  // Sets the density that windows opened later read from the display: 96 is a scale of 1.
+  // Sets the density that windows opened later read from the display: 96 dots per inch are a scale of 1.
   void set_dots_per_inch(int dots_per_inch) const;
 
  private:

@@ -74,7 +74,7 @@ Json rewritten_schema(Json schema) {
   return schema;
 }
 
-// With SPOONBILL_APPROVE=1 the schema file is rewritten.
+// With SPOONBILL_APPROVE=1 the test rewrites the schema file.
 TEST(DocumentSchema, SaysWhatTheTablesOfFieldsSay) {
   const auto schema = parse_json(text_of(schema_file), schema_file);
   ASSERT_TRUE(schema.ok()) << schema.error().message;

@@ -180,7 +180,7 @@ TEST(Document, RefusesWrongMaterialsWithTheRange) {
             "sample.json: body.material.youngs_modulus_pa is -200000.0, must be 1 to 1e+12");
   EXPECT_EQ(with("youngs_modulus_pa", "200 kPa"),
             "sample.json: body.material.youngs_modulus_pa is \"200 kPa\", must be a number");
-  EXPECT_EQ(with("youngs_modulus_pa", nullptr),  // JSON writes a number that is not finite as null
+  EXPECT_EQ(with("youngs_modulus_pa", nullptr),  // JSON represents a number that is not finite as null
             "sample.json: body.material.youngs_modulus_pa is null, must be a number");
   EXPECT_EQ(with("density_kg_per_m3", 0),
             "sample.json: body.material.density_kg_per_m3 is 0, must be 1 to 30000");

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double strain = 1e-5;
 
-// Returns the central half of the handle, which is straight along x; its slices are planes.
+// Returns the central half of the handle's lattice, which is straight along x and whose slices are plane.
 LatticeMesh middle_half(const LatticeMesh& whole) {
   const int last = whole.count[2] - 1, first_slice = last / 4, last_slice = last - last / 4;
   LatticeMesh part;

@@ -70,7 +70,7 @@ TEST(TrimJson, RefusesWhatIsNoLoop) {
   EXPECT_EQ(trim_refusal([](Json& trims) { trims = 1; }), place + " is 1, must be a list of 0 to 1000");
 }
 
-// A document of version 1 is written as version 2: only the version differs.
+// A document of version 1 is written as version 2 with only the version changed.
 TEST(TrimJson, ADocumentOfVersionOneIsReadAndWrittenAsVersionTwo) {
   const auto read = read_document(documents / "version-1.json");
   ASSERT_TRUE(read.ok()) << read.error().message;

@@ -12,8 +12,8 @@ namespace spoonbill {
 namespace {
 
 using std::numbers::pi;
-// The rounding of a box or plate. Seen along `axis`, the outline is a rectangle with corners rounded by
-// `edge_m`. The edges of the end faces are rounded by `end_m`.
+// The rounding of a box or plate. Along `axis`, the outline is a rectangle whose corners are rounded by
+// `edge_m`. The edges between the end faces and the sides are rounded by `end_m`.
 struct Rounded {
   Vector3 size_m;
   int axis;

@@ -136,7 +136,7 @@ TEST_F(CadReader, AssembliesArePlacedAndNamed) {
   // them.
   EXPECT_LT((middle_of(found.surfaces, "wheel") - Vector3(0.1, 0.0, 0.001)).norm(), 2e-5);
   EXPECT_LT((middle_of(found.surfaces, "spare wheel") - Vector3(0.1, 0.0, 0.031)).norm(), 2e-5);
-  // The deck of 40 x 20 is rotated by a quarter turn about its corner, then moved.
+  // The deck of 40 x 20 mm is rotated by a quarter turn about its corner, then moved.
   EXPECT_LT((middle_of(found.surfaces, "deck") - Vector3(-0.01, 0.22, 0.0005)).norm(), 1e-9);
   std::vector<std::string> names;
   for (const CadSurface& part : found.surfaces) names.push_back(part.name);
@@ -167,7 +167,7 @@ TEST_F(CadReader, UnitsAreThoseDeclared) {
   }
 }
 
-// Replaces the unit in the global section without changing the number of lines.
+// Returns the text with another unit in the global section and with the same number of lines.
 std::string with_unit(std::string text, const std::string& unit) {
   const std::string declared = ",1,4HINCH,";
   const std::size_t at = text.find(declared);

@@ -1,4 +1,5 @@
-// Surfaces are written to STEP and IGES and read back, and OpenCASCADE checks the bodies in between.
+// Tests that surfaces are the same after export to STEP or IGES and import; OpenCASCADE checks the bodies in
+// the files.
 #include <gtest/gtest.h>
 
 #include <BRepCheck_Analyzer.hxx>
@@ -63,7 +64,7 @@ class CadRoundTrip : public testing::Test {
     EXPECT_EQ(back[0].deviation_m, 0.0);
     EXPECT_TRUE(back[0].trims.empty());
     EXPECT_EQ(back[0].trim_problem, "");
-    // A solid's face is oriented outwards, whatever the orientation of the surface.
+    // A face of a solid is exported with its normals outwards, whatever the surface's orientation.
     const bool turned = known.closes && volume_by_quadrature_m3(known.surface.surface) < 0.0;
     if (turned) {
       EXPECT_NEAR(volume_by_quadrature_m3(back[0].surface), -volume_by_quadrature_m3(known.surface.surface),
@@ -184,8 +185,8 @@ TEST_F(CadRoundTrip, BodiesThatCloseAreValidSolidsOfTheirVolume) {
       GProp_GProps properties;
       BRepGProp::VolumeProperties(shape, properties, 1e-8);
       const double ours = std::abs(volume_by_quadrature_m3(known.surface.surface));
-      // Our volume is exact to rounding for cubic pieces; OpenCASCADE's adaptive quadrature has a tolerance
-      // of 1e-8.
+      // Our volume is exact except for rounding if the pieces are cubic; OpenCASCADE's adaptive quadrature
+      // has a tolerance of 1e-8.
       EXPECT_NEAR(properties.Mass() * 1e-9, ours, 1e-6 * ours);
       EXPECT_GT(properties.Mass(), 0.0);
     }

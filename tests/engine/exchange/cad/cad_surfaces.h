@@ -22,8 +22,8 @@ Surface torus_like(double ring_m, double tube_m);
 // Returns the largest distance between points of the two surfaces at equal parameters.
 double largest_distance_m(const Surface& a, const Surface& b);
 
-// Returns the volume by the divergence theorem over Gauss points, exact for polynomial pieces of degrees up
-// to 5.
+// Returns the enclosed volume by the divergence theorem, with Gauss quadrature that is exact for polynomial
+// pieces of degrees up to 5.
 double volume_by_quadrature_m3(const Surface& surface);
 double area_by_quadrature_m2(const Surface& surface);
 

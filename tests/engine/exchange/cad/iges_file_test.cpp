@@ -18,7 +18,7 @@ struct Entity {
   int type = 128;
   std::string parameters;
   int placement = 0;    // number of the entity that holds the transformation, counted from 1; 0: none
-  int subordinate = 0;  // 1 if the entity is shown only as part of others
+  int subordinate = 0;  // 1 if the entity is shown only as part of others, otherwise 0
 };
 
 std::string padded(std::string text, std::size_t length) {

@@ -158,7 +158,7 @@ TEST(Tessellation, ATrimmedSurfaceStaysTrimmed) {
   // The polygon is within 1e-5 of the loop, whose length is less than 2.
   EXPECT_NEAR(area_of(holed->mesh), 1.0 - round_loop_area(0.3, 12), 2e-5);
 
-  // The reported deviation of a disc cut out of the plate is its true deviation, which is more than 0
+  // The reported deviation of a disc cut out of the plate must cover its true deviation, which is more than 0
   // although the plate is flat.
   const TrimLoop round = round_loop(line, line, {0.5, 0.5}, 0.4, 12, false);
   const auto disc = tessellate(plate, {round}, 1e-3);

@@ -48,7 +48,7 @@ Surface tube_of(const BodyProfile& profile, int around = 16, int along = 20) {
   return make_surface(KnotVector::periodic_uniform(3, around).value(), knots, net).value();
 }
 
-// Returns the height of a circle or an ellipse at a fraction of its length.
+// Returns the relative half width of a circle or an ellipse at a fraction of its length.
 double arch(double share) {
   return std::sqrt(std::max(0.0, 1.0 - std::pow(2.0 * share - 1.0, 2)));
 }

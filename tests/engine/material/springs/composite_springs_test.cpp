@@ -51,7 +51,7 @@ double strain_between(const SpringLattice& lattice, int from, int to) {
   return (mean_displacement_m(lattice, to) - mean_displacement_m(lattice, from)) / apart_m;
 }
 
-// Returns the bar at rest, fixed at z = 0 and stretched at the other end by a uniform stress.
+// Returns the bar at rest, fixed at z = 0 and pulled at the other end by a uniform stress.
 SpringLattice drawn_bar(const LatticeMaterials& materials, double stress_pa) {
   SpringLattice lattice = make_composite_springs(long_bar(), materials);
   std::vector<std::uint8_t> held(static_cast<std::size_t>(long_bar().node_count()), 0);
@@ -135,7 +135,7 @@ TEST(CompositeSprings, KeepTheirMomentum) {
   EXPECT_LT(after.energy_j, 0.7 * before.energy_j);
 }
 
-// A body that moves and turns as a whole is not damped.
+// damp_further() exerts no force on a body that moves and turns as a whole.
 TEST(CompositeSprings, RigidMotionsAreNotDampedFurther) {
   SpringLattice lattice = make_composite_springs(small_block(), all_different(small_block()));
   const Vector3 velocity(0.3, -0.2, 0.1), spin(2.0, 1.0, -3.0);
@@ -194,7 +194,7 @@ TEST(CompositeSprings, EachMaterialIsDampedByItsOwnRatio) {
     const double little = energy_left(0.02, 0.02, of_second), much = energy_left(0.3, 0.3, of_second);
     EXPECT_LT(much, 0.7 * little);
     const double mixed = energy_left(0.02, 0.3, of_second);
-    // At this time no waves have crossed the few cells between the halves.
+    // At the time of measurement waves have not crossed the few cells between the halves.
     EXPECT_NEAR(mixed / (of_second ? much : little), 1.0, 0.05);
   }
 }

@@ -284,7 +284,7 @@ class StretchedBlock {
   }
   void let_go() { lattice_.fix_nodes(std::vector<std::uint8_t>(ends_.size(), 0)); }
 
-  // Returns the fraction of the stretch that remains.
+  // Returns the fraction of the initial stretch that remains.
   double kept() const {
     const LatticeMesh& mesh = lattice_.mesh();
     const double length =

@@ -65,7 +65,7 @@ TEST(LatticeForces, ForcesOfAFreeBodySumToNothing) {
     sum += view.fx[n];
     magnitude += std::abs(view.fx[n]);
   }
-  EXPECT_LT(std::abs(sum), 1e-5 * magnitude);  // rounding of single precision sums
+  EXPECT_LT(std::abs(sum), 1e-5 * magnitude);  // the bound allows for rounding of sums in single precision
 }
 
 TEST(LatticeForces, RestShapeFeelsExactlyNothing) {
