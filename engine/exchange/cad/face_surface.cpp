@@ -58,6 +58,7 @@ bool is_on_side(const TopoDS_Edge& edge, const TopoDS_Face& face, const Paramete
   const auto curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
   if (curve.IsNull()) return false;
   const auto surface = BRep_Tool::Surface(face);
+  if (surface.IsNull()) return false;
   const double u_reach = side_fraction * (box.u_end - box.u_start);
   const double v_reach = side_fraction * (box.v_end - box.v_start);
   const double reach = std::max(tolerance, BRep_Tool::Tolerance(edge));
@@ -276,7 +277,7 @@ Result<FaceSurface> convert(const TopoDS_Face& face, double scale, double tolera
 constexpr int place_samples = 8;
 
 // Returns the mean of samples of the face's edges, in the face's unit; nullopt where there is none.
-std::optional<gp_XYZ> find_middle(const TopoDS_Face& face) {
+std::optional<gp_XYZ> find_centre(const TopoDS_Face& face) {
   gp_XYZ sum(0.0, 0.0, 0.0);
   int count = 0;
   for (TopExp_Explorer edges(face, TopAbs_EDGE); edges.More(); edges.Next()) {
@@ -296,12 +297,12 @@ std::optional<gp_XYZ> find_middle(const TopoDS_Face& face) {
 
 std::string face_place_text(const TopoDS_Face& face, double scale) {
   try {
-    const auto middle = find_middle(face);
-    if (!middle) return {};
+    const auto centre = find_centre(face);
+    if (!centre) return {};
     std::array<char, 128> text{};
     std::snprintf(text.data(), text.size(), "(%.4g, %.4g, %.4g) mm",
-                  millimetres_per_metre * scale * middle->X(), millimetres_per_metre * scale * middle->Y(),
-                  millimetres_per_metre * scale * middle->Z());
+                  millimetres_per_metre * scale * centre->X(), millimetres_per_metre * scale * centre->Y(),
+                  millimetres_per_metre * scale * centre->Z());
     return text.data();
   } catch (const Standard_Failure&) {
     return {};

@@ -28,7 +28,7 @@ struct FaceSurface {
 // too many control points.
 Result<FaceSurface> convert_face(const TopoDS_Face& face, double scale, double tolerance_m);
 
-// Returns the middle of the face's edges as "(1, 2, 3) mm", so that a person finds the face; empty where the
+// Returns the centre of the face's edges as "(1, 2, 3) mm", so that a person finds the face; empty where the
 // edges have no finite places.
 std::string face_place_text(const TopoDS_Face& face, double scale);
 

@@ -60,6 +60,15 @@ opencascade::handle<StepRepr_GlobalUnitAssignedContext> get_unit_context(
   return opencascade::handle<StepRepr_GlobalUnitAssignedContext>::DownCast(entity);
 }
 
+// Returns true where the context lists units and a damaged file has left none of them out.
+bool has_all_units(const opencascade::handle<StepRepr_GlobalUnitAssignedContext>& context) {
+  if (context.IsNull() || context->Units().IsNull()) return false;
+  for (int k = 1; k <= context->NbUnits(); ++k) {
+    if (context->UnitsValue(k).IsNull()) return false;
+  }
+  return true;
+}
+
 using Entity = opencascade::handle<Standard_Transient>;
 
 // Types of faces: bounded surface, trimmed surface, face of a solid (IGES 5.3, section 4).
@@ -155,9 +164,10 @@ bool keeps_angles(const gp_Mat& matrix) {
 }  // namespace
 
 FileUnit find_unit(const opencascade::handle<StepData_StepModel>& model) {
+  if (model.IsNull()) return {"mm", 1.0, false};
   for (int k = 1; k <= model->NbEntities(); ++k) {
     const auto units = get_unit_context(model->Value(k));
-    if (units.IsNull() || units->Units().IsNull()) continue;
+    if (!has_all_units(units)) continue;
     STEPConstruct_UnitContext context;
     context.ComputeFactors(units);
     if (context.LengthDone()) return {unit_name(context.LengthFactor()), context.LengthFactor(), true};
@@ -166,6 +176,7 @@ FileUnit find_unit(const opencascade::handle<StepData_StepModel>& model) {
 }
 
 FileUnit find_unit(const opencascade::handle<IGESData_IGESModel>& model, const std::filesystem::path& file) {
+  if (model.IsNull()) return {"mm", 1.0, false};
   double millimetres = model->GlobalSection().UnitValue();
   if (!(millimetres > 0.0)) {
     IGESData_GlobalSection section = model->GlobalSection();
@@ -177,12 +188,15 @@ FileUnit find_unit(const opencascade::handle<IGESData_IGESModel>& model, const s
 }
 
 LossCount count_losses(const opencascade::handle<XSControl_WorkSession>& session, FileFormat format) {
+  LossCount count;
+  if (session.IsNull()) return count;
   const auto model = session->Model();
   const auto transfers = session->MapReader();
+  if (model.IsNull() || transfers.IsNull()) return count;
   const Interface_Graph& graph = session->Graph();
-  LossCount count;
   for (int k = 1; k <= model->NbEntities(); ++k) {
     const Entity entity = model->Value(k);
+    if (entity.IsNull()) continue;
     const auto binder = transfers->Find(entity);
     const bool is_made = !binder.IsNull() && !TransferBRep::ShapeResult(binder).IsNull();
     if (is_face(entity, graph, format)) {
@@ -197,6 +211,7 @@ LossCount count_losses(const opencascade::handle<XSControl_WorkSession>& session
 
 int count_unread_placements(const opencascade::handle<StepData_StepModel>& model) {
   int count = 0;
+  if (model.IsNull()) return count;
   for (int k = 1; k <= model->NbEntities(); ++k) {
     const auto placement = opencascade::handle<Operator>::DownCast(model->Value(k));
     if (placement.IsNull()) continue;
@@ -208,16 +223,19 @@ int count_unread_placements(const opencascade::handle<StepData_StepModel>& model
 
 int count_unread_placements(const opencascade::handle<IGESData_IGESModel>& model) {
   int count = 0;
+  if (model.IsNull()) return count;
   for (int k = 1; k <= model->NbEntities(); ++k) {
     const auto entity = model->Entity(k);
-    if (!entity.IsNull() && entity->HasTransf() && !keeps_angles(entity->Transf()->Value().VectorialPart())) {
-      ++count;
-    }
+    if (entity.IsNull() || !entity->HasTransf()) continue;
+    // Null where a damaged file names another entity as the matrix.
+    const auto transformation = entity->Transf();
+    if (transformation.IsNull() || !keeps_angles(transformation->Value().VectorialPart())) ++count;
   }
   return count;
 }
 
 int remove_external_files(const opencascade::handle<StepData_StepModel>& model) {
+  if (model.IsNull()) return 0;
   const opencascade::handle<TCollection_HAsciiString> empty = new TCollection_HAsciiString("");
   int files = 0;
   for (int k = 1; k <= model->NbEntities(); ++k) {

@@ -90,7 +90,10 @@ class MeshNodes {
       TopLoc_Location location;
       const TopoDS_Face& face = TopoDS::Face(each.Current());
       const Triangulation triangulation = BRep_Tool::Triangulation(face, location);
-      if (triangulation.IsNull() || !triangulation->HasUVNodes() || !location.IsIdentity()) return false;
+      if (triangulation.IsNull() || !triangulation->HasUVNodes() || !location.IsIdentity() ||
+          BRep_Tool::Surface(face).IsNull()) {
+        return false;
+      }
       faces_.push_back({face, triangulation, points_.size()});
       for (int k = 1; k <= triangulation->NbNodes(); ++k) {
         points_.push_back(to_metres(triangulation->Node(k)));

@@ -203,8 +203,8 @@ void add_passages(const CubicPiece& piece, int axis, double level, std::vector<d
     const bool rises = coordinate_at(piece, axis, high) > level;
     if ((coordinate_at(piece, axis, low) > level) == rises) continue;
     for (int step = 0; step < bisections; ++step) {
-      const double middle = 0.5 * (low + high);
-      ((coordinate_at(piece, axis, middle) > level) == rises ? high : low) = middle;
+      const double halfway = 0.5 * (low + high);
+      ((coordinate_at(piece, axis, halfway) > level) == rises ? high : low) = halfway;
     }
     at.push_back(0.5 * (low + high));
   }
@@ -249,9 +249,9 @@ std::vector<CubicPiece> clip(const std::vector<CubicPiece>& pieces, int axis, co
     for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
       if (!(cuts[k + 1] - cuts[k] > 1e-12)) continue;
       CubicPiece part = part_of(piece, cuts[k], cuts[k + 1]);
-      const double middle = coordinate_at(part, axis, 0.5);
-      if (middle < start || middle > end) {
-        for (Point& point : part) point[axis] = std::clamp(middle, start, end);
+      const double halfway = coordinate_at(part, axis, 0.5);
+      if (halfway < start || halfway > end) {
+        for (Point& point : part) point[axis] = std::clamp(halfway, start, end);
       }
       for (const std::size_t tip : {0, 3}) part[tip][axis] = std::clamp(part[tip][axis], start, end);
       clipped.push_back(part);

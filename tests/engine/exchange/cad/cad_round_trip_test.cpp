@@ -259,12 +259,14 @@ TEST(CadStream, SurfacesComeBackToTheBit) {
   for (const KnownSurface& known : known_surfaces()) {
     CadSurface surface = known.surface;
     surface.deviation_m = 1.0 / 3.0;
+    surface.trim_deviation_m = 2e-6;
     surface.trim_problem = known.closes ? "none" : "";
     const auto back = cad_surface_from_json(json_to_line(cad_surface_to_json(surface)), "file");
     ASSERT_TRUE(back) << back.error().message;
     EXPECT_EQ(back->name, surface.name);
     EXPECT_EQ(back->deviation_m, surface.deviation_m);
     EXPECT_EQ(back->trim_problem, surface.trim_problem);
+    EXPECT_EQ(back->trim_deviation_m, 2e-6);
     EXPECT_EQ(back->surface.u, surface.surface.u);
     EXPECT_EQ(back->surface.v, surface.surface.v);
     EXPECT_EQ(back->surface.net.x, surface.surface.net.x);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/exchange/cad/cad.h"
+#include "engine/exchange/cad/file_report.h"
 #include "tests/engine/exchange/sample_document.h"
 
 namespace spoonbill {
@@ -206,6 +207,25 @@ TEST_F(IgesFile, AMatrixThatStretchesIsTold) {
   ASSERT_EQ(found.model.notes.size(), 1u);
   EXPECT_NE(found.model.notes[0].find("placements that scale, stretch or mirror: 1, which are not read"),
             std::string::npos);
+}
+
+// A damaged file may name another entity, or nothing, as the matrix.
+TEST_F(IgesFile, AMatrixThatIsNoneIsTold) {
+  const FoundInIges found = read(iges_text({{128, sheet_at(0), 2}, {110, "0.,0.,0.,1.,0.,0."}}));
+  EXPECT_EQ(found.refusal, "");
+  EXPECT_EQ(std::count_if(found.model.notes.begin(), found.model.notes.end(),
+                          [](const std::string& note) {
+                            return note.starts_with("placements that scale, stretch or mirror: 1,");
+                          }),
+            1);
+}
+
+TEST_F(IgesFile, ModelsThatAreNullHaveNoContent) {
+  EXPECT_FALSE(find_unit(opencascade::handle<StepData_StepModel>()).declared);
+  EXPECT_EQ(count_unread_placements(opencascade::handle<StepData_StepModel>()), 0);
+  EXPECT_EQ(count_unread_placements(opencascade::handle<IGESData_IGESModel>()), 0);
+  EXPECT_EQ(remove_external_files({}), 0);
+  EXPECT_EQ(count_losses({}, FileFormat::iges).faces, 0);
 }
 
 TEST_F(IgesFile, WhatIsFarAwayIsLeftOut) {
