@@ -8,11 +8,9 @@
 // A UNIT_M of 0 is the unit that FILE declares. `write` and `solids` read the frames of a model from standard
 // input; `write` answers with the content of a file, `solids` with meshes.
 #include <fcntl.h>
-#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <charconv>
-#include <csignal>
 #include <cstddef>
 #include <exception>
 #include <iostream>
@@ -23,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/reader_confinement.h"
 #include "engine/base/assert.h"
 #include "engine/base/progress.h"
 #include "engine/exchange/cad/cad.h"
@@ -169,7 +168,6 @@ int serve(const std::vector<std::string>& arguments) {
 }  // namespace spoonbill
 
 int main(int argc, char** argv) {
-  // The parent may end while a file keeps this process busy.
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  spoonbill::confine_reader();
   return spoonbill::serve(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
 }

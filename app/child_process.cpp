@@ -1,8 +1,10 @@
 #include "app/child_process.h"
 
 #include <fcntl.h>
+#include <linux/close_range.h>
 #include <poll.h>
-#include <spawn.h>
+#include <pthread.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -17,30 +19,111 @@
 namespace spoonbill {
 namespace {
 
-void redirect(posix_spawn_file_actions_t& actions, int from, int as, int mode) {
-  if (from >= 0) {
-    posix_spawn_file_actions_adddup2(&actions, from, as);
-  } else {
-    posix_spawn_file_actions_addopen(&actions, as, "/dev/null", mode, 0);
+// Sanitizers reserve more address space than any limit allows, and their options come in the environment.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool is_sanitized = true;
+#else
+constexpr bool is_sanitized = false;
+#endif
+
+constexpr int first_free_descriptor = STDERR_FILENO + 1;
+constexpr int descriptors_limit = 65536;  // for kernels older than 5.11
+constexpr int exit_not_started = 127;
+
+// All that the child needs between fork and exec, where it may not allocate.
+struct Start {
+  char* const* arguments;
+  char* const* environment;
+  int input, output;
+  int failure;       // the end of a pipe that tells the parent that exec failed
+  bool with_parent;  // ends with the parent
+  pid_t parent;
+  sigset_t signals;  // the parent's mask
+};
+
+// Handlers of the parent must not run in the child, which shares the parent's memory until exec. Ignored
+// signals stay ignored.
+void forget_handlers() {
+  for (int signal = 1; signal < NSIG; ++signal) {
+    struct sigaction action {};
+    if (sigaction(signal, nullptr, &action) != 0 || action.sa_handler == SIG_IGN) continue;
+    action = {};
+    action.sa_handler = SIG_DFL;
+    sigaction(signal, &action, nullptr);
   }
+}
+
+// Closes every descriptor but the three standard ones at exec.
+void inherit_no_descriptors() {
+  if (close_range(first_free_descriptor, ~0U, CLOSE_RANGE_CLOEXEC) == 0) return;
+  for (int descriptor = first_free_descriptor; descriptor < descriptors_limit; ++descriptor) {
+    fcntl(descriptor, F_SETFD, FD_CLOEXEC);
+  }
+}
+
+// Returns a descriptor above the standard ones, so that redirecting one cannot overwrite another's source.
+int source(int descriptor, int mode) {
+  if (descriptor < 0) descriptor = open("/dev/null", mode | O_CLOEXEC);
+  return fcntl(descriptor, F_DUPFD_CLOEXEC, first_free_descriptor);
+}
+
+[[noreturn]] void become(const Start& start) {
+  // The parent may end before the request reaches the kernel, which then sends nothing.
+  if (start.with_parent && (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != start.parent)) {
+    _exit(exit_not_started);
+  }
+  forget_handlers();
+  const int input = source(start.input, O_RDONLY), output = source(start.output, O_WRONLY),
+            nowhere = source(-1, O_WRONLY);
+  if (dup2(input, STDIN_FILENO) >= 0 && dup2(output, STDOUT_FILENO) >= 0 &&
+      dup2(nowhere, STDERR_FILENO) >= 0) {
+    inherit_no_descriptors();
+    sigprocmask(SIG_SETMASK, &start.signals, nullptr);
+    execvpe(start.arguments[0], start.arguments, start.environment);
+  }
+  const char failed = 1;
+  const ssize_t told = write(start.failure, &failed, 1);
+  _exit(told == 1 ? exit_not_started : exit_not_started + 1);
+}
+
+// A child of vfork() shares the memory until exec: a copy would make the haptic thread fault on each page.
+pid_t spawn(const std::vector<std::string>& arguments, int input, int output, bool with_parent,
+            char* const* environment) {
+  std::vector<char*> pointers;
+  pointers.reserve(arguments.size() + 1);
+  for (const std::string& argument : arguments) pointers.push_back(const_cast<char*>(argument.c_str()));
+  pointers.push_back(nullptr);
+  int failure[2];
+  if (pipe2(failure, O_CLOEXEC) != 0) return -1;
+  Start start{pointers.data(), environment, input, output, failure[1], with_parent, getpid(), {}};
+  sigset_t all;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &start.signals);
+  const pid_t process = vfork();
+  if (process == 0) become(start);
+  pthread_sigmask(SIG_SETMASK, &start.signals, nullptr);
+  close(failure[1]);
+  char failed = 0;
+  ssize_t told = 0;
+  while ((told = read(failure[0], &failed, 1)) < 0 && errno == EINTR) {
+  }
+  close(failure[0]);
+  if (process < 0 || told == 0) return process;
+  wait_for_process(process);
+  return -1;
 }
 
 }  // namespace
 
 pid_t start_process(const std::vector<std::string>& arguments, int input, int output) {
-  std::vector<char*> pointers;
-  pointers.reserve(arguments.size() + 1);
-  for (const std::string& argument : arguments) pointers.push_back(const_cast<char*>(argument.c_str()));
-  pointers.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  redirect(actions, input, STDIN_FILENO, O_RDONLY);
-  redirect(actions, output, STDOUT_FILENO, O_WRONLY);
-  redirect(actions, -1, STDERR_FILENO, O_WRONLY);
-  pid_t process = -1;
-  const int error = posix_spawnp(&process, pointers[0], &actions, nullptr, pointers.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  return error == 0 ? process : -1;
+  return spawn(arguments, input, output, false, environ);
+}
+
+pid_t start_reader(const std::vector<std::string>& arguments, int input, int output) {
+  // The names of variables steer libraries, such as OpenCASCADE's CSF_ and the C library's own.
+  char locale[] = "LC_ALL=C";
+  char* const clean[] = {locale, nullptr};
+  return spawn(arguments, input, output, true, is_sanitized ? environ : clean);
 }
 
 int wait_for_process(pid_t process) {
@@ -52,18 +135,11 @@ int wait_for_process(pid_t process) {
 
 namespace {
 
-// Sanitizers reserve more address space than any limit allows.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool has_address_limit = false;
-#else
-constexpr bool has_address_limit = true;
-#endif
-
 constexpr std::int64_t poll_interval_ms = 50;
 
 void limit(pid_t process, std::chrono::milliseconds patience) {
   const rlimit memory{ChildOutput::memory_limit, ChildOutput::memory_limit};
-  if (has_address_limit) prlimit(process, RLIMIT_AS, &memory, nullptr);
+  if (!is_sanitized) prlimit(process, RLIMIT_AS, &memory, nullptr);
   const auto whole_seconds = static_cast<rlim_t>(std::chrono::ceil<std::chrono::seconds>(patience).count());
   const rlimit seconds{whole_seconds, whole_seconds + 1}, nothing{0, 0};
   prlimit(process, RLIMIT_CPU, &seconds, nullptr);
@@ -79,7 +155,7 @@ Result<ChildOutput> ChildOutput::start(const std::vector<std::string>& arguments
   if (pipe2(ends, O_CLOEXEC) != 0) {
     return Error{ErrorCode::unavailable, "cannot create a pipe to read the child process's output"};
   }
-  const pid_t process = start_process(arguments, input, ends[1]);
+  const pid_t process = start_reader(arguments, input, ends[1]);
   close(ends[1]);
   if (process < 0) {
     close(ends[0]);

@@ -15,10 +15,14 @@
 namespace spoonbill {
 
 // Starts `arguments[0]`, searched in PATH unless it contains a slash. `input` becomes its standard input and
-// `output` its standard output; a negative descriptor stands for /dev/null, to which standard error always
-// goes. Returns -1 if the program cannot be started. Pipe ends that the child must not inherit need
-// O_CLOEXEC.
+// `output` its standard output; a negative one stands for /dev/null, where standard error always goes.
+// The child inherits no other descriptor. Returns -1 if the program cannot be started.
 pid_t start_process(const std::vector<std::string>& arguments, int input, int output);
+
+// Starts a program that parses what may be hostile: as start_process(), but with an empty environment apart
+// from the locale C. The system kills the child when the calling thread ends, so call it in a thread that
+// outlives the child.
+pid_t start_reader(const std::vector<std::string>& arguments, int input, int output);
 
 // Waits until the process ends. Returns its state as waitpid() does.
 int wait_for_process(pid_t process);
@@ -30,7 +34,8 @@ struct ChildEnd {
   bool out_of_time = false;  // killed at the deadline, or for exceeding its processor time
 };
 
-// The standard output of a child process with limited memory and time. One owner, one thread.
+// The standard output of a child process with limited memory and time, started by start_reader(). One owner;
+// one thread, which outlives the object.
 class ChildOutput {
  public:
   static constexpr std::size_t memory_limit = std::size_t{4} << 30;  // address space of the child, in bytes

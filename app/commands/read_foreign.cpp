@@ -8,7 +8,7 @@
 
 #include "app/commands/command.h"
 #include "app/commands/option_set.h"
-#include "app/files/foreign_child.h"
+#include "app/reader_confinement.h"
 #include "engine/base/file.h"
 #include "engine/exchange/file_format.h"
 #include "engine/exchange/frame_stream.h"
@@ -88,7 +88,7 @@ CommandEntry add_reader(OptionSet root, const char* name, const char* descriptio
   const OptionSet parser = root.add_command(name, description);
   parser.add_option("FILE", *file, file_help).require();
   return {parser, [file, send](Console& console) {
-            end_with_parent();
+            confine_reader();
             return send(*file, console);
           }};
 }

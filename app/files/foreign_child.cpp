@@ -1,10 +1,7 @@
 #include "app/files/foreign_child.h"
 
-#include <sys/prctl.h>
-
 #include <algorithm>
 #include <charconv>
-#include <csignal>
 #include <utility>
 
 namespace spoonbill {
@@ -102,10 +99,6 @@ Error ForeignChild::failure(const FrameHead& head) {
                  task_.too_much + std::to_string(ChildOutput::memory_limit >> 30) + " GiB; " + task_.remedy);
   }
   return error(ErrorCode::malformed, task_.refusal(reason.value()));
-}
-
-void end_with_parent() {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
 }
 
 }  // namespace spoonbill

@@ -78,7 +78,4 @@ class ForeignChild {
   double fraction_ = 0.0;  // fraction last reported by the child
 };
 
-// Makes the calling child process end together with its parent, because a file may keep it busy for long.
-void end_with_parent();
-
 }  // namespace spoonbill

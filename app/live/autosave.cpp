@@ -31,11 +31,13 @@ std::filesystem::path canonical_path(const std::filesystem::path& path) {
   return problem ? path : canonical;
 }
 
-bool is_older(const std::filesystem::path& one, const std::filesystem::path& other) {
-  std::error_code no_one, no_other;
-  const auto time = std::filesystem::last_write_time(one, no_one);
-  const auto other_time = std::filesystem::last_write_time(other, no_other);
-  return !no_one && !no_other && time < other_time;
+// Returns true if the file holds the same document. Times tell nothing: a copy, a checkout or a
+// synchronisation gives a file a newer time without the user's work. The view alone is not work.
+bool holds_same(const std::filesystem::path& file, Document recovered) {
+  auto saved = read_document(file);
+  if (!saved) return false;
+  saved->view = recovered.view = Json::object();
+  return document_to_json(saved.value()) == document_to_json(recovered);
 }
 
 }  // namespace
@@ -52,7 +54,6 @@ Status Autosave::write(const Document& document) const {
 Result<std::optional<Document>> Autosave::recovered_document() const {
   std::error_code problem;
   if (!std::filesystem::exists(file_, problem)) return std::optional<Document>();
-  if (!of_.empty() && is_older(file_, of_)) return std::optional<Document>();
   const auto text = read_file(file_, bytes_limit);
   if (!text) return text.error();
   const auto json = parse_json(text.value(), file_.string());
@@ -66,6 +67,7 @@ Result<std::optional<Document>> Autosave::recovered_document() const {
   if (!reader.status()) return reader.status().error();
   auto document = document_from_json(inner, file_.string() + ": document");
   if (!document) return document.error();
+  if (!of_.empty() && holds_same(of_, document.value())) return std::optional<Document>();
   return std::optional<Document>(std::move(document).value());
 }
 

@@ -71,13 +71,30 @@ TEST(AutosaveClaim, LeavesNoLockBehind) {
   EXPECT_EQ(count(), before);
 }
 
-TEST(Autosave, OlderThanTheDocumentIsNothing) {
-  const Workplace place;
-  const Autosave autosave(place.path("."), place.path("model.json"));
-  ASSERT_TRUE(autosave.write(handle("old")));
+// A checkout or a synchronisation gives the document a newer time after the crash.
+TEST(Autosave, IsOfferedBesideANewerFileOfOtherContent) {
   using namespace std::chrono_literals;
-  std::filesystem::last_write_time(autosave.file(),
-                                   std::filesystem::last_write_time(place.path("model.json")) - 10s);
+  const Workplace place;
+  const auto file = place.path("spoon.json");
+  const Autosave autosave(place.path("."), file);
+  ASSERT_TRUE(write_document(handle("saved"), file));
+  ASSERT_TRUE(autosave.write(handle("unsaved")));
+  std::filesystem::last_write_time(autosave.file(), std::filesystem::last_write_time(file) - 10s);
+  const auto found = autosave.recovered_document();
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_TRUE(found.value().has_value());
+  EXPECT_EQ(found.value()->name, "unsaved");
+  EXPECT_EQ(read_document(file).value().name, "saved");
+}
+
+TEST(Autosave, WithTheContentOfTheFileIsNothing) {
+  using namespace std::chrono_literals;
+  const Workplace place;
+  const auto file = place.path("spoon.json");
+  const Autosave autosave(place.path("."), file);
+  ASSERT_TRUE(write_document(handle("saved"), file));
+  ASSERT_TRUE(autosave.write(handle("saved")));
+  std::filesystem::last_write_time(file, std::filesystem::last_write_time(autosave.file()) - 10s);
   EXPECT_FALSE(autosave.recovered_document().value().has_value());
 }
 
