@@ -1,5 +1,5 @@
-// Targets of the coverage-guided fuzzer: each of our readers, and the properties of whatever it accepts. The
-// ordinary tests run the same functions on the stored inputs.
+// Declares the targets of the coverage-guided fuzzer: each calls one of our readers and checks the properties
+// of whatever the reader accepts. The ordinary tests run the same functions on the stored inputs.
 #pragma once
 
 #include <span>

@@ -1,11 +1,11 @@
-// libFuzzer's entry for one target, whose name the build gives.
+// libFuzzer entry point for one target, whose name the build defines.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
 #include "tests/fuzz/fuzz_target.h"
 
-// libFuzzer's names, not ours.
+// libFuzzer prescribes the function's name.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace spoonbill;
   static const FuzzTarget* const target = [] {

@@ -1,4 +1,4 @@
-// Whatever happens to a recording's bytes, reading gives a recording or one line, and never ends the program.
+// Damaged recordings must be read, or refused with a message of one line; they must never end the program.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -69,7 +69,7 @@ TEST(DamagedRecording, AnyBytesChanged) {
   const std::size_t header = text.find('\n');
   std::mt19937_64 random(9);
   for (int i = random_cases(20'000, 60'000); i > 0; --i) {
-    // Mostly behind the header, which the document's tests damage.
+    // Most damage is behind the header, because the document's tests already damage headers.
     expect_recording_or_line(damaged(text, i % 8 == 0 ? 0 : header, random));
   }
 }

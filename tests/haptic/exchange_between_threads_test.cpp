@@ -1,5 +1,5 @@
-// The two ways that values go between threads, with two threads. Only what holds whatever the scheduler does
-// is checked.
+// Tests the two ways of passing values between threads, with two threads. It checks only what holds for any
+// scheduling.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -13,7 +13,7 @@
 namespace spoonbill {
 namespace {
 
-// Long enough that a torn value would be seen.
+// The block is long enough for a torn value to be noticed.
 using Block = std::array<std::uint64_t, 64>;
 
 Block block_of(std::uint64_t number) {

@@ -1,4 +1,5 @@
-// The tests check only counts and values of the loop's thread, never durations: the machine may be busy.
+// Tests the haptic loop by counts and values of its thread, never by durations, because the machine may be
+// busy.
 #include "haptic/haptic_loop.h"
 
 #include <gtest/gtest.h>
@@ -86,7 +87,7 @@ TEST(HapticLoop, MovesAndStopsWithItsOwner) {
     std::atomic<std::uint64_t> others = 0;
     auto second = HapticLoop::start({}, [&](const LoopTick&) { ++others; });
     ASSERT_TRUE(second.ok());
-    loop = std::move(second).value();  // ends the first
+    loop = std::move(second).value();  // assigning ends the first loop
     at_end = calls;
     wait_for(others, 3);
     loop.stop();

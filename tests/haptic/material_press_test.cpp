@@ -1,5 +1,5 @@
-// A sphere of 10 mm pressed into blocks of materials by the bundled scripts: clay keeps the dent, silicone
-// springs back, gelatin creeps.
+// Tests a sphere of 10 mm that the bundled scripts press into blocks of materials: clay keeps the dent,
+// silicone springs back, gelatin creeps.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace spoonbill {
 namespace {
 
-// Returns the height of the lowest point of the upper side under the sphere, m.
+// Returns the height in m of the lowest point of the block's upper side under the sphere.
 double bottom_of_dent(const Surface& surface) {
   constexpr int around = 256, along = 220;
   double lowest = 1.0;
@@ -67,7 +67,7 @@ class ScriptedPress {
 
   double dent_m() const { return first_top_m_ - bottom_of_dent(simulation_.surface()); }
   double deepest_m() const { return deepest_m_; }
-  // Returns the force on the material, N.
+  // Returns the force in N on the material.
   double force_n() const { return force_n_ / document_.scene.sculpting.force_scale; }
   double volume_change() const { return simulation_.lattice().volume_m3() / first_volume_m3_ - 1.0; }
   const Material& material() const { return document_.scene.bodies[0].material; }
@@ -101,8 +101,9 @@ TEST(MaterialPress, SiliconeSpringsBack) {
   press.run_to(2.0);
   const double held_m = press.dent_m(), felt_n = press.force_n();
   EXPECT_GT(held_m, 0.0045);
-  // Hertz's sphere on a half-space: a dent as deep as the radius is far beyond its small contact, the block
-  // is only four dents thick, and its cells are 2 mm wide. All three together stay within a quarter.
+  // Hertz's formula is for a sphere on a half-space and a small contact. Here the dent is as deep as the
+  // radius, the block is only four dents thick, and its cells are 2 mm wide; together these change the force
+  // by less than a quarter.
   const Material& silicone = press.material();
   const double plane_modulus_pa =
       silicone.youngs_modulus_pa / (1.0 - silicone.poissons_ratio * silicone.poissons_ratio);
@@ -113,15 +114,16 @@ TEST(MaterialPress, SiliconeSpringsBack) {
   EXPECT_LT(std::abs(press.volume_change()), 1e-3);
 }
 
-// Held at a depth, a standard linear solid loses its relaxing share of force with its relaxation time; let
-// go, it comes back with that time divided by the share that does not relax.
+// A standard linear solid held at a depth loses the relaxing fraction of its force with its relaxation time.
+// After release it springs back with that time divided by the fraction that does not relax.
 TEST(MaterialPress, GelatinCreepsAsItsRelaxationTimeSays) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   if (!is_full_run()) GTEST_SKIP() << only_in_full;
   ScriptedPress press("gelatin-press");
   const double relaxation_time_s = press.material().relaxation_time_s;
   const double retardation_time_s = relaxation_time_s / (1.0 - press.material().relaxing_fraction);
-  // Means over half a second, 4.5 s apart: what goes between them falls by the same share each time.
+  // The means over half a second are 4.5 s apart: the relaxing part of the force falls by the same factor
+  // between each pair.
   const double first_n = press.mean_force_n(2.0, 2.5), second_n = press.mean_force_n(6.5, 7.0),
                third_n = press.mean_force_n(11.0, 11.5);
   EXPECT_GT(press.dent_m(), 0.0045);

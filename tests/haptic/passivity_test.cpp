@@ -1,6 +1,6 @@
-// A wall must never give a hand more energy than it took, or it kicks: random hands press walls of the
-// device's highest stiffness, and what the force does to the hand is added up, tick by tick (the passivity
-// observer of Hannaford & Ryu 2002).
+// Tests that a wall never gives a hand more energy than it took, which would kick the hand. Random hands
+// press walls of the device's highest stiffness, and the work of the force on the hand is summed tick by tick
+// (the passivity observer of Hannaford & Ryu 2002).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,8 +23,8 @@ constexpr double rounding_j = 3.3e-6;
 
 struct WallPress {
   Hand hand;
-  double depth_m = 0.0;       // depth of the target below the wall's surface
-  double frequency_hz = 0.0;  // frequency of moving in and out
+  double depth_m = 0.0;       // depth of the hand's target below the wall's surface
+  double frequency_hz = 0.0;  // frequency at which the target moves in and out
 };
 
 double evenly(std::mt19937_64& random, double low, double high) {
@@ -35,7 +35,8 @@ double scaled(std::mt19937_64& random, double low, double high) {
   return std::exp(evenly(random, std::log(low), std::log(high)));
 }
 
-// Of the ranges of virtual_device.h, within what is stable there; the damping between none and critical.
+// Returns a random press from the ranges of virtual_device.h, restricted to stable hands, with damping
+// between none and critical.
 WallPress random_press(std::mt19937_64& random) {
   WallPress press;
   Hand& hand = press.hand;
@@ -51,8 +52,8 @@ WallPress random_press(std::mt19937_64& random) {
 }
 
 struct Energy {
-  double given_most_j = 0.0;  // highest sum at any time
-  double taken_j = 0.0;       // all that the wall took, for scale
+  double given_most_j = 0.0;  // highest energy given to the hand at any time
+  double taken_j = 0.0;       // total energy that the wall took, for comparison
 };
 
 // Moves a hand above the wall, whose surface is at `surface_m`, into it and out again; `wall` gives the force
@@ -101,7 +102,8 @@ TEST(Passivity, ARigidWallOfTheHighestStiffnessGivesBackNoMoreThanItTook) {
         << " Hz; took " << energy.taken_j << " J";
     taken_j += energy.taken_j;
   }
-  EXPECT_GT(taken_j, 0.2);  // the wall took energy that it could give back: a millijoule per press
+  // The walls took at least a millijoule per press on average, which they could give back.
+  EXPECT_GT(taken_j, 0.2);
 }
 
 Scene scene_to_press() {
@@ -112,7 +114,7 @@ Scene scene_to_press() {
   return scene;
 }
 
-// `x_m` chooses the held part, which is a wall, or the part that gives way.
+// Presses the handle at `x_m`: either its fixed part, which acts as a wall, or the part that gives way.
 void expect_simulation_passive(double x_m, int runs, unsigned seed) {
   std::mt19937_64 random(seed);
   const DeviceSpecification specification = VirtualDevice::default_specification();

@@ -1,5 +1,6 @@
-// Strokes at random, with any material and any setting of the panel, by a hand of up to 5 m/s: the body stays
-// finite and about its place, no cell stays inverted, and the device is never asked for more than it can.
+// Tests random strokes with any material and any panel setting, by a hand moving at up to 5 m/s: the body
+// stays finite and near its place, no cell stays inverted, and the requested force never exceeds the device's
+// limit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +33,7 @@ std::vector<Material> bundled_materials() {
   return materials;
 }
 
-// Anything that a file may hold.
+// Returns a random material with any values that a file may contain.
 Material any_material(RandomValues& random) {
   Material material;
   material.name = material.source = "random";
@@ -80,7 +81,8 @@ Scene random_stroke_scene(RandomValues& random, const std::vector<Material>& bun
 
 constexpr double fastest_m_per_s = 5.0;
 constexpr int stroke_ticks = 2000, rest_ticks = 1000;
-// The hand stays within this distance of the body's centre, and so does material that it pulls out.
+// The hand stays in the box with these half sides around the body's centre, and so does material that it
+// pulls out.
 const Vector3 roam_m(0.06, 0.03, 0.03);
 const Vector3 centre_m(0.03, 0.0, 0.0);
 constexpr double bounds_m = 0.5;
@@ -136,8 +138,8 @@ std::string in_words(const Scene& scene) {
   return words;
 }
 
-// Returns true if every node is finite and near: near the body's place if it is fixed, near its own centre if
-// it is free.
+// Returns true if every node is finite and near: near the body's place if it is fixed, near its own centroid
+// if it is free.
 bool is_in_bounds(const SpringLattice& lattice) {
   const std::vector<Vector3> nodes = lattice.positions();
   Vector3 middle = centre_m;
@@ -168,7 +170,7 @@ struct WatchedStroke {
   int touches = 0;
 };
 
-// A stroke, then a second of rest.
+// Makes a stroke and lets the body rest for a second.
 WatchedStroke stroke(RandomValues& random, Simulation& simulation) {
   WatchedStroke watched;
   const DeviceSpecification device;
@@ -192,7 +194,7 @@ WatchedStroke stroke(RandomValues& random, Simulation& simulation) {
 }
 
 TEST(RandomStrokes, NeverLeaveTheBodyBroken) {
-  // Three seconds each.
+  // Each stroke and its rest last three seconds.
   const int strokes = sanitized ? 3 : random_cases(8, 100);
   const std::vector<Material> bundled = bundled_materials();
   ASSERT_GE(bundled.size(), 12U);
@@ -206,7 +208,7 @@ TEST(RandomStrokes, NeverLeaveTheBodyBroken) {
     const WatchedStroke watched = stroke(random, made.value());
     EXPECT_TRUE(watched.in_bounds);
     EXPECT_EQ(watched.inverted, 0);
-    // Relative, for the rounding of a norm.
+    // The relative tolerance allows for rounding of the norm.
     EXPECT_LE(watched.strongest_n, watched.limit_n * (1.0 + 1e-12));
     touched += watched.touches > 0;
   }

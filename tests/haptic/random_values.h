@@ -1,5 +1,5 @@
-// Random values of tests of the haptic side, the same on every machine: the distributions of the standard
-// library are not.
+// Random values for tests of the haptic side. They are the same on every machine, unlike those of the
+// standard library's distributions.
 #pragma once
 
 #include <cmath>
@@ -19,7 +19,7 @@ class RandomValues {
     return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
   }
   double between(const Range<double>& range) { return between(range.low, range.high); }
-  // Evenly over the orders of magnitude.
+  // Returns a random value that is evenly distributed over the orders of magnitude.
   double scaled(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
   bool once_in(std::uint64_t count) { return engine_() % count == 0; }
   std::uint64_t bits() { return engine_(); }

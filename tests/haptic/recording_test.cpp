@@ -106,7 +106,7 @@ TEST(RecordingWriter, ReportsAFullDisk) {
   EXPECT_EQ(full.error().message, "/dev/full: cannot be written: No space left on device");
 }
 
-// A disk that fills up while the recording runs: a limit on the file's size does the same.
+// A limit on the file's size acts like a disk that fills up while the recording runs.
 TEST(RecordingWriter, ReportsADiskThatFillsUp) {
   const TemporaryFolder folder;
   const pid_t child = fork();
@@ -159,7 +159,7 @@ TEST(RecordingWriter, RefusesWhatCouldNotBeReadBack) {
   EXPECT_EQ(refusal({{"command", "x"}, {"list", {1, 2.5, "three"}}}), Refusal());
 }
 
-// As a tool of many triangles is.
+// A command that sets a tool of many triangles can be this large.
 TEST(RecordingWriter, KeepsACommandOfSeveralMegabytes) {
   const TemporaryFolder folder;
   Json large{{"command", "x"}, {"list", Json::array()}};

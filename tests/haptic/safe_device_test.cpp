@@ -5,7 +5,7 @@
 namespace spoonbill {
 namespace {
 
-// Answers with what the test gives it, and keeps the force.
+// A device that returns the reading set by the test and stores the force it receives.
 class Stub : public Device {
  public:
   Stub() { limits.name = "stub"; }
@@ -40,7 +40,7 @@ TEST(SafeDevice, GivesTheForceAndNeverMoreThanTheDeviceMay) {
   stub.limits.maximum_force_n = 2.0;
   SafeDevice safe(stub);
   run(safe, 1.0, 100);
-  EXPECT_EQ(stub.given_n, Vector3::Zero());  // the force has not been small yet
+  EXPECT_EQ(stub.given_n, Vector3::Zero());  // still off, because the force has not been small yet
   engage(safe);
   EXPECT_EQ(stub.given_n, Vector3(1, 0, 0));
   EXPECT_EQ(safe.flags(), safety_flag_none);

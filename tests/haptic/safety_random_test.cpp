@@ -1,4 +1,4 @@
-// The safety chain under everything that may go wrong, at random and for long.
+// Tests the safety chain at random with everything that may go wrong.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -31,7 +31,7 @@ DeviceSpecification random_specification(RandomValues& random) {
   return specification;
 }
 
-// A hand and a force that wander, jump, rest, buzz and break.
+// Generates inputs in which hand and force wander, jump, rest, buzz and break.
 class RandomInput {
  public:
   explicit RandomInput(RandomValues& random) : random_(random) {}
@@ -87,7 +87,7 @@ class RandomInput {
   Vector3 force_ = Vector3::Ones();
 };
 
-// Computes from the input alone, not by the chain, whether it is a fault.
+// Returns true if the input is a fault, computed without the safety chain.
 bool is_fault(const DeviceSpecification& specification, const SafetyInput& input) {
   if (input.stale || !input.requested_n.allFinite() || !input.position_m.allFinite()) return true;
   return input.dropped_ticks >= 25 || (specification.dead_man_buttons & ~input.buttons) != 0;
@@ -98,7 +98,7 @@ struct WatchedForces {
   std::uint64_t faults = 0, buzzes = 0, with_force = 0, limited = 0;
   Vector3 last_n = Vector3::Zero();
 
-  // Relative, for the rounding of a norm.
+  // The relative tolerance allows for rounding of the norm.
   static constexpr double rounding = 1e-12;
 
   void watch(const DeviceSpecification& specification, const SafetyInput& input, const SafeForce& safe) {
@@ -108,7 +108,7 @@ struct WatchedForces {
                                     (safety_flag_cut | safety_flag_buzzing);
     const bool cut = (safe.flags & safety_flag_cut) != 0;
     beyond_limit += !(safe.force_n.norm() <= specification.maximum_force_n * (1.0 + rounding));
-    // From the force before, which is at most the limit, a difference is exact to that many bits.
+    // The difference from the previous force, which is at most the limit, has a relative error of `rounding`.
     const double allowed_n = most_n + rounding * (most_n + specification.maximum_force_n);
     jumps += !cut && !((safe.force_n - last_n).norm() <= allowed_n);
     not_cut += (fault || cut) && !safe.force_n.isZero(0.0);
@@ -147,7 +147,7 @@ TEST(SafetyAtRandom, LimitsHoldWhateverHappens) {
     }
   }
   all.expect_safe();
-  // Each case did occur.
+  // Each case occurred often enough.
   EXPECT_GT(all.faults, ticks / 5000);
   EXPECT_GT(all.buzzes, ticks / 100'000);
   EXPECT_GT(all.with_force, ticks / 40);
@@ -171,7 +171,7 @@ Scene random_safety_scene(RandomValues& random) {
   return scene;
 }
 
-// The hand wanders over and into the handle; the thread is late now and then, and the simulation stale.
+// Makes a hand wander over and into the handle; sometimes the thread is late or the simulation stale.
 WatchedForces sculpt(RandomValues& random, int ticks) {
   auto made = Simulation::make(random_safety_scene(random), best_instruction_set());
   EXPECT_TRUE(made.ok()) << made.error().message;

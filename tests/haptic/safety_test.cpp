@@ -31,7 +31,7 @@ SafetyState engaged_state() {
   return state;
 }
 
-// With the force at its steady value.
+// Returns the state after the force has reached a steady value.
 SafetyState pressing_state(double x_n) {
   SafetyState state = engaged_state();
   for (int tick = 0; tick < 1000; ++tick) make_safe(state, device, wanting(x_n));
@@ -42,7 +42,7 @@ SafetyState pressing_state(double x_n) {
 TEST(Safety, ForcesAreOffUntilTheWantedForceHasBeenSmallForAWhile) {
   SafetyState state;
   for (int tick = 0; tick < 5000; ++tick) {
-    // Small now and then, but never for long.
+    // The force is small every seventh tick, but never for long.
     const SafeForce safe = make_safe(state, device, wanting(tick % 7 == 0 ? 3.0 : 0.1));
     ASSERT_EQ(safe.force_n, Vector3::Zero());
     ASSERT_EQ(safe.flags, safety_flag_waiting);
@@ -69,7 +69,8 @@ TEST(Safety, ForceRampsInOverTheDevicesTime) {
 TEST(Safety, PassesOnWhatNeedsNoLimit) {
   SafetyState state = pressing_state(1.5);
   for (int tick = 0; tick < 2000; ++tick) {
-    const double wanted = 1.5 + std::sin(2.0 * std::numbers::pi * 10.0 * tick * tick_s);  // as fast as a hand
+    // As fast as a hand can move.
+    const double wanted = 1.5 + std::sin(2.0 * std::numbers::pi * 10.0 * tick * tick_s);
     const SafeForce safe = make_safe(state, device, wanting(wanted));
     ASSERT_EQ(safe.force_n.x(), wanted);
     ASSERT_EQ(safe.flags, safety_flag_none);
@@ -99,7 +100,7 @@ TEST(Safety, AJumpComesInNoFasterThanTheForceMayChange) {
   EXPECT_NEAR(make_safe(state, device, wanting(-3.0)).force_n.x(), most, 1e-12);
 }
 
-// A cut is the one step that may be larger than the limit on the change.
+// A cut may change the force by more than the limit on its change; nothing else may.
 void expect_cut(const SafetyInput& fault, std::uint32_t flag) {
   SafetyState state = pressing_state(3.0);
   ASSERT_GT(3.0, device.maximum_force_rate_n_per_s * tick_s);
@@ -189,7 +190,7 @@ TEST(Safety, FadesForAFastHand) {
   for (const auto& [share, expected] : {std::pair{0.9, 1.0}, {1.5, 0.5}, {2.5, 0.0}}) {
     SafetyState state = engaged_state();
     SafetyInput input = wanting(2.0);
-    input.dropped_ticks = 1;  // two ticks between the positions
+    input.dropped_ticks = 1;  // two ticks have passed between the positions
     SafeForce safe;
     for (int tick = 0; tick < 20; ++tick) {
       input.position_m.x() += share * device.maximum_speed_m_per_s * 2.0 * tick_s;

@@ -1,4 +1,4 @@
-// Recordings made in code: a hand that moves, turns, presses and gives commands, without a simulation.
+// Makes recordings in code, without a simulation: a hand that moves, turns, presses and gives commands.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,19 @@ namespace spoonbill {
 
 RecordingHeader sample_header();
 
-// A wandering hand; the same for the same seed. It holds still, turned, or pressed now and then.
+// Returns the readings of a wandering hand, which are the same for the same seed. At times the hand holds
+// still, is turned, or presses.
 std::vector<DeviceReading> sample_readings(std::size_t count, unsigned seed);
 
-// Stands for the state hash at a tick.
+// Returns a made-up value in place of the state hash at a tick.
 std::uint64_t pretended_hash(std::uint64_t tick);
 
-// Writes `readings` with commands at several ticks and all checkpoints; the end only where `finish` is set.
+// Writes `readings` with commands at several ticks and all checkpoints, and the end of the recording only if
+// `finish` is set.
 Status write_sample_recording(const std::filesystem::path& file, const std::vector<DeviceReading>& readings,
                               bool finish);
 
-// Replays a recording and records it again.
+// Replays a recording and writes it as a new recording.
 Status write_again(const Recording& recording, const std::filesystem::path& file);
 
 }  // namespace spoonbill

@@ -1,4 +1,5 @@
-// Two soft bodies on each other: the bundled script presses the bundled fingertip into the bundled cushion.
+// Tests two soft bodies on each other: the bundled script presses the bundled fingertip into the bundled
+// cushion.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,7 +58,7 @@ TEST(SoftPress, BothGiveWayStayApartAndComeBack) {
   EXPECT_LT(farthest, 0.3e-3) << "elastic";
 }
 
-// The bundled egg, which is a mesh, behaves the same.
+// The bundled soft egg, which is a mesh, also yields and recovers.
 TEST(SoftPress, AMeshGivesWayTooAndComesBack) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const Script script = read_script(scripts / "soft-egg.script.json").value();

@@ -1,5 +1,4 @@
-// The SpaceMouse against a daemon that the test plays, on a socket of its own, and its steering as
-// arithmetic.
+// Tests the SpaceMouse with a simulated daemon on its own socket, and its steering by arithmetic.
 #include "haptic/space_mouse.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +18,7 @@
 namespace spoonbill {
 namespace {
 
-// spacenavd's protocol: each event is eight whole numbers, its kind first.
+// Simulates the daemon spacenavd: each event is eight integers, the first of which is its kind.
 class Daemon {
  public:
   Daemon() {
@@ -76,7 +75,7 @@ TEST(SpaceMouse, FollowsTheDaemonsEventsUntilItLeaves) {
   EXPECT_TRUE(motion->translation.isApprox(Vector3(1.0, -0.5, -0.2), 1e-12));
   EXPECT_TRUE(motion->rotation.isApprox(Vector3(0.0, 0.0, -0.1), 1e-12));
   EXPECT_EQ(motion->buttons, 2u);
-  EXPECT_EQ(mouse->poll()->translation, motion->translation);  // the cap is held there
+  EXPECT_EQ(mouse->poll()->translation, motion->translation);  // the cap is still held there
 
   daemon.move({9, 9, 9, 9, 9, 9});
   daemon.press(0);
@@ -92,14 +91,14 @@ TEST(SpaceMouse, FollowsTheDaemonsEventsUntilItLeaves) {
   EXPECT_FALSE(mouse->poll().has_value());
 }
 
-// Otherwise it would react to the buttons of the mouse beside it.
+// A hand resting on the cap does not count as use of the SpaceMouse, nor do buttons other than the main one.
 TEST(SpaceMouse, IsUsedWhileItsCapIsAwayFromRestOrItsMainButtonChanges) {
   Daemon daemon;
   auto mouse = SpaceMouse::open();
   ASSERT_TRUE(mouse.ok()) << mouse.error().message;
   daemon.accept_client();
   EXPECT_FALSE(mouse->is_used());
-  daemon.move({20, -20, 20, 20, 20, -20});  // a hand that rests on the cap
+  daemon.move({20, -20, 20, 20, 20, -20});  // a hand rests on the cap
   EXPECT_FALSE(mouse->is_used());
   daemon.move({0, 0, 0, 0, 100, 0});
   EXPECT_TRUE(mouse->is_used());
@@ -174,7 +173,7 @@ TEST(Steer, NothingMovesWithinTheDeadZoneAndSpeedStartsAtItsEdge) {
   const double moved = steer(target, pushed(beyond, Vector3::Zero()), 0.02).pose.position_m.z() - 3.0;
   EXPECT_GT(moved, 0.0);
   EXPECT_LT(moved, 1e-5 * steering.speed_m_per_s);
-  // Half way beyond the dead zone: a quarter of the speed.
+  // Halfway between the dead zone and the end the speed is a quarter of the largest.
   const Vector3 half(0, 0.5 * (1.0 + steering.dead_zone), 0);
   EXPECT_NEAR(steer(target, pushed(half, Vector3::Zero()), 0.02).pose.position_m.y() - 2.0,
               0.25 * 0.02 * steering.speed_m_per_s, 1e-12);

@@ -1,5 +1,5 @@
-// The bundled script bends the bundled handle, and the settled shape is as in the founding paper: bent near
-// the fixed part, nearly straight elsewhere.
+// Tests that the bundled script bends the bundled handle as in the founding paper: the settled shape is bent
+// near the fixed part and nearly straight elsewhere.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ Vector3 ring_centre(const Surface& surface, double v) {
   return sum;
 }
 
-// Degrees that the middle line between two stations points below the horizontal.
+// Returns how many degrees the centre line between two stations points below the horizontal.
 double turned(const Surface& surface, double from_v, double to_v) {
   const Vector3 way = ring_centre(surface, to_v) - ring_centre(surface, from_v);
   return std::atan2(-way.y(), way.x()) * 180.0 / std::numbers::pi;
@@ -58,7 +58,7 @@ Bend play() {
     if (script.target_at(t).pose.position_m.y() < -0.0205) pushed = simulation.surface();
   }
   EXPECT_TRUE(before && pushed);
-  // The sphere stands over v = 88 of the straight handle, whose v is the distance along it in millimetres.
+  // The sphere is above v = 88 of the straight handle, whose v is the distance along it in millimetres.
   return {*before, *pushed, simulation.surface(), simulation.lattice(), 40.0, 88.0};
 }
 
@@ -71,7 +71,7 @@ TEST(SpoonHandleBend, TheSettledShapeIsThePapers) {
   EXPECT_GE(kept / pushed, 0.75);
   const double quarter = bend.plane_v + 0.25 * (bend.sphere_v - bend.plane_v);
   EXPECT_GE(turned(bend.settled, quarter - 1.0, quarter + 1.0) / kept, 0.80);
-  // Straight beyond the sphere: two halves of what remains point the same way.
+  // The handle is straight beyond the sphere: both halves of the remaining part point in the same direction.
   EXPECT_NEAR(turned(bend.settled, 90.0, 93.0), turned(bend.settled, 94.0, 97.0), 0.5);
 
   double fixed_surface = 0.0;

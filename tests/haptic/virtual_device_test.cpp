@@ -32,7 +32,8 @@ TEST(VirtualDevice, GivesWayByForceOverStiffness) {
   EXPECT_NEAR(device.velocity_m_per_s().norm(), 0.0, 1e-9);
 }
 
-// x(t) = F/k (1 - (1 + wt) exp(-wt)) for critical damping; a first-order step is off by about w h / 2.
+// A critically damped hand follows x(t) = F/k (1 - (1 + wt) exp(-wt)); a first-order step is off by about w h
+// / 2.
 TEST(VirtualDevice, FollowsTheClosedForm) {
   VirtualDevice device = device_at_origin();
   device.set_force(Vector3(3.0, 0.0, 0.0));
@@ -45,8 +46,8 @@ TEST(VirtualDevice, FollowsTheClosedForm) {
   }
 }
 
-// Behind or ahead of a target that accelerates by what its own inertia costs, m a / k, and no more: no
-// ringing.
+// The hand lags behind an accelerating target, or leads it, by the force of its inertia divided by the
+// stiffness, m a / k. It does not ring.
 TEST(VirtualDevice, FollowsItsTarget) {
   VirtualDevice device = device_at_origin();
   const double highest_acceleration = 0.02 * 6.0 / (0.5 * 0.5);
@@ -62,7 +63,7 @@ TEST(VirtualDevice, FollowsItsTarget) {
   EXPECT_NEAR(device.position_m().x(), 0.02, 1e-12);
 }
 
-// What the undamped step conserves exactly; the plain energy swings around it.
+// Returns the energy that the undamped step conserves exactly; the plain energy oscillates around it.
 double conserved_energy(const VirtualDevice& device, const Hand& hand) {
   const Vector3& x = device.position_m();
   const Vector3& v = device.velocity_m_per_s();
@@ -70,8 +71,8 @@ double conserved_energy(const VirtualDevice& device, const Hand& hand) {
          0.5 * 1e-3 * hand.stiffness_n_per_m * x.dot(v);
 }
 
-// Pushes the handle away, releases it and follows it for two seconds: the highest and last energy, divided by
-// that at release, are checked.
+// Pushes the handle away, releases it and follows it for two seconds. Checks the highest and the last energy,
+// relative to that at release.
 void expect_no_energy_gained(const Hand& hand) {
   VirtualDevice device = device_at_origin(hand);
   device.set_force(Vector3(3.0, 0.0, 0.0));
@@ -84,7 +85,7 @@ void expect_no_energy_gained(const Hand& hand) {
     device.read();
     highest = std::max(highest, conserved_energy(device, hand));
   }
-  // Where the damper acts on a handle almost at rest, the step is off by the square of its length.
+  // A damper on a handle almost at rest makes a step that is off by the square of the step's length.
   const double step = 1e-6 * hand.stiffness_n_per_m / hand.mass_kg;
   const double allowed = hand.damping_n_s_per_m == 0.0 ? 1e-9 : step;
   EXPECT_LE(highest, released * (1.0 + allowed))

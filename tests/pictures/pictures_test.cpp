@@ -1,7 +1,7 @@
-// The bend as a designer sees it, the stages of a contact and presses into materials, compared with the
-// approved pictures in screenshots/ by their worst 16 x 16 block. A picture that differs leaves itself, the
-// approved one and their difference in picture-failures/ of the build folder. tests/approve makes what the
-// program draws now the approved pictures.
+// Compares pictures with the approved ones in screenshots/ by their worst 16 x 16 block: the bend as a
+// designer sees it, the stages of a contact, and presses into materials. A differing picture is written to
+// picture-failures/ of the build folder, with the approved picture and their difference. tests/approve
+// approves the pictures that the program draws.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -26,8 +26,9 @@
 namespace spoonbill {
 namespace {
 
-// Mean difference of a block's channels, in 8-bit steps. Rasterisers on other processors stay below a third
-// of it; the smallest change that must show is above twice of it.
+// Largest allowed mean difference of a block's channels, in 8-bit steps. Rasterisers on other processors
+// differ by less than a third of it; the smallest change that must be detected differs by more than twice of
+// it.
 constexpr double tolerance = 2.0;
 
 constexpr int width_px = 1280, height_px = 720;
@@ -39,16 +40,16 @@ const std::filesystem::path failure_folder = SPOONBILL_PICTURE_FAILURES;
 
 using Edit = std::function<void(ViewSettings&, PanelModel&)>;
 
-// Replays at a moment, each of which can be painted with something changed.
+// Paints moments of replays, each of which can be painted with changed settings.
 class MomentPictures : public ::testing::Test {
  protected:
   struct Moment {
     const char* name;
-    double share;  // of the recording's time
+    double share;  // fraction of the recording's time
     const char* recording;
   };
 
-  // A moment of the replay, made ready to be painted as often as wanted.
+  // A moment of the replay that can be painted repeatedly.
   struct Stage {
     Session session;
     FramePainter painter;
@@ -74,7 +75,7 @@ class MomentPictures : public ::testing::Test {
     Lockstep lockstep(session.value(), {&device, ticks, recording->commands, {}, {}, "recording"}, nullptr);
     const auto frame = static_cast<std::uint64_t>(moment.share * static_cast<double>(frame_count(ticks) - 1));
     EXPECT_TRUE(lockstep.run_to(frame_tick(frame)));
-    session->flags = tick_flag_none;  // of many frames at once
+    session->flags = tick_flag_none;  // the flags of many frames have accumulated
     write_snapshot(session.value(), snapshot);
     return {std::move(session).value(), std::move(painter).value(), std::move(snapshot), framed};
   }
@@ -85,7 +86,7 @@ class MomentPictures : public ::testing::Test {
     return document.value();
   }
 
-  // A model as it is opened, before any tick.
+  // Returns a model as it is when opened, before any tick.
   static Stage stage_of_document(const Document& document) {
     auto session = Session::make(document, document.name, VirtualDevice::default_specification(),
                                  best_instruction_set());
@@ -136,7 +137,7 @@ class MomentPictures : public ::testing::Test {
 
   static void compare_moment(const Moment& moment) { compare(moment.name, picture(moment)); }
 
-  // By how much each edit changes the picture.
+  // Returns the difference that each edit makes in the picture.
   static std::vector<double> changes(const Moment& moment, const std::vector<Edit>& edits) {
     Stage stage = stage_of(moment);
     const Image unchanged = paint(stage, {});
@@ -193,7 +194,7 @@ TEST_F(BendPictures, WhatMustShowShows) {
     edits.emplace_back([overlay](ViewSettings& view, PanelModel&) { view.overlays.*overlay = false; });
   }
   const std::vector<double> change = changes(pushed, edits);
-  EXPECT_EQ(change[0], 0.0);  // without a change the picture is the same
+  EXPECT_EQ(change[0], 0.0);  // an edit that changes nothing leaves the picture equal
   EXPECT_GT(change[1], tolerance) << "a light moved by 5 degrees";
   EXPECT_GT(change[2], tolerance) << "one changed label";
   for (std::size_t overlay = 3; overlay < change.size(); ++overlay) {
@@ -253,7 +254,7 @@ TEST_F(MaterialPictures, GelatinComesBackSlowly) {
   compare_moment({"gelatin-let-go", 0.72, "gelatin-press"});
 }
 
-// The boundaries of hexahedra in a translucent body, those of its far side seen through it.
+// The boundaries of hexahedra in a translucent body; those on its far side are seen through it.
 using LatticePictures = MomentPictures;
 
 TEST_F(LatticePictures, CellsOfJelly) {
@@ -261,7 +262,7 @@ TEST_F(LatticePictures, CellsOfJelly) {
   compare("jelly-cells", paint(stage, {}));
 }
 
-// Fig. 9 of the paper: two patches of other counts and knots, and the one that they become.
+// Figure 9 of the paper: two patches with different counts and knots, and the merged patch.
 class MergePictures : public MomentPictures {
  protected:
   static Document parts() {

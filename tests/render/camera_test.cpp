@@ -41,7 +41,7 @@ TEST(Camera, LooksAlongMinusZFromTheFront) {
   EXPECT_TRUE(eye_position(camera).isApprox(Vector3(0, 0.5, 0), 1e-12));
 }
 
-// The pixel of a point in front of the camera, by similar triangles.
+// The pixel of a point in front of the camera follows from similar triangles.
 TEST(Camera, ProjectsByTheClosedForm) {
   Camera camera;
   camera.distance_m = 0.4;

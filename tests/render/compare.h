@@ -1,5 +1,5 @@
-// How much two pictures differ where they differ most: a small change of one overlay must not drown in a
-// large background.
+// Compares pictures by the block in which they differ most, so that a small change of one overlay is not
+// averaged away by a large background.
 #pragma once
 
 #include "engine/base/result.h"
@@ -11,17 +11,17 @@ inline constexpr int comparison_block_px = 16;
 
 struct BlockDifference {
   double worst =
-      0.0;       // the greatest mean absolute difference of a channel over a block, in 8-bit steps (0..255)
-  int x_px = 0;  // the top left corner of that block
+      0.0;       // largest mean absolute difference of a channel in any block, in 8-bit steps (0 to 255)
+  int x_px = 0;  // top left corner of that block
   int y_px = 0;
 };
 
-// Over all blocks of 16 x 16 pixels (those at the right and lower edge may be smaller). Refused: different
-// sizes.
+// Returns the largest difference over all blocks of 16 x 16 pixels; blocks at the right and lower edge may be
+// smaller. Fails if the sizes differ.
 Result<BlockDifference> worst_block_difference(const Image& expected, const Image& actual);
 
-// The absolute differences of colour, amplified eightfold over a dimmed copy of `expected`, the worst block
-// framed. Refused: different sizes.
+// Returns the absolute differences of colour, amplified eightfold, over a dimmed copy of `expected`; the
+// worst block is framed. Fails if the sizes differ.
 Result<Image> difference_picture(const Image& expected, const Image& actual);
 
 }  // namespace spoonbill

@@ -11,14 +11,14 @@ namespace {
 
 constexpr double frame_s = 1.0 / 60.0;
 
-// A machine on which a frame takes the given times at the four qualities.
+// A machine that takes the given time for a frame at each of the four qualities.
 struct Machine {
   std::array<double, 4> took_s;
 
   double at(FrameQuality quality) const { return took_s[static_cast<std::size_t>(quality)]; }
 };
 
-// Draws frames and counts how often the quality changed.
+// Draws frames and returns how often the quality changed.
 int changes(FrameBudget& budget, const Machine& machine, int frames) {
   int count = 0;
   for (int i = 0; i < frames; ++i) {
@@ -75,7 +75,8 @@ TEST(FrameBudget, QualityComesBackWhenThereIsRoom) {
   EXPECT_EQ(budget.quality(), FrameQuality::full);
 }
 
-// Without samples there seems to be room, with them there is none: the trials grow rare.
+// Without samples there seems to be enough time for them, but with samples there is not: attempts become
+// rarer.
 TEST(FrameBudget, AMisjudgedRoomIsTriedLessAndLess) {
   FrameBudget budget(frame_s);
   const Machine misjudged{{0.030, 0.005, 0.004, 0.003}};

@@ -15,7 +15,7 @@
 namespace spoonbill {
 namespace {
 
-// A folder of its own for each test, gone afterwards.
+// Each test has its own folder, which is removed afterwards.
 class ImageFiles : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -48,7 +48,7 @@ Image plain(int width, int height, std::uint8_t value) {
 TEST_F(ImageFiles, PngComesBackUnchanged) {
   const auto path = folder_ / "picture.png";
   PngEncoder encoder;
-  // Noise cannot be made smaller, a plain picture hardly be larger than nothing.
+  // Noise cannot be compressed, and a plain picture compresses to almost nothing.
   for (const Image& image : {noise(61, 37, true), noise(61, 37, false), noise(1, 1, true),
                              noise(1280, 720, true), plain(1280, 720, 255), plain(640, 480, 7)}) {
     ASSERT_TRUE(write_png(path, image, encoder, Durability::later).ok());

@@ -1,4 +1,4 @@
-// Reads PNG files, for comparison.
+// Reads PNG files for comparison.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace spoonbill {
 
-// Refused, with the path: a missing file, a broken one, a side above 16384 pixels.
+// Returns the image. Fails with the path for a missing file, a damaged file, or a side above 16384 pixels.
 Result<Image> read_png(const std::filesystem::path& path);
 
 }  // namespace spoonbill

@@ -24,7 +24,7 @@
 namespace spoonbill {
 namespace {
 
-// Two renderings of the same view agree within this in every block; see worst_block_difference().
+// Two renderings of the same view may differ by at most this in any block; see worst_block_difference().
 constexpr double tolerance = 2.0;
 
 constexpr const char* font_path = "/usr/share/fonts/truetype/roboto/unhinted/RobotoTTF/Roboto-Regular.ttf";
@@ -137,7 +137,7 @@ TEST_F(Rendering, EveryOverlayShows) {
   }
 }
 
-// A bar on ground that the body hides is drawn all the same.
+// The scale bar on the ground is drawn even if a body hides it.
 TEST_F(Rendering, TheScaleBarShowsBeforeABody) {
   const Viewport viewport = make_viewport(sample_width_px, sample_height_px, {});
   settings_.overlays = Overlays{};
@@ -236,7 +236,7 @@ TEST_F(Rendering, MaterialsDiffer) {
   }
 }
 
-// The silhouette is smooth: between background and body lie pixels of neither colour.
+// The silhouette is smooth: between background and body there are pixels of intermediate colours.
 TEST_F(Rendering, FourSamplesSmoothTheEdges) {
   settings_.overlays = {};
   settings_.overlays.fixed_nodes = settings_.overlays.fixing_planes = settings_.overlays.ground_grid = false;

@@ -14,19 +14,19 @@ constexpr double length_m = 0.100, width_m = 0.012, thickness_m = 0.005;
 constexpr double fixed_share = 1.0 / 3.0;
 constexpr int section_points = 16, axis_points = 24;
 
-// A rounded rectangle in the (z, y) plane: a superellipse.
+// Returns a point of a rounded rectangle, a superellipse, in the (z, y) plane.
 Eigen::Vector2d section(double turn) {
   const double angle = 2.0 * std::numbers::pi * turn;
   const auto rounded = [](double c) { return std::copysign(std::pow(std::abs(c), 0.55), c); };
   return {0.5 * width_m * rounded(std::cos(angle)), 0.5 * thickness_m * rounded(std::sin(angle))};
 }
 
-// The inverse of a coordinate's rounding, so that nodes space evenly along the sides.
+// Inverts the rounding of a coordinate, so that nodes are evenly spaced along the sides.
 double unrounded(double x) {
   return std::copysign(std::pow(std::abs(x), 1.0 / 0.55), x);
 }
 
-// Turns what lies beyond the fixed third around an arc.
+// Bends the part of the handle beyond the fixed third around an arc.
 Vector3 bent(const Vector3& straight, double bend_rad) {
   const double start = length_m * fixed_share, arc = 0.022;
   if (bend_rad == 0.0 || straight.x() <= start) return straight;
@@ -41,7 +41,8 @@ Vector3 bent(const Vector3& straight, double bend_rad) {
 Surface make_handle(double bend_rad) {
   ControlNet net(section_points, axis_points);
   for (int j = 0; j < axis_points; ++j) {
-    // Poles at both ends: the first and last ring shrink to a point, the next ones round the tip.
+    // Both ends are poles: the first and last ring shrink to a point, and the rings beside them round the
+    // tip.
     const int from_end = std::min(j, axis_points - 1 - j);
     const double size = from_end == 0 ? 0.0 : from_end == 1 ? 0.72 : from_end == 2 ? 1.0 : 1.05;
     const double t = static_cast<double>(j) / (axis_points - 1);
@@ -63,7 +64,8 @@ SurfaceSnapshot snapshot_of(const Surface& surface) {
   return snapshot;
 }
 
-// Nodes of a section: the square grid's rim lies on the surface, its inside between rim and axis.
+// Returns lattice nodes: in each section the rim of the square grid is on the surface and its inside is
+// between rim and axis.
 LatticeSnapshot make_lattice(const Surface& surface, const SampleSceneOptions& options) {
   LatticeSnapshot lattice;
   lattice.count[0] = options.through;

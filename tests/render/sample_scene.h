@@ -1,5 +1,5 @@
-// A snapshot made up for pictures: a handle-like tube, straight or bent, with a lattice, a fixing plane, a
-// sphere on its free end, and a force. No physics ran.
+// Provides a snapshot made for pictures without any simulation: a handle-like tube, straight or bent, with a
+// lattice, a fixing plane, a sphere on its free end, and a force.
 #pragma once
 
 #include <memory>
@@ -11,14 +11,15 @@
 namespace spoonbill {
 
 struct SampleSceneOptions {
-  double bend_rad = 0.0;  // how far the free end is turned down
+  double bend_rad = 0.0;  // how far the free end is bent down
   std::string material = "modelling-clay";
-  int along = 60, across = 8, through = 4;  // lattice nodes
+  int along = 60, across = 8, through = 4;  // number of lattice nodes
 };
 
 inline constexpr int sample_width_px = 640, sample_height_px = 360;
 
-// 100 x 12 x 5 mm, its lower side at y = 0, its axis along x, the first third fixed.
+// Returns the snapshot of a handle of 100 x 12 x 5 mm: its lower side is at y = 0, its axis is along x, and
+// its first third is fixed.
 Snapshot sample_scene(const SampleSceneOptions& options = {});
 
 // Returns the stages of the contact between the scene's sphere and its tube.

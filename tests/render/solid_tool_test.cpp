@@ -40,7 +40,7 @@ Pose turned(const Vector3& position_m, double angle_rad, const Vector3& axis) {
   return {position_m, Quaternion(Eigen::AngleAxisd(angle_rad, axis.normalized()))};
 }
 
-// Beside the body and clear of it.
+// The tool's poses are beside the body and clear of it.
 const Pose upright = turned({0.030, 0.025, 0.0}, 0.0, Vector3::UnitX());
 const Pose oblique = turned({0.075, 0.028, 0.0}, 1.1, {0.3, 1.0, 0.5});
 
@@ -55,7 +55,7 @@ ViewSettings plain_view() {
   return settings;
 }
 
-// Pixels that a picture without the tool shows in another colour, and the box around them.
+// The pixels whose colour differs from a picture without the tool, and the box around those pixels.
 struct Changed {
   int count = 0, bluer = 0;
   Eigen::Vector2d low = Eigen::Vector2d::Constant(1e9), high = Eigen::Vector2d::Constant(-1e9);
@@ -107,7 +107,7 @@ class SolidToolPicture : public ::testing::Test {
   std::unique_ptr<Renderer> renderer_;
 };
 
-// Where the corners of a box at a frame appear.
+// Returns the bounds in pixels of a box at a frame.
 Changed projected_tool(const Box& box, const ToolFrame& frame) {
   const ViewSettings settings = plain_view();
   const Viewport viewport = make_viewport(sample_width_px, sample_height_px, settings.panel_px);
@@ -120,7 +120,7 @@ Changed projected_tool(const Box& box, const ToolFrame& frame) {
   return bounds;
 }
 
-// To a pixel: one at the border is partly covered.
+// Expects equal bounds within 1.5 pixels, because pixels at the border are partly covered.
 void expect_same_bounds(const Changed& seen, const Changed& expected) {
   EXPECT_LT((seen.low - expected.low).cwiseAbs().maxCoeff(), 1.5);
   EXPECT_LT((seen.high - expected.high).cwiseAbs().maxCoeff(), 1.5);
@@ -136,7 +136,7 @@ TEST_F(SolidToolPicture, ABoxFillsItsProjectionAndIsBlue) {
   }
 }
 
-// Three different sides and no plane of symmetry: a turned copy would not look the same.
+// Returns a wedge with three different sides and no plane of symmetry: a turned copy would look different.
 MeshSolid wedge() {
   TriangleMesh mesh;
   mesh.vertices_m = {Vector3(0, 0, 0), Vector3(0.012, 0, 0), Vector3(0, 0.006, 0), Vector3(0, 0, 0.020)};
@@ -161,8 +161,8 @@ TEST(SolidTool, TheMirroredFrameIsTheReflectionOfTheTool) {
   EXPECT_NEAR(mirrored.axes.determinant(), -1.0, 1e-12);
 }
 
-// With S the reflection, a mesh of vertices S v at the mirrored pose is the mirror image without any
-// left-handed frame.
+// If S is the reflection, a mesh with vertices S v at the mirrored pose is the mirror image, and its frame
+// stays right-handed.
 TEST_F(SolidToolPicture, TheMirrorImageLooksLikeAMirroredMesh) {
   const Symmetry symmetry{true, {0.05, 0.0, 0.0}, Vector3::UnitX()};
   const Pose pose = turned({0.085, 0.030, 0.0}, 0.7, {0.2, 1.0, 0.3});
@@ -184,7 +184,8 @@ TEST_F(SolidToolPicture, TheMirrorImageLooksLikeAMirroredMesh) {
   EXPECT_GE(rest.low.x(), right.low.x());
 }
 
-// A box of triangles as a soft tool, at a frame: opaque, where it should be, and lit as a body is.
+// A soft tool, here a box of triangles at a frame, is drawn opaque, in the right position, and lit as bodies
+// are.
 TEST_F(SolidToolPicture, ASoftMeshIsDrawnWhereItsVerticesAre) {
   auto triangles = std::make_shared<std::vector<TriangleCorners>>();
   for (const auto& [a, b, c, d] :
@@ -201,7 +202,7 @@ TEST_F(SolidToolPicture, ASoftMeshIsDrawnWhereItsVerticesAre) {
   BodySnapshot& body = snapshot.bodies.emplace_back();
   body.mesh.triangles = triangles;
   for (int corner = 0; corner < 8; ++corner) {
-    // The k-th bit of a corner's number is its side along axis k.
+    // Bit k of a corner's number is its side along axis k.
     const Vector3 local(corner & 1 ? half_m.x() : -half_m.x(), corner & 2 ? half_m.y() : -half_m.y(),
                         corner & 4 ? half_m.z() : -half_m.z());
     const Eigen::Vector3f at = (frame.origin_m + frame.axes * local).cast<float>();
@@ -216,7 +217,7 @@ TEST_F(SolidToolPicture, ASoftMeshIsDrawnWhereItsVerticesAre) {
   const Changed seen = difference(picture(nothing, settings), picture(snapshot, settings));
   expect_same_bounds(seen, projected_tool(box, frame));
   EXPECT_GT(seen.count, 300);
-  // As it moves, so does its picture.
+  // The picture moves with the tool.
   for (float& y : snapshot.bodies[0].mesh.y) y += 0.01F;
   ToolFrame higher = frame;
   higher.origin_m.y() += 0.01;
@@ -257,7 +258,7 @@ TEST(SolidTool, TheForceStartsWhereTheBoxEnds) {
   Snapshot snapshot =
       scene_with(ImplicitShape(BoxShape{half_m}), turned({0.01, 0.02, 0.03}, 0.5 * M_PI, Vector3::UnitZ()));
   snapshot.force_n = {0.0, 1.0, 0.0};
-  // A quarter turn about z brings the box's x, 4 mm, up.
+  // After a quarter turn about z, the box's half side along x, 4 mm, points up.
   const auto arrow = force_arrow(snapshot, {});
   ASSERT_TRUE(arrow);
   EXPECT_LT((arrow->start_m - Vector3(0.01, 0.024, 0.03)).norm(), 1e-12);

@@ -1,4 +1,4 @@
-// A surface's triangles, and where their corners are.
+// Returns a surface's triangles and the positions of their corners.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -16,7 +16,7 @@
 namespace spoonbill {
 namespace {
 
-// Vertices within a tenth of a micrometre count as one, as they do for the eye: a pole is a row of them.
+// Merges vertices that are within a tenth of a micrometre, because a pole is a row of such vertices.
 std::vector<std::uint32_t> merged_by_place(const TessellatedSurface& surface) {
   std::map<std::tuple<long, long, long>, std::uint32_t> places;
   const auto rounded = [](float metres) { return std::lround(metres / 1e-7); };
@@ -65,7 +65,7 @@ TEST(Tessellation, NormalsAreOutwardAndAgreeWithTheTriangles) {
       const Vector3 a = vertex(surface, corner[0]), b = vertex(surface, corner[1]),
                     c = vertex(surface, corner[2]);
       const Vector3 face = (b - a).cross(c - a);
-      // Slivers at a pole have an area within the rounding of single precision.
+      // Slivers at a pole are skipped: their area is within the rounding of single precision.
       if (face.norm() < 1e-10) continue;
       const auto& s = surface.samples();
       const Vector3 normal(s.nx[corner[0]], s.ny[corner[0]], s.nz[corner[0]]);
@@ -125,7 +125,7 @@ TEST(Tessellation, TheLevelFollowsTheScreenButNotEveryPixel) {
   EXPECT_GT(cells(near.u_pieces), 2 * cells(far.u_pieces));
   EXPECT_GT(cells(near.v_pieces), 2 * cells(far.v_pieces));
 
-  // A zoom that trembles by a few percent settles on one level.
+  // A zoom that varies by a few percent settles on one level.
   SamplingLevel level = choose_sampling_level(snapshot, 6000.0, {});
   level = choose_sampling_level(snapshot, 6300.0, level);
   const SamplingLevel settled = level;
@@ -135,7 +135,7 @@ TEST(Tessellation, TheLevelFollowsTheScreenButNotEveryPixel) {
   }
 }
 
-// A metre of 100 x 100 control points, looked at from a few millimetres.
+// A sheet 1 m wide with 100 x 100 control points is looked at from a few millimetres away.
 TEST(Tessellation, NoMoreCellsAreAskedForThanCanBeDrawn) {
   constexpr int points = 100;
   SurfaceSnapshot sheet;

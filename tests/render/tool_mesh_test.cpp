@@ -19,10 +19,10 @@ namespace {
 struct NamedSolid {
   std::string name;
   ToolSolid solid;
-  bool flat = false;  // without a volume
+  bool flat = false;  // the solid has no volume
 };
 
-// An L, which is not convex.
+// Returns an L-shaped solid, which is not convex.
 MeshSolid bracket() {
   const std::vector<std::pair<double, double>> outline = {{-2, 0},  {-2, 10}, {-6, 10},
                                                           {-6, -4}, {8, -4},  {8, 0}};
@@ -41,7 +41,7 @@ MeshSolid bracket() {
   return {clean_mesh(std::move(mesh), "bracket").value()};
 }
 
-// One triangle without an inside.
+// Returns a single triangle, which has no inside.
 MeshSolid sheet() {
   TriangleMesh mesh;
   mesh.vertices_m = {Vector3(0, 0, 0), Vector3(0.01, 0, 0), Vector3(0, 0.01, 0)};
@@ -92,8 +92,9 @@ Vector3 corner(const ToolMesh& mesh, std::size_t index) {
   return mesh.vertices[mesh.indices[index]].position_m.cast<double>();
 }
 
-// Vertices in one place count as one: those along an edge of the solid are doubled, a pole is a row of them.
-// Single precision tells places in these solids apart to a hundredth of a micrometre.
+// Counts the directed edges of the mesh. Vertices in the same position count as one: those along an edge of
+// the solid are doubled, and a pole is a row of them. Single precision distinguishes positions in these
+// solids to a hundredth of a micrometre.
 std::map<std::pair<int, int>, int> directed_tool_edges(const ToolMesh& mesh) {
   std::map<std::tuple<long, long, long>, int> places;
   const auto place_of = [&](std::size_t index) {
@@ -135,7 +136,7 @@ TEST(ToolMesh, IsClosed) {
   }
 }
 
-// Inside the polyhedron of many vertices on a smooth surface a little is missing.
+// A polyhedron whose vertices are on a smooth surface encloses slightly less than the surface.
 TEST(ToolMesh, EnclosesTheVolumeOfTheShape) {
   const double pi = M_PI;
   const std::vector<std::pair<ImplicitShape, double>> volumes = {
@@ -161,7 +162,7 @@ TEST(ToolMesh, NormalsAreOutwardAndAgreeWithTheTriangles) {
     for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
       const Vector3 a = corner(mesh, t);
       const Vector3 face = (corner(mesh, t + 1) - a).cross(corner(mesh, t + 2) - a);
-      // Slivers at a pole have an area within the rounding of single precision.
+      // Slivers at a pole are skipped: their area is within the rounding of single precision.
       if (face.norm() < 1e-11) continue;
       for (std::size_t c = 0; c < 3; ++c) {
         const Eigen::Vector3f normal = mesh.vertices[mesh.indices[t + c]].normal;
@@ -172,8 +173,8 @@ TEST(ToolMesh, NormalsAreOutwardAndAgreeWithTheTriangles) {
   }
 }
 
-// The normal is the gradient of the exact distance, where it exists: half a micrometre along the normal from
-// a vertex of a smooth shape, the distance has grown by half a micrometre.
+// The normal is the gradient of the exact distance, where that exists: the distance half a micrometre along
+// the normal from a vertex of a smooth shape is half a micrometre.
 TEST(ToolMesh, NormalsOfSmoothShapesAreThoseOfTheDistance) {
   for (const ImplicitShape& shape : std::vector<ImplicitShape>{
            SphereShape{0.007}, EllipsoidShape{{0.008, 0.006, 0.010}}, CapsuleShape{0.004, 0.006},
@@ -184,7 +185,7 @@ TEST(ToolMesh, NormalsOfSmoothShapesAreThoseOfTheDistance) {
       const Vector3 at = mesh.vertices[i].position_m.cast<double>();
       const Vector3 normal = mesh.vertices[i].normal.cast<double>();
       constexpr double step_m = 5e-7;
-      // Positions in single precision are off by some nanometres.
+      // The bounds allow for positions in single precision, which are off by some nanometres.
       EXPECT_NEAR(distance->at(at).distance_m, 0.0, 5e-9);
       EXPECT_NEAR(distance->at(at + step_m * normal).distance_m, step_m, 1e-8);
     }
@@ -200,7 +201,7 @@ TEST(ToolMesh, FillsTheBoxOfTheShape) {
       extent.include(vertex.position_m.cast<double>());
     }
     const Box box = bounding_box(each.solid);
-    // Single precision.
+    // The vertices are in single precision.
     EXPECT_LT((extent.low - box.low).norm(), 1e-8) << each.name;
     EXPECT_LT((extent.high - box.high).norm(), 1e-8) << each.name;
   }
@@ -220,7 +221,7 @@ TEST(ToolMesh, OfASphereWithoutRadiusIsEmpty) {
   EXPECT_TRUE(mesh_of(ImplicitShape(SphereShape{0.0})).indices.empty());
 }
 
-// Where many triangles lie behind each other: through a torus seen from its side.
+// A torus seen from its side has many triangles behind each other.
 TEST(FacingOrder, GivesWhatFacesTheEyeFromFarToNear) {
   const ToolMesh mesh = mesh_of(ImplicitShape(TorusShape{0.008, 0.003}));
   const Eigen::Vector3f eye(0.05F, 0.01F, 0.0F);
@@ -239,7 +240,7 @@ TEST(FacingOrder, GivesWhatFacesTheEyeFromFarToNear) {
     Eigen::Vector3f middle = Eigen::Vector3f::Zero();
     for (std::size_t c = 0; c < 3; ++c) middle += mesh.vertices[indices[t + c]].position_m / 3.0F;
     const float distance_m = (middle - eye).norm();
-    // A ten thousandth of the depth counts as none.
+    // The order may be wrong by a ten-thousandth of the depth.
     EXPECT_LT(distance_m, last_m + 0.022F * 1e-4F);
     last_m = distance_m;
   }

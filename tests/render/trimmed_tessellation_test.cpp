@@ -18,7 +18,8 @@
 namespace spoonbill {
 namespace {
 
-// Clockwise about the middle of the domain, a fifth of it in size; `turns` of u move it over the seam.
+// Returns the area outside a clockwise hole about the centre of the domain, whose radius is a fifth of the
+// domain; `turns` moves the hole along u, across the seam.
 std::shared_ptr<const TrimmedArea> hole_in(const SurfaceSnapshot& surface, double turns) {
   const double u = surface.u.domain_start(), u_length = surface.u.domain_end() - u;
   const double v = surface.v.domain_start(), v_length = surface.v.domain_end() - v;
@@ -60,7 +61,7 @@ TEST(TrimmedTessellation, TrianglesFaceOutwardUpToTheRim) {
         const std::uint32_t* corner = surface.indices().data() + t;
         const Vector3 a = vertex(surface, corner[0]);
         const Vector3 face = (vertex(surface, corner[1]) - a).cross(vertex(surface, corner[2]) - a);
-        // Smaller ones have an area within the rounding of single precision.
+        // Smaller triangles are skipped: their area is within the rounding of single precision.
         if (face.norm() < 1e-10) continue;
         const auto& s = surface.samples();
         for (int c = 0; c < 3; ++c) {
@@ -73,8 +74,8 @@ TEST(TrimmedTessellation, TrianglesFaceOutwardUpToTheRim) {
   }
 }
 
-// The sides that one triangle alone has are those of one closed rim, each corner on two of them. Poles are
-// rows of vertices in one place, so that sides are compared by place.
+// The sides that belong to a single triangle must form one closed rim, each corner of which is on two of
+// them. Poles are rows of vertices in the same position, so sides are compared by position.
 TEST(TrimmedTessellation, HasOneRimAndNoGapElsewhere) {
   SurfaceSnapshot snapshot = sample_scene({.bend_rad = 0.5}).bodies[0].surface;
   for (const double turns : {0.5, 0.02}) {

@@ -14,8 +14,9 @@
 namespace spoonbill {
 namespace {
 
-// In the child: Xvfb writes the number of its display to `number_pipe`. It must not start afresh whenever its
-// last client leaves: the next one might meet it in between, and what was set would be forgotten.
+// Turns the child process into Xvfb, which writes the number of its display to `number_pipe`. With -noreset
+// it keeps its settings after its last client leaves; otherwise the next client might meet it during the
+// reset.
 [[noreturn]] void become_xvfb(int number_pipe, const std::string& screen) {
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
   dup2(nowhere, STDOUT_FILENO);
@@ -26,7 +27,7 @@ namespace {
   _exit(127);
 }
 
-// Empty when the other end closes first.
+// Returns a line without its end, or nothing if the other end closes first.
 std::string read_line(int pipe) {
   std::string line;
   char letter = 0;

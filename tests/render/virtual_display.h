@@ -1,4 +1,5 @@
-// A display in memory (Xvfb) for tests of windows; DISPLAY names it as long as it lives. One at a time.
+// A display in memory (Xvfb) for tests of windows. DISPLAY names it while the object exists. Only one may
+// exist at a time.
 #pragma once
 
 #include <sys/types.h>
@@ -13,8 +14,8 @@ namespace spoonbill {
 
 class VirtualDisplay {
  public:
-  // Starts Xvfb under a number that it chooses itself, so that tests can run beside each other. Refused: Xvfb
-  // is not installed or does not come up.
+  // Starts Xvfb under a number that it chooses itself, so that tests can run in parallel. Fails if Xvfb is
+  // not installed or does not start.
   static Result<std::unique_ptr<VirtualDisplay>> start(int width_px, int height_px);
 
   ~VirtualDisplay();
@@ -23,10 +24,10 @@ class VirtualDisplay {
 
   const std::string& name() const { return name_; }
 
-  // Returns the upper left part of the display. There is no window manager: windows are in that corner.
+  // Returns the upper left part of the display, where all windows are because there is no window manager.
   Image screenshot(int width_px, int height_px) const;
 
-  // Sets the density that windows opened later read from the display: 96 is a scale of 1.
+  // Sets the density that windows opened later read from the display: 96 dots per inch are a scale of 1.
   void set_dots_per_inch(int dots_per_inch) const;
 
  private:

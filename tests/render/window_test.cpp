@@ -20,7 +20,7 @@ namespace {
 
 constexpr int width = 640, height = 360;
 
-// As in the comparison with the approved pictures: the most that two rasterisers may differ in a block.
+// Two rasterisers may differ by at most this in a block, as in the comparison with the approved pictures.
 constexpr double tolerance = 2.0;
 
 ViewSettings settings_for(const Snapshot& snapshot, int width_px, int height_px) {
@@ -48,7 +48,8 @@ Image drawn_offscreen(const Snapshot& snapshot) {
   return drawn_by(renderer.value(), snapshot, width, height);
 }
 
-// The display answers in its own time; five minutes are more than any load takes.
+// Waits for the condition while handling events. The display answers with a delay; five minutes are enough
+// under any load.
 template <class Condition>
 bool comes_true(GlfwWindow& window, const Condition& condition) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(300);
@@ -89,7 +90,7 @@ class Window : public ::testing::Test {
   Snapshot snapshot_ = sample_scene({.bend_rad = 0.4});
   std::unique_ptr<VirtualDisplay> display_;
   std::unique_ptr<GlfwWindow> window_;
-  std::unique_ptr<Renderer> renderer_;  // ends before the window
+  std::unique_ptr<Renderer> renderer_;  // must end before the window does
 };
 
 TEST_F(Window, DrawsAndShowsWhatIsDrawnOffscreen) {

@@ -1,4 +1,4 @@
-// Damage to the bytes of a file, as by careless editing or a failing disk.
+// Damages the bytes of a file as careless editing or a failing disk does.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,8 @@
 
 namespace spoonbill {
 
-// Changes, removes or repeats one to four stretches of the text from byte `from` on; never empties it.
+// Changes, removes or repeats one to four stretches of the text from byte `from` on. The result is never
+// empty.
 std::string damaged(std::string text, std::size_t from, std::mt19937_64& random);
 
 }  // namespace spoonbill

@@ -1,4 +1,4 @@
-// Damaged documents are read or refused in one line, and never crash the program.
+// Damaged documents must be read, or refused with a message of one line; they must never crash the program.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -37,7 +37,7 @@ TEST(DamagedDocument, AnyBytesChanged) {
   for (int i = random_cases(4'000, 100'000); i > 0; --i) expect_document_or_line(damaged(text, 0, random));
 }
 
-// Replaces each value by values of every kind.
+// Replaces each value of a document in turn by values of every kind.
 TEST(DamagedDocument, AnyValueReplaced) {
   const Json whole = document_to_json(sample_document());
   const Json flat = whole.flatten();

@@ -1,5 +1,5 @@
-// The JSON schema of described structs (field.h): what a document may hold of them. "text", "length_mm",
-// "point_mm", "vector" and "region" are the definitions that the schema of documents has of its own.
+// Builds the JSON schema of structs that have tables of fields (field.h). "text", "length_mm", "point_mm",
+// "vector" and "region" refer to definitions in the schema of documents.
 #pragma once
 
 #include <cmath>
@@ -70,7 +70,8 @@ inline void require(const FieldForm& form, Json& object) {
   }
 }
 
-// An object with the fields of the table that this one has, after those of `first`, which are required too.
+// Returns the schema of an object: first the properties of `first`, then the table's fields that apply to
+// `object`. All properties of `first` are required.
 template <class Object>
 Json object_schema(const Object& object, const Json& first = Json::object()) {
   Json json{{"type", "object"}, {"required", Json::array()}};
@@ -95,7 +96,7 @@ Json object_schema(const Object& object, const Json& first = Json::object()) {
   return json;
 }
 
-// Returns one schema for each value of the choice that is the struct's first field.
+// Returns one schema per value of the choice that is the struct's first field.
 template <class Object>
 Json choice_schema() {
   const Field<Object>& choice = fields_of<Object>.front();
@@ -111,7 +112,8 @@ Json choice_schema() {
   return json;
 }
 
-// Of each alternative that its name tells; a region is the undescribed part of those that have one.
+// Returns one schema per alternative of the variant; the field `name_field` tells which one applies. An
+// alternative with a region gets it from the schema of documents, because no table describes it.
 template <class Variant>
 Json variant_schema(const char* name_field) {
   Json json;

@@ -1,4 +1,4 @@
-// The document schema agrees with the tables of fields.
+// Checks that the schema of documents agrees with the tables of fields.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -19,7 +19,7 @@ std::string text_of(const std::string& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// Returns the description of each action.
+// Returns the help of all tool actions as one text.
 std::string actions_text() {
   std::string text;
   for (const ToolActionRow& row : tool_actions) {
@@ -28,7 +28,8 @@ std::string actions_text() {
   return text;
 }
 
-// Returns the schema from the table, plus the properties of the old definition that no table describes.
+// Returns the tool's schema from the table of fields, plus the properties of the old schema that no table
+// describes.
 Json tool_schema(const Json& old) {
   Json tool = object_schema(Tool{});
   Json& properties = tool["properties"];
@@ -57,7 +58,7 @@ Json with_description_of(const Json& old) {
   return json;
 }
 
-// Returns the schema with all parts that the tables describe written again.
+// Returns the schema with every part rewritten that a table describes.
 Json rewritten_schema(Json schema) {
   Json& all = schema["$defs"];
   all["material"] = with_description_of<Material>(all["material"]);
@@ -73,7 +74,7 @@ Json rewritten_schema(Json schema) {
   return schema;
 }
 
-// With SPOONBILL_APPROVE=1 the schema file is rewritten.
+// With SPOONBILL_APPROVE=1 the test rewrites the schema file.
 TEST(DocumentSchema, SaysWhatTheTablesOfFieldsSay) {
   const auto schema = parse_json(text_of(schema_file), schema_file);
   ASSERT_TRUE(schema.ok()) << schema.error().message;

@@ -122,7 +122,7 @@ TEST(Document, NamesEveryMissingField) {
   for (const auto& item : flat.items()) {
     const Json::json_pointer pointer(item.key());
     const std::string field = pointer.back();
-    // Optional fields, 0 by default.
+    // These fields are optional and 0 by default.
     if (field == "hardening" || field == "stiffening" || field == "friction") continue;
     if (item.key().starts_with("/view") || field.find_first_not_of("0123456789") == std::string::npos) {
       continue;

@@ -40,7 +40,7 @@ TEST(File, CannotReadWithoutPermission) {
   std::filesystem::permissions(folder.path(), std::filesystem::perms(0755));
   std::filesystem::permissions(file, std::filesystem::perms::none);
   const uid_t user = geteuid();
-  const bool is_root = user == 0;  // root may read every file
+  const bool is_root = user == 0;  // root could read every file
   ASSERT_EQ(is_root ? seteuid(65534) : 0, 0);
   const std::string message = reading_refusal(file);
   ASSERT_EQ(is_root ? seteuid(user) : 0, 0);
@@ -71,7 +71,7 @@ TEST(File, FollowsLinksAndKeepsPermissions) {
   EXPECT_EQ(std::filesystem::status(file).permissions(), std::filesystem::perms(0640));
 }
 
-// Permissions shared with a group stay, and nothing is written through a symbolic link.
+// Permissions of the group are preserved whatever the umask, and nothing is written through a symbolic link.
 TEST(File, KeepsPermissionsThatTheMaskTakesAway) {
   const TemporaryFolder folder;
   const auto file = folder.write("shared.json", "one"), other = folder.write("other", "untouched");
@@ -122,7 +122,7 @@ TEST(File, WritesDocumentsThatReadBack) {
   EXPECT_TRUE(same_bits(document, read.value()));
 }
 
-// A program killed at any moment of a save leaves either the old document or the new one.
+// A program killed at any moment of a save leaves either the whole old document or the whole new one.
 TEST(File, AKillDuringASaveLeavesAWholeDocument) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "spoon.json";
@@ -147,7 +147,7 @@ TEST(File, AKillDuringASaveLeavesAWholeDocument) {
     EXPECT_TRUE(is_other || same_bits(one, read.value()));
     changed += is_other ? 1 : 0;
   }
-  EXPECT_GT(changed, 0);  // otherwise no save was completed
+  EXPECT_GT(changed, 0);  // at least one save was completed before its kill
 }
 
 TEST(File, NeverReplacesADocumentByOneThatCannotBeRead) {

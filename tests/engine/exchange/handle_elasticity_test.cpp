@@ -1,5 +1,5 @@
-// A virtual tension test of the bundled handle: the elastic constants that its lattice achieves where the
-// body is a bar.
+// A virtual tension test of the bundled handle measures the elastic constants of its lattice where the handle
+// is a straight bar.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double strain = 1e-5;
 
-// Returns the central half of the handle, which is straight along x; its slices are planes.
+// Returns the central half of the handle's lattice, which is straight along x and whose slices are plane.
 LatticeMesh middle_half(const LatticeMesh& whole) {
   const int last = whole.count[2] - 1, first_slice = last / 4, last_slice = last - last / 4;
   LatticeMesh part;
@@ -38,7 +38,7 @@ double slice_x_m(const LatticeMesh& mesh, int k) {
   return mesh.nodes[static_cast<std::size_t>(mesh.index(0, 0, k))].x();
 }
 
-// Fixes both ends along x; they are free to slip across it.
+// Fixes both ends along x, one of them stretched; the ends are free to slip across x.
 std::vector<FixedAxis> drawn_ends(const LatticeMesh& mesh) {
   std::vector<FixedAxis> held;
   const int last = mesh.count[2] - 1;
@@ -59,8 +59,9 @@ struct Measured {
   double youngs_modulus_pa, poissons_ratio;
 };
 
-// Of a bar whose cross section changes along it: the same force F strains each layer by F / E A, so that
-// F / E = stretch / sum (l / A), and each layer's volume grows by (1 - 2 nu) F / E A of itself.
+// Measures a bar whose cross section changes along it. The force F strains each layer of length l and area A
+// by F / (E A), so that F / E = stretch / sum (l / A). Each layer's volume grows by the fraction (1 - 2 nu) F
+// / (E A).
 Measured tension_test(const LatticeMesh& mesh, const StaticBody& body) {
   const Result<StaticResult> found = rest_under_load(body, {}, drawn_ends(mesh));
   EXPECT_TRUE(found.ok()) << found.error().message;
@@ -104,7 +105,7 @@ TEST(HandleElasticity, IsTheMaterialsAtAnyResolution) {
       RecordProperty("handle_youngs_" + count, std::to_string(ratio));
       RecordProperty("handle_poisson_" + count,
                      std::to_string(measured.poissons_ratio - handle.material.poissons_ratio));
-      // With so few nodes the cells are too slender for springs.
+      // With fewer than 2000 nodes the cells are too slender for springs.
       if (springs && budget < 2000) continue;
       EXPECT_NEAR(ratio, 1.0, 0.03) << budget;
       EXPECT_NEAR(measured.poissons_ratio, handle.material.poissons_ratio, 0.02) << budget;

@@ -1,4 +1,4 @@
-// Loads, supports and the ground in documents.
+// Tests loads, supports and the ground in documents.
 #include <gtest/gtest.h>
 
 #include <functional>

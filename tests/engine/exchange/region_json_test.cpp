@@ -1,4 +1,4 @@
-// Regions of a body in a document.
+// Tests regions of bodies in documents.
 #include <gtest/gtest.h>
 
 #include <cmath>

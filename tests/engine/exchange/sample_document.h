@@ -1,4 +1,4 @@
-// A small document made in code, so that tests need no file: a closed tube with poles at both ends.
+// Provides a small document made in code, so that tests need no file: a closed tube with poles at both ends.
 #pragma once
 
 #include <filesystem>
@@ -8,16 +8,16 @@
 
 namespace spoonbill {
 
-// 6 x 8 control points, 40 mm long, lengths as a person would write them.
+// Returns a document with 6 x 8 control points, 40 mm long, with lengths as a person would write them.
 Document sample_document();
 
-// Returns the same document with every length a random double, as in a deformed body.
+// Returns the sample document with every length random, as in a deformed body.
 Document deformed_document(unsigned seed);
 
-// Compares every bit of the scene, and distinguishes -0 from 0.
+// Returns true if every bit of the two scenes is equal; -0 differs from 0.
 bool same_bits(const Document& a, const Document& b);
 
-// A temporary folder, removed with all its contents.
+// A temporary folder, which is removed with all its contents at the end.
 class TemporaryFolder {
  public:
   TemporaryFolder();

@@ -37,7 +37,7 @@ def at(document, path):
     return document
 
 
-# Fields that the program does without, each by the name of what holds it.
+# Fields that are optional in a document, listed under the name of the object that holds them.
 optional = {
     "": {"other_bodies", "fixing_planes", "ground", "symmetry", "view"},
     "body": {"regions", "loads", "supports", "shell_thickness_mm", "solid"},

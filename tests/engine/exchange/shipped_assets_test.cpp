@@ -1,4 +1,4 @@
-// The bundled assets can be read and used.
+// Checks that the bundled assets can be read and used.
 #include <gtest/gtest.h>
 
 #include "engine/base/processor.h"
@@ -22,7 +22,7 @@ TEST(ShippedAssets, MaterialsAreNamedLikeTheirFilesAndSaySources) {
   EXPECT_GE(count, 8);
 }
 
-// In every material, the handle becomes a simulation whose springs are stable in a tick.
+// The handle can be simulated in every bundled material with springs that are stable in a tick.
 TEST(ShippedAssets, TheHandleCanBeSculptedInEveryMaterial) {
   Result<Document> document = read_document(assets / "models" / "spoon-handle.json");
   ASSERT_TRUE(document.ok()) << document.error().message;

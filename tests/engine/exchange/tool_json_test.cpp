@@ -57,7 +57,7 @@ Refusal tool_refusal(const std::function<void(Json&)>& change) {
   return Refusal(read);
 }
 
-// Numbers read back to the same bits (document_test.cpp), so the same text is the same tool.
+// Numbers read back to the same bits (document_test.cpp), so two tools are equal if their texts are equal.
 TEST(ToolJson, KeepsEverySolid) {
   for (const ToolSolid& solid : every_solid()) {
     const std::string text = page(with_tool(solid));

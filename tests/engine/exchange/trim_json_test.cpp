@@ -71,7 +71,7 @@ TEST(TrimJson, RefusesWhatIsNoLoop) {
             Refusal(ErrorCode::wrong_type, "other_bodies[0].surface.trims"));
 }
 
-// A document of version 1 is written as version 2: only the version differs.
+// A document of version 1 is written as version 2 with only the version changed.
 TEST(TrimJson, ADocumentOfVersionOneIsReadAndWrittenAsVersionTwo) {
   const auto read = read_document(documents / "version-1.json");
   ASSERT_TRUE(read.ok()) << read.error().message;

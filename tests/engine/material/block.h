@@ -1,26 +1,26 @@
-// Blocks of material for the lattice's tests.
+// Provides blocks of material for tests of the lattice.
 #pragma once
 
 #include "engine/material/springs/spring_lattice.h"
 
 namespace spoonbill {
 
-// An elastic, undamped material.
+// Returns an elastic, undamped material.
 Material elastic_material(double youngs_modulus_pa, double poissons_ratio, double density_kg_per_m3);
 
-// A box of that material, its corner at the origin.
+// Returns a box of the material with one corner at the origin.
 SpringLattice block(const Vector3& size_m, std::array<int, 3> counts, const Material& material,
                     InstructionSet set = InstructionSet::baseline);
 
-// Computes the forces of the shape as it will be `tau_s` ahead, with springs linearised there.
+// Computes the forces of the shape expected `tau_s` ahead, after linearising the springs there.
 void take_forces(SpringLattice& lattice, float tau_s);
 
-// One substep without any tool: forces, kick, drift.
+// Makes one substep without any tool: forces, kick, drift.
 void plain_substep(SpringLattice& lattice, float h_s, const Vector3& gravity_m_per_s2 = Vector3::Zero());
 
 struct Momentum {
   Vector3 sum = Vector3::Zero();
-  double size = 0.0;  // the sum of m |v|
+  double size = 0.0;  // sum of m |v|
   double energy_j = 0.0;
 };
 Momentum momentum_of(const SpringLattice& lattice);

@@ -1,4 +1,4 @@
-// Blocks of two materials for the lattice's tests.
+// Provides blocks of two materials for tests of the lattice.
 #pragma once
 
 #include <functional>
@@ -7,7 +7,8 @@
 
 namespace spoonbill {
 
-// Returns the first material, except in cells for whose centre (m) `is_second` is true.
+// Returns the material of each cell: `second` if `is_second` is true for the cell's centre (m), otherwise
+// `first`.
 LatticeMaterials composite(const LatticeMesh& mesh, const Material& first, const Material& second,
                            const std::function<bool(const Vector3&)>& is_second);
 

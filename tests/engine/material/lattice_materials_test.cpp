@@ -1,4 +1,4 @@
-// The materials that regions give to cells and nodes.
+// Tests the materials that regions give to cells and nodes.
 #include "engine/material/lattice_materials.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 const Vector3 size_m(0.01, 0.01, 0.02);
 
 LatticeMesh bar() {
-  return box_mesh(size_m, {6, 6, 11});  // cells of 2 mm
+  return box_mesh(size_m, {6, 6, 11});  // the cells are cubes of 2 mm
 }
 
 Material named(const char* name, double youngs_modulus_pa, double friction) {
@@ -37,7 +37,7 @@ TEST(LatticeMaterials, WithoutRegionsThereIsOne) {
   EXPECT_EQ(materials.friction(17), 0.2);
 }
 
-// A skin of one cell on five by five by ten leaves three by three by eight.
+// The bar has 5 x 5 x 10 cells; a skin of one cell leaves 3 x 3 x 8 cells inside.
 TEST(LatticeMaterials, ASkinTakesTheOuterCells) {
   MaterialRegion skin;
   skin.region.depth_m = {0.0, 0.0015};
@@ -128,7 +128,7 @@ TEST(LatticeMaterials, WrongRegionsAreRefusedInALine) {
             Refusal(ErrorCode::out_of_range, "regions"));
 }
 
-// Springs step all of a body or none of it.
+// The springs step either all of a body or none of it, so every material must suit them if one needs them.
 TEST(LatticeMaterials, WhatSpringsMustStepIsFitForSprings) {
   Material clay = named("clay", 1e5, 0.0), cork = named("cork", 1e6, 0.0);
   clay.plastic = true;

@@ -15,7 +15,7 @@ namespace {
 constexpr int random_points = 20000;
 constexpr int steps = 200;
 
-// Gauss-Legendre with six points (Abramowitz and Stegun 1964, table 25.4): exact up to degree 11, and a
+// Six-point Gauss-Legendre quadrature (Abramowitz and Stegun 1964, table 25.4) is exact up to degree 11; a
 // triple product of bicubics has degree 8.
 constexpr std::array<double, 3> nodes = {0.238619186083197, 0.661209386466265, 0.932469514203152};
 constexpr std::array<double, 3> weights = {0.467913934572691, 0.360761573048139, 0.171324492379170};
@@ -97,7 +97,7 @@ Evenness evenness(const Surface& surface) {
   std::array<double, 2> along = {1e30, 0.0}, around = {1e30, 0.0};
   for (int k = 0; k < steps; ++k) {
     const double share = static_cast<double>(k) / steps, next = static_cast<double>(k + 1) / steps;
-    double step = 0.0;  // the mean of a ring
+    double step = 0.0;  // sum over a ring of points
     for (int i = 0; i < 16; ++i) {
       const double u = at(surface.u, i / 16.0);
       step += (position(surface, u, at(surface.v, next)) - position(surface, u, at(surface.v, share))).norm();
@@ -115,7 +115,7 @@ Evenness evenness(const Surface& surface) {
 }
 
 double seam_jump(const Surface& surface) {
-  // A parameter step so small that no derivative of a smooth seam changes by more than a thousandth.
+  // The parameter step is so small that no derivative across a smooth seam changes by more than a thousandth.
   const double start = surface.u.domain_start(), end = surface.u.domain_end(), step = 1e-7 * (end - start);
   double largest = 0.0;
   for (int k = 1; k < 16; ++k) {

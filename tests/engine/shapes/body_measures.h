@@ -1,4 +1,4 @@
-// Measures of a stock shape that are independent of the code that made it.
+// Measures stock shapes independently of the code that made them.
 #pragma once
 
 #include <functional>
@@ -11,25 +11,27 @@ namespace spoonbill {
 
 inline constexpr double shape_tolerance_m = 1e-5;
 
-// The volume inside and the area, by Gauss quadrature over the polynomial pieces: the volume exactly.
+// Returns the enclosed volume, volume_m3(), and the area, area_m2(), by Gauss quadrature over the polynomial
+// pieces. The volume is exact.
 double volume_m3(const Surface& surface);
 double area_m2(const Surface& surface);
 
-// The largest magnitude of `distance` at random parameters.
+// Returns the largest magnitude of `distance` at random points of the surface.
 double largest_distance_m(const Surface& surface, const std::function<double(const Vector3&)>& distance);
 
-// The smallest cosine between the normal and the gradient of `distance`, at random parameters.
+// Returns the smallest cosine of the angle between the normal and the gradient of `distance`, at random
+// points.
 double least_outward(const Surface& surface, const std::function<double(const Vector3&)>& distance);
 
-// The longest over the shortest step between rings at the same distance along v, and between points of a ring
-// in its middle: 1 where parameters are spread by length.
+// The longest step divided by the shortest: `along` for steps between rings along v, `around` for steps along
+// the ring halfway along v. Both are 1 if parameters are proportional to length.
 struct Evenness {
   double along = 0.0, around = 0.0;
 };
 Evenness evenness(const Surface& surface);
 
-// The largest jump of position, and of the first two derivatives over their largest size, across the seam of
-// u.
+// Returns the largest jump across the seam of u: of the position, and of the first and second derivatives,
+// each divided by a length scale from the first derivative.
 double seam_jump(const Surface& surface);
 
 // Returns true if elements that are not neighbours intersect. Uses coarse levels only: the finer ones take

@@ -12,8 +12,8 @@ namespace spoonbill {
 namespace {
 
 using std::numbers::pi;
-// How a box or plate is rounded: along its axis it is a rounded rectangle, and an end is what is within the
-// rounding of that outline made smaller by it.
+// The rounding of a box or plate. Along `axis`, the outline is a rectangle whose corners are rounded by
+// `edge_m`. The edges between the end faces and the sides are rounded by `end_m`.
 struct Rounded {
   Vector3 size_m;
   int axis;
@@ -28,15 +28,16 @@ double box_distance(const Vector3& p, const Rounded& box) {
   return std::hypot(std::max(out, 0.0), std::max(up, 0.0)) + std::min(std::max(out, up), 0.0) - box.end_m;
 }
 
-// Volume: the section's area and perimeter within the end faces' rounding, by Steiner's formula in each slice
-// (an outline made smaller by d encloses A - d P + pi d^2). Area: the same of the perimeter, P - 2 pi d.
+// The expected volume follows from the section's area A and perimeter P by Steiner's formula in each slice
+// (an outline moved inwards by d encloses A - d P + pi d^2). The expected area follows from the perimeter in
+// each slice, P - 2 pi d.
 void expect_box(const FittedShape& shape, const Rounded& box, double most_uneven_along = 2.5) {
   const double x = box.size_m[(box.axis + 1) % 3], y = box.size_m[(box.axis + 2) % 3];
   const double r = box.end_m, length = box.size_m[box.axis] - 2.0 * r;
   const double a = x * y - (4.0 - pi) * box.edge_m * box.edge_m;
   const double perimeter = 2.0 * (x + y) - (8.0 - 2.0 * pi) * box.edge_m;
-  // Over a quarter circle d = r (1 - cos): the integrals of d and d^2 over its height, and of d over its
-  // length.
+  // Along the quarter circle of the rounding d = r (1 - cos): `first` and `second` are the integrals of d and
+  // d^2 over its height, `arc_first` that of d over its length.
   const double first = r * r * (1.0 - 0.25 * pi), second = r * r * r * (5.0 / 3.0 - 0.5 * pi);
   const double arc = 0.5 * pi * r, arc_first = r * r * (0.5 * pi - 1.0);
   const double volume = a * length + 2.0 * (a * r - perimeter * first + pi * second);
@@ -73,8 +74,8 @@ TEST(Box, ThatIsFlatHasItsPolesInTheLargeFaces) {
   expect_box(fitted(box_shape({{0.1, 0.03, 0.01}, 0.001})), {{0.1, 0.03, 0.01}, 0, 0.002, 0.001});
 }
 
-// Up to two fifths of the shortest side: of its end faces, strips are left, along which lines from the poles
-// are longer than across.
+// The rounding may be up to two fifths of the shortest side. Only strips of the end faces remain flat, and
+// lines from the poles are longer along a strip than across it.
 TEST(Box, MayBeRoundedFarIn) {
   for (const BoxSize& size : {BoxSize{{0.06, 0.04, 0.02}, 0.007}, BoxSize{{0.06, 0.04, 0.02}, 0.0075},
                               BoxSize{{0.06, 0.04, 0.02}, 0.008}, BoxSize{{0.04, 0.0399, 0.02}, 0.008},
@@ -85,7 +86,8 @@ TEST(Box, MayBeRoundedFarIn) {
   }
 }
 
-// Of any proportions: what is rounded is a small part of a side that is long beside it.
+// The box may have any proportions: even the rounding of a thin box, which is tiny beside a long side, must
+// be fitted.
 TEST(Box, MayBeLongOrWideOrBoth) {
   for (const Vector3& size_m :
        {Vector3(1.0, 0.001, 0.001), Vector3(0.1, 0.1, 0.001), Vector3(1.0, 1.0, 0.001),
@@ -103,7 +105,7 @@ TEST(Box, MayBeLongOrWideOrBoth) {
   }
 }
 
-// Where lines from the pole are slender, what a fit leaves of ripples would be sharp dimples.
+// Slender end faces must be exactly flat: ripples that a fit leaves there would be sharp dimples.
 TEST(Box, HasFlatEndFaces) {
   for (const BoxSize& size : {BoxSize{{0.3, 0.02, 0.003}, 0.0003}, BoxSize{{0.06, 0.04, 0.02}, 0.008}}) {
     const auto shape = box_shape(size);

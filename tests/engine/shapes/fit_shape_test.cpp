@@ -35,7 +35,8 @@ TEST(FitShape, PutsKnotsWhereTheShapeAsksForThem) {
 TEST(FitShape, ACurvatureJumpIsMetAtABreak) {
   ExactShape bent;
   bent.u.breaks = {0.0, 0.37, 1.0};
-  // Straight, then an arc of radius 0.05: fitted to the tolerance with few spans, as the jump lies on a knot.
+  // The curve is straight and then an arc of radius 0.05. It is fitted to the tolerance with few spans,
+  // because the curvature jump is at a knot.
   bent.at = [](double u, double v) {
     const double beyond = std::max(0.0, u - 0.37) / 0.5;
     return Vector3(0.1 * std::min(u, 0.37) + 0.05 * std::sin(beyond), 0.05 * (1.0 - std::cos(beyond)),
@@ -78,7 +79,7 @@ TEST(FitShape, TellsHowFarItIsAndStops) {
   }
 }
 
-// Before any of the work: a break beside which more cells are needed than there may be.
+// The fit is refused before any work if its breaks need more cells than are allowed.
 TEST(FitShape, RefusesMoreBreaksThanControlPointsAtOnce) {
   ExactShape shape = wave(0.0);
   shape.v.breaks.clear();

@@ -18,9 +18,9 @@ double cylinder_distance(const Vector3& p, const CylinderSize& size) {
   return std::hypot(std::max(out, 0.0), std::max(up, 0.0)) + std::min(std::max(out, up), 0.0) - r;
 }
 
-// Within the tolerance of its shape, a surface encloses as much as the shape does to the tolerance times the
-// area; and as smooth as these are, its area differs by the tolerance times the mean curvature, here below a
-// thousandth.
+// A surface within the tolerance of its shape encloses the shape's volume to within the tolerance times the
+// area. Its area differs by the tolerance times the mean curvature, which is less than a thousandth for these
+// smooth shapes.
 void expect_sound(const FittedShape& shape, double volume, double area) {
   EXPECT_LE(shape.deviation_m, shape_tolerance_m);
   EXPECT_NEAR(volume_m3(shape.surface), volume, shape_tolerance_m * area);
@@ -43,7 +43,7 @@ TEST(Sphere, IsRound) {
   EXPECT_LE(sphere.surface.net.columns, 24);
 }
 
-// A shape's deviation is what the report says: found again by another way.
+// The reported deviation must agree with the one found by sampling the surface.
 TEST(Sphere, DeviationIsThatOfTheSurface) {
   ShapeFit fit;
   fit.control_counts = {{8, 10}};
@@ -75,7 +75,8 @@ TEST(Cylinder, IsACylinderWithRoundedEdges) {
     const double R = size.radius_m, r = size.rounding_m, h = size.height_m, c = R - r;
     const FittedShape cylinder = fitted(cylinder_shape(size));
     const auto distance = [&](const Vector3& p) { return cylinder_distance(p, size); };
-    // Pappus: quarter circles of area pi r^2 / 4, their middle 4 r / 3 pi beyond c.
+    // Pappus's theorem: the quarter circles have the area pi r^2 / 4, and their centroids are 4 r / 3 pi
+    // beyond c.
     const double volume = pi * R * R * (h - 2.0 * r) + 2.0 * r * pi * c * c +
                           2.0 * (2.0 * pi * c * 0.25 * pi * r * r + 2.0 / 3.0 * pi * r * r * r);
     const double area = 2.0 * pi * R * (h - 2.0 * r) + 2.0 * pi * c * c +
@@ -97,14 +98,15 @@ TEST(Cylinder, RefusesWhatFolds) {
   EXPECT_FALSE(cylinder_shape({0.02, -0.06, 0.002}).ok());
 }
 
-// From the profile of a cone with a rounded edge and tip: the nearest of its three parts.
+// Returns the signed distance from a cone whose edge and tip are rounded. The nearest of the profile's three
+// parts determines it.
 double cone_distance(const Vector3& p, const ConeSize& size) {
   const double slope = std::atan2(size.radius_m, size.height_m), r = size.rounding_m, h = size.height_m;
   const Eigen::Vector2d q(std::hypot(p.x(), p.z()), p.y() + 0.5 * h);
-  const Eigen::Vector2d outward(std::cos(slope), std::sin(slope));  // normal of the side
-  const Eigen::Vector2d down(std::sin(slope), -std::cos(slope));    // along it
-  // What is within the rounding of a smaller cone of the same slope, whose corners are the middles of the
-  // roundings.
+  const Eigen::Vector2d outward(std::cos(slope), std::sin(slope));  // normal of the cone's side
+  const Eigen::Vector2d down(std::sin(slope), -std::cos(slope));    // direction along the cone's side
+  // The rounded cone is the set of points within the rounding of a smaller cone of the same slope, whose
+  // corners are the centres of the roundings.
   const Eigen::Vector2d tip(0.0, h - r / std::sin(slope));
   const double edge_x = size.radius_m - r * std::tan(0.25 * pi + 0.5 * slope);
   const Eigen::Vector2d edge(edge_x, r);
@@ -125,7 +127,7 @@ TEST(Cone, IsAConeWithRoundedEdgeAndTip) {
     EXPECT_LE(largest_distance_m(cone.surface, distance), shape_tolerance_m);
     EXPECT_GT(least_outward(cone.surface, distance), 0.95);
     EXPECT_FALSE(is_self_intersecting(cone.surface, true));
-    // Below the sharp cone by what the roundings take.
+    // The roundings remove a small part of the sharp cone's volume.
     const double sharp = pi / 3.0 * size.radius_m * size.radius_m * size.height_m;
     EXPECT_LT(volume_m3(cone.surface), sharp);
     EXPECT_GT(volume_m3(cone.surface), 0.9 * sharp);

@@ -19,7 +19,7 @@ std::vector<Vector3> circle(int count) {
   return points;
 }
 
-// A periodic spline through n points of a circle is off it by about (2 pi / n)^4 / 384.
+// A periodic spline through n points of a unit circle deviates from it by about (2 pi / n)^4 / 384.
 TEST(SmoothCurve, ThroughACircleIsNearlyOne) {
   const SmoothCurve curve = SmoothCurve::through(circle(24), true).value();
   for (double t = 0.0; t < curve.end(); t += 0.01) {

@@ -41,7 +41,8 @@ TEST(Tube, StraightIsACapsule) {
   EXPECT_LT(evenness(tube.surface).along, 1.05);
 }
 
-// All points of the surface are as far from the line as it is thick, found by search along the line.
+// The distance of each point from the centre line, found by searching along the line, must be the tube's
+// radius.
 TEST(Tube, BentIsRoundAboutItsLine) {
   const SmoothCurve line =
       curve_through({{0, 0, 0}, {0.03, 0.01, 0}, {0.05, 0.03, 0.02}, {0.05, 0.06, 0.05}});
@@ -73,7 +74,8 @@ TEST(Tube, BentIsRoundAboutItsLine) {
     }
   }
   EXPECT_LE(largest, shape_tolerance_m);
-  // Pappus, for a line that bends: section times length, and the ball of both ends.
+  // Pappus's theorem for a bent line: the volume is the section times the length, plus the ball that both
+  // ends form.
   double length = 0.0;
   for (int k = 0; k < 20000; ++k) {
     length += (line.at(line.end() * (k + 1) / 20000) - line.at(line.end() * k / 20000)).norm();
@@ -112,7 +114,8 @@ std::vector<MeridianPoint> half_circle(double radius, int count) {
   return points;
 }
 
-// A spline through 41 points of a half circle of 30 mm is off it by less than a thousandth of the tolerance.
+// A spline through 41 points of a half circle of 30 mm deviates from it by less than a thousandth of the
+// tolerance.
 TEST(Lathe, OfAHalfCircleIsASphereWhicheverWayItRuns) {
   std::vector<MeridianPoint> profile = half_circle(0.03, 40);
   for (int turn = 0; turn < 2; ++turn) {
@@ -149,7 +152,7 @@ TEST(Lathe, RefusesProfilesThatTurnIntoNone) {
   EXPECT_FALSE(lathe_shape({{0.0, 0.0}, {-0.01, 0.01}, {0.0, 0.02}}).ok());
   EXPECT_FALSE(lathe_shape({{0.01, 0.0}, {0.01, 0.0}}).ok());
   EXPECT_FALSE(lathe_shape({{0.01, 0.0}, {std::nan(""), 0.01}}).ok());
-  // Zigzag over itself.
+  // The profile crosses itself.
   EXPECT_FALSE(lathe_shape({{0.01, 0.0}, {0.05, 0.02}, {0.05, 0.0}, {0.01, 0.02}}).ok());
 }
 
@@ -163,7 +166,7 @@ std::vector<Vector3> ring(double width, double height, double x, int count, int 
   return points;
 }
 
-// Between equal rings a straight tube, whatever point each begins at and whichever way it runs.
+// Equal rings give a straight tube, whichever point each ring begins at and whichever direction it runs in.
 TEST(Loft, ThroughEqualRingsIsATubeWithCaps) {
   LoftSections sections;
   sections.sections_m = {ring(0.01, 0.01, 0.0, 40), ring(0.01, 0.01, 0.02, 32, 5),
@@ -171,7 +174,8 @@ TEST(Loft, ThroughEqualRingsIsATubeWithCaps) {
   sections.cap_m = 0.01;
   const FittedShape tube = fitted(loft_shape(sections));
   expect_closed(tube);
-  // Caps as high as the ring's radius are half balls, but for the cubic's 2.7e-4 of the radius.
+  // Caps as high as the ring's radius are half balls, except for the cubic's deviation of 2.7e-4 of the
+  // radius.
   const auto distance = [](const Vector3& p) {
     return (p - Vector3(std::clamp(p.x(), 0.0, 0.05), 0.0, 0.0)).norm() - 0.01;
   };
@@ -207,7 +211,7 @@ TEST(Loft, OfOpenSectionsIsASheet) {
   const FittedShape sheet = fitted(loft_shape(sections));
   EXPECT_LE(sheet.deviation_m, shape_tolerance_m);
   EXPECT_FALSE(sheet.surface.u.is_periodic() || sheet.surface.v.is_periodic());
-  // Straight along every section: the area is the width times the length of the line across.
+  // Every section is straight: the area is the width times the length of the line across the sections.
   const double width = 0.09, length = area_m2(sheet.surface) / width;
   EXPECT_GT(length, std::hypot(0.06, 0.018));
   EXPECT_LT(length, 1.02 * (std::hypot(0.02, 0.002) + std::hypot(0.02, 0.006) + std::hypot(0.02, 0.01)));

@@ -1,4 +1,4 @@
-// Trim loops of known area.
+// Provides trim loops of known area.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,23 +14,24 @@ KnotVector periodic_domain(double start, double end);
 inline const KnotVector open_u = open_domain(0.0, 2.0), open_v = open_domain(-1.0, 1.0),
                         periodic_u = periodic_domain(0.0, 1.0);
 
-// Counter-clockwise; run backwards it bounds a hole.
+// rectangle() returns the corners counter-clockwise, for an outer loop; backwards() reverses the order, for a
+// hole.
 std::vector<Eigen::Vector2d> rectangle(double low_u, double low_v, double high_u, double high_v);
 std::vector<Eigen::Vector2d> backwards(std::vector<Eigen::Vector2d> points);
 
-// The polygon through the points, the last of which is joined to the first. Refused: what make_trim_loop()
-// refuses.
+// Returns the closed polygon through the points. Fails whenever make_trim_loop() fails.
 Result<TrimLoop> make_polygon_loop(const KnotVector& along_u, const KnotVector& along_v,
                                    const std::vector<Eigen::Vector2d>& points);
 TrimLoop polygon_loop(const KnotVector& u, const KnotVector& v, const std::vector<Eigen::Vector2d>& points);
 
-// A periodic cubic over equal knots, its `count` control points evenly on a circle. Clockwise for a hole.
+// Returns a periodic cubic curve with uniform knots whose `count` control points are evenly spaced on a
+// circle. Use clockwise for a hole.
 TrimLoop round_loop(const KnotVector& u, const KnotVector& v, const Eigen::Vector2d& middle, double radius,
                     int count, bool clockwise);
 
-// What it encloses: half the sum of the control points' cross products, each times the integral of one
-// uniform cubic basis function times another's derivative, 245/720, 56/720 and 1/720 for neighbours one, two
-// and three away (the derivative of the B-spline of degree 7 at its knots).
+// Returns the area inside round_loop(). It is half the sum of the cross products of control points, each
+// times the integral of one uniform cubic basis function times the derivative of another: 245/720, 56/720 and
+// 1/720 for neighbours one, two and three apart (the derivative of the B-spline of degree 7 at its knots).
 double round_loop_area(double radius, int count);
 
 }  // namespace spoonbill

@@ -35,7 +35,8 @@ TEST(TrimLoop, ARoundLoopEnclosesItsClosedFormWithinTheChords) {
       const TrimLoop loop = round_loop(open_u, open_v, {0.9, 0.1}, 0.6, count, clockwise);
       const auto polygon = to_polygon(loop, open_u, open_v);
       const double expected = (clockwise ? -1.0 : 1.0) * round_loop_area(0.6, count);
-      // Chords of a domain of 2 x 2 miss at most 2e-5 all along a curve shorter than 4.
+      // The chords of the polygon, in a domain of 2 x 2, deviate by at most 2e-5 along a curve shorter than
+      // 4.
       EXPECT_NEAR(signed_area(polygon), expected, 4.0 * 2e-5) << count;
       EXPECT_NE(signed_area(polygon), expected);
     }
@@ -115,14 +116,15 @@ TEST(TrimLoop, RefusesACurveOfMoreChordsThanTheLimit) {
   expect_refused(rough, ErrorCode::too_many);
 }
 
-// The same curve, found at the place that the same point of the surface now has, on the other side of it.
+// Expects `after` to be the same curve run backwards, where each point is moved to the new parameters of the
+// same point of the surface.
 void expect_runs_backwards(const TrimLoop& before, const TrimLoop& after,
                            const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& moved) {
   const double start = before.knots.domain_start(), end = before.knots.domain_end();
   for (int i = 0; i <= 50; ++i) {
     const double parameter = start + (end - start) * i / 50;
     const Eigen::Vector2d expected = moved(position(before, parameter));
-    // Rounding of numbers of size 2.
+    // The bound allows for rounding of numbers up to 2.
     EXPECT_NEAR((position(after, end - (parameter - start)) - expected).norm(), 0.0, 1e-14);
   }
 }

@@ -19,7 +19,7 @@ TrimmedArea area_of(const KnotVector& u, const KnotVector& v, const std::vector<
   return std::move(area).value();
 }
 
-// Returns the kept fraction of the points of a fine grid, including the ends of open directions.
+// Returns the kept fraction of the points of a fine grid, one in each cell's centre.
 double counted_share(const TrimmedArea& area, const KnotVector& u, const KnotVector& v, int count) {
   int kept = 0;
   for (int i = 0; i < count; ++i) {
@@ -63,8 +63,8 @@ TEST(TrimmedArea, OfCurvesIsTheirClosedForm) {
   const TrimLoop hole = round_loop(open_u, open_v, {1.2, 0.1}, 0.3, 5, true);
   const TrimmedArea area = area_of(open_u, open_v, {outer, hole});
   const double share = (round_loop_area(0.95, 11) - round_loop_area(0.3, 5)) / 4.0;
-  // Chords within 2e-5 along 8 of curve; cells of a grid of 1000 differ along the curves alone, and mostly
-  // cancel.
+  // The chords are within 2e-5 of 8 of curve length. The 1000 x 1000 grid is wrong only in cells along the
+  // curves, where errors mostly cancel.
   EXPECT_NEAR(area.remaining_fraction(), share, 8.0 * 2e-5 / 4.0);
   EXPECT_NEAR(counted_share(area, open_u, open_v, 1000), share, 1e-4);
 }
@@ -97,7 +97,7 @@ TEST(TrimmedArea, AHoleAcrossTheSeamIsOneHole) {
 
 TEST(TrimmedArea, ALoopOfOnePeriodKeepsABandWithoutAGap) {
   for (const double start : {-0.7, 0.0, 0.3}) {
-    // Rounding at the seam neither tears nor turns it.
+    // Rounding at the seam must neither open the band nor turn it into a hole.
     for (const double rounding : {-1e-8, 0.0, 1e-8}) {
       const TrimLoop band =
           polygon_loop(periodic_u, open_v, rectangle(start, -0.5, start + 1.0 + rounding, 0.25));
@@ -138,7 +138,7 @@ TEST(TrimmedArea, RefusesLoopsThatContradictEachOther) {
     ASSERT_FALSE(doubled.ok());
     EXPECT_EQ(doubled.error().code, ErrorCode::duplicate) << doubled.error().message;
   }
-  // Two halves of the surface that meet in a common edge are no contradiction.
+  // Two outer loops that share an edge are accepted.
   const auto halves = TrimmedArea::make(open_u, open_v,
                                         {polygon_loop(open_u, open_v, rectangle(0, -1, 1, 1)),
                                          polygon_loop(open_u, open_v, rectangle(1, -1, 2, 1))});

@@ -1,4 +1,4 @@
-// Trimmed shells in a simulation: the tool feels only the part that is kept.
+// Tests trimmed shells in a simulation: the tool touches only the kept part.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,8 +19,8 @@ namespace {
 constexpr double side_m = 0.06, thickness_m = 0.002, hole_radius_m = 0.011, tool_radius_m = 0.008;
 constexpr double from_m = 0.02;
 
-// u and v of a place on the flat sheet, by Newton's method, which is exact in one step where the sheet is
-// linear.
+// Returns u and v of a point on the flat sheet by Newton's method, which is exact after one step where the
+// sheet is linear in u and v.
 Eigen::Vector2d parameters_at(const Surface& surface, double x_m, double z_m) {
   Eigen::Vector2d at(0.5 * (surface.u.domain_start() + surface.u.domain_end()),
                      0.5 * (surface.v.domain_start() + surface.v.domain_end()));
@@ -33,7 +33,7 @@ Eigen::Vector2d parameters_at(const Surface& surface, double x_m, double z_m) {
   return at;
 }
 
-// A flat sheet of clay, held at one end, with a round hole in its middle.
+// Returns a scene with a flat sheet of clay, fixed at one end, that may have a round hole in its centre.
 Scene sheet_scene(bool with_hole, Vector3* centre_m = nullptr) {
   Scene scene = small_handle();
   Body& body = scene.bodies[0];
@@ -101,9 +101,9 @@ TEST(TrimmedBody, ASphereIsFeltBesideAHoleWhereItTouches) {
   const Vector3 beside = middle + Vector3(0.5 * hole_radius_m + 0.012, 0.0, 0.0);
   const Descent on_sheet = come_down(pierced, beside, 0.005);
   EXPECT_GT(on_sheet.largest_n, 0.01);
-  // At its radius, to two steps of a fiftieth of a millimetre and what the sheet sways.
+  // The first touch is at the tool's radius, within two steps of 0.02 mm and the sway of the sheet.
   EXPECT_NEAR(on_sheet.first_touch_m, tool_radius_m, 5e-5);
-  // 8 mm beside the middle the rim is 3 mm from its axis.
+  // With the tool 8 mm from the hole's centre, the rim is 3 mm from the tool's axis.
   const Descent on_rim = come_down(pierced, middle + Vector3(0.0, 0.0, 0.008), 0.004);
   EXPECT_GT(on_rim.largest_n, 0.0);
   EXPECT_NEAR(on_rim.first_touch_m, std::sqrt(tool_radius_m * tool_radius_m - 0.003 * 0.003), 5e-5);
@@ -160,7 +160,7 @@ TEST(TrimmedBody, KeptAreaShareIsThatOfTheMetres) {
   const Scene pierced = sheet_scene(true);
   const Body& body = pierced.bodies[0];
   const double hole_m2 = 0.5 * 200 * hole_radius_m * hole_radius_m * std::sin(2.0 * std::numbers::pi / 200);
-  // Triangles of a flat sheet are exact where their corners are.
+  // The triangles of a flat sheet are exact if their corners are.
   EXPECT_NEAR(remaining_area_fraction(body.surface, *make_trimmed_area(body).value()),
               1.0 - hole_m2 / (side_m * side_m), 1e-5);
 }

@@ -20,7 +20,8 @@ namespace {
 constexpr double bent_side_m = 0.1, bent_hole_radius_m = 0.012, bent_tool_radius_m = 0.008;
 constexpr int hole_corners = 400;
 
-// Flat, parameters as metres over the side, normals along z.
+// Returns a flat sheet if `bend_m` is 0: its parameters are proportional to x and y, and its normals are
+// along z.
 Surface bent_sheet(double bend_m = 0.0) {
   const KnotVector knots = KnotVector::clamped_uniform(3, 8).value();
   const double abscissae[8] = {0.0, 1.0 / 15, 0.2, 0.4, 0.6, 0.8, 14.0 / 15, 1.0};
@@ -34,7 +35,7 @@ Surface bent_sheet(double bend_m = 0.0) {
   return make_surface(knots, knots, net).value();
 }
 
-// A polygon on the circle, clockwise.
+// Returns a clockwise polygon with its corners on the circle of the hole.
 TrimLoop hole(const Surface& surface) {
   std::vector<Eigen::Vector2d> points;
   for (int k = 0; k < hole_corners; ++k) {
@@ -50,7 +51,7 @@ std::shared_ptr<const TrimmedArea> shared_area_of(const Surface& surface,
   return std::make_shared<const TrimmedArea>(TrimmedArea::make(surface.u, surface.v, loops).value());
 }
 
-// Sagitta between a circle and the polygon on it.
+// Sagitta: the largest distance between the circle and the polygon's edges.
 const double sagitta_m = bent_hole_radius_m * (1.0 - std::cos(std::numbers::pi / hole_corners));
 
 TEST(TrimmedCollision, ASphereMeetsTheSheetBesideAHoleAndTheRimAboveIt) {
@@ -85,7 +86,8 @@ TEST(TrimmedCollision, ASphereThatFitsPassesThroughAHole) {
   }
 }
 
-// The nearest of a million kept points, between which the surface is farther by less than the bound.
+// The distance must agree with that of the nearest of many sampled kept points; the surface between samples
+// may be nearer by less than `between_m`.
 TEST(TrimmedCollision, AgreesWithDenseSamplingOnBentSheets) {
   const Surface surface = bent_sheet(0.004);
   const NestedGrid nested = make_nested_grid(surface.u, surface.v, 3).value();
@@ -105,8 +107,8 @@ TEST(TrimmedCollision, AgreesWithDenseSamplingOnBentSheets) {
       longest_m = std::max(longest_m, at.du.norm() + at.dv.norm());
     }
   }
-  // Half a cell's diagonal, and as much again beside a loop, where the nearest kept point may be of the next
-  // cell.
+  // The bound is half a cell's diagonal, and as much again beside a loop, where the nearest kept sample may
+  // be in the next cell.
   const double between_m = longest_m / count;
   Random random(5);
   for (int k = 0; k < 60; ++k) {
@@ -126,7 +128,8 @@ TEST(TrimmedCollision, ASolidMeetsTheRimToo) {
   const Surface surface = bent_sheet();
   const NestedGrid nested = make_nested_grid(surface.u, surface.v, 3).value();
   SurfaceCollider collider(nested, shared_area_of(surface, {hole(surface)}));
-  // A box whose corners reach the rim: half a side of 9 mm, 12.73 mm across.
+  // The corners of the larger box, half a side 9 mm, are 12.73 mm from the centre and so reach the rim; those
+  // of the smaller one do not.
   const auto box = make_signed_distance(ImplicitShape(BoxShape{{0.009, 0.009, 0.002}}));
   const auto thin = make_signed_distance(ImplicitShape(BoxShape{{0.008, 0.008, 0.002}}));
   const Pose over{{0.05, 0.05, 0.0}, Eigen::Quaterniond::Identity()};
@@ -134,7 +137,7 @@ TEST(TrimmedCollision, ASolidMeetsTheRimToo) {
   EXPECT_FALSE(collider.collide(surface, ToolShape::solid(*thin, over), 0.0, false).found);
   const CollisionResult beside = collider.collide(surface, ToolShape::solid(*thin, over), 0.01, false);
   ASSERT_TRUE(beside.found);
-  // From its corner 11.3137 mm out to the rim at 12.
+  // The corner of the smaller box is at 11.3137 mm and the rim at 12 mm.
   EXPECT_NEAR(-beside.nearest.depth_m, bent_hole_radius_m - 0.008 * std::numbers::sqrt2, sagitta_m + 1e-6);
 }
 

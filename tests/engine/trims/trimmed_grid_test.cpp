@@ -13,7 +13,8 @@
 namespace spoonbill {
 namespace {
 
-// (u, v) of a vertex. A sample on a seam that the grid leaves out is taken on the side of the triangle.
+// Converts a vertex's number to (u, v). unrolled() then moves a sample on a seam to the triangle's side of
+// the seam.
 struct Vertices {
   const Grid& grid;
   const TrimmedGrid& trimmed;
@@ -57,7 +58,8 @@ std::vector<Triangle> triangles_of(const Grid& grid, const TrimmedGrid& trimmed)
   return triangles;
 }
 
-// All turn the same way, cover what is kept, and meet along whole sides but where a loop or an end is.
+// Expects the triangles to have the same orientation, to cover the kept area, and to share whole sides except
+// along loops and ends of the domain.
 void expect_covers(const Grid& grid, const TrimmedArea& area, double cell_diagonal) {
   const TrimmedGrid trimmed = trim_grid(grid.u, grid.v, area);
   double covered = 0.0;
@@ -72,7 +74,7 @@ void expect_covers(const Grid& grid, const TrimmedArea& area, double cell_diagon
   }
   const double domain = (grid.u.knots.domain_end() - grid.u.knots.domain_start()) *
                         (grid.v.knots.domain_end() - grid.v.knots.domain_start());
-  // What is snapped to a grid line moves by a billionth.
+  // The bound allows for points that are moved by a billionth to a grid line.
   EXPECT_NEAR(covered, area.remaining_fraction() * domain, 1e-8 * domain);
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
   for (const auto& corners : trimmed.triangles) {
@@ -85,7 +87,8 @@ void expect_covers(const Grid& grid, const TrimmedArea& area, double cell_diagon
   for (const auto& [side, count] : sides) {
     EXPECT_LE(count, 2);
     if (count == 2) continue;
-    // On an end of an open direction, or on a loop: it is kept on one side alone.
+    // A side with a single triangle must be at an end of an open direction or on a loop, where only one side
+    // is kept.
     const Eigen::Vector2d a = vertices[side.first], b = unrolled(vertices[side.second], grid, a);
     const Eigen::Vector2d middle = 0.5 * (a + b), across(a.y() - b.y(), b.x() - a.x());
     const auto at_end = [&](const KnotVector& knots, double parameter) {
@@ -119,7 +122,7 @@ TEST(TrimmedGrid, CoversWhatIsKeptWithoutGapsWhateverTheGrid) {
 }
 
 TEST(TrimmedGrid, TakesLoopsThatLieOnGridLines) {
-  // The grid's lines are every quarter, and so are sides, corners and the domain's own ends.
+  // The grid lines are at every quarter, as are the loops' sides and corners and the domain's ends.
   const Grid grid = grid_of(open_u, open_v, 9, 9);
   const std::vector<std::vector<TrimLoop>> cases = {
       {polygon_loop(open_u, open_v, rectangle(0, -1, 2, 1))},
@@ -148,7 +151,7 @@ TEST(TrimmedGrid, ClosesOverSeams) {
             .value();
     expect_covers(grid_of(periodic_u, periodic_u, 7, 6), torus, 1.0);
   }
-  // A grid that has the seam twice.
+  // This grid has samples at both ends of the period, so it contains the seam twice.
   const TrimmedArea tube =
       TrimmedArea::make(periodic_u, open_v,
                         {polygon_loop(periodic_u, open_v, rectangle(0.3, -0.5, 1.3, 0.3))})
@@ -175,7 +178,7 @@ TEST(TrimmedGrid, CutVerticesLieBetweenTheirCellsCorners) {
       EXPECT_GE(cut.weights[c], -1e-15);
       mean += cut.weights[c] * vertices[cut.corners[c]];
     }
-    // u and v are themselves bilinear in a cell; rounding of numbers of size 2.
+    // u and v are bilinear in a cell; the bound allows for rounding of numbers up to 2.
     EXPECT_NEAR((mean - Eigen::Vector2d(cut.u, cut.v)).norm(), 0.0, 1e-14);
   }
 }

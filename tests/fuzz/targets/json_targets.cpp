@@ -1,4 +1,4 @@
-// Readers of our own JSON forms.
+// Fuzz targets for readers of our own JSON formats.
 #include <sstream>
 
 #include "engine/exchange/cad_stream.h"
@@ -21,7 +21,7 @@ void take_document(std::string_view bytes) {
   if (!json) return must_be_one_line(json.error());
   const auto document = document_from_json(json.value(), "fuzzed");
   if (!document) return must_be_one_line(document.error());
-  // An accepted document is written and must read back to the same document.
+  // An accepted document must be written and read back as the same document.
   const std::string written = json_to_page(document_to_json(document.value()));
   const auto again = parse_json(written, "written");
   must_hold(again.ok(), "what is written can be parsed");

@@ -1,4 +1,4 @@
-// Readers of point clouds and meshes.
+// Fuzz targets for readers of point clouds and meshes.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 void take_cloud(const Result<PointCloud>& cloud, std::size_t bytes) {
   if (!cloud) return must_be_one_line(cloud.error());
-  // Compressed ones hold more than their bytes, but no more than a hundred times.
+  // Compressed clouds hold more points than the file has bytes, but at most a hundred times as many.
   must_hold(cloud->points.size() <= 100 * bytes, "a small file holds few points");
   for (const Vector3& point : cloud->points) must_hold(point.allFinite(), "points are finite");
 }
@@ -35,7 +35,7 @@ void take_file(std::string_view bytes, const std::function<Status(const std::fil
 
 }  // namespace
 
-// The first byte chooses the form.
+// The first byte selects the format of the cloud.
 void take_points(std::string_view bytes) {
   if (bytes.empty()) return;
   const std::string_view rest = bytes.substr(1);
@@ -66,7 +66,7 @@ void take_ply(std::string_view bytes) {
   }
 }
 
-// The first byte chooses the form.
+// The first byte selects the format of the mesh.
 void take_mesh_text(std::string_view bytes) {
   if (bytes.empty()) return;
   const bool is_stl = bytes[0] % 2 == 0;

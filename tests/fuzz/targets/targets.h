@@ -1,4 +1,4 @@
-// The readers, each of which is given bytes.
+// Functions that pass bytes to one reader each.
 #pragma once
 
 #include <string>

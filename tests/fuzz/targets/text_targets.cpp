@@ -1,4 +1,4 @@
-// Readers of what a person types or writes into tables.
+// Fuzz targets for readers of text that a person types or writes into tables.
 #include <cmath>
 #include <string>
 

@@ -1,4 +1,4 @@
-// Assemblies, names and units of files that OpenCASCADE writes.
+// Tests that assemblies, names and units are read from files that OpenCASCADE writes.
 #include <gtest/gtest.h>
 
 #include <BRepBuilderAPI_MakeFace.hxx>
@@ -88,7 +88,8 @@ gp_Trsf moved(double x, double y, double z, double turn = 0.0) {
   return motion;
 }
 
-// Writes a trolley that is placed: a deck, and an axle with two wheels, one of which has a name of its own.
+// Writes a trolley that is moved as a whole: a deck, and an axle with two wheels, one of which has a name of
+// its own.
 void write_trolley(const std::filesystem::path& file) {
   opencascade::handle<TDocStd_Document> document;
   XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
@@ -131,10 +132,11 @@ TEST_F(CadReader, AssembliesArePlacedAndNamed) {
   EXPECT_EQ(found.model.notes,
             std::vector<std::string>{
                 "the 12 faces of 3 solids come in as a body each; they leave joined where they still close"});
-  // The tolerance is the allowed deviation of a cylinder of 5 mm.
+  // The wheels are cylinders of 5 mm, which are approximated; the bound is above the deviation allowed for
+  // them.
   EXPECT_LT((middle_of(found.surfaces, "wheel") - Vector3(0.1, 0.0, 0.001)).norm(), 2e-5);
   EXPECT_LT((middle_of(found.surfaces, "spare wheel") - Vector3(0.1, 0.0, 0.031)).norm(), 2e-5);
-  // The deck of 40 x 20 is rotated by a quarter turn about its corner, then moved.
+  // The deck of 40 x 20 mm is rotated by a quarter turn about its corner, then moved.
   EXPECT_LT((middle_of(found.surfaces, "deck") - Vector3(-0.01, 0.22, 0.0005)).norm(), 1e-9);
   std::vector<std::string> names;
   for (const CadSurface& part : found.surfaces) names.push_back(part.name);
@@ -152,7 +154,7 @@ TEST_F(CadReader, UnitsAreThoseDeclared) {
       EXPECT_EQ(found.model.unit, name);
       EXPECT_TRUE(found.model.unit_declared);
       EXPECT_LT((middle_of(found.surfaces, "") - Vector3(0.015, 0.01, 0.005)).norm(), 1e-9);
-      // The option overrides the file's unit: its numbers are centimetres.
+      // The option overrides the file's unit: the file's numbers are read as centimetres.
       CadReading reading;
       reading.unit_m = 0.01;
       const double in_file = std::string(unit) == "mm"   ? 1e-3
@@ -165,7 +167,7 @@ TEST_F(CadReader, UnitsAreThoseDeclared) {
   }
 }
 
-// Replaces the unit in the global section without changing the number of lines.
+// Returns the text with another unit in the global section and with the same number of lines.
 std::string with_unit(std::string text, const std::string& unit) {
   const std::string declared = ",1,4HINCH,";
   const std::size_t at = text.find(declared);
@@ -178,7 +180,7 @@ std::string with_unit(std::string text, const std::string& unit) {
 
 TEST_F(CadReader, AnIgesFileWithoutAUnitIsInMillimetresAndSaysSo) {
   const std::string text = content_of(box_in("in", "box.igs"));
-  // The unit is missing, or its flag means none, or its name is not in the standard.
+  // Cases: the unit is missing, its flag means none, or its name is not in the standard.
   for (const char* unit : {",,,", ",0,,", ",3,4HFOOT,", ",3,2Hmm,", ",3,,"}) {
     SCOPED_TRACE(unit);
     const Found found = read(folder_.write("none.igs", with_unit(text, unit)));
@@ -202,7 +204,7 @@ TEST_F(CadReader, AnIgesFileMayNameItsUnit) {
   }
 }
 
-// OpenCASCADE skips such a face and reports success.
+// OpenCASCADE skips a face that it cannot read and reports success, so the reader must count such faces.
 TEST_F(CadReader, FacesThatCannotBeReadAreCounted) {
   const std::string text = content_of(box_in("mm", "box.step"));
   const std::string begin = "ADVANCED_FACE('',(";
@@ -220,7 +222,7 @@ TEST_F(CadReader, FacesThatCannotBeReadAreCounted) {
   }
 }
 
-// Writes two parts, each with its placement, into files of their own.
+// Writes two parts, each with its placement, into separate files.
 std::filesystem::path write_in_parts(const std::filesystem::path& folder) {
   opencascade::handle<TDocStd_Document> document;
   XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
@@ -238,7 +240,7 @@ std::filesystem::path write_in_parts(const std::filesystem::path& folder) {
   return file;
 }
 
-// OpenCASCADE would open such files, whatever their path and contents.
+// OpenCASCADE would open the files that a STEP file names, whatever their path and contents.
 TEST_F(CadReader, OtherFilesThatAFileNamesAreNotOpened) {
   const auto file = write_in_parts(folder_.path());
   const std::string text = content_of(file), before = "DOCUMENT_FILE('";
@@ -252,7 +254,7 @@ TEST_F(CadReader, OtherFilesThatAFileNamesAreNotOpened) {
   EXPECT_NE(found.error().message.find("names other files"), std::string::npos) << found.error().message;
 }
 
-// OpenCASCADE names such a use by its number.
+// OpenCASCADE names a use of a part that has no name by its number.
 TEST_F(CadReader, AUseWithoutANameHasItsPartsName) {
   const auto file = folder_.path() / "trolley.step";
   write_trolley(file);
@@ -267,7 +269,7 @@ TEST_F(CadReader, AUseWithoutANameHasItsPartsName) {
             6);
 }
 
-// A corner of a long plate lies by a hundred-thousandth of its length beside the box.
+// One corner of the plate, which is 90 m long, is 0.5 mm off the rectangle.
 TEST_F(CadReader, ASlantThatExceedsTheToleranceIsATrim) {
   BRepBuilderAPI_MakePolygon outline(gp_Pnt(0, 0, 0), gp_Pnt(90000, 0, 0), gp_Pnt(89999.5, 900, 0),
                                      gp_Pnt(0, 900, 0), true);
@@ -284,7 +286,7 @@ TEST_F(CadReader, ASlantThatExceedsTheToleranceIsATrim) {
   EXPECT_TRUE(read(file, reading).surfaces.at(0).trims.empty());
 }
 
-// Returns the box as a representation that an operator places.
+// Returns the STEP file of a box, rewritten so that a transformation operator places the box.
 std::string placed_by(std::string text, const std::string& ratios) {
   const std::size_t end = text.rfind("ENDSEC;");
   text.insert(end,
@@ -331,7 +333,7 @@ TEST_F(CadReader, AToleranceIsKeptAndReported) {
     double farthest = 0.0, deviation = 0.0;
     std::size_t controls = 0;
     for (const CadSurface& part : found.surfaces) {
-      if (part.deviation_m == 0.0) continue;  // the discs at its ends
+      if (part.deviation_m == 0.0) continue;  // the deviation of the discs at the ends is 0
       deviation = part.deviation_m;
       controls = part.surface.net.size();
       for (const double u : uniform_parameters(part.surface.u, 777)) {
@@ -341,7 +343,7 @@ TEST_F(CadReader, AToleranceIsKeptAndReported) {
     }
     EXPECT_GT(deviation, 0.0);
     EXPECT_LE(deviation, tolerance_m);
-    EXPECT_LE(farthest, 1.05 * deviation);  // measured at nine places a piece
+    EXPECT_LE(farthest, 1.05 * deviation);  // `farthest` is measured at nine points per piece
     EXPECT_GT(controls, before);
     before = controls;
   }

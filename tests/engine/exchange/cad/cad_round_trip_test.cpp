@@ -1,4 +1,5 @@
-// Surfaces are written to STEP and IGES and read back, and OpenCASCADE checks the bodies in between.
+// Tests that surfaces are the same after export to STEP or IGES and import; OpenCASCADE checks the bodies in
+// the files.
 #include <gtest/gtest.h>
 
 #include <BRepCheck_Analyzer.hxx>
@@ -30,7 +31,7 @@
 namespace spoonbill {
 namespace {
 
-// Files hold about fourteen digits of coordinates in millimetres; the surfaces are up to 2 m wide.
+// Coordinates in the files have about fourteen digits in millimetres; the surfaces are up to 2 m wide.
 constexpr double file_tolerance_m = 1e-9;
 
 class CadRoundTrip : public testing::Test {
@@ -63,7 +64,7 @@ class CadRoundTrip : public testing::Test {
     EXPECT_EQ(back[0].deviation_m, 0.0);
     EXPECT_TRUE(back[0].trims.empty());
     EXPECT_EQ(back[0].trim_problem, "");
-    // A solid's face is oriented outwards, whatever the orientation of the surface.
+    // A face of a solid is exported with its normals outwards, whatever the surface's orientation.
     const bool turned = known.closes && volume_by_quadrature_m3(known.surface.surface) < 0.0;
     if (turned) {
       EXPECT_NEAR(volume_by_quadrature_m3(back[0].surface), -volume_by_quadrature_m3(known.surface.surface),
@@ -133,7 +134,7 @@ TEST_F(CadRoundTrip, NamesAndTheirOrderAreKept) {
 }
 
 TEST_F(CadRoundTrip, LongNamesAreStillToldApart) {
-  // The name's multi-byte letters begin at any byte of a line.
+  // The name's multi-byte letters begin at different bytes, so that a line or a cut may split one.
   std::string name = "\xf0\x9f\xa5\x84 ";
   while (name.size() < 190) name += name.size() % 3 == 0 ? "a" : "\xc3\xb6";
   CadModel model;
@@ -184,15 +185,16 @@ TEST_F(CadRoundTrip, BodiesThatCloseAreValidSolidsOfTheirVolume) {
       GProp_GProps properties;
       BRepGProp::VolumeProperties(shape, properties, 1e-8);
       const double ours = std::abs(volume_by_quadrature_m3(known.surface.surface));
-      // Our volume is exact to rounding for cubic pieces; OpenCASCADE's adaptive quadrature has a tolerance
-      // of 1e-8.
+      // Our volume is exact except for rounding if the pieces are cubic; OpenCASCADE's adaptive quadrature
+      // has a tolerance of 1e-8.
       EXPECT_NEAR(properties.Mass() * 1e-9, ours, 1e-6 * ours);
       EXPECT_GT(properties.Mass(), 0.0);
     }
   }
 }
 
-// IGES 5.3, parameter 20: systems size their models by it.
+// Parameter 20 of the global section in IGES 5.3 is the largest coordinate; CAD systems size their models by
+// it.
 TEST_F(CadRoundTrip, IgesFilesTellTheirLargestCoordinate) {
   for (const auto& [unit, metres] : {std::pair("mm", 1e-3), std::pair("in", 0.0254)}) {
     for (const KnownSurface& known : known_surfaces()) {
@@ -213,8 +215,9 @@ TEST_F(CadRoundTrip, IgesFilesTellTheirLargestCoordinate) {
         for (const double x : *coordinates) largest_control_m = std::max(largest_control_m, std::abs(x));
       }
       const double told_m = metres * std::strtod(parameters[19].c_str(), nullptr);
-      // OpenCASCADE's boxes hold the surface and lie within that of its control points, but for its 1e-7 mm
-      // and the seven digits that stand in the file.
+      // OpenCASCADE computes the largest coordinate from bounding boxes, which contain the surface and are
+      // inside the box of its control points. The bounds allow for OpenCASCADE's margin of 1e-7 mm and for
+      // the file's seven digits.
       EXPECT_GE(told_m, largest_m * (1.0 - 1e-6));
       EXPECT_LE(told_m, largest_control_m * (1.0 + 1e-5));
     }
@@ -227,13 +230,13 @@ TEST_F(CadRoundTrip, FilesSayTheProgramAndNotThePerson) {
   for (const FileFormat format : {FileFormat::step, FileFormat::iges}) {
     const std::string text = write_cad(model, {format, StepSchema::ap214, "mm"})->text;
     EXPECT_NE(text.find("Spoonbill"), std::string::npos);
-    // OpenCASCADE would write these words by default.
+    // OpenCASCADE writes these words by default.
     for (const char* word : {"'Author'", "Open CASCADE Model", "Filename.iges"}) {
       EXPECT_EQ(text.find(word), std::string::npos) << word;
     }
   }
   const std::string text = write_cad(model, {FileFormat::iges, StepSchema::ap214, "mm"})->text;
-  // The parameters 21, the author, and 22, the organization.
+  // Parameter 21 is the author and parameter 22 the organization.
   const auto parameters = read_iges_global_parameters(folder_.write("named.igs", text));
   ASSERT_GT(parameters.size(), 22u);
   EXPECT_EQ(parameters[20], "");
@@ -285,18 +288,20 @@ TEST(CadNames, SharedOnesAreNumberedAndNoTwoEqual) {
 }
 
 TEST(CadNames, AreCleaned) {
-  EXPECT_EQ(clean_cad_name("a\xc2\x9bz", "x"), "a z");  // a control of a terminal
+  // U+009B is a control character, which terminals act on.
+  EXPECT_EQ(clean_cad_name("a\xc2\x9bz", "x"), "a z");
   EXPECT_EQ(clean_cad_name("  a\nb\t ", "x"), "a b");
   EXPECT_EQ(clean_cad_name("", "x"), "x");
   EXPECT_EQ(clean_cad_name("\x01\x7f", "x"), "x");
   EXPECT_EQ(clean_cad_name("a\xff\xfe", "x"), "a");
-  EXPECT_EQ(clean_cad_name("a\xed\xa0\x80z", "x"), "a   z");  // a surrogate
+  // The three bytes encode a surrogate, which UTF-8 forbids.
+  EXPECT_EQ(clean_cad_name("a\xed\xa0\x80z", "x"), "a   z");
   EXPECT_EQ(clean_cad_name(std::string(300, 'a'), "x").size(), 200u);
-  // Not in the middle of a letter.
+  // The name is not cut inside a letter of several bytes.
   EXPECT_EQ(clean_cad_name(std::string(199, 'a') + "\xc3\xb6", "x").size(), 199u);
 }
 
-// The pole's points are slightly apart.
+// The control points of one pole are slightly apart.
 TEST_F(CadRoundTrip, WhatACheckCallsClosedIsASolidAndSaysWhatItMisses) {
   Surface pole = ellipsoid_tube(10, 10);
   pole.net.set_point(3, 0, pole.net.point(3, 0) + Vector3(2e-8, 0, 0));
@@ -314,7 +319,7 @@ TEST_F(CadRoundTrip, WhatACheckCallsClosedIsASolidAndSaysWhatItMisses) {
   }
 }
 
-// As it comes of a surface that is closed by its edges alone.
+// The seam of the surface is slightly apart, as after cutting a surface that is closed by its edges alone.
 TEST_F(CadRoundTrip, ASeamThatIsALittleApartIsClosed) {
   const Surface closed = torus_like(0.02, 0.005);
   Surface open = part_of(closed, Direction::u, closed.u.domain_start(), closed.u.domain_end()).value();

@@ -16,7 +16,8 @@
 namespace spoonbill {
 namespace {
 
-// Gauss-Legendre, eight points, of [-1, 1] (Abramowitz and Stegun 1964, table 25.4).
+// Eight-point Gauss-Legendre quadrature on [-1, 1] (Abramowitz and Stegun 1964, table 25.4); the other four
+// points mirror these.
 constexpr std::array<std::pair<double, double>, 4> gauss{{{0.1834346424956498, 0.3626837833783620},
                                                           {0.5255324099163290, 0.3137066458778873},
                                                           {0.7966664774136267, 0.2223810344533745},

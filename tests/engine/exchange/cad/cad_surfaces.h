@@ -1,4 +1,4 @@
-// Surfaces of every kind that can be exported to CAD, and the distance of two surfaces.
+// Provides surfaces of every kind that can be exported to CAD, and the distance between two surfaces.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace spoonbill {
 
-// Open sheets, clamped or not, of degrees 1 to 5; periodic tubes with and without poles; bodies that close, a
-// merged spoon among them.
+// One of the test surfaces: open sheets, clamped or not, of degrees 1 to 5; periodic tubes with and without
+// poles; and closed bodies, a merged spoon among them.
 struct KnownSurface {
   CadSurface surface;
   bool closes = false;
@@ -19,11 +19,11 @@ std::vector<KnownSurface> known_surfaces();
 // Returns a surface about z that is periodic in both directions, with normals outward.
 Surface torus_like(double ring_m, double tube_m);
 
-// Returns the largest distance at equal parameters.
+// Returns the largest distance between points of the two surfaces at equal parameters.
 double largest_distance_m(const Surface& a, const Surface& b);
 
-// Returns the volume by the divergence theorem over Gauss points, exact for polynomial pieces of degrees up
-// to 5.
+// Returns the enclosed volume by the divergence theorem, with Gauss quadrature that is exact for polynomial
+// pieces of degrees up to 5.
 double volume_by_quadrature_m3(const Surface& surface);
 double area_by_quadrature_m2(const Surface& surface);
 

@@ -1,4 +1,4 @@
-// IGES files that are damaged or unusual.
+// Tests reading of IGES files that are damaged or unusual.
 #include <gtest/gtest.h>
 
 #include <BRepPrimAPI_MakeBox.hxx>
@@ -14,12 +14,12 @@
 namespace spoonbill {
 namespace {
 
-// The fields that the tests change in a file of a few entities.
+// The fields of an entity that the tests change in a file of a few entities.
 struct Entity {
   int type = 128;
   std::string parameters;
-  int placement = 0;    // the number of another entity, counted from 1
-  int subordinate = 0;  // 1 if the entity is shown only as part of others
+  int placement = 0;    // number of the entity that holds the transformation, counted from 1; 0: none
+  int subordinate = 0;  // 1 if the entity is shown only as part of others, otherwise 0
 };
 
 std::string padded(std::string text, std::size_t length) {
@@ -37,7 +37,7 @@ std::string numbered(char section, long number) {
   return section + std::string(7 - text.size(), '0') + text + "\n";
 }
 
-// Parameters in lines of at most 64 letters, none of which is cut.
+// Splits the parameters into lines of at most 64 letters without cutting any parameter.
 std::vector<std::string> lines_of(const std::string& parameters) {
   std::vector<std::string> lines(1);
   for (std::size_t k = 0; k < parameters.size();) {
@@ -49,7 +49,8 @@ std::vector<std::string> lines_of(const std::string& parameters) {
   return lines;
 }
 
-// `scale_and_unit` are the parameters 13 to 15 of the global section.
+// Returns an IGES file of the entities. `scale_and_unit` is the text of parameters 13 to 15 of the global
+// section.
 std::string iges_text(const std::vector<Entity>& entities, const std::string& scale_and_unit = "1.,2,2HMM") {
   std::string directory, parameters;
   long line = 1, entry = 1;
@@ -78,7 +79,7 @@ std::string iges_text(const std::vector<Entity>& entities, const std::string& sc
          numbered('T', 1);
 }
 
-// A sheet of 10 x 20 mm, whose corner of index 3 is lifted by 3 mm.
+// Returns the parameters of a sheet of 10 x 20 mm, whose corner of index 3 is lifted by 3 mm.
 std::string sheet_at(double x) {
   const std::string left = std::to_string(x), right = std::to_string(x + 10.0);
   return "1,1,1,1,0,0,1,0,0,0.,0.,1.,1.,0.,0.,1.,1.,1.,1.,1.,1.," + left + ",0.,0.," + right + ",0.,0.," +
@@ -162,7 +163,7 @@ TEST_F(IgesFile, AnEntityWhoseParametersLieBeyondTheEndIsRefused) {
 
 TEST_F(IgesFile, ABareSurfaceThatIsDamagedIsMissed) {
   std::string damaged = sheet_at(20);
-  damaged[0] = '5';  // asks for more control points than there are
+  damaged[0] = '5';  // the entity asks for more control points than it has
   const FoundInIges found = read(iges_text({{128, sheet_at(0)}, {128, damaged}}));
   EXPECT_EQ(found.surfaces.size(), 1u);
   EXPECT_EQ(found.model.notes,
@@ -180,7 +181,7 @@ TEST_F(IgesFile, APlacedPartThatIsNotReadIsMissed) {
           "1 of the file's 2 placed parts cannot be read and are missing; repair them in the CAD system"});
 }
 
-// A letter too many moves the columns.
+// Three letters too many shift the columns of an entry.
 TEST_F(IgesFile, AnEntryOfTheDirectoryThatIsDamagedIsRefused) {
   std::string text = iges_text({{128, sheet_at(0)}, {128, sheet_at(20)}, {128, sheet_at(40)}});
   const std::size_t second = text.find(numbered('D', 3)) - 72;

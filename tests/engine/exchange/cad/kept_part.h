@@ -1,4 +1,5 @@
-// The part of a surface that its trim loops keep: a point's distance from the part, and its area.
+// Measures the part of a surface that its trim loops keep: the distance of a point from that part, and its
+// area.
 #pragma once
 
 #include <vector>
@@ -8,8 +9,8 @@
 
 namespace spoonbill {
 
-// Computes the distance of a point from the kept part of a surface: the nearest point of a grid, refined by
-// Gauss-Newton steps.
+// Computes the distance of a point from the kept part of a surface: it takes the nearest points of a grid and
+// refines them by Gauss-Newton steps.
 class NearestKeptPoint {
  public:
   explicit NearestKeptPoint(const CadSurface& part);
@@ -24,7 +25,8 @@ class NearestKeptPoint {
 
   double polished(const Sample& start, const Vector3& from) const;
 
-  // Returns either value for points on a loop.
+  // Returns true if the point is inside the kept part or within a hundred-thousandth of the domain of it, so
+  // that points on a loop count as kept.
   bool is_kept(double u, double v) const;
 
   Surface surface_;
@@ -32,8 +34,8 @@ class NearestKeptPoint {
   std::vector<Sample> grid_;
 };
 
-// Returns the area by quadrature; for a trimmed surface by the midpoint rule over two hundred lines in each
-// direction.
+// Returns the area by quadrature. The area of a trimmed surface is computed by the midpoint rule with 200
+// lines in each direction.
 double kept_area_m2(const CadSurface& part);
 
 }  // namespace spoonbill

@@ -38,7 +38,7 @@ gp_Ax3 frame() {
   return gp_Ax3(gp_Pnt(3, -2, 5), gp_Dir(0.2, 0.1, 1.0));
 }
 
-// A wavy net of poles over 60 x 40 mm.
+// Returns the poles of a wavy net that measures 60 x 40 mm.
 TColgp_Array2OfPnt wavy_poles(int rows, int columns) {
   TColgp_Array2OfPnt poles(1, rows, 1, columns);
   for (int i = 0; i < rows; ++i) {

@@ -1,4 +1,4 @@
-// Shapes that OpenCASCADE's own builders make, in millimetres.
+// Provides shapes, in millimetres, that OpenCASCADE's own builders make.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,22 +19,22 @@ struct NamedShape {
   TopoDS_Shape shape;
 };
 
-// Primitives and parts of them, sweeps, lofts, fillets, cuts, shells.
+// Returns solids: primitives and parts of them, sweeps, lofts, and solids with fillets, cuts and shells.
 std::vector<NamedShape> solid_shapes();
-// Solids with cavities.
+// Returns solids with cavities.
 std::vector<NamedShape> hollow_solids();
-// A box with a hole drilled through it and an edge rounded.
+// Returns a box with a hole drilled through it and one rounded edge.
 TopoDS_Shape drilled_box();
-// Single faces: rational, of high degrees, trimmed, offset, of revolution.
+// Returns single faces: rational, of high degree, trimmed, offset, and of revolution.
 std::vector<NamedShape> single_faces();
 
-// Returns what is read from a STEP file that OpenCASCADE writes into the folder. prepare_occt() must have
-// been called.
+// Writes the shape with OpenCASCADE to a STEP file in the folder and returns what our reader reads from it.
+// prepare_occt() must have been called.
 CadModel read_through_step(const TopoDS_Shape& shape, const std::filesystem::path& folder);
 
 int count_of(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind);
 
-// Reads the shape with OpenCASCADE's own reader of STEP or IGES.
+// Reads the shape with OpenCASCADE's own reader for STEP or IGES.
 template <class Reader>
 TopoDS_Shape shape_in(const std::filesystem::path& file) {
   Reader reader;

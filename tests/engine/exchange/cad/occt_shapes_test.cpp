@@ -1,5 +1,5 @@
-// Fifty shapes of OpenCASCADE's own builders, written by OpenCASCADE, read by us, and compared with what was
-// built.
+// Compares fifty shapes with what our reader returns for them; OpenCASCADE builds the shapes and writes the
+// files.
 #include "tests/engine/exchange/cad/occt_shapes.h"
 
 #include <gtest/gtest.h>
@@ -31,15 +31,15 @@ namespace spoonbill {
 namespace {
 
 constexpr double tolerance_m = 1e-5;
-// OpenCASCADE writes coordinates of 100 mm to about 1e-12 mm, and some curved faces of IGES to its own 1e-4
-// mm.
+// OpenCASCADE writes coordinates of 100 mm with an error of about 1e-12 mm, and some curved faces in IGES
+// with its own tolerance of 1e-4 mm.
 constexpr double shape_file_tolerance_m = 2e-7;
 
 Vector3 metres(const gp_Pnt& point) {
   return 1e-3 * Vector3(point.X(), point.Y(), point.Z());
 }
 
-// Returns points of the faces that are far enough from the edges for the classifier.
+// Returns points on the faces that are far enough from the edges for OpenCASCADE's classifier.
 std::vector<Vector3> points_on(const TopoDS_Shape& shape) {
   constexpr int across = 6;
   std::vector<Vector3> points;
@@ -60,7 +60,8 @@ std::vector<Vector3> points_on(const TopoDS_Shape& shape) {
   return points;
 }
 
-// Returns the area of a fine mesh: OpenCASCADE's quadratures are wrong by a hundredth on some of these faces.
+// Returns the area of a fine mesh of the shape, because OpenCASCADE's quadratures are off by 1 % on some of
+// these faces.
 double area_m2(const TopoDS_Shape& shape) {
   const BRepMesh_IncrementalMesh mesher(shape, 0.02, false, 0.1);
   double area = 0.0;
@@ -99,7 +100,7 @@ void expect_same_shape(const TopoDS_Shape& shape, const ReadBack& back) {
   }
   EXPECT_LE(farthest, back.deviation_m + shape_file_tolerance_m);
 
-  // The kept parts are on the shape and have the same area.
+  // The kept parts of the surfaces are on the shape and have the same total area as the shape.
   double area = 0.0;
   for (const CadSurface& part : back.surfaces) {
     EXPECT_EQ(part.trim_problem, "");
@@ -115,7 +116,7 @@ void expect_same_shape(const TopoDS_Shape& shape, const ReadBack& back) {
       }
     }
   }
-  // The midpoint rule counts two hundred lines across a trimmed face.
+  // The midpoint rule with 200 lines in each direction is less precise on trimmed faces.
   EXPECT_NEAR(area, area_m2(shape), (back.trimmed ? 5e-3 : 2e-3) * area);
 }
 

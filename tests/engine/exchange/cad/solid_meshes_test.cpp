@@ -1,4 +1,4 @@
-// Solids that are imported as a surface for each face and are meshed whole.
+// Tests meshing of whole solids that are imported as one surface per face.
 #include <gtest/gtest.h>
 
 #include <BRepGProp.hxx>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double usual_chord_m = 5e-5;
 constexpr double cubic_mm = 1e-9, square_mm = 1e-6;
-// The tolerance of approximated faces, which are not B-splines.
+// Tolerance at which the import approximates faces that are not B-splines.
 constexpr double import_tolerance_m = 1e-5;
 
 struct Measures {
@@ -34,7 +34,7 @@ Measures measures_of(const TopoDS_Shape& shape) {
   return {volume.Mass() * cubic_mm, area.Mass() * square_mm};
 }
 
-// Each edge is in two triangles, once each way round.
+// Expects each edge to belong to two triangles, which use it in opposite directions.
 void expect_watertight(const TriangleMesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> ways;
   for (const TriangleCorners& corners : mesh.triangles) {
@@ -79,12 +79,12 @@ class SolidMeshes : public testing::Test {
     expect_watertight(solid.mesh);
     EXPECT_LE(solid.chord_error_m, chord_m + solid.gap_m);
     const Measures whole = measures_of(shape);
-    // A surface that is moved by no more than the error takes no more than that from each square metre, with
-    // a tenth for what bends add. Normals that pointed inwards would turn the sign.
+    // A surface displaced by at most an error changes the volume by at most that error times the area; a
+    // tenth is added for curvature. Normals that pointed inwards would change the sign of the volume.
     const double moved_m = 1.1 * (solid.chord_error_m + import_tolerance_m);
     EXPECT_NEAR(enclosed_volume_m3(solid.mesh), whole.volume_m3, moved_m * whole.area_m2);
     EXPECT_NEAR(solid.volume_m3, whole.volume_m3, 1.1 * import_tolerance_m * whole.area_m2);
-    // A chord error of a hundredth of a radius, which it is here at most, takes half of that from the area.
+    // The chord error is at most a hundredth of a radius here, which reduces the area by half a hundredth.
     if (chord_m > usual_chord_m) return;
     EXPECT_NEAR(solid.area_m2, area_of(solid.mesh), 1e-2 * solid.area_m2);
   }
@@ -103,7 +103,7 @@ TEST_F(SolidMeshes, ADrilledBoxIsWatertightWithinItsChord) {
 
 TEST_F(SolidMeshes, SolidsOfManyFacesAreWatertight) {
   for (const NamedShape& named : solid_shapes()) {
-    // A solid with one face is not imported as a solid of several surfaces.
+    // A solid with a single face is not imported as several surfaces, so it is left out here.
     if (count_of(named.shape, TopAbs_SOLID) == 0 || count_of(named.shape, TopAbs_FACE) < 2) continue;
     SCOPED_TRACE(named.name);
     expect_solid(named.shape, usual_chord_m);

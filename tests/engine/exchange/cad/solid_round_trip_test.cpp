@@ -1,4 +1,4 @@
-// Solids that are imported as a surface for each face and are exported as solids.
+// Tests that solids, imported as one surface per face, are exported as solids.
 #include <gtest/gtest.h>
 
 #include <BRepCheck_Analyzer.hxx>
@@ -16,7 +16,7 @@
 namespace spoonbill {
 namespace {
 
-// The tolerance is a hundredth of a millimetre on the faces of parts of 10 to 40 mm.
+// The volume may differ by this fraction: faces are approximated to 0.01 mm on parts of 10 to 40 mm.
 constexpr double volume_share = 2e-3;
 
 double volume_mm3(const TopoDS_Shape& shape) {
@@ -78,7 +78,8 @@ TEST_F(SolidRoundTrip, CavitiesStayCavities) {
   }
 }
 
-// Without the ball in the box, the solid's shell encloses nothing.
+// The model of a box with a ball-shaped cavity is reduced to the cavity's surface, whose shell encloses no
+// material.
 TEST_F(SolidRoundTrip, ACavityByItselfIsNoSolid) {
   CadModel model = read(hollow_solids()[1].shape);
   ASSERT_EQ(model.surfaces.size(), 7u);
@@ -108,7 +109,7 @@ TEST_F(SolidRoundTrip, FacesThatDoNotCloseKeepTheirNames) {
   }
 }
 
-// The names are equal as after a copy of the bodies in a document.
+// The two solids have the same name, as after a copy of the bodies in a document.
 TEST_F(SolidRoundTrip, TwoSolidsOfOneNameAreTwo) {
   CadModel model = read(BRepPrimAPI_MakeBox(30, 20, 10).Shape());
   const std::vector<CadSurface> first = model.surfaces;

@@ -1,4 +1,4 @@
-// Contents of a STEP file, read by a script that does not use OpenCASCADE.
+// Compares the contents of a STEP file with a script that reads it without OpenCASCADE.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -47,11 +47,11 @@ TEST(StepFile, ScipyEvaluatesTheSameSurfaces) {
   prepare_occt();
   CadModel model;
   for (const KnownSurface& known : known_surfaces()) model.surfaces.push_back(known.surface);
-  // The surfaces are up to 2 m wide; files hold about fourteen digits of coordinates and knots.
+  // The surfaces are up to 2 m wide; the files have about fourteen digits for coordinates and knots.
   EXPECT_LT(largest_distance_by_script(model, {FileFormat::step, StepSchema::ap214, "mm"}, "0.001"), 1e-9);
   EXPECT_LT(largest_distance_by_script(model, {FileFormat::step, StepSchema::ap242, "m"}, "1"), 1e-9);
   EXPECT_LT(largest_distance_by_script(model, {FileFormat::step, StepSchema::ap214, "in"}, "0.0254"), 1e-9);
-  // The script detects a small difference.
+  // The script detects that a unit is wrong by 4e-7.
   EXPECT_GT(largest_distance_by_script(model, {FileFormat::step, StepSchema::ap214, "in"}, "0.02540001"),
             1e-8);
 }

@@ -1,4 +1,4 @@
-// Trimmed surfaces out to STEP and IGES and back.
+// Tests that trimmed surfaces are the same after export to STEP or IGES and import.
 #include <gtest/gtest.h>
 
 #include <BRepCheck_Analyzer.hxx>
@@ -87,7 +87,7 @@ class TrimmedRoundTrip : public testing::TestWithParam<FileFormat> {
   TemporaryFolder folder_;
 };
 
-// Expects each point of the part to be on the surfaces read back, and each point of those to be on the part.
+// Expects each kept point of `part` to be on one of the kept parts in `by`.
 void expect_covered(const CadSurface& part, const std::vector<CadSurface>& by) {
   std::vector<NearestKeptPoint> nearest(by.begin(), by.end());
   const auto kept = TrimmedArea::make(part.surface.u, part.surface.v, part.trims).value();
@@ -120,7 +120,7 @@ TEST_P(TrimmedRoundTrip, WhatIsKeptComesBack) {
       expect_covered(face, {part});
     }
     expect_covered(part, back);
-    // Both areas come from the midpoint rule over two hundred lines.
+    // Both areas are computed by the midpoint rule with 200 lines in each direction.
     EXPECT_NEAR(area, kept_area_m2(part), 5e-3 * area);
   }
 }
@@ -136,7 +136,7 @@ TEST_P(TrimmedRoundTrip, ASurfaceWithOneFaceKeepsItsParameters) {
   EXPECT_NEAR(after->remaining_fraction(), before.remaining_fraction(), 1e-6);
 }
 
-// A trimmed sheet gets no note, because a sheet is not expected to become a solid.
+// Only the surfaces that would be closed without their trims get a note; a trimmed sheet gets none.
 TEST_P(TrimmedRoundTrip, WhatWouldCloseButForItsTrimsIsSaid) {
   CadModel model;
   for (const CadSurface& part : trimmed_surfaces()) model.surfaces.push_back(part);
@@ -156,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(Both, TrimmedRoundTrip, testing::Values(FileFormat::ste
                            return std::string(format.param == FileFormat::step ? "Step" : "Iges");
                          });
 
-// A small hole leaves most of the flux through a body's surface.
+// The hole is small, so that the sign of the enclosed volume still shows which way the normals point.
 TEST(BodyShape, FacesOfWhatWouldCloseAreTurnedOutwards) {
   for (const Surface& tube : {ellipsoid_tube(10, 10), reversed(ellipsoid_tube(10, 10), Direction::u)}) {
     CadSurface part = named("tube", tube);

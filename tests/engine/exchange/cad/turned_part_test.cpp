@@ -1,4 +1,5 @@
-// A turned part of a CAD system: faces of revolution between discs and rings that circles trim out of planes.
+// Tests merging of the faces of a turned part from a CAD system: faces of revolution between discs and rings,
+// which circles cut out of planes.
 #include <gtest/gtest.h>
 
 #include <BRepAlgoAPI_Cut.hxx>
@@ -53,7 +54,7 @@ void expect_one_closed_body(const TopoDS_Shape& shape, std::size_t face_count) {
   ASSERT_TRUE(merged) << merged.error().message;
   EXPECT_LE(merged->deviation_m, request.join.tolerance_m);
   EXPECT_EQ(find_closing(merged->surface).closedness, Closedness::solid);
-  // Some 0.01 mm on sides some 10 mm from the axis, both ways.
+  // The import may displace the sides, about 10 mm from the axis, by about 0.01 mm in or out.
   EXPECT_NEAR(std::abs(compute_enclosed_mass(merged->surface).volume_m3) / volume_m3(shape), 1.0, 2e-3);
 }
 

@@ -148,8 +148,8 @@ TEST_F(MeshWriter, ARefusalOfTheTakerEndsIt) {
   }
 }
 
-// A zip is complete before its first byte is written, so the progress function is called while it is built
-// and packed.
+// A zip archive is complete before its first byte is written, so the progress function is called while the
+// archive is built and packed.
 TEST_F(MeshWriter, ThreeMfAsksWhetherToGoOn) {
   const std::vector<NamedMesh> meshes = {
       {"fine", tessellate(ellipsoid_tube(8, 10, {0, 0, 0}), {}, 2e-5).value().mesh, true}};

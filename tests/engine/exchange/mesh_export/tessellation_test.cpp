@@ -44,7 +44,7 @@ double area_of(const TriangleMesh& mesh) {
 }
 
 double distance_to_triangle(const Vector3& from, const Vector3& a, const Vector3& b, const Vector3& c) {
-  // Closest point on a triangle, Ericson 2005, section 5.1.5.
+  // The closest point on a triangle is found as in Ericson 2005, section 5.1.5.
   const Vector3 ab = b - a, ac = c - a, ap = from - a, bp = from - b, cp = from - c;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp),
                d6 = ac.dot(cp);
@@ -106,7 +106,8 @@ TEST(Tessellation, BodiesThatCloseAreWatertightWithNormalsOutward) {
   }
 }
 
-// A pole whose points are apart by less than find_closing() minds is one point in the mesh.
+// A pole becomes one vertex of the mesh if its control points are closer together than the tolerance of
+// find_closing().
 TEST(Tessellation, WhatACheckCallsClosedIsWatertight) {
   for (const double apart_m : {1e-8, 0.9 * closing_tolerance_m}) {
     SCOPED_TRACE(apart_m);
@@ -134,7 +135,8 @@ TEST(Tessellation, AFlatSheetTakesTwoTrianglesAPiece) {
   EXPECT_EQ(flat->mesh.triangles.size(), 2u);
   EXPECT_EQ(flat->mesh.vertices_m.size(), 4u);
 
-  // A saddle's triangles are off by a quarter of its twist: |P00 - P10 - P01 + P11| / 4, halved each way.
+  // A triangle of a saddle deviates by a quarter of the twist, |P00 - P10 - P01 + P11| / 4; one subdivision
+  // in each direction divides that by four.
   net.set_point(1, 1, {1, 1, 0.4});
   const auto saddle = tessellate(make_surface(line, line, net).value(), {}, 0.026);
   ASSERT_TRUE(saddle);
@@ -153,10 +155,11 @@ TEST(Tessellation, ATrimmedSurfaceStaysTrimmed) {
   const auto holed = tessellate(plate, {round_loop(line, line, {0.4, 0.5}, 0.3, 12, true)}, 1e-3);
   ASSERT_TRUE(holed) << holed.error().message;
   EXPECT_FALSE(holed->closed);
-  // The polygon of the loop is within 1e-5 of it, over a length of less than 2.
+  // The polygon is within 1e-5 of the loop, whose length is less than 2.
   EXPECT_NEAR(area_of(holed->mesh), 1.0 - round_loop_area(0.3, 12), 2e-5);
 
-  // A disc out of the plate is as near as is told, which is more than nothing although the plate is flat.
+  // The reported deviation of a disc cut out of the plate must cover its true deviation, which is more than 0
+  // although the plate is flat.
   const TrimLoop round = round_loop(line, line, {0.5, 0.5}, 0.4, 12, false);
   const auto disc = tessellate(plate, {round}, 1e-3);
   ASSERT_TRUE(disc) << disc.error().message;
@@ -197,7 +200,7 @@ double lowest_triangle_m(const TriangleMesh& mesh) {
   return lowest;
 }
 
-// A disc, whose corners on the left are as high as those on the right but for their last bits.
+// The disc's corners on the left are as high as those on the right except for their last bits.
 TEST(Tessellation, NoTriangleIsWithoutArea) {
   constexpr double radius_m = 0.01;
   ControlNet net(2, 2);
@@ -215,13 +218,13 @@ TEST(Tessellation, NoTriangleIsWithoutArea) {
   const auto cut = tessellate(plate, {polygon_loop(line, line, corners)}, 2e-5);
   ASSERT_TRUE(cut) << cut.error().message;
   EXPECT_GT(lowest_triangle_m(cut->mesh), 1e-9);
-  // Only the rim is open, and each corner of the rim is a vertex of the mesh.
+  // Only the rim is open, and every vertex of the mesh is a corner of the rim.
   EXPECT_EQ(unmatched_edges(cut->mesh), cut->mesh.vertices_m.size());
   EXPECT_EQ(cut->mesh.triangles.size(), cut->mesh.vertices_m.size() - 2);
   EXPECT_NEAR(area_of(cut->mesh), std::numbers::pi * radius_m * radius_m, 1e-3 * area_of(cut->mesh));
 }
 
-// A small hole leaves most of the flux through a body's surface.
+// The hole is small, so that the sign of the enclosed volume still shows which way the normals point.
 TEST(Tessellation, NormalsOfATrimmedBodyAreOutward) {
   const Surface tube = ellipsoid_tube(10, 10);
   for (const Surface& surface : {tube, reversed(tube, Direction::u)}) {

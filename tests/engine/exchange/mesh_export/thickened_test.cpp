@@ -23,7 +23,8 @@ std::size_t unbalanced_edges(const TriangleMesh& mesh) {
   return unmatched;
 }
 
-// A part of a cylinder about z, `angle` around and `length` long, whose normals point away from the axis.
+// Returns a part of a cylinder about z, through `angle` and `length_m` long, whose normals point away from
+// the axis.
 TriangleMesh cylinder(double radius_m, double length_m, double angle, int around, int along) {
   TriangleMesh mesh;
   for (int i = 0; i <= around; ++i) {
@@ -54,8 +55,9 @@ TEST(Thickened, APlateIsABoxWithoutAnOpenEdge) {
   EXPECT_NEAR(enclosed_volume_m3(shell.value()), 0.1 * 0.06 * 0.003, 1e-15);
 }
 
-// The volume between two radii. The walls along the edges lean by half a chord's turn, a quarter of a degree,
-// which is some 2e-4 of the volume; chords themselves take less than 2e-5.
+// The volume of the shell is that between two radii. Walls along the edges lean by half a chord's turn, a
+// quarter of a degree, which changes the volume by about 2e-4; chords instead of arcs reduce it by less than
+// 2e-5.
 TEST(Thickened, ACurvedShellHasItsVolume) {
   constexpr double angle = std::numbers::pi / 2.0, radius_m = 0.05, thickness_m = 0.004, length_m = 0.03;
   const auto shell = thicken_mesh(cylinder(radius_m, length_m, angle, 180, 4), thickness_m);

@@ -11,14 +11,14 @@ CellCorners brick(double a, double b, double c) {
   return box_mesh({a, b, c}, {2, 2, 2}).cell(0, 0, 0);
 }
 
-// The uniaxial patch test: E and nu of the homogenised cell, along every axis.
+// A uniaxial patch test measures E and nu of the homogenised cell along every axis.
 TEST(CellSprings, CubesGiveTheMaterialExactly) {
   for (const double nu : {0.25, 0.35, 0.45, 0.49}) {
     const CellCorners corners = brick(2e-3, 2e-3, 2e-3);
     const CellSprings springs = cell_springs(corners, shear_modulus(5000.0, nu));
     const AchievedElasticity achieved = achieved_elasticity(corners, springs, bulk_stiffness(5000.0, nu));
     for (int axis = 0; axis < 3; ++axis) {
-      // 1e-6: what the case asks for; the solve is in double.
+      // The tolerance of 1e-6 is the test's own choice; the solve is in double precision.
       EXPECT_NEAR(achieved.youngs_modulus_pa[axis] / 5000.0, 1.0, 1e-6) << "nu " << nu;
       EXPECT_NEAR(achieved.poissons_ratio[axis], nu, 1e-6);
     }
@@ -37,9 +37,9 @@ TEST(CellSprings, BricksGiveTheMaterialExactly) {
   }
 }
 
-// Closed form of a cubic lattice of spacing a: C11 = (k1 + 2 k2 + 4 k3 / 3) / a and C12 = C44 = (k2 + 4 k3 /
-// 3) / a, with a cell's share of a quarter, a half and the whole of k1, k2, k3; isotropic when k1 = k2 + 8 k3
-// / 3.
+// A cubic lattice of spacing a has, in closed form, C11 = (k1 + 2 k2 + 4 k3 / 3) / a and C12 = C44 = (k2 + 4
+// k3 / 3) / a. A cell has a quarter of each k1, half of each k2 and all of each k3. The lattice is isotropic
+// if k1 = k2 + 8 k3 / 3.
 TEST(CellSprings, CubeStiffnessesMeetTheClosedForm) {
   const double a = 2e-3, mu = 700.0;
   const CellSprings springs = cell_springs(brick(a, a, a), mu);
@@ -57,7 +57,7 @@ TEST(CellSprings, SlenderCellsKeepPositiveSpringsAndReportTheirMisfit) {
   EXPECT_LT(cell_springs(brick(1e-3, 1e-3, 1e-3), 700.0).misfit, 1e-9);
 }
 
-// The stiffness matrix of one cell, springs and volume force, has the six rigid motions as its only zero
+// The stiffness matrix of one cell, with springs and volume force, has the six rigid motions as its only zero
 // modes.
 TEST(CellSprings, OnlyRigidMotionsCostNoEnergy) {
   for (const CellCorners& corners :

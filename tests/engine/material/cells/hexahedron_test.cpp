@@ -1,4 +1,4 @@
-// Cells as hexahedra: what they must get right alone, before they are a body.
+// Tests single hexahedral cells.
 #include "engine/material/cells/hexahedron.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ Vector3 random_vector(Random& random, double size) {
   return size * Vector3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
 }
 
-// No edge of it has the length or the direction of another.
+// Returns a cell no two edges of which have the same length or direction.
 CellCorners distorted_cell(std::uint64_t seed) {
   Random random(seed);
   CellCorners corners = box_mesh({1.2, 1.0, 0.8}, {2, 2, 2}).cell(0, 0, 0);
@@ -26,7 +26,7 @@ CellCorners distorted_cell(std::uint64_t seed) {
   return corners;
 }
 
-// Returns the displacements of the corners by a uniform strain.
+// Returns the displacements of the corners under a uniform displacement gradient.
 CellVector moved_by(const Eigen::Matrix3d& gradient, const CellCorners& corners) {
   CellVector moves;
   for (int c = 0; c < 8; ++c) moves.segment<3>(3 * c) = gradient * corners[static_cast<std::size_t>(c)];
@@ -37,13 +37,13 @@ TEST(Hexahedron, OnlyRigidMotionsCostNoEnergy) {
   for (const double poisson : {-0.5, 0.0, 0.25, 0.45, 0.49, 0.4999}) {
     const CellMatrix stiffness = hexahedron_stiffness(distorted_cell(3), 1.0, poisson);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(stiffness);
-    // Rounding of a matrix with entries of about 1 / (1 - 2 nu).
+    // The bound allows for rounding of a matrix with entries of about 1 / (1 - 2 nu).
     EXPECT_LT(std::abs(modes.eigenvalues()[5]), 1e-14 / (1.0 - 2.0 * poisson)) << poisson;
     EXPECT_GT(modes.eigenvalues()[6], 1e-2) << poisson;
   }
 }
 
-// Whatever its shape, a cell under a uniform strain stores the energy of the material: V/2 s:e.
+// A cell of any shape under a uniform strain stores the energy of the material, V/2 s:e.
 TEST(Hexahedron, UniformStrainsCostWhatTheMaterialAsks) {
   Random random(17);
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -62,8 +62,8 @@ TEST(Hexahedron, UniformStrainsCostWhatTheMaterialAsks) {
   }
 }
 
-// Bent alone: the moments on its ends do the work of E I / 2 k^2 L, which a trilinear cell without its inner
-// displacements overestimates by E / (2 (1 + nu)) (L/h)^2 / E: by more than a hundred times here.
+// The end moments bend a cell with the energy E I / 2 k^2 L. Without its inner displacements, a trilinear
+// cell would overestimate the energy by the factor (L/h)^2 / (2 (1 + nu)): more than a hundred here.
 TEST(Hexahedron, BendsAsABeam) {
   const double length = 20.0, wide = 1.0, high = 1.0, curvature = 1e-3;
   const CellCorners corners = box_mesh({length, wide, high}, {2, 2, 2}).cell(0, 0, 0);
@@ -72,13 +72,13 @@ TEST(Hexahedron, BendsAsABeam) {
     const Vector3 at = corners[static_cast<std::size_t>(c)] - 0.5 * Vector3(length, wide, high);
     moves[3 * c] = -curvature * at.x() * at.z();
   }
-  // Poisson's ratio 0: nothing swells across.
+  // With Poisson's ratio 0 the cross section does not deform.
   const CellMatrix stiffness = hexahedron_stiffness(corners, 7.0, 0.0);
   const double energy = 0.5 * 7.0 * wide * std::pow(high, 3) / 12.0 * curvature * curvature * length;
   EXPECT_NEAR(0.5 * moves.dot(stiffness * moves), energy, 1e-9 * energy);
 }
 
-// Turned by a whole radian and strained by some percent.
+// Returns the displacements of a cell that is turned by 1.1 rad and strained by some percent.
 CellMoves turned_and_strained(const CellCorners& corners, std::uint64_t seed) {
   Random random(seed);
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Vector3(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
@@ -89,7 +89,8 @@ CellMoves turned_and_strained(const CellCorners& corners, std::uint64_t seed) {
   return moves;
 }
 
-// By central differences of the energy, and of the force. `tangent_tolerance` is of the whole tangent.
+// Compares the force and the tangent with central differences of the energy and of the force.
+// `tangent_tolerance` is relative to the norm of the tangent.
 template <class Cell>
 void expect_derivatives(const Cell& cell, const CellMoves& moves, double tangent_tolerance) {
   const CellResponse response = cell.respond(moves, Tangent::stressed);
@@ -98,7 +99,7 @@ void expect_derivatives(const Cell& cell, const CellMoves& moves, double tangent
     CellMoves up = moves, down = moves;
     up[static_cast<std::size_t>(a / 3)][a % 3] += step;
     down[static_cast<std::size_t>(a / 3)][a % 3] -= step;
-    // What a step of 1e-5 leaves of third derivatives, and rounding over it.
+    // The bound allows for the third derivatives with a step of 1e-5 and for rounding divided by that step.
     EXPECT_NEAR((cell.energy_j(up) - cell.energy_j(down)) / (2.0 * step), response.force_n[a],
                 1e-8 * response.force_n.norm() + 1e-10);
     const CellVector change =
@@ -113,7 +114,7 @@ TEST(CorotatedCell, ForceIsTheGradientOfItsEnergyAndTheTangentItsChange) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const CellCorners corners = distorted_cell(seed);
     const CorotatedCell cell(corners, hexahedron_stiffness(corners, 1.0, 0.3));
-    // How the stretch changes the turning is left out: a product of two small strains.
+    // The tangent neglects how the stretch changes the rotation, which is a product of two small strains.
     expect_derivatives(cell, turned_and_strained(corners, seed), 1e-3);
   }
 }
@@ -126,7 +127,8 @@ TEST(SpringCell, ForceIsTheGradientOfItsEnergyAndTheTangentItsChange) {
   }
 }
 
-// The force of a cell that is turned and not strained is nothing, at any angle; and it never turns the cell.
+// A cell that is turned without strain has no force, at any angle; and the force of a strained cell never has
+// a moment.
 TEST(CorotatedCell, FeelsNoTurn) {
   const CellCorners corners = distorted_cell(9);
   const CorotatedCell cell(corners, hexahedron_stiffness(corners, 1.0, 0.3));
@@ -134,7 +136,7 @@ TEST(CorotatedCell, FeelsNoTurn) {
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, Vector3(2.0, -1.0, 1.0).normalized()).matrix();
     CellMoves moves;
     for (std::size_t c = 0; c < 8; ++c) moves[c] = turn * corners[c] - corners[c];
-    // Rounding of the moves, whose size is the turn's.
+    // The bound allows for rounding of the displacements, which are as large as the rotation.
     EXPECT_LT(cell.respond(moves, Tangent::plain).force_n.norm(), 1e-15 * std::max(1.0, angle)) << angle;
     const CellMoves strained = turned_and_strained(corners, 4);
     const CellVector force = cell.respond(strained, Tangent::plain).force_n;
@@ -149,13 +151,13 @@ TEST(CorotatedCell, FeelsNoTurn) {
   }
 }
 
-// A steel cell that has turned by a millionth: the digits that make up its forces are not lost.
+// A turn by a millionth of a radian, as in a steel cell, is found without loss of digits.
 TEST(CorotatedCell, KeepsTheDigitsOfSmallTurns) {
   const Vector3 axis(3e-7, -5e-7, 8e-7);
   Eigen::Matrix3d change;
   change << 0.0, -axis.z(), axis.y(), axis.z(), 0.0, -axis.x(), -axis.y(), axis.x(), 0.0;
   const Eigen::Matrix3d turn = nearest_turn(change);
-  // sin(a) = a up to a^3 / 6; the next term is 1e-12 of it.
+  // sin(a) differs from a by a^3 / 6, which is less than 1e-12 of a.
   EXPECT_LT((0.5 * (turn - turn.transpose()) - change).norm(), 1e-12 * change.norm());
 }
 

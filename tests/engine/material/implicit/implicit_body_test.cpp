@@ -1,4 +1,4 @@
-// Stiff bodies under the implicit method, against the static solver and closed forms.
+// Tests stiff bodies under the implicit method against the static solver and closed forms.
 #include "engine/material/implicit/implicit_body.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ Material damped(Material material, double ratio) {
   return material;
 }
 
-// A beam along z, held at its low end, with a force towards -y on its high one.
+// A beam along z, fixed at its low end, with a force towards -y at its high end.
 struct Cantilever {
   LatticeMesh mesh = box_mesh({0.012, 0.005, 0.1}, {5, 3, 41});
   std::vector<std::uint8_t> held;
@@ -46,7 +46,7 @@ struct Cantilever {
   int tip() const { return mesh.index(2, 1, 40); }
 };
 
-// Steel, a hard plastic and a rubber, bent by a hundredth and by a third of their length.
+// Beams as stiff as steel and as rubber are bent slightly (load 0.03) and far (load 1).
 TEST(ImplicitBody, SettlesToTheStaticAnswer) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const double second_moment = 0.012 * std::pow(0.005, 3) / 12.0;
@@ -65,13 +65,13 @@ TEST(ImplicitBody, SettlesToTheStaticAnswer) {
       ImplicitStep step;
       step.damping_per_s = 20.0;
       for (int tick = 0; tick < 1000; ++tick) body.step(step);
-      // What 20 per second of damping leave of the lowest mode in a second.
+      // The bound is what a damping of 20 per second leaves of the lowest mode after a second.
       EXPECT_NEAR(body.displacement(beam.tip()).y() / expected, 1.0, 1e-3) << youngs << " Pa, load " << load;
     }
   }
 }
 
-// -g h^2 n (n + 1) / 2, whatever the stiffness.
+// The fall after n steps is -g h^2 n (n + 1) / 2, whatever the stiffness.
 TEST(ImplicitBody, FallsFreely) {
   ImplicitBody body = body_of(box_mesh({0.02, 0.03, 0.02}, {3, 4, 3}), elastic_material(1e9, 0.3, 1000.0));
   ImplicitStep step;
@@ -83,12 +83,13 @@ TEST(ImplicitBody, FallsFreely) {
   }
 }
 
-// A mode of a cell whose base is held loses 1 / (1 + w^2 h^2) of its energy in each step of implicit Euler.
+// The mode of a cell whose base is fixed keeps 1 / (1 + w^2 h^2) of its energy in each step of the implicit
+// Euler method.
 TEST(ImplicitBody, DampsAModeAsImplicitEulerDoes) {
   const LatticeMesh mesh = box_mesh({0.01, 0.01, 0.01}, {2, 2, 2});
   const Material material = elastic_material(1e5, 0.3, 1000.0);
   ImplicitBody body = body_of(mesh, material);
-  // Corners 1, 3, 5 and 7 are those of the far layer.
+  // Corners 1, 3, 5 and 7 form the far layer.
   const CellMatrix stiffness = hexahedron_stiffness(mesh.cell(0, 0, 0), 1e5, 0.3);
   Eigen::MatrixXd free(12, 12);
   for (int row = 0; row < 12; ++row) {
@@ -111,7 +112,7 @@ TEST(ImplicitBody, DampsAModeAsImplicitEulerDoes) {
     }
   }
   body.fix_nodes(held);
-  // So small that the mode does not turn.
+  // The amplitude is so small that the mode does not rotate the cell.
   constexpr double amplitude_m = 1e-9;
   for (int c = 0; c < 4; ++c) {
     const Eigen::Vector3d shape = modes.eigenvectors().col(0).segment<3>(3 * c);
@@ -128,7 +129,7 @@ TEST(ImplicitBody, DampsAModeAsImplicitEulerDoes) {
   };
   const double before = energy();
   for (int k = 0; k < 100; ++k) body.step(step);
-  // (1 + 0.01)^-100.
+  // The expected ratio is (1 + 0.01)^-100.
   EXPECT_NEAR(energy() / before, 0.369711, 1e-4);
 }
 
@@ -149,8 +150,8 @@ TEST(ImplicitBody, KeepsItsMomentum) {
   EXPECT_LT((after - before).norm(), 1e-5 * size);
 }
 
-// Nodes thrown about at up to 20 m/s, at any stiffness that needs the method and any damping: what comes of
-// it is finite, and a body again within a second.
+// The nodes are thrown about at up to 20 m/s, with any damping and any stiffness that needs the implicit
+// method: all values stay finite, and the body has its shape back within a second.
 TEST(ImplicitBody, NothingBlowsItUp) {
   const int trials = random_cases(8, 50);
   Random random(11);

@@ -1,4 +1,4 @@
-// The coarser block weighs what the lattice does.
+// The coarse block of the implicit solver must weigh as much as the lattice.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace spoonbill {
 namespace {
 
-// A floor and two walls of one cell each, the rest void.
+// Returns a box with a floor and two walls, each one cell thick; the rest is void.
 LatticeMesh bowl_in_box(const std::array<int, 3>& counts) {
   LatticeMesh box = box_mesh({0.04, 0.04, 0.04}, counts);
   box.cell_fractions.assign(box.cell_count(), 1e-3);
@@ -25,7 +25,8 @@ LatticeMesh bowl_in_box(const std::array<int, 3>& counts) {
   return box;
 }
 
-// The mean over the common parts of both grids, each of which lies in one cell of either.
+// Returns the mean filled fraction of a coarse cell, computed over a common subdivision of both grids, each
+// part of which is in one cell of either grid.
 double mean_share(const LatticeMesh& fine, const LatticeMesh& coarse, const std::array<int, 3>& cell) {
   const auto finer = [&](std::size_t axis, int part) {
     const int whole = cell[axis] * (fine.count[axis] - 1) + part;
@@ -41,7 +42,7 @@ double mean_share(const LatticeMesh& fine, const LatticeMesh& coarse, const std:
   return sum / static_cast<double>(fine.cell_count());
 }
 
-// Of cubic boxes at some budgets of nodes, and of one that has another ratio along each axis.
+// The boxes are cubic with several node counts, and one box has a different count along each axis.
 TEST(ImplicitSolver, HasOfEachCellWhatTheLatticeHasThere) {
   const Material stiff = elastic_material(2e9, 0.3, 1000.0);
   for (const auto& counts : {std::array<int, 3>{12, 12, 12}, {20, 20, 20}, {34, 34, 34}, {7, 13, 24}}) {
@@ -50,7 +51,7 @@ TEST(ImplicitSolver, HasOfEachCellWhatTheLatticeHasThere) {
         ImplicitSolver::make(fine, fine.nodes, stiff, InstructionSet::baseline).value();
     const LatticeMesh& coarse = core.mesh();
     ASSERT_LT(coarse.cell_count(), fine.cell_count());
-    // Rounding of some thousands of sums.
+    // The bound allows for the rounding of some thousands of sums.
     EXPECT_NEAR(filled_m3(coarse) / filled_m3(fine), 1.0, 1e-12) << counts[0];
     for (int k = 0; k + 1 < coarse.count[2]; ++k) {
       for (int i = 0; i + 1 < coarse.count[0]; ++i) {

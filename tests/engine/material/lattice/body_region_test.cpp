@@ -1,4 +1,4 @@
-// Where nodes and cells lie in a body's own coordinates, against closed forms.
+// Tests where nodes and cells are in a body's own coordinates, against closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,16 +16,16 @@ namespace {
 constexpr double length_m = 0.08, bar_radius_m = 0.006;
 constexpr int bar_around = 16;
 
-// A round bar along x; u turns from +y to +z and its ends are flat poles.
+// Returns a round bar along x; u turns from +y to +z, and the ends are flat poles.
 Surface round_bar() {
   const std::vector<double> stations = {0.0, 0.0, 0.0, 0.01, 0.02, 0.04, 0.06, 0.07, 0.08, 0.08, 0.08};
   const int along = static_cast<int>(stations.size());
-  // The limit curve of a periodic uniform cubic on n points of a circle lies inside by (2 + cos(2 pi / n))
-  // / 3.
+  // A periodic uniform cubic B-spline with n control points on a circle is a curve of (2 + cos(2 pi / n)) / 3
+  // times the circle's radius.
   const double outside = 3.0 / (2.0 + std::cos(2.0 * std::numbers::pi / bar_around));
   ControlNet net(bar_around, along);
   for (int i = 0; i < bar_around; ++i) {
-    // So that u = 0 is at +y: B_i begins at knot i, and is at its largest at knot i + 2.
+    // The offset of 2 puts u = 0 at +y: B_i begins at knot i and is largest at knot i + 2.
     const double angle = 2.0 * std::numbers::pi * (i + 2) / bar_around;
     for (int j = 0; j < along; ++j) {
       const bool pole = j == 0 || j == along - 1;
@@ -47,13 +47,14 @@ LatticeMesh bar_lattice(std::array<int, 3> counts) {
   return std::move(mesh).value();
 }
 
-// Returns the difference of two turns, also across the seam.
+// Returns the difference of two turns as the shorter way around, possibly across the seam.
 double apart(double turn, double other) {
   const double far = std::abs(turn - other);
   return std::min(far, 1.0 - far);
 }
 
-// Visits what lies in the middle half of the bar, away from its caps, with its distance from the axis.
+// Visits the points in the central half of the bar, away from its caps, with their coordinates and distance
+// from the axis.
 template <class Visit>
 void visit_middle(const std::vector<Vector3>& points, const std::vector<BodyCoordinates>& places,
                   const Visit& visit) {
@@ -82,14 +83,14 @@ void expect_places_of_a_bar(const std::vector<Vector3>& points, const std::vecto
   int seen = 0;
   visit_middle(points, places, [&](const Vector3& point, const BodyCoordinates& place, double from_axis) {
     ++seen;
-    // Slices are even along the bar.
+    // Slices are evenly spaced along the bar.
     EXPECT_NEAR(place.along, point.x() / length_m, 0.01);
-    // Rings of 24 chords lie inside the circle by less than 1 % of its radius; depths of a cell are means of
-    // its corners', which bend by as much again.
+    // A ring of 24 chords is inside the circle by less than 1 % of its radius. A cell's depth is the mean
+    // over its corners, which the curvature changes by about as much again.
     EXPECT_NEAR(place.depth_m, bar_radius_m - from_axis, (of_cells ? 0.05 : 0.012) * bar_radius_m);
     if (from_axis < 1e-3 * bar_radius_m) return;
     const double angle = std::atan2(point.z(), point.y()) / (2.0 * std::numbers::pi);
-    // Nodes inside follow the block's lines and not the radii.
+    // Nodes inside the bar are on the block's lines, which are not exactly radial.
     EXPECT_LT(apart(place.around, angle < 0.0 ? angle + 1.0 : angle), 0.02)
         << point.transpose() << " turn " << place.around;
   });
@@ -108,7 +109,7 @@ TEST(BodyRegion, CellsOfARoundBarAreWhereTheCylinderHasThem) {
   }
 }
 
-// The least distance to six planes.
+// The depth is the least distance to the six planes.
 TEST(BodyRegion, DepthInABoxIsTheDistanceToItsNearestFace) {
   const Vector3 size_m(0.012, 0.007, 0.03);
   const LatticeMesh mesh = box_mesh(size_m, {6, 5, 11});
@@ -122,7 +123,7 @@ TEST(BodyRegion, DepthInABoxIsTheDistanceToItsNearestFace) {
   }
 }
 
-// A ring has no faces where it closes: its cells are half its thickness deep all the way around.
+// A ring has no end faces at its seam: its cells are half its thickness deep all the way around.
 TEST(BodyRegion, CellsOfAThinRingLieBetweenItsFaces) {
   LatticeRequest request;
   request.counts = {25, 2, 3};
@@ -137,7 +138,7 @@ TEST(BodyRegion, CellsOfAThinRingLieBetweenItsFaces) {
       const BodyCoordinates& place = places[ring->cell_index(i, 0, k)];
       EXPECT_NEAR(place.around, (i + 0.5) / 24.0, 1e-3);
       EXPECT_NEAR(place.along, 0.25 + 0.5 * k, 1e-12);
-      // Chords of 15 degrees are less than 1 % of the thickness nearer than arcs.
+      // Chords of 15 degrees are nearer than arcs by less than 1 % of the thickness.
       EXPECT_NEAR(place.depth_m, 0.001, 2e-5);
       held += contains(across_seam, place) ? 1 : 0;
     }
@@ -145,7 +146,7 @@ TEST(BodyRegion, CellsOfAThinRingLieBetweenItsFaces) {
   EXPECT_EQ(held, 8) << "the middles of four of 24 cells around, twice";
 }
 
-// Also those of the caps that meet on the axis, which lies in no direction.
+// Includes the faces of the caps that meet on the axis, where the direction around is undefined.
 TEST(BodyRegion, FacesOfARoundBarAreWhereTheCylinderHasThem) {
   const LatticeMesh mesh = bar_lattice({7, 7, 41});
   const std::vector<BodyCoordinates> places = find_node_coordinates(mesh);
@@ -187,7 +188,7 @@ TEST(BodyRegion, IsCutAlongAndByDepth) {
   EXPECT_FALSE(contains(region, {0.6, 0.3, 0.0021}));
 }
 
-// A share of a region's cells is that share of the bar.
+// The cells of a region that covers a quarter of a turn fill a quarter of the bar's volume.
 TEST(BodyRegion, CellsOfAQuarterTurnHoldAQuarterOfTheBar) {
   const LatticeMesh mesh = bar_lattice({9, 9, 21});
   BodyRegion region;
@@ -203,7 +204,7 @@ TEST(BodyRegion, CellsOfAQuarterTurnHoldAQuarterOfTheBar) {
       }
     }
   }
-  // A row of cells on a diagonal of the block is in or out as a whole.
+  // A row of cells on a diagonal of the block is inside or outside as a whole, which limits the precision.
   EXPECT_NEAR(inside / all, 0.25, 0.04);
 }
 

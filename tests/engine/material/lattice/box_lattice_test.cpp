@@ -55,13 +55,14 @@ TEST(BoxLattice, WeighsWhatTheSolidWeighsAndIsNoFasterForItsParts) {
   }
   EXPECT_NEAR(sum / lattice.mass_kg(), 1.0, 1e-6);
   EXPECT_LT((middle / sum).norm(), 1e-3 * 0.02) << "in its middle";
-  // m r^2 / 5 each way. Mass at the corners of cells, a quarter of the radius wide, lies farther out: by a
-  // sixth of the cell's square, a twentieth here, and where a cell is filled in part as much again.
+  // The mass times the square of each coordinate adds up to m r^2 / 5 for a ball. Mass at the corners of
+  // cells a quarter of the radius wide is farther out, which adds a twentieth; partly filled cells add as
+  // much again.
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(inertia(axis, axis) / (sum * 0.02 * 0.02 / 5.0), 1.0, 0.15);
   }
   EXPECT_LT(lattice.fastest_frequency(), 1.001 * whole.fastest_frequency());
-  // A cell in the very middle is whole but for what slivers at the surface add.
+  // The central cell is entirely filled, except for volume that slivers at the surface add.
   EXPECT_NEAR(mesh.cell_fraction(4, 4, 4), 1.0, 0.05);
   EXPECT_LT(mesh.cell_fraction(0, 0, 0), 2e-3) << "the ball does not reach the box's corner";
 }
@@ -78,7 +79,7 @@ TEST(BoxLattice, EmbedsPointsWhereTheyAre) {
   for (int p = 0; p < 100; ++p) {
     const Vector3 point(random.uniform(-0.01, 0.02), random.uniform(0.0, 0.02), random.uniform(0.005, 0.045));
     const EmbeddedPoint embedded = embed_in_box(mesh, point);
-    // Single precision, of some centimetres.
+    // Positions of some centimetres are stored in single precision.
     EXPECT_LT((embedded.rest_m(lattice) - point).norm(), 2e-8);
     const Vector3 moved = embedded.displacement_m(lattice.view());
     EXPECT_LT((moved - shift - turn * point).norm(), 1e-8) << "linear fields are kept";

@@ -1,4 +1,4 @@
-// Nodes spread through a body by a self-organising map.
+// Tests the self-organising map that spreads nodes through a body.
 #include "engine/material/lattice/feature_map.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ bool is_inside(const LatticeMesh& mesh, int node) {
   return mesh.node_location(i, j, k) == NodeLocation::in_body;
 }
 
-// A bar of 6 x 6 x 18 cells that is bent to a quarter of a ring, its cells crowded towards one side and
-// uneven.
+// Returns a bar of 6 x 6 x 18 cells that is bent to a quarter of a ring; its cells are uneven and crowded
+// towards one side.
 LatticeMesh crowded_bend() {
   Random random(6);
   LatticeMesh mesh = box_mesh({1.0, 1.0, 1.0}, {7, 7, 19});
@@ -64,7 +64,7 @@ TEST(FeatureMap, GivesTheSameNodesForTheSameSeed) {
   EXPECT_NE(one.nodes, other.nodes);
 }
 
-// A map that is let run wild folds cells: then less of it is kept, or nothing.
+// A map with too large rates folds cells: then only part of its displacement is applied, or none.
 TEST(FeatureMap, NeverFoldsACell) {
   Random random(4);
   for (int trial = 0; trial < 20; ++trial) {

@@ -1,4 +1,4 @@
-// How much of a lattice's cells is filled.
+// Computes the volume of a lattice's cells that is filled with material.
 #pragma once
 
 #include "engine/material/lattice/lattice_mesh.h"

@@ -1,4 +1,4 @@
-// Lattices of bodies that are hollow about their poles, as pears and apples are about stalk and calyx.
+// Tests lattices of bodies whose poles are at the bottom of hollows, as in pears and apples.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,13 +17,13 @@ namespace {
 
 constexpr double fruit_radius_m = 0.036;
 
-// The shape in radii of the body: a ball of half the length, whose ends are pressed in at the poles and which
-// narrows towards its upper end.
+// The shape of a fruit in units of its radius: a ball of half length `half_length`, whose ends are pressed in
+// at the poles and which narrows towards its upper end.
 struct Fruit {
   const char* name;
   double half_length;
   double low_press, low_width, high_press, high_width;
-  double thinner;  // share of the radius that is missing at the upper end
+  double thinner;  // fraction of the radius that is missing at the upper end
   double lean;
 };
 
@@ -41,7 +41,7 @@ Surface surface_of(const Fruit& fruit) {
       fruit.lean * fruit_radius_m);
 }
 
-// How deep the poles lie below what stands out around them, in radii.
+// Depths of the poles below the highest points around them, in units of the radius.
 struct Depths {
   double low, high;
 };
@@ -63,7 +63,7 @@ constexpr Fruit apple_of_narrow_hollows{"narrow", 0.9, 0.4, 0.3, 0.4, 0.3, 0.0, 
 constexpr Fruit apple_of_wide_hollows{"wide", 0.9, 0.6, 0.5, 0.6, 0.5, 0.0, 0.0};
 constexpr Fruit flat_apple{"flat apple", 0.9, 0.3, 0.4, 0.35, 0.4, 0.0, 0.0};
 constexpr Fruit pear{"pear", 1.3, 0.5, 0.35, 0.4, 0.5, 0.45, 0.0};
-// As long and wide as a scanned pear of 97 x 72 mm, its neck as thin, and leaning as much.
+// The shape is as long and wide as a scanned pear of 97 x 72 mm, with as thin a neck and as much lean.
 constexpr Fruit leaning_pear{"leaning pear", 1.5, 0.45, 0.35, 0.3, 0.35, 0.5, 0.5};
 
 double smallest_determinant(const CellCorners& cell) {
@@ -93,7 +93,7 @@ void expect_positive_cells(std::initializer_list<int> budgets) {
           }
         }
       }
-      // As good as the cells of a ball, whose caps are flat squares too.
+      // The cells must be as good as those of a ball, whose caps are also made from flat squares.
       EXPECT_GT(measure_cell_quality(mesh).worst_jacobian, 0.05) << fruit.name << ", " << budget;
     }
   }
@@ -121,7 +121,7 @@ TEST(HollowEnds, AreAsHollowAsTheyAreSaidToBe) {
   }
 }
 
-// Chords miss some of what is round: 1.2 % of these. A hollow that is filled would add more than it may.
+// Chords lose 1.2 % of the volume of a round body. Filling the hollows would add more than the tolerance.
 TEST(HollowEnds, HoldTheirVolume) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const Fruit& fruit :
@@ -142,7 +142,7 @@ TEST(HollowEnds, HaveTheSameNodesEachTime) {
   }
 }
 
-// The poles lie on the far sides of each other: no body.
+// The hollows are so deep that each pole is beyond the other: the shape is no body.
 TEST(HollowEnds, ThatPassThroughEachOtherAreRefused) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   Fruit turned = apple;

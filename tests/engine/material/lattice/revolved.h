@@ -1,4 +1,4 @@
-// Bodies of revolution about z for the tests of lattices, and what they hold.
+// Provides bodies of revolution about z for tests of lattices, and the volumes of surfaces and meshes.
 #pragma once
 
 #include <functional>
@@ -12,15 +12,15 @@ struct MeridianPlace {
   double radius_m, height_m;
 };
 
-// A tube whose poles are the ends of the meridian, given over a share from 0, the lower pole, to 1; smooth
-// pieces of least squares over 32 control points. Its middle line leans over x by `lean_m` at the height of
-// the upper pole, as the square of the height over the lower one.
+// Returns a tube around z from its meridian, which is a function of a fraction from 0 at the lower pole to 1
+// at the upper pole. The meridian is fitted by least squares with 32 control points. The centre line leans
+// along x by `lean_m` at the upper pole; the lean grows with the square of the height above the lower pole.
 Surface revolved(const std::function<MeridianPlace(double)>& meridian, double lean_m = 0.0);
 
-// A sphere about the origin, to 1e-4 of its radius.
+// Returns a sphere about the origin, with an error of 1e-4 of its radius.
 Surface round_ball(double radius_m);
 
-// The volume inside by the divergence theorem, over flat triangles of a fine grid.
+// Returns the enclosed volume by the divergence theorem, summed over the flat triangles of a fine grid.
 double enclosed_volume_m3(const Surface& surface);
 
 double volume_of(const LatticeMesh& mesh);

@@ -1,5 +1,5 @@
-// Lattices of box-like and round bodies, whose ends are caps as large as their sides, and of merged ones
-// whose thickness varies.
+// Tests lattices of round and box-like bodies, whose end caps are as large as their sides, and of merged
+// bodies whose thickness varies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,8 +18,9 @@ namespace {
 
 using std::numbers::pi;
 
-// A tube along z; at the share of its length, half its width over x and half its thickness over y. Rings are
-// superellipses. The rings beside the poles lie in their planes, so that the ends are smooth.
+// The profile of a tube along z: half its width along x and half its thickness along y, each as a function of
+// the fraction of the length. The rings are superellipses. The rings beside the poles are in the planes of
+// the poles, so that the ends are smooth.
 struct BodyProfile {
   double length_m;
   double exponent;
@@ -47,7 +48,7 @@ Surface tube_of(const BodyProfile& profile, int around = 16, int along = 20) {
   return make_surface(KnotVector::periodic_uniform(3, around).value(), knots, net).value();
 }
 
-// Returns the height of a circle or an ellipse at a fraction of its length.
+// Returns the relative half width of a circle or an ellipse at a fraction of its length.
 double arch(double share) {
   return std::sqrt(std::max(0.0, 1.0 - std::pow(2.0 * share - 1.0, 2)));
 }
@@ -73,7 +74,7 @@ BodyProfile rounded_box() {
   return {0.03, 8.0, [end](double share) { return 0.012 * end(share); },
           [end](double share) { return 0.01 * end(share); }};
 }
-// A handle of 12 x 9 mm that goes over into an end of 36 x 2 mm.
+// Returns a handle of 12 x 9 mm that blends into an end of 36 x 2 mm.
 BodyProfile spoon() {
   const auto blend = [](double share) {
     const double t = std::clamp((share - 0.5) / 0.2, 0.0, 1.0);
@@ -106,8 +107,8 @@ TEST(RoundBodies, HavePositiveCells) {
   }
 }
 
-// As a mean over the cells, along each axis. Those along the rounded edges are the more slender the more
-// there are, and springs miss a little of their stiffness.
+// The stiffness is a mean over the cells along each axis. Cells along the rounded edges become more slender
+// as the budget grows, and their springs are slightly too soft.
 TEST(RoundBodies, RoundedBoxIsAsStiffAsItsMaterial) {
   for (const int budget : {2000, 8000}) {
     const LatticeMesh mesh = tube_lattice(tube_of(rounded_box()), {budget, {}}).value();

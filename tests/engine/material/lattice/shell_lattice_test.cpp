@@ -1,4 +1,4 @@
-// Lattices of thin shells, against closed forms of volume, of plates and of rings under pressure.
+// Tests lattices of thin shells against closed forms: volumes, plates, and rings under pressure.
 #include "engine/material/lattice/shell_lattice.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ ErrorCode refusal_code(const Surface& surface, double thickness_m, const Lattice
 
 TEST(ShellLattice, BowlHasTheVolumeOfTheShell) {
   constexpr double radius = 0.03, thickness = 0.002, opening = pi / 3.0, density = 2400.0;
-  // Between the sphere and the one inside, as far as the cone from the middle cuts both.
+  // The volume is that between the outer and the inner sphere, within the cone from the centre.
   const double inner = radius - thickness;
   const double volume =
       2.0 * pi / 3.0 * (1.0 - std::cos(opening)) * (std::pow(radius, 3) - std::pow(inner, 3));
@@ -57,7 +57,7 @@ TEST(ShellLattice, BowlHasTheVolumeOfTheShell) {
       EXPECT_FALSE(mesh.closed);
       EXPECT_LE(mesh.node_count(), budget);
       EXPECT_GT(mesh.node_count(), budget / 2);
-      // The surface is a sphere to 1e-5, and its area to twice that.
+      // The surface is a sphere within 1e-5 of its radius, and its area is within twice that.
       EXPECT_NEAR(mass_of(mesh, density) / (density * volume), 1.0, 1e-4) << budget;
       const CellQuality quality = measure_cell_quality(mesh);
       EXPECT_GT(quality.worst_jacobian, 0.0) << budget;
@@ -68,7 +68,7 @@ TEST(ShellLattice, BowlHasTheVolumeOfTheShell) {
       }
     }
   }
-  // To first order: area times thickness; what is left is the thickness over the radius.
+  // The volume is the area times the thickness to first order; the relative error is thickness / radius.
   const double area = 2.0 * pi * radius * radius * (1.0 - std::cos(opening));
   EXPECT_NEAR(mass_of(make_shell_lattice(spherical_bowl(radius, opening), thickness, {}), density) /
                   (density * area * thickness),
@@ -139,8 +139,8 @@ TEST(ShellLattice, RefusesWhatIsNoShell) {
   EXPECT_EQ(refusal_code(fan, 0.002), ErrorCode::degenerate);
 }
 
-// Of a plate that is held along one edge and bent to a cylinder, P L^3 (1 - nu^2) / 3 E I a width, with what
-// shear adds: (6/5) P L / G t.
+// A plate that is fixed along one edge and bent to a cylinder sinks by P L^3 (1 - nu^2) / 3 E I, with I of
+// its whole width; shear adds (6/5) P L / G A.
 TEST(ShellLattice, SheetBendsAsAPlate) {
   constexpr double length = 0.06, width = 0.03, thickness = 0.002, youngs = 2e9, poisson = 0.35, force = 0.5;
   const LatticeMesh mesh = make_shell_lattice(flat_sheet(length, width), thickness, {2000, {}});
@@ -174,12 +174,12 @@ TEST(ShellLattice, SheetBendsAsAPlate) {
   EXPECT_NEAR(sunk / expected, 1.0, 0.02);
 }
 
-// A ring of 64 cells, its seam between two of them.
+// Returns a ring of 64 cells, whose seam is between two of them.
 LatticeMesh round_ring(double radius_m, double height_m, double thickness_m) {
   return make_shell_lattice(open_ring(radius_m, height_m), thickness_m, {2000, {{65, 3, 4}}});
 }
 
-// How far the nodes of the outer face in the middle of the height have gone out.
+// Returns the outward displacements of the nodes on the outer face at half the height.
 std::vector<double> gone_out(const LatticeMesh& mesh, const std::function<Vector3(int)>& moved) {
   std::vector<double> out;
   for (int i = 0; i < mesh.count[0]; ++i) {
@@ -191,8 +191,8 @@ std::vector<double> gone_out(const LatticeMesh& mesh, const std::function<Vector
   return out;
 }
 
-// The pressure inside, u(b) = 2 p a^2 b / E (b^2 - a^2) at the outside of a tube that is free to shorten
-// (Lame 1852). The supports bear nothing of it.
+// A pressure inside displaces the outer side of a tube that is free to shorten by u(b) = 2 p a^2 b / E (b^2 -
+// a^2) (Lame 1852). The supports bear no part of the pressure.
 TEST(ShellLattice, RingUnderPressureHasNoSeam) {
   constexpr double outer = 0.02, thickness = 0.002, inner = outer - thickness, youngs = 1e9, pressure = 1e5;
   const LatticeMesh mesh = round_ring(outer, 0.006, thickness);
@@ -202,7 +202,7 @@ TEST(ShellLattice, RingUnderPressureHasNoSeam) {
   const int far = mesh.count[1] - 1;
   for (int i = 0; i + 1 < mesh.count[0]; ++i) {
     for (int k = 0; k + 1 < mesh.count[2]; ++k) {
-      // Seen from the middle of the ring.
+      // The corners must run counter-clockwise as seen from the centre of the ring.
       PressedFace face{{mesh.index(i, far, k), mesh.index(i + 1, far, k), mesh.index(i + 1, far, k + 1),
                         mesh.index(i, far, k + 1)},
                        pressure};
@@ -232,7 +232,7 @@ TEST(ShellLattice, RingUnderPressureHasNoSeam) {
   EXPECT_EQ(out.front(), out.back());
 }
 
-// The ring is stretched across its seam, or a quarter of a turn from it.
+// The ring is pulled open at its seam, or a quarter of a turn from it; it must yield equally.
 TEST(ShellLattice, RingDrawnAcrossItsSeamGivesWayAsElsewhere) {
   const LatticeMesh mesh = round_ring(0.02, 0.006, 0.002);
   const StaticBody body =
@@ -253,7 +253,7 @@ TEST(ShellLattice, RingDrawnAcrossItsSeamGivesWayAsElsewhere) {
   EXPECT_NEAR(opened(0) / opened(16), 1.0, 1e-3) << "as round as the control net is";
 }
 
-// The springs: set going evenly outward, a ring stays round, and its momentum stays.
+// A ring of springs that starts moving outward evenly stays round and keeps its total momentum of 0.
 TEST(ShellLattice, SpringsOfARingKnowNoSeam) {
   const LatticeMesh mesh = round_ring(0.02, 0.006, 0.002);
   SpringLattice lattice =
@@ -271,7 +271,8 @@ TEST(ShellLattice, SpringsOfARingKnowNoSeam) {
     plain_substep(lattice, h);
     const std::vector<double> out = gone_out(mesh, [&](int n) { return lattice.displacement(n); });
     farthest = std::max(farthest, out.front());
-    // Nodes at knots and nodes between them are of two kinds, which swing a little apart.
+    // Nodes at knots and nodes between knots oscillate slightly differently, so each kind is compared with
+    // itself.
     for (std::size_t i = 2; i < out.size(); ++i) EXPECT_NEAR(out[i], out[i % 2], 1e-3 * 0.02 * 0.05) << step;
     EXPECT_EQ(out.front(), out.back());
   }
@@ -285,7 +286,7 @@ TEST(ShellLattice, SpringsOfARingKnowNoSeam) {
   EXPECT_LT(momentum.norm(), 1e-4 * sizes + 1e-9 * mass);
 }
 
-// The implicit method settles to the static answer, pushed at the seam as elsewhere.
+// The implicit method settles to the same displacement whether the ring is pushed at its seam or elsewhere.
 TEST(ShellLattice, ImplicitRingKnowsNoSeam) {
   const LatticeMesh mesh = make_shell_lattice(open_ring(0.02, 0.006), 0.002, {2000, {{25, 2, 3}}});
   Material material = elastic_material(1e7, 0.3, 1000.0);

@@ -1,22 +1,23 @@
-// Surfaces for the tests of thin shells, as near to closed forms as cubic pieces come.
+// Provides surfaces for tests of thin shells, as close to closed forms as cubic pieces can be.
 #pragma once
 
 #include "engine/bspline/surface.h"
 
 namespace spoonbill {
 
-// a x b over x and z, flat at y = 0, its normal up or down.
+// Returns a flat sheet of a x b along x and z at y = 0, with its normal up or down.
 Surface flat_sheet(double a_m, double b_m, bool up = true);
 
-// A part of a sphere about the origin, open towards +y: from the pole at the bottom to `opening_rad` from it;
-// normals outward. Off by less than 1e-5 of the radius. The pole is at the start of v, or at its end.
+// Returns a part of a sphere about the origin that is open towards +y: from the pole at the bottom to the
+// angle `opening_rad` from it, with normals outward. The deviation is less than 1e-5 of the radius. The pole
+// is at the start of v, or at its end if `pole_at_end` is set.
 Surface spherical_bowl(double radius_m, double opening_rad, bool pole_at_end = false);
 
-// A cylinder about y, open at both ends, periodic in u, normals outward; its seam lies on the x axis, or that
-// share of a turn from it.
+// Returns a cylinder about y, open at both ends, periodic in u, with normals outward. Its seam is on the x
+// axis, or `seam_turn` turns from it.
 Surface open_ring(double radius_m, double height_m, double seam_turn = 0.0);
 
-// The same with u and v exchanged, and the normals outward still.
+// Returns the ring of open_ring() with u and v exchanged and with normals still outward.
 Surface open_ring_around_v(double radius_m, double height_m);
 
 }  // namespace spoonbill

@@ -1,4 +1,5 @@
-// Bodies that no block of cells can be bent into lie in a box of cells: rings, and bowls with a wall.
+// Tests lattices of bodies that no block of cells can be bent into, such as rings and bowls with a wall: they
+// are embedded in a box of cells.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,12 +19,12 @@ namespace {
 
 using std::numbers::pi;
 
-// Half a hollow ball, its mouth up: from the pole below along the outside, round the rim and down the inside.
-// `rim` is the share of the meridian that reaches the rim.
+// Returns half a hollow ball with its mouth up. The meridian runs from the pole at the bottom along the
+// outside, around the rim and down the inside; it reaches the rim at the fraction `rim`.
 Surface walled_bowl(double radius_m, double wall_m, double rim) {
   return revolved([=](double share) {
     const double edge = 0.5 * wall_m, middle = radius_m - edge;
-    constexpr double turn = 0.05;  // of the meridian, for each half of the rim
+    constexpr double turn = 0.05;  // fraction of the meridian that each half of the rim takes
     if (share > rim - turn && share < rim + turn) {
       const double angle = 0.5 * pi * (share - rim) / turn;
       return MeridianPlace{middle - edge * std::sin(angle), edge * std::cos(angle)};
@@ -45,7 +46,7 @@ Vector3 middle_of_ring(const Vector3& at) {
 TEST(SolidLattice, OfARingHasItsVolumeAndKnowsWhereItsNodesLie) {
   const Surface ring = round_torus(round_ring_m, round_tube_m);
   const LatticeMesh mesh = solid_lattice(ring, {4000, {}}).value();
-  // Chords of 80 and more a turn, in both directions.
+  // Each turn has 80 chords or more, in both directions.
   EXPECT_NEAR(filled_m3(mesh) / (2.0 * pi * pi * round_ring_m * round_tube_m * round_tube_m), 1.0, 0.005);
   const std::vector<BodyCoordinates> places = find_node_coordinates(mesh);
   int inside = 0;
@@ -62,13 +63,13 @@ TEST(SolidLattice, OfARingHasItsVolumeAndKnowsWhereItsNodesLie) {
     if (depth < 0.0 || depth > 0.8 * round_tube_m) continue;
     ++inside;
     const Vector3 nearest = middle + round_tube_m * (at - middle).normalized();
-    // Half the diagonal of a cell of the samples: 160 and 180 a turn.
+    // The bound is half the diagonal of a cell of the samples, of which there are 160 and 180 per turn.
     EXPECT_LT((position(ring, places[n].around, places[n].along) - nearest).norm(), 0.0012);
   }
   EXPECT_GT(inside, 100);
 }
 
-// Over the seams as elsewhere, and of a cell whose corners lie on both sides of the tube.
+// Also checks cells across the seams and cells whose corners are on both sides of the tube's centre line.
 TEST(SolidLattice, OfARingKnowsWhereItsCellsLie) {
   const Surface ring = round_torus(round_ring_m, round_tube_m);
   const LatticeMesh mesh = solid_lattice(ring, {4000, {}}).value();
@@ -84,7 +85,7 @@ TEST(SolidLattice, OfARingKnowsWhereItsCellsLie) {
         if (!mesh.is_filled(i, j, k) || depth > 0.8 * round_tube_m) continue;
         ++filled;
         const Vector3 nearest = middle + round_tube_m * (at - middle).normalized();
-        // Half the diagonal of a cell of the samples, as above.
+        // The bound is half the diagonal of a cell of the samples, of which there are 160 and 180 per turn.
         EXPECT_LT((position(ring, place.around, place.along) - nearest).norm(), 0.0012) << i << j << k;
       }
     }
@@ -92,7 +93,8 @@ TEST(SolidLattice, OfARingKnowsWhereItsCellsLie) {
   EXPECT_GT(filled, 500);
 }
 
-// A foot a ten-thousandth as soft: what fills the hollow must stay as soft as the wall about it.
+// The foot is ten thousand times as stiff as the wall: cells in the hollow must be as soft as the wall around
+// them.
 TEST(SolidLattice, TheHollowOfABowlIsOfWhatIsAboutIt) {
   const LatticeMesh mesh = solid_lattice(walled_bowl(0.05, 0.003, 0.65), {2000, {}}).value();
   ASSERT_FALSE(mesh.along.empty());
@@ -118,7 +120,7 @@ TEST(SolidLattice, TheHollowOfABowlIsOfWhatIsAboutIt) {
   EXPECT_GT(in_hollow, 100);
 }
 
-// Far smaller than a cell: where v and u begin nothing of it is in the ring but the skin.
+// The region is far smaller than a cell and is where u and v begin: only skin is in it, and no node.
 TEST(SolidLattice, ARegionWithoutSurfaceNodesHasNoFriction) {
   MaterialRegion spot;
   spot.region.along = spot.region.around = {0.0, 1e-9};
@@ -130,7 +132,8 @@ TEST(SolidLattice, ARegionWithoutSurfaceNodesHasNoFriction) {
   EXPECT_FALSE(lattice_materials(mesh, Material(), {&spot, 1}).ok());
 }
 
-// Wherever the rim is in v: a ring in the middle may lie on the outside, on the rim or on the inside.
+// The rim may be anywhere in v: the middle ring of the surface may be on the outside, on the rim or on the
+// inside.
 TEST(SolidLattice, OfAWalledBowlHasItsVolume) {
   for (const double rim : {0.35, 0.65}) {
     const Surface bowl = walled_bowl(0.05, 0.003, rim);

@@ -1,4 +1,4 @@
-// Which bodies in a box of cells are thinner than two of them.
+// Tests which bodies in a box of cells count as thinner than two cells.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,7 +14,8 @@ namespace {
 
 constexpr double box_ring_m = 0.02;
 
-// A ring about y of this section: corners, m outwards from the ring and upwards, clockwise.
+// Returns a ring about y with a polygon as its section. The corners are given clockwise, as distances in m
+// outwards from the ring's circle and upwards.
 Surface edged_ring(const std::vector<std::array<double, 2>>& section) {
   constexpr int along = 24;
   const int around = static_cast<int>(section.size());
@@ -42,7 +43,7 @@ bool is_slender(const Surface& surface) {
   return mesh->slender;
 }
 
-// Cells of 2 to 2.5 mm.
+// The cells are 2 to 2.5 mm wide.
 TEST(SurfaceInBox, IsSlenderWhereItsSidesAreNearerThanTwoCells) {
   EXPECT_FALSE(is_slender(round_torus(box_ring_m, 0.005)));
   EXPECT_TRUE(is_slender(round_torus(box_ring_m, 0.0015)));
@@ -52,7 +53,7 @@ TEST(SurfaceInBox, IsSlenderWhereItsSidesAreNearerThanTwoCells) {
 
 TEST(SurfaceInBox, IsNotSlenderForItsEdges) {
   EXPECT_FALSE(is_slender(boxed_ring(0.01, 0.01)));
-  // Equilateral: the faces meet at 60 degrees.
+  // The section is an equilateral triangle: the faces meet at 60 degrees.
   EXPECT_FALSE(is_slender(edged_ring({{0.0, 0.0115}, {0.01, -0.0058}, {-0.01, -0.0058}})));
 }
 

@@ -1,4 +1,4 @@
-// Lattices of bodies that are bent.
+// Tests lattices of bent bodies.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double coil_radius_m = 0.03, rise_m = 0.02, coil_tube_radius_m = 0.004;
 
-// A round bar along a helix about y that rises rise_m in each turn; its ends are poles.
+// Returns a round bar along a helix about y that rises `rise_m` per turn; its ends are poles.
 Surface coil(double turn_rad) {
   constexpr int around = 12;
   const int along = 12 + static_cast<int>(8.0 * turn_rad);
@@ -33,7 +33,7 @@ Surface coil(double turn_rad) {
       .value();
 }
 
-// Whatever way the rims lie from each other: apart, beside each other, above each other.
+// The ends of a coil may be apart, beside each other or above each other.
 TEST(TubeLattice, FillsCoilsOfAnyTurn) {
   for (const double degrees : {5.0, 90.0, 180.0, 270.0, 360.0, 400.0, 540.0, 720.0, 900.0}) {
     const double turn = degrees * std::numbers::pi / 180.0;
@@ -42,8 +42,8 @@ TEST(TubeLattice, FillsCoilsOfAnyTurn) {
     if (degrees < 90.0) continue;
     const double length = std::hypot(coil_radius_m * turn, rise_m * turn / (2.0 * std::numbers::pi));
     const double bar = std::numbers::pi * coil_tube_radius_m * coil_tube_radius_m * length;
-    // The control points lie outside the bar by 9 % of its cross section, and cells cut its round corners:
-    // chords of a ring of ten or so nodes.
+    // The control points are outside the bar by 9 % of its cross section. Cells cut off its round corners, as
+    // rings have only about ten nodes.
     EXPECT_NEAR(volume_of(mesh.value()) / bar, 0.8, 0.15) << degrees << " degrees";
   }
 }

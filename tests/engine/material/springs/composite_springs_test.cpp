@@ -1,4 +1,4 @@
-// Spring lattices of two materials in motion.
+// Tests moving spring lattices of two materials.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -23,7 +23,7 @@ SpringLattice make_composite_springs(const LatticeMesh& mesh, const LatticeMater
   return std::move(lattice).value();
 }
 
-// A bar along z of 4 x 4 x 24 cells of 3 mm.
+// Returns a bar along z with 4 x 4 x 24 cells of 3 mm.
 const LatticeMesh& long_bar() {
   static const LatticeMesh mesh = box_mesh({0.012, 0.012, 0.072}, {5, 5, 25});
   return mesh;
@@ -32,7 +32,7 @@ const LatticeMesh& long_bar() {
 bool in_far_half(const Vector3& at) {
   return at.z() > 0.036;
 }
-// The middle four of sixteen cells.
+// Returns true in the central four of the sixteen cells of a cross section.
 bool in_middle(const Vector3& at) {
   return std::abs(at.x() - 0.006) < 0.003 && std::abs(at.y() - 0.006) < 0.003;
 }
@@ -51,7 +51,7 @@ double strain_between(const SpringLattice& lattice, int from, int to) {
   return (mean_displacement_m(lattice, to) - mean_displacement_m(lattice, from)) / apart_m;
 }
 
-// Returns the bar at rest, fixed at z = 0 and stretched at the other end by a uniform stress.
+// Returns the bar at rest, fixed at z = 0 and pulled at the other end by a uniform stress.
 SpringLattice drawn_bar(const LatticeMaterials& materials, double stress_pa) {
   SpringLattice lattice = make_composite_springs(long_bar(), materials);
   std::vector<std::uint8_t> held(static_cast<std::size_t>(long_bar().node_count()), 0);
@@ -72,17 +72,19 @@ SpringLattice drawn_bar(const LatticeMaterials& materials, double stress_pa) {
   return lattice;
 }
 
-// Away from the ends and from where they meet, each half is strained by the stress over its own modulus.
+// Away from the ends and from where the halves meet, each half is strained by the stress divided by its own
+// modulus.
 TEST(CompositeSprings, InSeriesEachHalfStretchesByItsOwnModulus) {
   const SpringLattice lattice = drawn_bar(composite(long_bar(), elastic_material(4e3, 0.3, 1000.0),
                                                     elastic_material(1.2e4, 0.4, 1000.0), in_far_half),
                                           20.0);
-  // Strains of 5e-3 and of the squares that springs add to them.
+  // The bound allows for strains of 5e-3 and the terms of second order of the springs.
   EXPECT_NEAR(strain_between(lattice, 4, 9) / (20.0 / 4e3), 1.0, 0.01);
   EXPECT_NEAR(strain_between(lattice, 15, 21) / (20.0 / 1.2e4), 1.0, 0.01);
 }
 
-// Of one Poisson's ratio, the mean by area: a quarter of the bar is ten times as stiff.
+// A bar with one Poisson's ratio, a quarter of which is ten times as stiff, has the mean modulus weighted by
+// area.
 TEST(CompositeSprings, InParallelABarStretchesAsVoigtSays) {
   const SpringLattice lattice = drawn_bar(composite(long_bar(), elastic_material(3e3, 0.35, 1000.0),
                                                     elastic_material(3e4, 0.35, 1000.0), in_middle),
@@ -133,7 +135,7 @@ TEST(CompositeSprings, KeepTheirMomentum) {
   EXPECT_LT(after.energy_j, 0.7 * before.energy_j);
 }
 
-// A body that moves and turns as a whole is not damped.
+// damp_further() exerts no force on a body that moves and turns as a whole.
 TEST(CompositeSprings, RigidMotionsAreNotDampedFurther) {
   SpringLattice lattice = make_composite_springs(small_block(), all_different(small_block()));
   const Vector3 velocity(0.3, -0.2, 0.1), spin(2.0, 1.0, -3.0);
@@ -155,20 +157,20 @@ TEST(CompositeSprings, RigidMotionsAreNotDampedFurther) {
   std::fill_n(view.fz, view.padded_count, 0.0f);
   lattice.kernels().damp_further(view);
   const double rigid = largest_force();
-  // The same speeds at random, for comparison.
+  // The nodes get random speeds of similar size, for comparison.
   shake(lattice, 0.3, 1);
   std::fill_n(view.fx, view.padded_count, 0.0f);
   std::fill_n(view.fy, view.padded_count, 0.0f);
   std::fill_n(view.fz, view.padded_count, 0.0f);
   lattice.kernels().damp_further(view);
   EXPECT_GT(largest_force(), 0.0);
-  EXPECT_LT(rigid, 1e-5 * largest_force());  // single precision
+  EXPECT_LT(rigid, 1e-5 * largest_force());  // rounding of single precision
 }
 
-// The damping of a material alone is that of a lattice all of it: ringing of a bar's halves dies as each
-// says.
+// A material in a composite is damped as in a lattice of that material alone: each half of a bar rings down
+// at its own rate.
 TEST(CompositeSprings, EachMaterialIsDampedByItsOwnRatio) {
-  // Two bars end to end that hold each other hardly: each rings by itself.
+  // The bar's halves hardly affect each other at first, so each rings by itself.
   const auto energy_left = [&](double first_ratio, double second_ratio, bool of_second) {
     Material first = elastic_material(4e3, 0.3, 1000.0), second = elastic_material(4e3, 0.3, 1000.0);
     first.damping_ratio = first_ratio;
@@ -192,12 +194,13 @@ TEST(CompositeSprings, EachMaterialIsDampedByItsOwnRatio) {
     const double little = energy_left(0.02, 0.02, of_second), much = energy_left(0.3, 0.3, of_second);
     EXPECT_LT(much, 0.7 * little);
     const double mixed = energy_left(0.02, 0.3, of_second);
-    // At this time no waves have crossed the few cells between the halves.
+    // At the time of measurement waves have not crossed the few cells between the halves.
     EXPECT_NEAR(mixed / (of_second ? much : little), 1.0, 0.05);
   }
 }
 
-// Stretched beyond yield and let go, clay stays longer and what is elastic does not.
+// When the bar is stretched beyond its yield strain and released, the clay half stays longer and the elastic
+// half does not.
 TEST(CompositeSprings, OnlyThePlasticHalfKeepsItsLength) {
   Material clay = elastic_material(4e3, 0.4, 1000.0), rubber = elastic_material(4e3, 0.4, 1000.0);
   clay.plastic = true;
@@ -229,8 +232,9 @@ TEST(CompositeSprings, OnlyThePlasticHalfKeepsItsLength) {
   EXPECT_NEAR(strain_between(lattice, 15, 21), 0.0, 2e-3);
 }
 
-// Held stretched, the half that creeps gives way to the other. At last half of its shear stress is gone and
-// none of its pressure: with K = E / 1.2 and G = E / 5.2 its modulus is 9 K G / (3 K + G) = 0.536 E.
+// In a bar that is held stretched, the half that creeps yields to the other half. Finally half of its shear
+// stress is gone and none of its pressure: with K = E / 1.2 and half the shear modulus, G = E / 5.2, its
+// modulus is 9 K G / (3 K + G) = 0.536 E.
 TEST(CompositeSprings, OnlyTheGelCreeps) {
   Material gel = elastic_material(4e3, 0.3, 1000.0), rubber = elastic_material(4e3, 0.3, 1000.0);
   gel.relaxing_fraction = 0.5;
@@ -251,7 +255,7 @@ TEST(CompositeSprings, OnlyTheGelCreeps) {
   EXPECT_NEAR(of_gel / of_rubber, 1.0 / 0.536, 0.05);
 }
 
-// Whatever the two ratios, a tick's own choice of step is stable.
+// The step that a tick chooses is stable for any two damping ratios.
 TEST(CompositeSprings, StayStableHoweverTheyAreDamped) {
   const DenormalsFlushed flushed;
   for (const double first_ratio : {0.0, 0.3, 2.0}) {
@@ -270,7 +274,8 @@ TEST(CompositeSprings, StayStableHoweverTheyAreDamped) {
         for (; settings.tick < 1000; ++settings.tick) {
           relax(std::array{RelaxedLattice{&lattice}}, settings, {});
         }
-        // Near the limit the energy of symplectic Euler swings by 1 / (1 - w h / 2) without growing.
+        // Near the stability limit the energy of symplectic Euler oscillates by the factor 1 / (1 - w h / 2)
+        // without growing.
         EXPECT_LT(momentum_of(lattice).energy_j, 10.0 * before)
             << first_ratio << ", " << second_ratio << ", " << softer;
       }
@@ -292,7 +297,7 @@ TEST(CompositeSprings, EveryInstructionSetGivesTheSameBits) {
   }
 }
 
-// A body all of whose cells are of the first of two materials is one of that material.
+// A lattice whose two materials are equal behaves like one of that single material.
 TEST(CompositeSprings, OneMaterialBehavesAsByItself) {
   const Material material = all_different(small_block()).materials[0];
   LatticeMaterials twice =
@@ -305,7 +310,7 @@ TEST(CompositeSprings, OneMaterialBehavesAsByItself) {
     return lattice.positions();
   };
   const std::vector<Vector3> one = shape_of(material), two = shape_of(twice);
-  // Damping times are computed another way, to the last digits.
+  // The damping times of a composite are computed in a different way, so that the last digits differ.
   for (std::size_t n = 0; n < one.size(); ++n) EXPECT_LT((one[n] - two[n]).norm(), 1e-8) << n;
 }
 
@@ -319,8 +324,8 @@ TEST(CompositeSprings, StepsAllocateNothing) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-// On an incline, a base whose middle half is rougher slides as the mean of both frictions says: the weight is
-// even.
+// A block slides down an incline on a base whose middle has another friction: the mean of both frictions
+// applies, because the weight is evenly distributed.
 TEST(CompositeSprings, ABlockSlidesByTheFrictionsOfItsBase) {
   constexpr double tilt = 0.35, g = 9.81;
   const LatticeMesh mesh = box_mesh({0.02, 0.01, 0.024}, {5, 3, 7});
@@ -328,7 +333,7 @@ TEST(CompositeSprings, ABlockSlidesByTheFrictionsOfItsBase) {
   smooth.damping_ratio = 0.1;
   smooth.friction = 0.1;
   for (const double rough : {0.1, 0.5, 1.2}) {
-    // Of seven rows the middle three, which bear half of the weight.
+    // The region covers the middle three of seven rows, which bear half of the weight.
     MaterialRegion middle;
     middle.region.along = {0.3, 0.7};
     middle.friction = rough;
@@ -356,7 +361,8 @@ TEST(CompositeSprings, ABlockSlidesByTheFrictionsOfItsBase) {
     };
     const double before = run(200), gained = (run(400) - before) / 0.4;
     const double expected = std::max(0.0, g * (std::sin(tilt) - 0.5 * (0.1 + rough) * std::cos(tilt)));
-    EXPECT_NEAR(gained, expected, 0.02 * g) << rough;  // the block still quivers
+    // The bound allows for remaining oscillations of the block.
+    EXPECT_NEAR(gained, expected, 0.02 * g) << rough;
   }
 }
 

@@ -1,4 +1,4 @@
-// What a free body keeps over a long time.
+// Tests what a free body conserves over a long time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,8 +16,9 @@ namespace {
 
 constexpr int ticks = 100000;
 
-// T + V - h/2 v . grad V, which a kick and a drift of h keep where forces are linear, as v^2 + w^2 x^2 - h
-// w^2 x v shows; the energy itself swings by w h / 2 within a period. Of the same springs in double.
+// The energy T + V of the springs, computed in double precision, and `kept` = T + V - h/2 v . grad V. A kick
+// and a drift of step h conserve `kept` if forces are linear, as v^2 + w^2 x^2 - h w^2 x v shows, whereas T +
+// V itself oscillates by the fraction w h / 2 within a period.
 struct Energies {
   double whole = 0.0, kept = 0.0;
 };
@@ -41,8 +42,9 @@ Energies energies_of(const SpringLattice& lattice, const StaticBody& springs, do
   return energies;
 }
 
-// Shaken: every node at up to 2 mm/s. It stays near: displacements have seven digits, and a body that has
-// flown thousands of its strains away gains by their rounding, 5 % of its flight's energy in as many ticks.
+// Returns a block each node of which moves at up to 2 mm/s. The block stays near its origin: displacements
+// have seven digits, and a body that flies thousands of its own strains away would gain energy from rounding,
+// 5 % of its flight's energy in as many ticks.
 SpringLattice shaken_block(double damping_ratio) {
   Material material = elastic_material(5000.0, 0.35, 1000.0);
   material.damping_ratio = damping_ratio;
@@ -89,7 +91,7 @@ TEST(Conservation, ADampedBodyNeverGains) {
     relax(std::array{RelaxedLattice{&lattice}}, settings, {});
     if (settings.tick % 20 != 0) continue;
     const double now = energies_of(lattice, springs, settings.step_s).kept;
-    // Single precision, once there is little left but the flight of the whole.
+    // The bound allows for single precision once little motion is left but the flight of the whole block.
     EXPECT_LT(now, last * (1.0 + 1e-6)) << settings.tick;
     last = now;
   }

@@ -9,7 +9,7 @@
 namespace spoonbill {
 namespace {
 
-// The lattice's fastest mode, normalised by mass, and its frequency.
+// The fastest mode of the lattice, normalised by mass, and its angular frequency.
 struct Mode {
   std::vector<Vector3> shape;
   double omega = 0.0;
@@ -44,12 +44,12 @@ SpringLattice one_cell(double damping_ratio) {
   return block({2e-3, 2e-3, 2e-3}, {2, 2, 2}, material);
 }
 
-// Small enough for the springs to be linear to 1e-5.
+// Displaces the lattice by the mode, with an amplitude so small that the springs are linear to 1e-5.
 void excite(SpringLattice& lattice, const Mode& mode) {
   for (int n = 0; n < lattice.mesh().node_count(); ++n) lattice.set_displacement(n, 2e-11 * mode.shape[n]);
 }
 
-// Symplectic Euler's limit flips between 0.999 and 1.001 of h = (2 / w) (sqrt(1 + z^2) - z).
+// The stability limit of symplectic Euler is between 0.999 and 1.001 of h = (2 / w) (sqrt(1 + z^2) - z).
 TEST(Integration, StabilityFlipsAtTheLimit) {
   for (const double z : {0.0, 0.05, 0.2, 0.5, 1.0, 2.0}) {
     for (const double share : {0.999, 1.001}) {
@@ -74,7 +74,8 @@ TEST(Integration, StabilityFlipsAtTheLimit) {
   }
 }
 
-// Kick, then drift, conserves v^2 + w^2 x^2 - h w^2 x v: in double for the scheme, and in the lattice.
+// A kick and then a drift conserve v^2 + w^2 x^2 - h w^2 x v: the scheme in double precision does, and so
+// does the lattice.
 TEST(Integration, KickDriftConservesItsOwnEnergy) {
   const double omega = 7.0, h = 0.02;
   double x = 1.0, v = 0.5;
@@ -97,7 +98,7 @@ TEST(Integration, KickDriftConservesItsOwnEnergy) {
   const double before = conserved();
   for (int step = 0; step < 10000; ++step) {
     plain_substep(lattice, static_cast<float>(step_s));
-    // 1e-3: single precision over ten thousand steps.
+    // The bound of 1e-3 allows for the rounding of ten thousand steps in single precision.
     ASSERT_NEAR(conserved() / before, 1.0, 1e-3) << step;
   }
 }
@@ -115,12 +116,12 @@ TEST(Integration, FreeFallIsTheSumOfItsSteps) {
     ASSERT_FALSE(report.speed_capped);
   }
   for (int n = 0; n < lattice.mesh().node_count(); ++n) {
-    // -g h^2 n (n + 1) / 2, to the rounding of a thousand single precision sums.
+    // The fall is -g h^2 n (n + 1) / 2, within the rounding of a thousand sums in single precision.
     EXPECT_NEAR(lattice.displacement(n).y(), -4.909905, 5e-5);
   }
 }
 
-// Supports nodes at y = 0 without friction, from below.
+// Supports the nodes at y = 0 from below, without friction.
 void support_from_below(SpringLattice& lattice, ContactConstraints& contacts) {
   for (int n = 0; n < lattice.mesh().node_count(); ++n) {
     if (lattice.mesh().nodes[n].y() > 1e-9) continue;
@@ -132,15 +133,15 @@ void support_from_below(SpringLattice& lattice, ContactConstraints& contacts) {
   }
 }
 
-// The share of the top's area that belongs to a node of a rectangular face.
+// Returns the fraction of the top's area that belongs to a node.
 double area_share(const LatticeMesh& mesh, int i, int k) {
   const double across = i == 0 || i == mesh.count[0] - 1 ? 0.5 : 1.0;
   const double along = k == 0 || k == mesh.count[2] - 1 ? 0.5 : 1.0;
   return across * along / ((mesh.count[0] - 1) * (mesh.count[2] - 1));
 }
 
-// The area-weighted mean drop of the top on a slipping base is rho g H^2 / 2 E at any resolution and
-// Poisson's ratio.
+// The top of a block on a slipping base sinks by rho g H^2 / 2 E, as a mean weighted by area, at any
+// resolution and Poisson's ratio.
 TEST(Integration, SelfWeightOnASlippingBase) {
   const double height = 0.02, modulus = 5000.0, density = 1050.0, gravity = 9.81e-3;
   const double expected = density * gravity * height * height / (2.0 * modulus);
@@ -166,14 +167,14 @@ TEST(Integration, SelfWeightOnASlippingBase) {
           drop -= area_share(mesh, i, k) * lattice.displacement(mesh.index(i, count - 1, k)).y();
         }
       }
-      // 1 %: volume strains of 1e-6 are near the rounding of single precision.
+      // The bound is 1 %, because volume strains of 1e-6 are close to the rounding of single precision.
       EXPECT_NEAR(drop / expected, 1.0, 0.01) << count << " nodes, nu " << nu;
     }
   }
 }
 
-// 10 g on 50 N/m hang 1.962 mm lower: a bar of stiffness E A / L = 50 N/m, carried at its top without
-// friction.
+// A weight of 10 g on a bar of stiffness E A / L = 50 N/m, carried at its top without friction, hangs 1.962
+// mm lower.
 TEST(Integration, HangingWeight) {
   const double length = 1.0, side = 0.02, stiffness = 50.0;
   SpringLattice lattice = block({side, length, side}, {2, 51, 2},
@@ -202,10 +203,10 @@ TEST(Integration, HangingWeight) {
     relax(std::array{RelaxedLattice{&lattice}}, settings, std::array{TouchingTool{at_top, &tool, &contacts}});
   }
   EXPECT_NEAR(lattice.displacement(mesh.index(0, 0, 0)).y(), -1.962e-3,
-              0.01e-3);  // 0.2 % strain, squared terms
+              0.01e-3);  // allows for the squares of a strain of 0.2 %
 }
 
-// a = g (sin t - mu cos t) down an incline.
+// A block slides down an incline with the acceleration a = g (sin t - mu cos t).
 TEST(Integration, BlockSlidesDownAnIncline) {
   for (const double friction : {0.0, 0.1, 0.3}) {
     const double tilt = 0.35, g = 9.81;
@@ -238,7 +239,7 @@ TEST(Integration, BlockSlidesDownAnIncline) {
     }
     const double expected = g * (std::sin(tilt) - friction * std::cos(tilt));
     EXPECT_NEAR((speed() - before) / 0.5, expected, 0.02 * g)
-        << "friction " << friction;  // the block still quivers
+        << "friction " << friction;  // the bound allows for remaining oscillations of the block
   }
 }
 
@@ -259,7 +260,7 @@ TEST(Integration, HeldNodesDoNotMoveAtAll) {
   EXPECT_LT(lattice.displacement(74).y(), -1e-5);
 }
 
-// A block of 8 x 8 x 16 mm that is stretched by 8 %, held by its ends, and let go.
+// A block of 8 x 8 x 16 mm that is stretched by 8 %, held at its ends, and released.
 class StretchedBlock {
  public:
   explicit StretchedBlock(const Material& material)
@@ -283,7 +284,7 @@ class StretchedBlock {
   }
   void let_go() { lattice_.fix_nodes(std::vector<std::uint8_t>(ends_.size(), 0)); }
 
-  // Returns the fraction of the stretch that remains.
+  // Returns the fraction of the initial stretch that remains.
   double kept() const {
     const LatticeMesh& mesh = lattice_.mesh();
     const double length =
@@ -292,7 +293,7 @@ class StretchedBlock {
   }
   // Returns the creep strain in the centre, along the block, as a fraction of the strain there.
   double crept() {
-    constexpr int along = 2;  // the direction of springs from a node to that with the next k
+    constexpr int along = 2;  // direction of springs that join a node to the one with the next k
     const LatticeMesh& mesh = lattice_.mesh();
     const int node = mesh.index(2, 2, 4), next = mesh.index(2, 2, 5);
     const double strain_there = (lattice_.position(next) - lattice_.position(node)).norm() /
@@ -323,7 +324,7 @@ Material clay_of(double hardening) {
   return material;
 }
 
-// What flows stays, what is elastic comes back.
+// Plastic strain remains after release, elastic strain does not.
 TEST(Integration, ClayKeepsAStretchAndRubberDoesNot) {
   const auto kept_after = [](StretchedBlock& stretched) {
     stretched.relax_for(1000);
@@ -336,11 +337,13 @@ TEST(Integration, ClayKeepsAStretchAndRubberDoesNot) {
   EXPECT_GT(of_clay, 0.75);
   EXPECT_NEAR(clay.volume_ratio(), 1.0, 0.002);
   EXPECT_LT(std::abs(kept_after(rubber)), 0.01);
-  // Yields until strain - p = 0.005 + 0.5 p: a third of what else stays comes back.
+  // The hardening clay yields until strain - p = 0.005 + 0.5 p: it springs back by a third of what other clay
+  // keeps.
   EXPECT_NEAR(of_hard / of_clay, 1.0 / 1.5, 0.05);
 }
 
-// Held, a gel creeps with its time constant, by its share of the strain; let go, it comes back as slowly.
+// A gel that is held stretched creeps with its time constant by its relaxing fraction of the strain; after
+// release it springs back with the longer time constant of a standard linear solid.
 TEST(Integration, GelCreepsAsItsRelaxationTimeSays) {
   Material gel = elastic_material(500.0, 0.45, 1000.0);
   gel.relaxing_fraction = 0.6;
@@ -350,14 +353,15 @@ TEST(Integration, GelCreepsAsItsRelaxationTimeSays) {
   const double once = stretched.crept();
   stretched.relax_for(2000);
   const double all = stretched.crept();
-  // Each spring creeps once in a tenth of a second, which is a fifth of the time constant: steps of an
+  // Each spring creeps once per tenth of a second, a fifth of the time constant, so that the steps of the
   // implicit Euler method lag by a tenth.
   EXPECT_NEAR(once / all, 1.0 - std::exp(-1.0), 0.08);
-  // Strains count without what changes the volume.
+  // The strain that changes the volume does not creep.
   EXPECT_NEAR(all, 0.6, 0.03);
   EXPECT_NEAR(stretched.volume_ratio(), 1.0, 0.02);
   stretched.let_go();
-  // A standard linear solid comes back with the relaxation time over what share of the stiffness stays.
+  // A standard linear solid springs back with the relaxation time divided by the fraction of the stiffness
+  // that remains.
   const double back_s = gel.relaxation_time_s / (1.0 - gel.relaxing_fraction);
   stretched.relax_for(500);
   EXPECT_NEAR(stretched.kept(), 0.6 * std::exp(-0.5 / back_s), 0.06);

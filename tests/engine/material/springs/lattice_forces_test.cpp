@@ -34,7 +34,7 @@ TEST(LatticeForces, VolumeForceIsTheGradientOfItsEnergy) {
   displace_at_random(lattice, 1e-4, 7);
   const LatticeView view = lattice.view();
   lattice.kernels().look_ahead(view, 0.0f);
-  lattice.kernels().start_forces(view);  // nothing: springs were linearised at rest
+  lattice.kernels().start_forces(view);  // sets forces to 0, because the springs were linearised at rest
   lattice.kernels().volume_forces(view);
   const float* force[3] = {view.fx, view.fy, view.fz};
   double largest = 0.0;
@@ -49,7 +49,7 @@ TEST(LatticeForces, VolumeForceIsTheGradientOfItsEnergy) {
       const double up = volume_energy(moved, bulk);
       moved.set_displacement(n, at - step);
       const double gradient = (up - volume_energy(moved, bulk)) / 2e-7;
-      // 1e-3: single precision of the displaced nodes over the difference step.
+      // The bound of 1e-3 allows for single precision of the displaced nodes divided by the difference step.
       EXPECT_NEAR(force[axis][n], -gradient, 1e-3 * largest);
     }
   }
@@ -65,7 +65,7 @@ TEST(LatticeForces, ForcesOfAFreeBodySumToNothing) {
     sum += view.fx[n];
     magnitude += std::abs(view.fx[n]);
   }
-  EXPECT_LT(std::abs(sum), 1e-5 * magnitude);  // rounding of single precision sums
+  EXPECT_LT(std::abs(sum), 1e-5 * magnitude);  // the bound allows for rounding of sums in single precision
 }
 
 TEST(LatticeForces, RestShapeFeelsExactlyNothing) {
@@ -79,8 +79,8 @@ TEST(LatticeForces, RestShapeFeelsExactlyNothing) {
   }
 }
 
-// A damper on the whole velocity of a spring's ends would brake a rigid rotation; ours takes no power from
-// it.
+// A damper on the full relative velocity of a spring's ends would brake a rigid rotation; ours takes no power
+// from it.
 TEST(LatticeForces, RigidRotationProducesNoDamping) {
   SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, elastic_material(5000.0, 0.45, 1000.0));
   const Vector3 spin(3.0, -2.0, 5.0);
@@ -105,8 +105,8 @@ TEST(LatticeForces, RigidRotationProducesNoDamping) {
   EXPECT_LT(std::abs(power), 1e-3 * whole_damper);  // single precision of positions; (tau w)^2 / 2 is 2e-5
 }
 
-// One passage gives what a linearisation and a step of the power iteration give one after the other, bit for
-// bit, and leaves the derivatives of before where they are not to be kept.
+// One pass over the springs gives the same bits as a linearisation followed by a step of the power iteration,
+// and it leaves the previous derivatives unchanged if the new ones are not to be stored.
 TEST(LatticeForces, PowerStepsAlongWithALinearisation) {
   for (const double stiffening : {0.0, 20.0, -20.0}) {
     Material material = elastic_material(5000.0, 0.3, 1000.0);
@@ -146,8 +146,7 @@ TEST(LatticeForces, PowerStepsAlongWithALinearisation) {
   }
 }
 
-// What springs change by from a strained reference is right to first order: half the step, a quarter of the
-// error.
+// Forces linearised at a strained shape are right to first order: half the step gives a quarter of the error.
 TEST(LatticeForces, LinearisedSpringsFollowToFirstOrder) {
   const auto error = [&](double step_m, double stiffening) {
     Material material = elastic_material(5000.0, 0.25, 1000.0);
@@ -179,12 +178,12 @@ TEST(LatticeForces, LinearisedSpringsFollowToFirstOrder) {
   for (const double stiffening : {0.0, 2.0, -20.0}) {
     const double large = error(4e-5, stiffening), small = error(2e-5, stiffening);
     EXPECT_LT(large, 0.02) << stiffening;
-    EXPECT_NEAR(large / small, 4.0, 0.4) << stiffening;  // terms of third order
+    EXPECT_NEAR(large / small, 4.0, 0.4) << stiffening;  // the bound allows for terms of third order
   }
 }
 
-// Grown evenly, all springs have one strain: forces are those of linear springs times what that strain makes
-// of them.
+// In a lattice that grows evenly all springs have the same strain: the forces are those of linear springs
+// times a factor that depends on the strain.
 TEST(LatticeForces, SpringsStiffenAndSoftenWithTheirStrain) {
   const auto force_on_corner = [](double stiffening, double strain) {
     Material material = elastic_material(5000.0, 0.25, 1000.0);
@@ -196,7 +195,7 @@ TEST(LatticeForces, SpringsStiffenAndSoftenWithTheirStrain) {
   };
   for (const double strain : {-0.2, -0.05, 0.01, 0.1, 0.3}) {
     const double linear = force_on_corner(0.0, strain);
-    // Single precision, over strains of a hundredth.
+    // The bound allows for single precision at strains of a hundredth.
     EXPECT_NEAR(force_on_corner(8.0, strain) / linear, 1.0 + 8.0 * strain * strain, 1e-4) << strain;
     EXPECT_NEAR(force_on_corner(-8.0, strain) / linear, 1.0 / std::sqrt(1.0 + 8.0 * strain * strain), 1e-4)
         << strain;
@@ -204,7 +203,8 @@ TEST(LatticeForces, SpringsStiffenAndSoftenWithTheirStrain) {
   EXPECT_NEAR(force_on_corner(100.0, 0.3) / force_on_corner(0.0, 0.3), 2.0, 1e-4);
 }
 
-// The pressure of a cell below Poisson's ratio 1/4 draws it further, ever more weakly beyond a tenth.
+// Below Poisson's ratio 1/4 the pressure of a dilated cell pulls it further; beyond a dilation of a tenth the
+// pull becomes weaker.
 TEST(LatticeForces, NegativeVolumeForcesGiveWay) {
   const auto pressure = [](double poisson, double dilation) {
     const Material material = elastic_material(5000.0, poisson, 1000.0);

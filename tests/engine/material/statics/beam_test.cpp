@@ -1,4 +1,4 @@
-// Cantilevers at rest under load, against beam theory.
+// Tests cantilevers at rest under load against beam theory.
 #include <gtest/gtest.h>
 
 #include <Eigen/SparseCholesky>
@@ -15,10 +15,10 @@ namespace {
 struct Beam {
   Vector3 size_m;
   std::array<int, 3> counts;
-  double force_n;  // at the far end of x, towards -z
+  double force_n;  // acts at the far end of x, towards -z
 };
 
-// Returns the mean displacement of the far end if the near end is fixed in all directions.
+// Returns how far the far end sinks, as a mean, if the near end is fixed in all directions.
 double sinking_m(const Beam& beam, const Material& material, CellKind kind) {
   const LatticeMesh mesh = box_mesh(beam.size_m, beam.counts);
   std::vector<FixedAxis> held;
@@ -40,8 +40,8 @@ double euler_bernoulli_m(const Beam& beam, double youngs_modulus_pa) {
   return beam.force_n * std::pow(beam.size_m.x(), 3) / (3.0 * youngs_modulus_pa * second_moment);
 }
 
-// The springs of a cube without body diagonals: k = 2 E a / 5 of edges, which four cells share, and of face
-// diagonals, which two do.
+// Returns a cube's springs without body diagonals: k = 2 E a / 5 for each edge, which four cells share, and
+// for each face diagonal, which two cells share.
 CellSprings cube_without_body_diagonals(double edge_m, double youngs_modulus_pa) {
   CellSprings springs;
   springs.volume_m3 = edge_m * edge_m * edge_m;
@@ -80,12 +80,14 @@ double linear_sinking_m(const Beam& beam, const CellMatrix& stiffness) {
   return sum;
 }
 
-// What shear adds to the sinking by Euler and Bernoulli: 1 + 0.75 (h / L)^2 at nu = 1/4 and L = 10 h.
+// Ratio of the sinking with shear to that by Euler and Bernoulli: 1 + 0.75 (h / L)^2 at nu = 1/4 and L = 10
+// h.
 constexpr double timoshenko_ratio = 1.0075;
 
-// Springs need many cells through the thickness, hexahedra one: length ten times the height, a square cross
-// section, cubes, nu = 1/4. The published ratios to Euler and Bernoulli are of springs without body
-// diagonals; those of this lattice, which keep it from folding, make it a little stiffer.
+// Springs need many cells through the thickness, hexahedra need one. The beam is ten times as long as high,
+// with a square cross section, cubic cells and nu = 1/4. The published ratios to Euler and Bernoulli are for
+// springs without body diagonals; this lattice has body diagonals, which keep cells from folding, and is
+// slightly stiffer.
 TEST(Beam, CellsNearABeamWithTheirNumber) {
   const double published[] = {0.544, 0.812, 0.905, 0.944};
   for (int cells = 1; cells <= 4; ++cells) {
@@ -96,7 +98,8 @@ TEST(Beam, CellsNearABeamWithTheirNumber) {
     CellMoves none;
     none.fill(Vector3::Zero());
     const CellMatrix stiffness = plain.respond(none, Tangent::plain).tangent;
-    // Three digits are published; Poisson's ratio is free at the far end and not at the held one.
+    // The bound allows for the three published digits and for Poisson's ratio, which acts at the far end but
+    // not at the fixed end.
     EXPECT_NEAR(linear_sinking_m(beam, stiffness) / exact, published[cells - 1], 0.002) << cells;
     const double ours = sinking_m(beam, elastic_material(1e9, 0.25, 1000.0), CellKind::springs) / exact;
     EXPECT_LT(ours, published[cells - 1]);
@@ -110,10 +113,12 @@ TEST(Beam, CellsNearABeamWithTheirNumber) {
 
 struct Stiff {
   const char* name;
-  double youngs_modulus_pa, poissons_ratio, sinking_m;  // the last by Timoshenko, of the spoon-like beam
+  // `sinking_m` is that of the spoon-like beam by Timoshenko.
+  double youngs_modulus_pa, poissons_ratio, sinking_m;
 };
 
-// 100 x 12 x 3 mm under 0.2 N, within the default budget of nodes, in four materials.
+// The beam measures 100 x 12 x 3 mm, carries 0.2 N and is within the default budget of nodes; it is tested in
+// four materials.
 TEST(Beam, SpoonLikeBeamsSinkAsTimoshenkoSays) {
   const Beam beam{{0.1, 0.012, 0.003}, {51, 7, 3}, 0.2};
   EXPECT_LE(beam.counts[0] * beam.counts[1] * beam.counts[2], LatticeRequest{}.node_budget);
@@ -126,8 +131,9 @@ TEST(Beam, SpoonLikeBeamsSinkAsTimoshenkoSays) {
   }
 }
 
-// The tip of a cantilever that bends far under a force that keeps its direction: E I t'' = -P cos(t), t the
-// slope along the arc, t(0) = 0, t'(L) = 0, by shooting with the curvature at the root.
+// Returns how far the tip of a cantilever of length 1 sinks under a large force that keeps its direction,
+// where load = P L^2 / E I. Solves E I t'' = -P cos(t) for the slope t along the arc, with t(0) = 0 and t'(L)
+// = 0, by shooting with the curvature at the root.
 double elastica_sinking(double load) {
   const auto march = [&](double curvature) {
     constexpr int steps = 4000;
@@ -151,7 +157,7 @@ double elastica_sinking(double load) {
 }
 
 TEST(Beam, SiliconeBendsAsAnElastica) {
-  // Bisshopp and Drucker (1945): a load P L^2 / E I of 1 sinks the tip by 0.3017 L, of 2 by 0.4935 L.
+  // A load P L^2 / E I of 1 makes the tip sink by 0.3017 L, and of 2 by 0.4935 L (Bisshopp and Drucker 1945).
   EXPECT_NEAR(elastica_sinking(1.0), 0.3017, 1e-4);
   EXPECT_NEAR(elastica_sinking(2.0), 0.4935, 1e-4);
   const double youngs = 5e6, bending = youngs * 0.012 * std::pow(0.003, 3) / 12.0;

@@ -1,4 +1,4 @@
-// Bodies of two materials at rest, against the theory of composites.
+// Tests bodies of two materials at rest against the theory of composites.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,8 +13,8 @@ namespace {
 
 constexpr double strain = 1e-6;
 
-// Returns the effective modulus of a stretched bar along z, whose ends may slip but cannot slide or turn as a
-// whole.
+// Returns the effective modulus of a stretched bar along z, whose ends are free to slip but which cannot
+// slide or turn as a whole.
 double youngs_modulus_along_z(const LatticeMesh& mesh, const LatticeMaterials& materials, CellKind kind) {
   Result<StaticBody> body = StaticBody::make(mesh, materials, kind);
   EXPECT_TRUE(body.ok()) << body.error().message;
@@ -61,18 +61,20 @@ double voigt(double first, double second, double share) {
   return (1.0 - share) * first + share * second;
 }
 
-// Where both narrow alike under the same stress, nu / E is the same and the stress is even: Reuss, exactly.
+// If nu / E is the same in both parts, both narrow equally under the same stress, so the stress is uniform:
+// the modulus is exactly that of Reuss.
 TEST(CompositeStatics, InSeriesABarIsAsSoftAsReussSays) {
   const Material first = elastic_material(1e6, 0.25, 1000.0), second = elastic_material(1.8e6, 0.45, 1000.0);
   for (const CellKind kind : {CellKind::springs, CellKind::hexahedra}) {
     const double achieved =
         youngs_modulus_along_z(short_bar(), composite(short_bar(), first, second, in_series), kind);
-    // The strain of 1e-6 is what the linear constants may be off by.
+    // The bound allows for terms of second order at a strain of 1e-6.
     EXPECT_NEAR(achieved / reuss(1e6, 1.8e6, 0.4), 1.0, 1e-5);
   }
 }
 
-// Of one Poisson's ratio both narrow alike under the same strain: Voigt, exactly.
+// If Poisson's ratio is the same in both parts, both narrow equally under the same strain: the modulus is
+// exactly that of Voigt.
 TEST(CompositeStatics, InParallelABarIsAsStiffAsVoigtSays) {
   const Material first = elastic_material(1e6, 0.35, 1000.0), second = elastic_material(2e7, 0.35, 1000.0);
   for (const CellKind kind : {CellKind::springs, CellKind::hexahedra}) {
@@ -81,8 +83,8 @@ TEST(CompositeStatics, InParallelABarIsAsStiffAsVoigtSays) {
   }
 }
 
-// What hinders its neighbour from narrowing, or makes it narrow, makes the bar stiffer than the means say, in
-// parallel too (Hill 1964), by no more than holding its sides would.
+// A part that hinders or increases the narrowing of its neighbour makes the bar stiffer than the Reuss and
+// Voigt means, also in parallel (Hill 1964), but by no more than if its sides were fixed.
 TEST(CompositeStatics, UnlikeNarrowingMakesABarALittleStiffer) {
   const Material first = elastic_material(1e6, 0.45, 1000.0), second = elastic_material(3e7, 0.3, 1000.0);
   for (const CellKind kind : {CellKind::springs, CellKind::hexahedra}) {
@@ -97,7 +99,7 @@ TEST(CompositeStatics, UnlikeNarrowingMakesABarALittleStiffer) {
   }
 }
 
-// A cantilever along z whose faces, one in ten of its height at the top and at the bottom, are stiffer.
+// A cantilever along z with stiffer faces at its top and bottom, each a tenth of the height thick.
 struct Sandwich {
   static constexpr double length_m = 0.1, width_m = 0.004, height_m = 0.01, face_m = 0.001, load_n = 0.01;
   static constexpr double core_pa = 1e8, faces_pa = 1e9, poisson = 0.0;
@@ -111,8 +113,9 @@ struct Sandwich {
                      elastic_material(faces_pa, poisson, 1000.0), in_faces);
   }
 
-  // Of the composite section: the bending stiffness, sum of E I; and the shear flexibility, from the energy
-  // of the stress t(y) = V / (E I) times the first moment of E beyond y (Jourawski).
+  // Returns the sinking of the composite section: its bending stiffness is the sum of E I, and its shear
+  // flexibility follows from the energy of the stress t(y), which is V / (E I) times the first moment of E
+  // beyond y (Jourawski).
   static double sinking_m() {
     constexpr int slices = 20000;
     const double thick = height_m / slices;
@@ -145,13 +148,14 @@ TEST(CompositeStatics, ASandwichSinksAsTheCompositeBeamSays) {
   const StaticResult result = rest_under_load(body, loads, held).value();
   const double sunk = -result.displacement_m[static_cast<std::size_t>(mesh.index(0, 5, 40))].y();
   EXPECT_NEAR(sunk / Sandwich::sinking_m(), 1.0, 0.005);
-  // A beam of the core alone would sink more than five times as far: the faces bear most.
+  // A beam of the core alone would sink more than four times as far: the faces carry most of the load.
   const double alone = 4.0 * Sandwich::load_n * std::pow(Sandwich::length_m / Sandwich::height_m, 3) /
                        (Sandwich::core_pa * Sandwich::width_m);
   EXPECT_LT(sunk, 0.25 * alone);
 }
 
-// The coarse block that steps a stiff body: one cell through the thickness, filled by the lattice's ten.
+// The coarse block that steps a stiff body has one cell through the thickness, made from ten cells of the
+// lattice.
 TEST(CompositeStatics, OneCellOfABlockBendsAsItsLayersDo) {
   const Vector3 size_m(Sandwich::width_m, Sandwich::height_m, Sandwich::length_m);
   const LatticeMesh fine = box_mesh(size_m, {2, 11, 41}), block = box_mesh(size_m, {2, 2, 21});
@@ -168,8 +172,8 @@ TEST(CompositeStatics, OneCellOfABlockBendsAsItsLayersDo) {
   ImplicitStep step;
   step.damping_per_s = 40.0;
   for (int tick = 0; tick < 1500; ++tick) body.step(step);
-  // The cell takes the shear as even through the thickness, in faces and core alike: of the 2.7 % that shear
-  // adds to the sinking it has 1 %.
+  // The cell treats the shear as uniform through the thickness, in faces and core: it shows 1 % of sinking
+  // from shear instead of 2.7 %.
   EXPECT_NEAR(-body.displacement(block.node_count() - 1).y() / Sandwich::sinking_m(), 1.0, 0.025);
 }
 
@@ -198,7 +202,7 @@ TEST(CompositeStatics, MassesAreThoseOfTheParts) {
   EXPECT_NEAR(mass_kg / expected, 1.0, 1e-12);
   EXPECT_NEAR(lattice.mass_kg() / expected, 1.0, 1e-12);
   EXPECT_NEAR(moment / expected_moment, 1.0, 1e-12);
-  EXPECT_NEAR(lattice_moment / expected_moment, 1.0, 1e-6);  // masses in single precision
+  EXPECT_NEAR(lattice_moment / expected_moment, 1.0, 1e-6);  // masses are in single precision
 }
 
 }  // namespace

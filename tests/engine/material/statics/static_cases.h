@@ -1,4 +1,4 @@
-// Bodies, equilibrium checks and faces shared by the tests of the static solver.
+// Provides bodies, equilibrium checks and faces for the tests of the static solver.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,8 @@ StaticBody body_of(const LatticeMesh& mesh, const Material& material, CellKind k
 
 StaticResult rest_of(const StaticBody& body, const StaticLoads& loads, const std::vector<FixedAxis>& held);
 
-// Visits the nodes of the face at the low or high end of an axis (0 to 2: i, j, k), with their share of its
-// area where cells are alike.
+// Visits the nodes of the face at the low or high end of an axis (0 to 2: i, j, k). The function also
+// receives the node's fraction of the face's area, for a mesh of equal cells.
 template <class Visit>
 void visit_face(const LatticeMesh& mesh, int axis, bool high, const Visit& visit) {
   const int a = (axis + 1) % 3, b = (axis + 2) % 3;
@@ -30,7 +30,8 @@ void visit_face(const LatticeMesh& mesh, int axis, bool high, const Visit& visit
   }
 }
 
-// Fixes the base along the axis only, plus a corner and an edge just enough to prevent sliding and turning.
+// Returns axes to fix: the whole base along `axis`, and one corner and one edge just enough to prevent
+// sliding and turning.
 std::vector<FixedAxis> slipping_base(const LatticeMesh& mesh, int axis);
 
 }  // namespace spoonbill

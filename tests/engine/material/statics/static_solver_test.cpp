@@ -1,4 +1,4 @@
-// Bodies at rest under load, against closed forms.
+// Tests bodies at rest under load against closed forms.
 #include "engine/material/statics/static_solver.h"
 
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@ struct Measured {
   double youngs_modulus_pa, poissons_ratio;
 };
 
-// A virtual tension test: the far end is drawn out and free to slip; the force it takes and how much the
-// middle narrows give both constants.
+// A virtual tension test: the far end is pulled out and free to slip. The force that this needs gives Young's
+// modulus, and how much the central part narrows gives Poisson's ratio.
 Measured tension_test(const StaticBody& body, const Vector3& size_m, int axis) {
   constexpr double strain = 1e-6;
   const LatticeMesh& mesh = body.mesh();
@@ -49,7 +49,8 @@ struct Brick {
   std::array<int, 3> counts;
 };
 
-// The case of a uniaxial patch: exact on cubes and on bricks of 1.2 : 1 : 1 and 1.5 : 1.5 : 1.
+// A bar under uniaxial tension yields the exact constants with cubic cells and with cells of 1.2 : 1 : 1 and
+// 1.5 : 1.5 : 1.
 TEST(StaticSolver, TensionGivesTheMaterialExactly) {
   constexpr double youngs = 2e6;
   for (const Brick& brick : {Brick{{0.004, 0.003, 0.005}, {5, 4, 6}}, Brick{{0.006, 0.003, 0.004}, {6, 4, 5}},
@@ -61,7 +62,7 @@ TEST(StaticSolver, TensionGivesTheMaterialExactly) {
             body_of(box_mesh(brick.size_m, brick.counts), elastic_material(youngs, poisson, 1000.0), kind);
         for (int axis = 0; axis < 3; ++axis) {
           const Measured measured = tension_test(body, brick.size_m, axis);
-          // The strain of 1e-6 itself is what the linear constants may be off by.
+          // The bound allows for terms of second order at a strain of 1e-6.
           EXPECT_NEAR(measured.youngs_modulus_pa / youngs, 1.0, 1e-5) << poisson << ", axis " << axis;
           EXPECT_NEAR(measured.poissons_ratio, poisson, 1e-5) << poisson << ", axis " << axis;
         }
@@ -70,7 +71,7 @@ TEST(StaticSolver, TensionGivesTheMaterialExactly) {
   }
 }
 
-// A bar put together of cells, at three resolutions.
+// The bar has several cells across, at three resolutions.
 TEST(StaticSolver, TensionOfABar) {
   constexpr double youngs = 2e6, poisson = 0.35;
   const Vector3 size_m(0.04, 0.008, 0.008);
@@ -89,7 +90,8 @@ TEST(StaticSolver, TensionOfABar) {
   }
 }
 
-// Nodes inside moved at random: hexahedra pass the patch test in any shape, springs nearly.
+// The inner nodes are displaced at random: hexahedra pass the patch test in any shape, springs only
+// approximately.
 TEST(StaticSolver, TensionOfIrregularCells) {
   constexpr double youngs = 2e6;
   const Vector3 size_m(0.006, 0.006, 0.006);
@@ -114,7 +116,8 @@ TEST(StaticSolver, TensionOfIrregularCells) {
   }
 }
 
-// rho g H^2 / 2 E at any resolution and Poisson's ratio, in the linear limit: g / 1000.
+// The top sinks by rho g H^2 / 2 E at any resolution and Poisson's ratio; gravity is a thousandth of the real
+// one, to stay in the linear range.
 TEST(StaticSolver, SelfWeightOnASlippingBase) {
   const double height = 0.02, youngs = 5000.0, density = 1050.0, gravity = 9.81e-3;
   const double expected = density * gravity * height * height / (2.0 * youngs);
@@ -131,14 +134,14 @@ TEST(StaticSolver, SelfWeightOnASlippingBase) {
         visit_face(mesh, 1, true, [&](int node, double share) {
           drop -= share * result.displacement_m[static_cast<std::size_t>(node)].y();
         });
-        // The strain at the base, 4e-5, is what the linear limit is off by.
+        // The bound allows for terms of second order at the base's strain of 4e-5.
         EXPECT_NEAR(drop / expected, 1.0, 1e-4) << count << " nodes, nu " << poisson;
       }
     }
   }
 }
 
-// Pressure from all sides makes a body smaller by p / K, K = E / 3 (1 - 2 nu).
+// Pressure from all sides reduces the volume by the fraction p / K, where K = E / 3 (1 - 2 nu).
 TEST(StaticSolver, PressureFromAllSides) {
   const double youngs = 1e6, poisson = 0.4, pressure = 1.0;
   const LatticeMesh mesh = box_mesh({0.01, 0.01, 0.01}, {4, 4, 4});
@@ -157,7 +160,8 @@ TEST(StaticSolver, PressureFromAllSides) {
             at[b] = corners[c][high ? 1 : 0];
             face.nodes[c] = mesh.index(at[0], at[1], at[2]);
           }
-          // p and q exchanged on the low side turn the order round, and run over the same faces.
+          // On the low side p and q are exchanged, which reverses the order of the corners and still visits
+          // all faces.
           loads.pressures.push_back(face);
         }
       }
