@@ -1,4 +1,4 @@
-// What a child process that parses a foreign file may still do after a hostile file has taken it over.
+// Limits what a child process that parses a foreign file can do once a hostile file has taken it over.
 #pragma once
 
 namespace spoonbill {

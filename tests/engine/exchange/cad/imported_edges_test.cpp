@@ -45,7 +45,7 @@ class ImportedEdges : public testing::Test {
     const auto solids = mesh_solids(model, {});
     ASSERT_TRUE(solids) << solids.error().message;
     ASSERT_EQ(solids->solids.size(), 1u);
-    EXPECT_EQ(solids->solids[0].places.size(), faces);
+    EXPECT_EQ(solids->solids[0].surface_indices.size(), faces);
     EXPECT_NEAR(solids->solids[0].volume_m3, volume_m3, 2e-4 * volume_m3);
   }
 
