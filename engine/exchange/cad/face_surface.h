@@ -17,7 +17,7 @@ struct FaceSurface {
   std::vector<TrimLoop> trims;  // empty where the face is its whole range of parameters
   // Largest distance of the loops, or of the sides of an untrimmed face, from the file's edges.
   double trim_deviation_m = 0.0;
-  std::string trim_problem;     // reason why a trimmed face has no trims; empty otherwise
+  std::string trim_problem;  // reason why a trimmed face has no trims; empty otherwise
 };
 
 // Converts a face. B-spline and Bezier surfaces, planes and extrusions of such curves are converted exactly;
