@@ -20,7 +20,7 @@ double processor_seconds(int who) {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-// Of this process and of the children that have ended.
+// Returns the processor time of this process and of its children that have ended, in seconds.
 double processor_seconds() {
   return processor_seconds(RUSAGE_SELF) + processor_seconds(RUSAGE_CHILDREN);
 }

@@ -8,7 +8,7 @@
 
 #include "engine/base/file.h"
 #include "engine/base/text.h"
-#include "engine/exchange/points/number_lines.h"
+#include "engine/exchange/scans/number_lines.h"
 #include "engine/scene/scene.h"
 
 namespace spoonbill {

@@ -13,8 +13,8 @@
 #include "engine/exchange/file_format.h"
 #include "engine/exchange/frame_stream.h"
 #include "engine/exchange/mesh_import.h"
-#include "engine/exchange/points/ply_file.h"
-#include "engine/exchange/points/point_cloud.h"
+#include "engine/exchange/scans/ply_file.h"
+#include "engine/exchange/scans/point_cloud.h"
 
 namespace spoonbill {
 namespace {

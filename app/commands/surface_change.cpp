@@ -122,7 +122,7 @@ Result<ChangedSurfaces> split_surface(const Surface& surface, const ChangeReques
 Result<ChangedSurfaces> insert_knot_copies(const Surface& surface, const ChangeRequest& request,
                                            const Allowed&) {
   const KnotVector& knots = knots_along(surface, request.direction);
-  const double near = same_knot_fraction * (knots.domain_end() - knots.domain_start());
+  const double near = same_knot_fraction * knots.domain_length();
   for (const double knot : knots.breakpoints()) {
     if (knot == request.parameter || std::abs(knot - request.parameter) > near) continue;
     return Error{ErrorCode::out_of_range, "a knot at " + number_text(request.parameter) +

@@ -10,7 +10,7 @@
 #include "app/files/length_unit.h"
 #include "engine/base/result.h"
 #include "engine/collision/meshes/triangle_mesh.h"
-#include "engine/exchange/points/point_cloud.h"
+#include "engine/exchange/scans/point_cloud.h"
 #include "engine/fitting/scan.h"
 
 namespace spoonbill {
@@ -39,7 +39,7 @@ struct MeshFile {
 Result<MeshFile> read_mesh_file(const std::filesystem::path& file, const MeshReading& reading = {});
 
 // Reads a point cloud of at most 1 GiB in the file's own unit, or nothing if a PLY or OBJ file has faces and
-// so is a mesh. The formats are those of engine/exchange/points/point_cloud.h. Errors are those of
+// so is a mesh. The formats are those of engine/exchange/scans/point_cloud.h. Errors are those of
 // read_mesh_file().
 Result<std::optional<PointCloud>> read_cloud_file(const std::filesystem::path& file,
                                                   const MeshReading& reading = {});

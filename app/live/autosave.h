@@ -25,11 +25,12 @@ class Autosave {
   // Replaces the file as a whole; after an error the previous one remains.
   Status write(const Document& document) const;
 
-  // Returns the document that an interrupted session left; nothing if there is none, or if the document's
-  // file holds the same, whichever is newer. A file that cannot be read is an error and remains.
+  // Returns the document that an interrupted session left. Returns nothing if no session was interrupted, or
+  // if the document's file holds the same, whichever is newer. A file that cannot be read is an error and
+  // remains.
   Result<std::optional<Document>> recovered_document() const;
 
-  // Removes the file. Does nothing if there is none.
+  // Removes the file if it exists.
   void remove() const;
   // Renames the file, so that later autosaves do not overwrite it.
   void set_aside() const;

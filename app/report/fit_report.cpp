@@ -197,8 +197,8 @@ void add_scan_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit) 
   facts.add("Points", text, "points_read", file.points_read);
   facts.add("", "", "points_distinct", fit.distinct);
   facts.add("", "", "points_used", used);
-  const bool is_mesh = fit.joining_distance_m > 0.0;
-  facts.add("", "", "joined_within_m", is_mesh ? Json(fit.joining_distance_m) : Json(nullptr));
+  const bool has_triangles = fit.joining_distance_m > 0.0;
+  facts.add("", "", "joined_within_m", has_triangles ? Json(fit.joining_distance_m) : Json(nullptr));
   facts.add("Islands", std::to_string(fit.islands), "islands", fit.islands);
 }
 

@@ -158,7 +158,7 @@ DerivativeBound::DerivativeBound(const KnotVector& knots) {
     const double width = extended[basis + degree + 1] - extended[basis + 1];
     // A basis function of the derivative contributes nothing if its support has no width.
     if (width == 0) continue;
-    const double length = knots.domain_end() - knots.domain_start();
+    const double length = knots.domain_length();
     steps_.push_back({control(basis), control(basis + 1), degree * length / width});
   }
 }

@@ -190,7 +190,7 @@ Status check_open(const KnotVector& knots, const std::vector<double>& samples) {
 // Matches control points to samples in cyclic order, starting with control point 0 and sample `offset`; the
 // numbering of samples continues from one period to the next. Returns the number of control points matched.
 int count_matched(const KnotVector& knots, const std::vector<double>& samples, int offset) {
-  const double period = knots.domain_end() - knots.domain_start();
+  const double period = knots.domain_length();
   const int count = static_cast<int>(samples.size());
   const auto position = [&](int sample) {
     const int wraps = sample >= 0 ? sample / count : (sample - count + 1) / count;

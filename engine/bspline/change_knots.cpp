@@ -65,7 +65,7 @@ int multiplicity_at(const std::vector<KnotMultiplicity>& all, double knot, doubl
 }
 
 Status check_contains_all(const KnotVector& from, const KnotVector& to) {
-  const double length = from.domain_end() - from.domain_start(), nearness = same_knot_fraction * length;
+  const double length = from.domain_length(), nearness = same_knot_fraction * length;
   const double start = to.domain_start(), end = to.domain_end();
   if (to.degree() < from.degree())
     return Error{ErrorCode::unsupported, "the degree to change to is lower; use a fit instead"};
@@ -101,7 +101,7 @@ std::vector<double> distinguishing_parameters(const KnotVector& a, const KnotVec
   const int inside = std::max(a.degree(), b.degree()) + 2;
   std::vector<double> parameters;
   for (std::size_t piece = 0; piece + 1 < ends.size(); ++piece) {
-    if (ends[piece + 1] - ends[piece] <= same_knot_fraction * (a.domain_end() - a.domain_start())) continue;
+    if (ends[piece + 1] - ends[piece] <= same_knot_fraction * a.domain_length()) continue;
     for (int k = 0; k < inside; ++k) {
       parameters.push_back(ends[piece] + (ends[piece + 1] - ends[piece]) * k / inside);
     }
@@ -166,7 +166,7 @@ struct Fitted {
 
 Result<Fitted> fitted(const Surface& surface, Direction direction, const KnotVector& knots) {
   const KnotVector& from = knots_along(surface, direction);
-  const double nearness = same_knot_fraction * (from.domain_end() - from.domain_start());
+  const double nearness = same_knot_fraction * from.domain_length();
   if (std::abs(knots.domain_start() - from.domain_start()) > nearness ||
       std::abs(knots.domain_end() - from.domain_end()) > nearness) {
     return Error{ErrorCode::mismatch, "the new knots have another domain"}.in(direction_name(direction));
@@ -218,7 +218,7 @@ Result<Neighbourhood> around_knot(const Surface& surface, Direction direction, i
   const int pieces = static_cast<int>(ends.size()) - 1, reach = 2 * (knots.degree() + 1);
   const bool periodic = knots.is_periodic();
   if (pieces <= 2 * reach) return Neighbourhood{surface, ends[breakpoint]};
-  const double length = knots.domain_end() - knots.domain_start();
+  const double length = knots.domain_length();
   int first = breakpoint - reach, last = breakpoint + reach;
   const double turn = periodic && first < 0 ? length : 0.0;
   const auto end_at = [&](int k) {
@@ -391,9 +391,9 @@ Result<Approximation> remove_knot(const Surface& surface, Direction direction, d
   SPOONBILL_ASSERT(copies >= 1);
   SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   const KnotVector& knots = knots_along(surface, direction);
-  const double near = same_knot_fraction * (knots.domain_end() - knots.domain_start());
+  const double near = same_knot_fraction * knots.domain_length();
   const double wanted = knots.is_periodic() && parameter >= knots.domain_end() - near
-                            ? parameter - (knots.domain_end() - knots.domain_start())
+                            ? parameter - knots.domain_length()
                             : parameter;
   const std::vector<KnotMultiplicity> all = knot_multiplicities(knots);
   if (!knots.is_periodic()) {

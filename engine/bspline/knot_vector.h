@@ -50,6 +50,8 @@ class KnotVector {
   double domain_start() const { return extended_[degree_]; }
   double domain_end() const { return extended_[extended_.size() - 1 - degree_]; }
   double domain_length() const { return domain_end() - domain_start(); }
+  // Returns the parameter at a fraction of the domain, 0 to 1.
+  double parameter_at(double fraction) const { return domain_start() + fraction * domain_length(); }
 
   // Returns the knots as given to open() or periodic().
   const std::vector<double>& knots() const { return knots_; }

@@ -233,7 +233,7 @@ Result<Surface> with_seam_at(const Surface& surface, Direction direction, double
     return Error{ErrorCode::unsupported,
                  "the seam can be moved only in a periodic direction, and only to a finite parameter"};
   }
-  const double length = knots.domain_end() - knots.domain_start();
+  const double length = knots.domain_length();
   double at = knots.into_domain(seam);
   for (const double knot : knots.breakpoints()) {
     if (std::abs(knot - at) <= same_knot_fraction * length) at = knots.into_domain(knot);

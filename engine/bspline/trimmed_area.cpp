@@ -269,7 +269,7 @@ GridLines::GridLines(const GridDirection& direction)
                     direction.parameters.back() == direction.knots.domain_end()));
   const KnotVector& knots = direction.knots;
   if (knots.is_periodic() && at_.back() < knots.domain_end()) at_.push_back(knots.domain_end());
-  snap_ = snap_fraction * (knots.domain_end() - knots.domain_start());
+  snap_ = snap_fraction * knots.domain_length();
 }
 
 double GridLines::snap(double parameter) const {

@@ -133,7 +133,7 @@ RingArc ring_arc(const Surface& surface, const Ring& ring, const CrossSection& s
   int next = 0;
   for (int s = start; s <= start + 2 * ring_samples; ++s) {
     result.arc_to_u.from.push_back(arc);
-    result.arc_to_u.to.push_back(parameter_at(surface.u, static_cast<double>(s) / ring_samples));
+    result.arc_to_u.to.push_back(surface.u.parameter_at(static_cast<double>(s) / ring_samples));
     const double step = (point(s + 1) - point(s)).norm();
     while (next < 5 && side(next, s) < 0.0 && side(next, s + 1) >= 0.0) {
       result.crossing[next] = arc + step * -side(next, s) / (side(next, s + 1) - side(next, s));
@@ -153,7 +153,7 @@ RingArc bent_arc(const Surface& surface, const Ring& ring, const CrossSection& s
   double arc = 0.0;
   for (int s = tips.high; s <= tips.high + 2 * ring_samples; ++s) {
     result.arc_to_u.from.push_back(arc);
-    result.arc_to_u.to.push_back(parameter_at(surface.u, static_cast<double>(s) / ring_samples));
+    result.arc_to_u.to.push_back(surface.u.parameter_at(static_cast<double>(s) / ring_samples));
     if (s % ring_samples == tips.low && result.crossing[2] == 0.0) result.crossing[2] = arc;
     arc += (ring.points[(s + 1) % ring_samples] - ring.points[s % ring_samples]).norm();
   }
@@ -188,16 +188,12 @@ void turn_to_sides(const Ring& ring, const Vector3& axis, Vector3& e1) {
 
 }  // namespace
 
-double parameter_at(const KnotVector& knots, double fraction) {
-  return knots.domain_start() + fraction * (knots.domain_end() - knots.domain_start());
-}
-
 Ring sample_ring(const Surface& surface, double v) {
   SPOONBILL_ASSERT(surface.u.is_periodic());
   Ring ring;
   for (int s = 0; s < ring_samples; ++s) {
     const SurfacePoint point =
-        evaluate(surface, parameter_at(surface.u, static_cast<double>(s) / ring_samples), v);
+        evaluate(surface, surface.u.parameter_at(static_cast<double>(s) / ring_samples), v);
     ring.points.push_back(point.position_m);
     ring.centre += point.position_m / ring_samples;
     ring.along += point.dv / ring_samples;
@@ -213,7 +209,7 @@ Profile sample_profile(const Surface& surface) {
   Profile profile;
   Vector3 previous = Vector3::Zero();
   for (int s = 0; s <= along_samples; ++s) {
-    const double v = parameter_at(surface.v, static_cast<double>(s) / along_samples);
+    const double v = surface.v.parameter_at(static_cast<double>(s) / along_samples);
     const Ring ring = sample_ring(surface, v);
     const double step = s == 0 ? 0.0 : (ring.centre - previous).norm();
     profile.v.push_back(v);
@@ -332,7 +328,7 @@ double ring_parameter_at(const Surface& surface, const RingParameters& ring, dou
   const auto count = static_cast<int>(ring.u.size());
   const int low = static_cast<int>(std::floor(position)) % count;
   const double fraction = position - std::floor(position);
-  const double period = surface.u.domain_end() - surface.u.domain_start();
+  const double period = surface.u.domain_length();
   double a = ring.u[low], b = ring.u[(low + 1) % count];
   while (b < a) b += period;
   return a + fraction * (b - a);

@@ -30,9 +30,6 @@ struct LinearTable {
 // Number of samples around a ring.
 inline constexpr int ring_samples = 256;
 
-// Returns the parameter at a fraction (0 to 1) of the domain.
-double parameter_at(const KnotVector& knots, double fraction);
-
 // A ring of a tube, in metres.
 struct Ring {
   std::vector<Vector3> points;  // ring_samples, the seam once

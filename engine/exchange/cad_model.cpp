@@ -13,7 +13,7 @@ namespace {
 // Length limit of names that may get a number, in bytes.
 constexpr std::size_t shared_name_bytes_limit = cad_name_bytes_limit - 10;
 
-// Returns the length of the UTF-8 character at `start` in bytes; 0 if there is none.
+// Returns the length of the UTF-8 character at `start` in bytes; 0 if no character starts there.
 std::size_t character_bytes(const std::string& text, std::size_t start) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
   const unsigned first = byte(start);

@@ -14,7 +14,7 @@
 
 #include "engine/base/result.h"
 #include "engine/collision/meshes/triangle_mesh.h"
-#include "engine/exchange/points/point_cloud.h"
+#include "engine/exchange/scans/point_cloud.h"
 
 namespace spoonbill {
 

@@ -97,7 +97,7 @@ class StrictBuilder : public nlohmann::json_sax<Json> {
 
   ErrorCode code() const { return code_; }
   const std::string& complaint() const { return complaint_; }
-  const std::string& field() const { return field_; }  // the field at fault; empty if there is none
+  const std::string& field() const { return field_; }  // the field at fault; empty if the fault is elsewhere
   // Offset of a syntax error in bytes; nullopt if the builder itself refused the text.
   std::optional<std::size_t> error_offset() const { return error_offset_; }
   Json release_value() { return std::move(root_); }
@@ -228,7 +228,8 @@ bool have_same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
-// Returns the shortest number of millimetres that reads back to the same bits; nullopt if there is none.
+// Returns the shortest number of millimetres that reads back to the same bits; nullopt if no number of
+// millimetres does.
 std::optional<double> shortest_millimetres(double metres) {
   const double near = metres * millimetres_per_metre;
   std::optional<double> best;

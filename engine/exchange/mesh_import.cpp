@@ -22,7 +22,7 @@
 #include "engine/base/file.h"
 #include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
-#include "engine/exchange/points/ply_file.h"
+#include "engine/exchange/scans/ply_file.h"
 
 namespace spoonbill {
 namespace {

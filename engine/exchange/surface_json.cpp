@@ -31,7 +31,7 @@ std::vector<double> read_knots(FieldReader& reader, int largest_count) {
 }
 
 void check_knot_steps(const KnotVector& direction, FieldReader& reader) {
-  const double smallest = smallest_knot_step * (direction.domain_end() - direction.domain_start());
+  const double smallest = smallest_knot_step * direction.domain_length();
   const std::vector<double>& knots = direction.knots();
   for (std::size_t i = 1; i < knots.size(); ++i) {
     const double step = knots[i] - knots[i - 1];

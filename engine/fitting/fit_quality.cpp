@@ -44,7 +44,7 @@ std::vector<Vector3> evaluate_positions(const Surface& surface, const std::vecto
 }
 
 double longest_step(const KnotVector& knots) {
-  return 0.75 * (knots.domain_end() - knots.domain_start()) / static_cast<double>(span_count(knots));
+  return 0.75 * knots.domain_length() / static_cast<double>(span_count(knots));
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ template <class Put>
 void NormalEquations::add_smooth_pole(const SurfaceStructure& structure, const std::vector<int>& unknown,
                                       int pole, int ring, const Put& put) const {
   const std::vector<double>& knots = structure.u.extended_knots();
-  const double period = structure.u.domain_end() - structure.u.domain_start();
+  const double period = structure.u.domain_length();
   std::vector<std::pair<int, double>> terms{{unknown[index(0, pole)], -1.0}};
   for (int i = 0; i < rows_; ++i) terms.emplace_back(unknown[index(i, ring)], 0.0);
   // Basis function k of the span k + degree has its support from extended[k] to extended[k + degree + 1].
@@ -355,7 +355,7 @@ KnotVector refine_knots(const KnotVector& knots, int direction, int count, std::
   SPOONBILL_ASSERT(direction == 0 || direction == 1);
   SPOONBILL_ASSERT(uv.size() == weighted_squares.size());
   std::vector<Span> spans = spans_with_errors(knots, direction, uv, weighted_squares);
-  const double length = knots.domain_end() - knots.domain_start();
+  const double length = knots.domain_length();
   for (int missing = count - knots.control_point_count(); missing > 0; --missing) {
     const double shortest = length / static_cast<double>(8 * spans.size());
     const auto worth = [&](const Span& span) {

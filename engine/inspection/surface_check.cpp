@@ -14,10 +14,6 @@ namespace {
 
 constexpr int edge_samples = 512;
 
-double parameter_at(const KnotVector& knots, double fraction) {
-  return knots.domain_start() + fraction * (knots.domain_end() - knots.domain_start());
-}
-
 // Compares the two ends of u (edges along v) if `along_u`, otherwise the two ends of v.
 EdgeGap measure_edge_gap(const Surface& surface, bool along_u) {
   EdgeGap gap;
@@ -25,7 +21,7 @@ EdgeGap measure_edge_gap(const Surface& surface, bool along_u) {
   if (knots.is_periodic()) return gap;
   const KnotVector& across = along_u ? surface.v : surface.u;
   const auto point = [&](double end, double fraction) {
-    const double t = parameter_at(across, fraction);
+    const double t = across.parameter_at(fraction);
     return along_u ? position(surface, end, t) : position(surface, t, end);
   };
   const Vector3 first_start = point(knots.domain_start(), 0.0), last_start = point(knots.domain_end(), 0.0);

@@ -36,15 +36,15 @@ Gaps gaps_between(const std::vector<Vector3>& a, const std::vector<Vector3>& b) 
 }
 
 // An edge prepared for comparison with several others.
-struct GraphEdge {
+struct PreparedEdge {
   PatchEdge name;
   EdgeCurve curve;
   std::vector<Vector3> points_m;  // at equal fractions of the length, for open edges
   RingFrame frame;                // for rings only
 };
 
-GraphEdge prepare_edge(const std::vector<Surface>& patches, PatchEdge name) {
-  GraphEdge edge{name, edge_curve(patches[name.patch], name.side), {}, {}};
+PreparedEdge prepare_edge(const std::vector<Surface>& patches, PatchEdge name) {
+  PreparedEdge edge{name, edge_curve(patches[name.patch], name.side), {}, {}};
   if (edge.curve.knots.is_periodic()) {
     edge.frame = ring_frame(patches[name.patch], name.side);
   } else {
@@ -53,7 +53,7 @@ GraphEdge prepare_edge(const std::vector<Surface>& patches, PatchEdge name) {
   return edge;
 }
 
-EdgeMatch match_open(const GraphEdge& a, const GraphEdge& b, std::optional<bool> requested) {
+EdgeMatch match_open(const PreparedEdge& a, const PreparedEdge& b, std::optional<bool> requested) {
   const std::vector<Vector3>& points_a = a.points_m;
   std::vector<Vector3> points_b = b.points_m;
   const Gaps direct = gaps_between(points_a, points_b);
@@ -68,12 +68,12 @@ EdgeMatch match_open(const GraphEdge& a, const GraphEdge& b, std::optional<bool>
 // rotated to face the first.
 class EdgeRing {
  public:
-  explicit EdgeRing(const GraphEdge& edge) : curve_(edge.curve), centre_(edge.frame.centre_m) {}
+  explicit EdgeRing(const PreparedEdge& edge) : curve_(edge.curve), centre_(edge.frame.centre_m) {}
   void turn(const Eigen::Matrix3d& turn) { turn_ = turn; }
 
   // Returns the parameter at a fraction of the period from `from`, forwards or backwards.
   double parameter(double from, double fraction, bool backwards) const {
-    const double length = curve_.knots.domain_end() - curve_.knots.domain_start();
+    const double length = curve_.knots.domain_length();
     return from + (backwards ? -fraction : fraction) * length;
   }
   double seam() const { return curve_.knots.domain_start(); }
@@ -138,7 +138,7 @@ RingFit fit_best(const EdgeRing& a, const EdgeRing& b, std::optional<bool> reque
 
 // Returns the best fit of two rings. Coincident rings are compared without moving them, which is exact for
 // identical rings; other rings are compared after a rotation.
-RingFit fit_best_rotated(const GraphEdge& a, const GraphEdge& b, std::optional<bool> requested) {
+RingFit fit_best_rotated(const PreparedEdge& a, const PreparedEdge& b, std::optional<bool> requested) {
   constexpr double coincidence_fraction = 0.02;  // relative to the radius
   const EdgeRing ring_a(a);
   EdgeRing ring_b(b);
@@ -153,7 +153,7 @@ RingFit fit_best_rotated(const GraphEdge& a, const GraphEdge& b, std::optional<b
   return fit_best(ring_a, ring_b, requested);
 }
 
-EdgeMatch match_rings(const GraphEdge& a, const GraphEdge& b, std::optional<bool> requested) {
+EdgeMatch match_rings(const PreparedEdge& a, const PreparedEdge& b, std::optional<bool> requested) {
   const RingFit best = fit_best_rotated(a, b, requested);
   const double seam = b.curve.knots.into_domain(best.seam);
   const EdgeRing ring_a(a), ring_b(b);
@@ -167,7 +167,8 @@ EdgeMatch match_rings(const GraphEdge& a, const GraphEdge& b, std::optional<bool
   return {a.name, b.name, best.reversed, seam, gaps.largest, gaps.mean};
 }
 
-Result<EdgeMatch> match_edge_pair(const GraphEdge& a, const GraphEdge& b, std::optional<bool> reversed) {
+Result<EdgeMatch> match_edge_pair(const PreparedEdge& a, const PreparedEdge& b,
+                                  std::optional<bool> reversed) {
   const bool ring = a.curve.knots.is_periodic();
   if (ring != b.curve.knots.is_periodic()) {
     return Error(ErrorCode::mismatch, edge_name(a.name) + " and " + edge_name(b.name) +
@@ -207,7 +208,7 @@ class Groups {
 };
 
 std::vector<EdgeMatch> find_candidates(const std::vector<Surface>& patches) {
-  std::vector<GraphEdge> edges;
+  std::vector<PreparedEdge> edges;
   for (const PatchEdge& name : joinable_edges(patches)) edges.push_back(prepare_edge(patches, name));
   std::vector<EdgeMatch> found;
   for (std::size_t a = 0; a < edges.size(); ++a) {

@@ -359,7 +359,7 @@ bool has_waist(const Surface& strip) {
 Result<Surface> make_strip(const Surface& before, const Surface& after, const BridgeLength& length,
                            int continuity) {
   const double start = before.v.domain_end() + length.parameter;
-  const double length_after = after.v.domain_end() - after.v.domain_start();
+  const double length_after = after.v.domain_length();
   const auto moved = with_domain(after, Direction::v, start, start + length.stretch_of_after * length_after);
   if (!moved) return moved.error();
   return bridge(before, moved.value(), continuity);

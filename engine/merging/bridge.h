@@ -23,6 +23,9 @@ double mean_gap_m(const JointEdges& edges);
 // there; negative where they overlap.
 double mean_advance_m(const JointEdges& edges);
 
+// A deviation below this is rounding.
+inline constexpr double rounding_m = 1e-12;
+
 // Returns true if, across every gap wider than `touching_m`, the patches continue straight ahead, neither
 // sideways nor backwards.
 bool continues_ahead(const JointEdges& edges, double touching_m);

@@ -171,7 +171,7 @@ Result<Surface> align_seam(const Surface& before, const Surface& patch, const Jo
   const double near_m =
       request.tolerance_m * (match->gap_m > request.tolerance_m ? 1.0 : coincidence_fraction);
   if ((position(b, nearest) - seam_point).norm() <= near_m) seam = nearest;
-  const double period = patch.u.domain_end() - patch.u.domain_start();
+  const double period = patch.u.domain_length();
   const double target = seam + request.twist * period;
   return with_seam_at(patch, Direction::u, align_seam_to_knots(before.u, patch.u, target));
 }
@@ -308,8 +308,8 @@ bool needs_matching(const Surface& before, const Surface& patch, double toleranc
   const EdgeCurve a = edge_curve(before, Side::v_end), b = edge_curve(patch, Side::v_start);
   std::vector<double> along = nested_parameters(a.knots, 4, 0).parameters;
   if (a.knots.is_periodic()) along.pop_back();
-  const double length_a = a.knots.domain_end() - a.knots.domain_start();
-  const double length_b = b.knots.domain_end() - b.knots.domain_start();
+  const double length_a = a.knots.domain_length();
+  const double length_b = b.knots.domain_length();
   std::vector<double> proportional;
   proportional.reserve(along.size());
   for (const double t : along) {

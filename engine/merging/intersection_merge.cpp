@@ -110,9 +110,9 @@ Eigen::Vector2d polar(double radius, double angle) {
 LinesFromLoop::LinesFromLoop(const Surface& body, const std::vector<Eigen::Vector2d>& loop)
     : body_(&body),
       u_start_(body.u.domain_start()),
-      u_length_(body.u.domain_end() - body.u.domain_start()),
+      u_length_(body.u.domain_length()),
       v_start_(body.v.domain_start()),
-      v_length_(body.v.domain_end() - body.v.domain_start()) {
+      v_length_(body.v.domain_length()) {
   SPOONBILL_ASSERT(body.u.is_periodic() && loop.size() >= 3);
   double farthest = 0.0;
   for (const Eigen::Vector2d& uv : loop) {
@@ -244,7 +244,7 @@ Crossed cross_lines(const Surface& patch, const Surface& other, const CrossingFi
 
 // Returns true if the crossings go around a pole of the other body: other_u then covers one period.
 bool goes_around_pole(const Surface& other, const std::vector<LineCrossing>& crossings) {
-  const double period = other.u.domain_end() - other.u.domain_start();
+  const double period = other.u.domain_length();
   double total = 0.0;
   for (std::size_t k = 0; k < crossings.size(); ++k) {
     const double step = crossings[(k + 1) % crossings.size()].other_u - crossings[k].other_u;
@@ -352,7 +352,7 @@ std::vector<double> steps_between(std::vector<double> starts, bool closed, doubl
 // Reverses the second patch if needed, so that its lines follow the first's, once around if closed.
 Result<Surface> align_along(const CrossingPatches& patches, const std::vector<LineCrossing>& crossings) {
   const Surface &first = patches.first, &second = patches.second;
-  const double length = patches.beside_pole ? 1.0 : second.u.domain_end() - second.u.domain_start();
+  const double length = patches.beside_pole ? 1.0 : second.u.domain_length();
   const std::vector<double> steps = steps_between(
       find_starts_along(patches, crossings), first.u.is_periodic(), second.u.is_periodic() ? length : 0.0);
   const double forwards = std::accumulate(steps.begin(), steps.end(), 0.0);

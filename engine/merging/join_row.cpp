@@ -81,9 +81,7 @@ bool is_short_cut(const std::vector<PreparedRow>& rows, std::size_t joint, doubl
   return std::all_of(rows.begin(), rows.end(), [&](const PreparedRow& row) {
     const Surface &before = row.patches[joint], &after = row.patches[joint + 1];
     const JointEdges edges = joint_edges(before, after);
-    const auto length_m = [](const Surface& patch, double speed) {
-      return speed * (patch.v.domain_end() - patch.v.domain_start());
-    };
+    const auto length_m = [](const Surface& patch, double speed) { return speed * patch.v.domain_length(); };
     return cut_m <= most_cut_fraction * std::min(length_m(before, mean_speed(edges.before)),
                                                  length_m(after, mean_speed(edges.after)));
   });
@@ -206,7 +204,7 @@ Result<std::vector<Surface>> place_in_row(const PreparedRow& row) {
     stretch *= joint.stretch_of_after;
     const Surface& patch = row.patches[p];
     const double start = placed.back().v.domain_end() + gap;
-    const double length = patch.v.domain_end() - patch.v.domain_start();
+    const double length = patch.v.domain_length();
     double end = start + stretch * length;
     // Parts of one patch keep their knots to the last bit: an end that differs only by rounding is set to the
     // patch's end.
@@ -271,8 +269,6 @@ Result<KnotVector> smooth_knots(const KnotVector& knots, const std::vector<doubl
   }
   return KnotVector::open(knots.degree(), std::move(fewer));
 }
-
-constexpr double rounding_m = 1e-12;
 
 // Samples the patch in every piece of the merged surface, which has more of them along v.
 PointGrid sample_patch(const Surface& patch, const KnotVector& merged_v, int in_piece) {

@@ -16,8 +16,6 @@
 namespace spoonbill {
 namespace {
 
-constexpr double closed_within_m = 1e-12;
-
 struct PatchGrid {
   const std::vector<Surface>& patches;
   const Arrangement& arrangement;
@@ -103,7 +101,7 @@ Result<Approximation> close_without_folds(const Surface& surface, Direction dire
                                           const JoinRequest& request) {
   auto closed = close_around(surface, direction, request.continuity, request.tolerance_m - request.spent_m,
                              request.progress);
-  if (!closed || closed->deviation_m <= closed_within_m) return closed;
+  if (!closed || closed->deviation_m <= rounding_m) return closed;
   const auto fold_m = find_fold(closed->surface);
   if (!fold_m || find_fold(surface)) return closed;
   return Error(ErrorCode::self_intersecting, "the surface would fold over at " + position_text(*fold_m));
@@ -363,7 +361,7 @@ Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& re
   for (const EdgeMatch& match : arrangement->left_open) {
     merged->left_open.push_back({match.a, match.b, "their patches are elsewhere in the grid"});
   }
-  if (merged->deviation_m > join.tolerance_m - join.spent_m + closed_within_m) {
+  if (merged->deviation_m > join.tolerance_m - join.spent_m + rounding_m) {
     return Error(ErrorCode::not_converged,
                  "the patches can be merged within " + short_length_text(merged->deviation_m + join.spent_m) +
                      "; allow a larger tolerance than " + short_length_text(join.tolerance_m),

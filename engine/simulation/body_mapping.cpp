@@ -72,7 +72,7 @@ FixedStretch find_fixed_stretch(const Surface& surface, const std::vector<Fixing
 // beyond the largest number of control points; then up to `degree` additional columns are fixed.
 Result<Surface> insert_edge_knot(const Surface& surface, double& v) {
   const std::vector<double> breaks = surface.v.breakpoints();
-  const double tolerance = 1e-3 * (surface.v.domain_end() - surface.v.domain_start());
+  const double tolerance = 1e-3 * surface.v.domain_length();
   for (const double knot : breaks) {
     if (std::abs(knot - v) < tolerance) v = knot;
   }

@@ -1,4 +1,4 @@
-// What a reader of foreign files may not do, and that it ends with its parent.
+// Tests that a reader of foreign files is confined and ends with its parent.
 #include "app/reader_confinement.h"
 
 #include <fcntl.h>

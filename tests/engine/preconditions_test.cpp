@@ -1,5 +1,5 @@
-// What functions state of their arguments, they assert: some of each folder. What Debug builds alone check is
-// at the end.
+// Functions assert the preconditions that their headers state; the tests take some of each folder.
+// Preconditions that only Debug builds check are at the end.
 #include <gtest/gtest.h>
 
 #include <limits>

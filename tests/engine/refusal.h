@@ -1,4 +1,4 @@
-// What identifies an error: its code and the field at fault. Tests compare these, because the text of a
+// The code of an error and the field at fault, which identify it. Tests compare these, because the text of a
 // message may change.
 #pragma once
 

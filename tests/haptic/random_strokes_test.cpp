@@ -14,8 +14,8 @@
 #include "haptic/safe_device.h"
 #include "haptic/tick.h"
 #include "tests/engine/effort.h"
+#include "tests/engine/random.h"
 #include "tests/engine/simulation/handle.h"
-#include "tests/haptic/random_values.h"
 
 namespace spoonbill {
 namespace {
@@ -34,48 +34,49 @@ std::vector<Material> bundled_materials() {
 }
 
 // Returns a random material with any values that a file may contain.
-Material any_material(RandomValues& random) {
+Material any_material(Random& random) {
   Material material;
   material.name = material.source = "random";
-  material.youngs_modulus_pa = random.scaled(youngs_modulus_range_pa.low, youngs_modulus_range_pa.high);
-  material.density_kg_per_m3 = random.scaled(density_range_kg_per_m3.low, density_range_kg_per_m3.high);
-  material.damping_ratio = random.between(damping_ratio_range);
+  material.youngs_modulus_pa = random.log_uniform(youngs_modulus_range_pa.low, youngs_modulus_range_pa.high);
+  material.density_kg_per_m3 = random.log_uniform(density_range_kg_per_m3.low, density_range_kg_per_m3.high);
+  material.damping_ratio = random.uniform(damping_ratio_range);
   switch (random.bits() % 4) {
     case 0:
       material.plastic = true;
-      material.yield_strain = random.scaled(yield_strain_range.low, yield_strain_range.high);
-      material.flow_rate_per_s = random.between(flow_rate_range_per_s);
-      material.hardening = random.between(hardening_range);
+      material.yield_strain = random.log_uniform(yield_strain_range.low, yield_strain_range.high);
+      material.flow_rate_per_s = random.uniform(flow_rate_range_per_s);
+      material.hardening = random.uniform(hardening_range);
       break;
     case 1:
-      material.relaxing_fraction = random.between(relaxing_fraction_range);
-      material.relaxation_time_s = random.scaled(relaxation_time_range_s.low, relaxation_time_range_s.high);
+      material.relaxing_fraction = random.uniform(relaxing_fraction_range);
+      material.relaxation_time_s =
+          random.log_uniform(relaxation_time_range_s.low, relaxation_time_range_s.high);
       break;
     case 2:
-      material.stiffening = random.between(stiffening_range);
+      material.stiffening = random.uniform(stiffening_range);
       break;
     default:
       break;
   }
-  material.friction = random.between(0.0, 1.0);
+  material.friction = random.uniform(0.0, 1.0);
   const double least = is_linear_elastic(material) ? poissons_ratio_range.low : min_spring_poissons_ratio;
-  material.poissons_ratio = random.between(least, poissons_ratio_range.high);
+  material.poissons_ratio = random.uniform(least, poissons_ratio_range.high);
   return material;
 }
 
-Scene random_stroke_scene(RandomValues& random, const std::vector<Material>& bundled) {
+Scene random_stroke_scene(Random& random, const std::vector<Material>& bundled) {
   Scene scene = small_handle();
   scene.bodies[0].material =
       random.once_in(2) ? bundled[random.bits() % bundled.size()] : any_material(random);
   if (!random.once_in(4)) {
-    scene.planes.push_back({Vector3(random.between(0.005, 0.04), 0, 0), Vector3::UnitX()});
+    scene.planes.push_back({Vector3(random.uniform(0.005, 0.04), 0, 0), Vector3::UnitX()});
   }
   scene.tool.kind = random.once_in(3) ? ToolKind::point : ToolKind::sphere;
   scene.tool.action = static_cast<ToolAction>(random.bits() % tool_actions.size());
-  scene.tool.radius_m = random.scaled(0.001, 0.05);
+  scene.tool.radius_m = random.log_uniform(0.001, 0.05);
   scene.tool.iterations = static_cast<int>(1 + random.bits() % 8);
-  scene.sculpting.damping_per_s = random.once_in(4) ? 0.0 : random.between(0.0, 100.0);
-  scene.sculpting.force_scale = random.scaled(0.01, 100.0);
+  scene.sculpting.damping_per_s = random.once_in(4) ? 0.0 : random.uniform(0.0, 100.0);
+  scene.sculpting.force_scale = random.log_uniform(0.01, 100.0);
   return scene;
 }
 
@@ -89,12 +90,12 @@ constexpr double bounds_m = 0.5;
 
 class WanderingHand {
  public:
-  explicit WanderingHand(RandomValues& random) : random_(random) {}
+  explicit WanderingHand(Random& random) : random_(random) {}
 
   DeviceReading next() {
     if ((target_ - place_).norm() < 1e-9 || random_.once_in(400)) {
       target_ = centre_m + random_.in_box(roam_m);
-      speed_m_per_s_ = random_.scaled(0.02, fastest_m_per_s);
+      speed_m_per_s_ = random_.log_uniform(0.02, fastest_m_per_s);
       if (random_.once_in(3)) buttons_ = random_.once_in(2) ? button_main : 0u;
     }
     const Vector3 way = target_ - place_;
@@ -107,7 +108,7 @@ class WanderingHand {
   }
 
  private:
-  RandomValues& random_;
+  Random& random_;
   Vector3 place_ = Vector3(0.03, 0.08, 0.0), target_ = place_;
   double speed_m_per_s_ = 0.1;
   unsigned buttons_ = 0;
@@ -171,7 +172,7 @@ struct WatchedStroke {
 };
 
 // Makes a stroke and lets the body rest for a second.
-WatchedStroke stroke(RandomValues& random, Simulation& simulation) {
+WatchedStroke stroke(Random& random, Simulation& simulation) {
   WatchedStroke watched;
   const DeviceSpecification device;
   watched.limit_n = device.maximum_force_n;
@@ -198,7 +199,7 @@ TEST(RandomStrokes, NeverLeaveTheBodyBroken) {
   const int strokes = sanitized ? 3 : random_cases(8, 100);
   const std::vector<Material> bundled = bundled_materials();
   ASSERT_GE(bundled.size(), 12U);
-  RandomValues random(21);
+  Random random(21);
   int touched = 0;
   for (int s = 0; s < strokes; ++s) {
     const Scene scene = random_stroke_scene(random, bundled);

@@ -10,8 +10,8 @@
 #include "haptic/tick.h"
 #include "haptic/virtual_device.h"
 #include "tests/engine/effort.h"
+#include "tests/engine/random.h"
 #include "tests/engine/simulation/handle.h"
-#include "tests/haptic/random_values.h"
 
 namespace spoonbill {
 namespace {
@@ -19,14 +19,14 @@ namespace {
 constexpr std::uint32_t all_faults = safety_flag_not_finite | safety_flag_stale | safety_flag_stalled |
                                      safety_flag_buzzing | safety_flag_dead_man;
 
-DeviceSpecification random_specification(RandomValues& random) {
+DeviceSpecification random_specification(Random& random) {
   DeviceSpecification specification;
-  specification.maximum_force_n = random.once_in(10) ? 0.0 : random.scaled(0.5, 30.0);
-  specification.workspace_radius_m = random.scaled(0.05, 1.0);
-  specification.quiet_force_n = random.scaled(0.02, 1.0);
-  specification.ramp_time_s = random.once_in(5) ? 0.0 : random.scaled(1e-3, 1.0);
-  specification.maximum_force_rate_n_per_s = random.scaled(10.0, 1e5);
-  specification.maximum_speed_m_per_s = random.scaled(0.1, 5.0);
+  specification.maximum_force_n = random.once_in(10) ? 0.0 : random.log_uniform(0.5, 30.0);
+  specification.workspace_radius_m = random.log_uniform(0.05, 1.0);
+  specification.quiet_force_n = random.log_uniform(0.02, 1.0);
+  specification.ramp_time_s = random.once_in(5) ? 0.0 : random.log_uniform(1e-3, 1.0);
+  specification.maximum_force_rate_n_per_s = random.log_uniform(10.0, 1e5);
+  specification.maximum_speed_m_per_s = random.log_uniform(0.1, 5.0);
   specification.dead_man_buttons = random.once_in(3) ? 2u : 0u;
   return specification;
 }
@@ -34,16 +34,17 @@ DeviceSpecification random_specification(RandomValues& random) {
 // Generates inputs in which hand and force wander, jump, rest, buzz and break.
 class RandomInput {
  public:
-  explicit RandomInput(RandomValues& random) : random_(random) {}
+  explicit RandomInput(Random& random) : random_(random) {}
 
   SafetyInput next() {
     if (random_.once_in(300)) manner_ = random_.bits() % 5;
     SafetyInput input;
     input.requested_n = next_force();
-    velocity_ = random_.once_in(200) ? Vector3(random_.scaled(1e-3, 20.0) * random_.direction()) : velocity_;
+    velocity_ =
+        random_.once_in(200) ? Vector3(random_.log_uniform(1e-3, 20.0) * random_.direction()) : velocity_;
     position_ += velocity_ * tick_s;
     if (position_.norm() > 1.5 || random_.once_in(5000)) {
-      position_ = random_.between(0, 1) * random_.direction();
+      position_ = random_.uniform(0, 1) * random_.direction();
     }
     input.position_m = position_;
     input.buttons = random_.once_in(10'000) ? 0u : 3u;
@@ -58,13 +59,13 @@ class RandomInput {
       case 0:
         return 0.01 * random_.direction();
       case 1:
-        return random_.scaled(1e-3, 1e3) * random_.direction();
+        return random_.log_uniform(1e-3, 1e3) * random_.direction();
       case 2:
         return force_ = -force_;
       case 3:
-        return force_ += random_.between(0.0, 0.5) * random_.direction();
+        return force_ += random_.uniform(0.0, 0.5) * random_.direction();
       default:
-        if (random_.once_in(100)) force_ = random_.scaled(0.01, 100.0) * random_.direction();
+        if (random_.once_in(100)) force_ = random_.log_uniform(0.01, 100.0) * random_.direction();
         return force_;
     }
   }
@@ -80,7 +81,7 @@ class RandomInput {
     input.stale = random_.once_in(10'000);
   }
 
-  RandomValues& random_;
+  Random& random_;
   std::uint64_t manner_ = 0;
   Vector3 position_ = Vector3::Zero();
   Vector3 velocity_ = Vector3::Zero();
@@ -133,7 +134,7 @@ struct WatchedForces {
 TEST(SafetyAtRandom, LimitsHoldWhateverHappens) {
   const auto ticks = static_cast<std::uint64_t>(random_cases(300'000, 10'000'000));
   constexpr std::uint64_t ticks_a_device = 20'000;
-  RandomValues random(11);
+  Random random(11);
   WatchedForces all;
   for (std::uint64_t done = 0; done < ticks; done += ticks_a_device) {
     const DeviceSpecification specification = random_specification(random);
@@ -154,29 +155,29 @@ TEST(SafetyAtRandom, LimitsHoldWhateverHappens) {
   EXPECT_GT(all.limited, ticks / 1000);
 }
 
-Scene random_safety_scene(RandomValues& random) {
+Scene random_safety_scene(Random& random) {
   Scene scene = small_handle();
   Material& material = scene.bodies[0].material;
-  material.youngs_modulus_pa = random.scaled(1e4, 1e9);
-  material.poissons_ratio = random.between(0.26, 0.45);
-  material.density_kg_per_m3 = random.scaled(500.0, 8000.0);
-  material.damping_ratio = random.between(0.01, 0.1);
+  material.youngs_modulus_pa = random.log_uniform(1e4, 1e9);
+  material.poissons_ratio = random.uniform(0.26, 0.45);
+  material.density_kg_per_m3 = random.log_uniform(500.0, 8000.0);
+  material.damping_ratio = random.uniform(0.01, 0.1);
   material.plastic = random.once_in(2);
-  scene.planes.push_back({Vector3(random.between(0.01, 0.04), 0, 0), Vector3::UnitX()});
+  scene.planes.push_back({Vector3(random.uniform(0.01, 0.04), 0, 0), Vector3::UnitX()});
   scene.tool.kind = random.once_in(3) ? ToolKind::point : ToolKind::sphere;
   scene.tool.action = static_cast<ToolAction>(random.bits() % tool_actions.size());
-  scene.tool.radius_m = random.between(0.003, 0.008);
+  scene.tool.radius_m = random.uniform(0.003, 0.008);
   scene.tool.iterations = 1 + static_cast<int>(random.bits() % 8);
-  scene.sculpting.force_scale = random.scaled(0.1, 1e4);
+  scene.sculpting.force_scale = random.log_uniform(0.1, 1e4);
   return scene;
 }
 
 // Makes a hand wander over and into the handle; sometimes the thread is late or the simulation stale.
-WatchedForces sculpt(RandomValues& random, int ticks) {
+WatchedForces sculpt(Random& random, int ticks) {
   auto made = Simulation::make(random_safety_scene(random), best_instruction_set());
   EXPECT_TRUE(made.ok()) << made.error().message;
   Simulation simulation = std::move(made).value();
-  const double mass = random.scaled(0.02, 1.0), stiffness = random.between(50.0, 1000.0);
+  const double mass = random.log_uniform(0.02, 1.0), stiffness = random.uniform(50.0, 1000.0);
   HandTarget target;
   target.pose.position_m = Vector3(0.03, 0.02, 0.0);
   VirtualDevice device =
@@ -189,7 +190,7 @@ WatchedForces sculpt(RandomValues& random, int ticks) {
   for (int k = 0; k < ticks; ++k) {
     if (k % stroke == 0) {
       from = to;
-      to = Vector3(random.between(0.0, 0.06), random.between(-0.01, 0.02), random.between(-0.01, 0.01));
+      to = Vector3(random.uniform(0.0, 0.06), random.uniform(-0.01, 0.02), random.uniform(-0.01, 0.01));
       target.buttons = random.once_in(2) ? button_main : 0u;
     }
     target.pose.position_m = from + (to - from) * ((k % stroke + 1.0) / stroke);
@@ -208,7 +209,7 @@ WatchedForces sculpt(RandomValues& random, int ticks) {
 
 TEST(SafetyAtRandom, LimitsHoldWhileSculpting) {
   const int scenes = random_cases(6, 60);
-  RandomValues random(12);
+  Random random(12);
   std::uint64_t with_force = 0;
   for (int scene = 0; scene < scenes; ++scene) {
     const WatchedForces watched = sculpt(random, 1500);

@@ -90,7 +90,6 @@ BoxTree::BoxTree(const std::vector<Box>& boxes, std::uint32_t leaf_size) {
 
 namespace {
 
-constexpr std::uint32_t mesh_leaf_size = 4;
 // Cosine of 50 degrees. Common edge angles are 45 and 60 degrees; between them, rounding does not decide.
 constexpr double wall_cosine = 0.6428;
 
@@ -117,7 +116,7 @@ LineExits::LineExits(std::vector<Triangle> triangles) : triangles_(std::move(tri
   std::vector<Box> boxes;
   boxes.reserve(triangles_.size());
   for (const Triangle& triangle : triangles_) boxes.push_back(bounding_box(triangle));
-  tree_ = std::make_unique<BoxTree>(boxes, mesh_leaf_size);
+  tree_ = std::make_unique<BoxTree>(boxes, triangle_leaf_size);
 }
 
 std::optional<LineExit> LineExits::first(const Vector3& from, const Vector3& direction) const {

@@ -15,6 +15,9 @@
 
 namespace spoonbill {
 
+// Number of triangles in a leaf of a tree over a mesh.
+inline constexpr std::uint32_t triangle_leaf_size = 4;
+
 // Tree of boxes over items such as triangles, in one flat array. Its depth is bounded, so a search needs
 // neither recursion nor the heap. The grouping of the items never changes; any thread may read the tree while
 // none calls refit().

@@ -11,7 +11,6 @@
 namespace spoonbill {
 namespace {
 
-constexpr std::uint32_t deforming_leaf_size = 4;
 // Distance in metres below which the offset to the surface has no reliable direction.
 constexpr double on_surface_m = 1e-12;
 
@@ -65,7 +64,7 @@ struct DeformingMesh::Nearest {
 };
 
 DeformingMesh::DeformingMesh(const TriangleMesh& mesh)
-    : vertices_m_(mesh.vertices_m), tree_(make_boxes(mesh), deforming_leaf_size) {
+    : vertices_m_(mesh.vertices_m), tree_(make_boxes(mesh), triangle_leaf_size) {
   SPOONBILL_ASSERT(!mesh.triangles.empty());
   triangles_.reserve(mesh.triangles.size());
   for (const std::uint32_t index : tree_.order()) triangles_.push_back(mesh.triangles[index]);

@@ -80,7 +80,6 @@ double WindingNumber::at(const Vector3& point_m) const {
 
 namespace {
 
-constexpr std::uint32_t rigid_leaf_size = 4;
 // Fraction of the mesh's size below which the offset to the surface has no reliable direction.
 constexpr double on_surface_fraction = 1e-12;
 constexpr double convex_fraction = 1e-7;
@@ -138,7 +137,7 @@ struct ShellDistance::Nearest {
 ShellDistance::ShellDistance(std::vector<Vector3> vertices_m, std::vector<TriangleCorners> triangles,
                              Kind kind)
     : vertices_m_(std::move(vertices_m)),
-      tree_(make_boxes(vertices_m_, triangles), rigid_leaf_size),
+      tree_(make_boxes(vertices_m_, triangles), triangle_leaf_size),
       kind_(kind),
       size_m_(tree_.nodes()[0].box.size()) {
   SPOONBILL_ASSERT(!triangles.empty());

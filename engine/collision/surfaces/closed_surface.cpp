@@ -33,11 +33,11 @@ Status check_poles(const Surface& surface) {
 }
 
 Status check_thickness(const Surface& surface) {
-  const double centre = parameter_at(surface.v, 0.5);
+  const double centre = surface.v.parameter_at(0.5);
   const Ring ring = sample_ring(surface, centre);
   double outward = 0.0, radius = 0.0;
   for (int s = 0; s < ring_samples; s += 8) {
-    const double u = parameter_at(surface.u, static_cast<double>(s) / ring_samples);
+    const double u = surface.u.parameter_at(static_cast<double>(s) / ring_samples);
     outward += unit_normal(surface, u, centre).dot(ring.points[s] - ring.centre);
     radius += (ring.points[s] - ring.centre).norm();
   }

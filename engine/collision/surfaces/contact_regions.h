@@ -69,7 +69,7 @@ class ParameterMean {
   explicit ParameterMean(const KnotVector& knots) : knots_(&knots) {}
   void add(double parameter) {
     if (count_ == 0) first_ = parameter;
-    const double length = knots_->domain_end() - knots_->domain_start();
+    const double length = knots_->domain_length();
     double difference = parameter - first_;
     if (knots_->is_periodic()) difference -= length * std::round(difference / length);
     sum_ += difference;
@@ -83,7 +83,7 @@ class ParameterMean {
   // Returns the point at a fraction of the path from the mean to another parameter; fractions above 1
   // extrapolate.
   double towards(double parameter, double fraction) const {
-    const double from = first_ + sum_ / count_, length = knots_->domain_end() - knots_->domain_start();
+    const double from = first_ + sum_ / count_, length = knots_->domain_length();
     double difference = parameter - from;
     if (knots_->is_periodic()) difference -= length * std::round(difference / length);
     return knots_->into_domain(from + fraction * difference);

@@ -59,7 +59,7 @@ const std::vector<double>& along(const TrimLoop& loop, Direction direction) {
   return direction == Direction::u ? loop.u : loop.v;
 }
 
-// Returns the centre of the widest range of a period that no loop reaches; nullopt where there is none.
+// Returns the centre of the widest range of a period that no loop reaches; nullopt if loops reach all of it.
 std::optional<double> find_free_seam(const KnotVector& knots, Direction direction,
                                      const std::vector<TrimLoop>& trims) {
   const double start = knots.domain_start(), period = knots.domain_end() - start;
@@ -83,7 +83,7 @@ std::optional<double> find_free_seam(const KnotVector& knots, Direction directio
 }
 
 bool has_loop_outside(const KnotVector& knots, Direction direction, const std::vector<TrimLoop>& trims) {
-  const double slack = trim_rounding_fraction * (knots.domain_end() - knots.domain_start());
+  const double slack = trim_rounding_fraction * knots.domain_length();
   for (const TrimLoop& loop : trims) {
     for (const double parameter : along(loop, direction)) {
       if (parameter < knots.domain_start() - slack || parameter > knots.domain_end() + slack) return true;
@@ -94,7 +94,7 @@ bool has_loop_outside(const KnotVector& knots, Direction direction, const std::v
 
 // Shifts loops by whole periods into the domain.
 void shift_into_domain(const KnotVector& knots, Direction direction, std::vector<TrimLoop>& trims) {
-  const double period = knots.domain_end() - knots.domain_start();
+  const double period = knots.domain_length();
   for (TrimLoop& loop : trims) {
     std::vector<double>& values = direction == Direction::u ? loop.u : loop.v;
     const double low = *std::min_element(values.begin(), values.end());

@@ -287,7 +287,8 @@ Result<CadFileContent> write_step(const CadModel& model, const CadWriting& writi
     return Error{ErrorCode::unsupported, "OpenCASCADE cannot convert the model to a STEP file"};
   }
   const auto step = opencascade::handle<StepData_StepModel>::DownCast(writer.Writer().WS()->Model());
-  if (step.IsNull()) return Error{ErrorCode::unsupported, "OpenCASCADE makes no STEP file of it"};
+  if (step.IsNull())
+    return Error{ErrorCode::unsupported, "OpenCASCADE cannot convert the model to a STEP file"};
   fill_header(step);
   content.text = to_step_ascii(to_text(step));
   return content;

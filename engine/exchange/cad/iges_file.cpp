@@ -27,7 +27,7 @@ std::string global_text(const std::filesystem::path& file) {
   return text;
 }
 
-// Returns the length of a string such as "3Habc" at `start`; 0 if there is none.
+// Returns the length of a string such as "3Habc" at `start`; 0 if no string starts there.
 std::size_t string_length(const std::string& text, std::size_t start) {
   std::size_t end = start;
   std::size_t count = 0;

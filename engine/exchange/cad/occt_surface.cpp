@@ -154,10 +154,6 @@ ControlMatrix opened_lines(const Surface& periodic, Direction direction) {
 constexpr double control_spread = 10.0;
 constexpr int moved_samples = 64;
 
-double parameter_at(const KnotVector& knots, double fraction) {
-  return knots.domain_start() + fraction * (knots.domain_end() - knots.domain_start());
-}
-
 }  // namespace
 
 Result<opencascade::handle<Geom_BSplineSurface>> to_occt(const Surface& surface) {
@@ -277,8 +273,8 @@ ClosedSurface close_exactly(const Surface& surface) {
   close_poles(closed.surface, control_spread * closing_tolerance_m);
   for (int i = 0; i <= moved_samples; ++i) {
     for (int j = 0; j <= moved_samples; ++j) {
-      const double u = parameter_at(surface.u, static_cast<double>(i) / moved_samples);
-      const double v = parameter_at(surface.v, static_cast<double>(j) / moved_samples);
+      const double u = surface.u.parameter_at(static_cast<double>(i) / moved_samples);
+      const double v = surface.v.parameter_at(static_cast<double>(j) / moved_samples);
       const Vector3 move = position(closed.surface, u, v) - position(surface, u, v);
       closed.moved_m = std::max(closed.moved_m, move.norm());
     }

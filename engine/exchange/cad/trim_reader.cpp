@@ -53,9 +53,8 @@ struct CurveTolerance {
 
 CurveTolerance find_curve_tolerance(const Surface& surface, double tolerance_m) {
   const double fraction = tolerance_m / std::max(stretch_bound_m(surface), 1e-300);
-  return {
-      {surface.u.domain_end() - surface.u.domain_start(), surface.v.domain_end() - surface.v.domain_start()},
-      std::clamp(fraction, smallest_curve_fraction, curve_fraction)};
+  return {{surface.u.domain_length(), surface.v.domain_length()},
+          std::clamp(fraction, smallest_curve_fraction, curve_fraction)};
 }
 
 // Fit of a curve by cubic pieces with its tangents (Hermite), halved until they are within the tolerance.
@@ -326,7 +325,7 @@ double measure_chain(const EdgeChain& chain, const Place& place) {
 }
 
 double domain_area(const KnotVector& along_u, const KnotVector& along_v) {
-  return (along_u.domain_end() - along_u.domain_start()) * (along_v.domain_end() - along_v.domain_start());
+  return along_u.domain_length() * along_v.domain_length();
 }
 
 // Orients the largest loop counter-clockwise and the others clockwise; some systems orient wires against the

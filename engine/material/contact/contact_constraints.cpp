@@ -8,7 +8,7 @@ namespace spoonbill {
 namespace {
 
 // The correction is below 1, so that neighbouring points that push the same node do not overshoot together.
-constexpr ContactPace held_pace{1.0, 0.3};
+constexpr ContactPace tool_pace{1.0, 0.3};
 
 // Frequency at which a coupled tool follows the hand, rad/s of material time. It determines the tool's
 // mass: that of a few nodes of clay, so that neither dominates the other.
@@ -135,7 +135,7 @@ void ContactConstraints::solve_push(const LatticeView& lattice, Constraint& cons
   }
   const ContactPush push{gap, normal, constraint.point.velocity_m_per_s(lattice) - tool.velocity_m_per_s,
                          1.0 / (effective_compliance(constraint) + response_compliance_)};
-  if (const auto impulse = push.impulse(h, held_pace, cap, constraint.friction)) {
+  if (const auto impulse = push.impulse(h, tool_pace, cap, constraint.friction)) {
     exchange(lattice, constraint, tool, *impulse);
   }
 }
@@ -144,7 +144,7 @@ void ContactConstraints::solve_grip(const LatticeView& lattice, Constraint& cons
                                     double h, double cap) {
   const Vector3 position = constraint.rest_m + constraint.point.displacement_m(lattice);
   const Vector3 miss = tool.position_m + motion_.orientation * constraint.direction - position;
-  Vector3 target = miss * (held_pace.correction / h);
+  Vector3 target = miss * (tool_pace.correction / h);
   const double speed = target.norm();
   if (speed > cap) target *= cap / speed;
   const Vector3 velocity = constraint.point.velocity_m_per_s(lattice);

@@ -143,7 +143,7 @@ bool ShellSurface::is_point(const std::vector<Position>& line) const {
 ShellSurface::Parameters ShellSurface::parameters(const Position& at) const {
   const auto to_parameter = [](const KnotVector& knots, double fraction) {
     if (fraction == 1.0 && !knots.is_periodic()) return knots.domain_end();
-    return knots.domain_start() + fraction * (knots.domain_end() - knots.domain_start());
+    return knots.parameter_at(fraction);
   };
   const double along = form_ == Form::bowl && pole_at_end_ ? 1.0 - at.along : at.along;
   const double first = to_parameter(across_knots(), at.across), second = to_parameter(along_knots(), along);

@@ -156,8 +156,8 @@ void expect_same_grid(const Surface& surface, const Grid& grid, const Geom_BSpli
       const Vector3 position(samples.x[k], samples.y[k], samples.z[k]);
       EXPECT_LE((position - expected.position_m).norm(), tolerance * size);
       ++checked.samples;
-      // Where the tangents are nearly parallel or short, the normal is ill-defined in this precision: the
-      // tolerance is multiplied by the amplification of a tangent's rounding error.
+      // The normal is ill-defined in this precision if the tangents are nearly parallel or short. The
+      // tolerance is therefore multiplied by the amplification of a tangent's rounding error.
       if (has_two_tangents(surface.u, u) || has_two_tangents(surface.v, v)) continue;
       if (!(normal_amplification(surface, expected, u, v) < 20.0)) continue;
       ++checked.normals;

@@ -1,29 +1,13 @@
-// Random inputs that are the same on every machine, unlike the distributions of the standard library.
+// Random knots, surfaces and parameters, the same on every machine.
 #pragma once
 
-#include <cstdint>
-#include <random>
 #include <vector>
 
 #include "engine/bspline/grid.h"
 #include "engine/bspline/surface.h"
+#include "tests/engine/random.h"
 
 namespace spoonbill {
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-
-  double uniform(double low, double high) {
-    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-  }
-  int integer(int low, int high) {  // both limits included
-    return low + static_cast<int>(engine_() % static_cast<std::uint64_t>(high - low + 1));
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 enum class KnotKind { clamped, unclamped, periodic };
 

@@ -1,5 +1,5 @@
 // PLY files as Stanford's, MeshLab's and VTK's programs write them, and generated ones of every form.
-#include "engine/exchange/points/ply_file.h"
+#include "engine/exchange/scans/ply_file.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <cstring>
 #include <string>
 
-#include "engine/exchange/points/number_lines.h"
-#include "engine/exchange/points/polygon.h"
+#include "engine/exchange/scans/number_lines.h"
+#include "engine/exchange/scans/polygon.h"
 #include "tests/engine/bspline/random_surface.h"
 #include "tests/engine/effort.h"
 

@@ -1,11 +1,15 @@
 // Point files in all supported formats, including malformed ones.
-#include "engine/exchange/points/point_cloud.h"
+#include "engine/exchange/scans/point_cloud.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstring>
 #include <random>
+#include <utility>
+#include <variant>
+
+#include "engine/exchange/scans/ply_file.h"
 
 namespace spoonbill {
 namespace {
@@ -50,6 +54,13 @@ void expect_two_points(const Result<PointCloud>& cloud, bool with_normals) {
   }
 }
 
+Result<PointCloud> ply_points(std::string_view bytes) {
+  auto content = parse_ply(bytes);
+  if (!content) return content.error();
+  if (auto* cloud = std::get_if<PointCloud>(&content.value())) return std::move(*cloud);
+  return Error{ErrorCode::unsupported, "holds a mesh"};
+}
+
 void expect_refusal(const Result<PointCloud>& cloud, const std::string& reason) {
   ASSERT_FALSE(cloud) << "should be refused: " << reason;
   EXPECT_NE(cloud.error().message.find(reason), std::string::npos) << cloud.error().message;
@@ -59,13 +70,13 @@ void expect_refusal(const Result<PointCloud>& cloud, const std::string& reason) 
 TEST(PlyPoints, TextAndBothByteOrders) {
   const std::string text =
       ply_header("ascii", "2") + "2 7 8\n200 1.5 -2.25 3 0 0 1\n200 2.5 -2.25 3e0 0 0 1\n";
-  expect_two_points(parse_ply_points(text), true);
-  expect_two_points(parse_ply_points(binary_ply_points(false)), true);
-  expect_two_points(parse_ply_points(binary_ply_points(true)), true);
+  expect_two_points(ply_points(text), true);
+  expect_two_points(ply_points(binary_ply_points(false)), true);
+  expect_two_points(ply_points(binary_ply_points(true)), true);
 }
 
 TEST(PlyPoints, SkipsAndCountsWhatIsNoNumber) {
-  const auto cloud = parse_ply_points(
+  const auto cloud = ply_points(
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
       "end_header\n1 2 3\nnan 2 3\n4 5 6\n");
   ASSERT_TRUE(cloud) << cloud.error().message;
@@ -74,34 +85,29 @@ TEST(PlyPoints, SkipsAndCountsWhatIsNoNumber) {
 }
 
 TEST(PlyPoints, RefusesEachDamageWithItsReason) {
-  expect_refusal(parse_ply_points("solid thing"), "not a PLY file");
-  expect_refusal(parse_ply_points("ply\nformat ascii 1.0\nelement vertex 3\n"), "no end");
-  expect_refusal(parse_ply_points(ply_header("ascii", "4000000000")), "cut or damaged");
-  expect_refusal(parse_ply_points("ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\n"
-                                  "property float y\nproperty float z\nend_header\n1 2 3\n"),
+  expect_refusal(ply_points("solid thing"), "not a PLY file");
+  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 3\n"), "no end");
+  expect_refusal(ply_points(ply_header("ascii", "4000000000")), "cut or damaged");
+  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\n"
+                            "property float y\nproperty float z\nend_header\n1 2 3\n"),
                  "more than the 5000000");
-  expect_refusal(
-      parse_ply_points("ply\nformat binary_little_endian 1.0\nelement vertex 4999999\nproperty float x\n"
-                       "property float y\nproperty float z\nend_header\n1 2 3\n"),
-      "cut or damaged");
-  expect_refusal(
-      parse_ply_points("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
-                       "property float z\nend_header\n"),
-      "has no points");
-  expect_refusal(
-      parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-                       "end_header\n1 2\n"),
-      "no x, y and z");
-  expect_refusal(
-      parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-                       "property float z\nend_header\nnan nan nan\n"),
-      "not a number");
-  expect_refusal(
-      parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-                       "property float z\nend_header\n1 inf 2\n"),
-      "infinity");
+  expect_refusal(ply_points("ply\nformat binary_little_endian 1.0\nelement vertex 4999999\nproperty float x\n"
+                            "property float y\nproperty float z\nend_header\n1 2 3\n"),
+                 "cut or damaged");
+  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
+                            "property float z\nend_header\n"),
+                 "has no points");
+  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                            "end_header\n1 2\n"),
+                 "no x, y and z");
+  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                            "property float z\nend_header\nnan nan nan\n"),
+                 "not a number");
+  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                            "property float z\nend_header\n1 inf 2\n"),
+                 "infinity");
   const std::string whole = binary_ply_points(false);
-  expect_refusal(parse_ply_points(std::string_view(whole).substr(0, whole.size() - 1)), "cut or damaged");
+  expect_refusal(ply_points(std::string_view(whole).substr(0, whole.size() - 1)), "cut or damaged");
 }
 
 const std::string pcd_fields = "VERSION .7\nFIELDS x y z rgb\nSIZE 8 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\n";
@@ -204,10 +210,9 @@ TEST(TextPoints, RefusesCommasThatMayPartNumbersOrNot) {
     expect_refusal(parse_text_points(std::string(line) + "\n"), "line 1 has commas");
   }
   expect_refusal(parse_obj_points("v 12,345 67,890 1,234\n"), "line 1 is not a point");
-  expect_refusal(
-      parse_ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-                       "property float z\nend_header\n1,5 2,5 3,5\n"),
-      "vertex 1 of 1 has '1,5', a number with a comma");
+  expect_refusal(ply_points("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                            "property float z\nend_header\n1,5 2,5 3,5\n"),
+                 "vertex 1 of 1 has '1,5', a number with a comma");
   expect_refusal(
       parse_pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1,5 2,5 3,5\n"),
       "point 1 has '1,5', a number with a comma");
@@ -242,9 +247,9 @@ TEST(PointFiles, DeclaredCountsAreChecked) {
 
   const std::string ply_start = "ply\nformat ascii 1.0\nelement vertex ";
   const std::string ply_end = "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
-  ASSERT_TRUE(parse_ply_points(ply_start + "399" + ply_end + points));
-  expect_code(parse_ply_points(ply_start + "398" + ply_end + points), ErrorCode::inconsistent);
-  expect_code(parse_ply_points(ply_start + "400" + ply_end + points), ErrorCode::malformed);
+  ASSERT_TRUE(ply_points(ply_start + "399" + ply_end + points));
+  expect_code(ply_points(ply_start + "398" + ply_end + points), ErrorCode::inconsistent);
+  expect_code(ply_points(ply_start + "400" + ply_end + points), ErrorCode::malformed);
 
   const std::string pcd_start = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS ";
   ASSERT_TRUE(parse_pcd_points(pcd_start + "399\nDATA ascii\n" + points));
@@ -288,8 +293,8 @@ TEST(PointFiles, AnyBytesGiveAnAnswer) {
       }
       if (bytes.empty()) bytes = "p";
     }
-    for (const auto& cloud : {parse_ply_points(bytes), parse_pcd_points(bytes), parse_text_points(bytes),
-                              parse_obj_points(bytes)}) {
+    for (const auto& cloud :
+         {ply_points(bytes), parse_pcd_points(bytes), parse_text_points(bytes), parse_obj_points(bytes)}) {
       if (cloud) {
         EXPECT_FALSE(cloud->points.empty());
       } else {

@@ -66,8 +66,8 @@ double gap_m(const Simulation& simulation) {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < samples_u; ++i) {
     for (int j = 0; j < samples_v; ++j) {
-      const Vector3 point = position(surface, parameter_at(surface.u, static_cast<double>(i) / samples_u),
-                                     parameter_at(surface.v, static_cast<double>(j) / samples_v));
+      const Vector3 point = position(surface, surface.u.parameter_at(static_cast<double>(i) / samples_u),
+                                     surface.v.parameter_at(static_cast<double>(j) / samples_v));
       least = std::min(least, ground.normal.dot(point - ground.point_m));
     }
   }

@@ -8,8 +8,8 @@
 #include <variant>
 
 #include "engine/exchange/mesh_import.h"
-#include "engine/exchange/points/ply_file.h"
-#include "engine/exchange/points/point_cloud.h"
+#include "engine/exchange/scans/ply_file.h"
+#include "engine/exchange/scans/point_cloud.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/targets/targets.h"
 
@@ -35,22 +35,6 @@ void take_file(std::string_view bytes, const std::function<Status(const std::fil
 
 }  // namespace
 
-// The first byte selects the format of the cloud.
-void take_points(std::string_view bytes) {
-  if (bytes.empty()) return;
-  const std::string_view rest = bytes.substr(1);
-  switch (bytes[0] % 4) {
-    case 0:
-      return take_cloud(parse_ply_points(rest), bytes.size());
-    case 1:
-      return take_cloud(parse_pcd_points(rest), bytes.size());
-    case 2:
-      return take_cloud(parse_text_points(rest), bytes.size());
-    default:
-      return take_cloud(parse_obj_points(rest), bytes.size());
-  }
-}
-
 // Meshes and clouds.
 void take_ply(std::string_view bytes) {
   const auto content = parse_ply(bytes);
@@ -63,6 +47,22 @@ void take_ply(std::string_view bytes) {
     for (const std::uint32_t corner : corners) {
       must_hold(corner < mesh.vertices.size(), "corners are vertices");
     }
+  }
+}
+
+// The first byte selects the format of the cloud.
+void take_points(std::string_view bytes) {
+  if (bytes.empty()) return;
+  const std::string_view rest = bytes.substr(1);
+  switch (bytes[0] % 4) {
+    case 0:
+      return take_ply(rest);
+    case 1:
+      return take_cloud(parse_pcd_points(rest), bytes.size());
+    case 2:
+      return take_cloud(parse_text_points(rest), bytes.size());
+    default:
+      return take_cloud(parse_obj_points(rest), bytes.size());
   }
 }
 

@@ -1,4 +1,4 @@
-#include "engine/exchange/points/polygon.h"
+#include "engine/exchange/scans/polygon.h"
 
 #include <algorithm>
 

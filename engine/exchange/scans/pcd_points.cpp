@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "engine/base/text.h"
-#include "engine/exchange/points/number_lines.h"
-#include "engine/exchange/points/point_cloud.h"
+#include "engine/exchange/scans/number_lines.h"
+#include "engine/exchange/scans/point_cloud.h"
 
 namespace spoonbill {
 namespace {

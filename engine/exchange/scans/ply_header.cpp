@@ -1,4 +1,4 @@
-#include "engine/exchange/points/ply_header.h"
+#include "engine/exchange/scans/ply_header.h"
 
 #include <algorithm>
 #include <array>
@@ -141,7 +141,7 @@ Result<PlyHeader> read_ply_header(std::string_view bytes) {
     }
     if (!read) return read.error();
   }
-  return Error{ErrorCode::malformed, "its header has no end within 64 KiB; it is cut or no PLY file"};
+  return Error{ErrorCode::malformed, "its header has no end within 64 KiB; it is cut or not a PLY file"};
 }
 
 }  // namespace spoonbill

@@ -1,4 +1,4 @@
-#include "engine/exchange/points/number_lines.h"
+#include "engine/exchange/scans/number_lines.h"
 
 #include <algorithm>
 #include <charconv>

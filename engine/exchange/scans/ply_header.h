@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "engine/exchange/points/number_lines.h"
+#include "engine/exchange/scans/number_lines.h"
 
 namespace spoonbill {
 

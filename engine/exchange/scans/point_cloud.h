@@ -46,10 +46,6 @@ class PointCollector {
   bool with_normals_ = false;
 };
 
-// Reads the vertices of a PLY file and their normals, as parse_ply() in ply_file.h does; the normals of a
-// mesh are left out.
-Result<PointCloud> parse_ply_points(std::string_view bytes);
-
 // Reads the points of a PCD file (version 0.5 to 0.7): text, binary, or binary compressed. The fields
 // normal_x, normal_y and normal_z are its normals. Refused: POINTS that are not WIDTH times HEIGHT, fewer or
 // more points than the header names.
@@ -66,8 +62,8 @@ Result<PointCloud> parse_text_points(std::string_view bytes);
 Result<PointCloud> parse_obj_points(std::string_view bytes);
 bool obj_has_faces(std::string_view bytes);
 
-// Reads a file's content with the reader that the ending of its name selects, text by default. Errors name
-// the file.
+// Reads a file's content with the reader that the ending of its name selects, text by default. Not for PLY,
+// which may hold a mesh (parse_ply()). Errors name the file.
 Result<PointCloud> points_of(std::string_view bytes, const std::filesystem::path& file);
 
 }  // namespace spoonbill

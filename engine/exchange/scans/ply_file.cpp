@@ -1,4 +1,4 @@
-#include "engine/exchange/points/ply_file.h"
+#include "engine/exchange/scans/ply_file.h"
 
 #include <algorithm>
 #include <bit>
@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "engine/base/text.h"
-#include "engine/exchange/points/number_lines.h"
-#include "engine/exchange/points/ply_header.h"
-#include "engine/exchange/points/polygon.h"
+#include "engine/exchange/scans/number_lines.h"
+#include "engine/exchange/scans/ply_header.h"
+#include "engine/exchange/scans/polygon.h"
 
 namespace spoonbill {
 namespace {
@@ -133,9 +133,9 @@ Status check_vertices(const PlyNumbers& numbers, const PlyElement& element) {
   return check_row_count(numbers, element);
 }
 
-// Calls take(point, normal) for each vertex; the normal is zero if the element has none.
-template <class Take>
-Status read_vertices(PlyNumbers& numbers, const PlyElement& element, const Take& take) {
+// Calls receive(point, normal) for each vertex; the normal of an element without normals is zero.
+template <class Receive>
+Status read_vertices(PlyNumbers& numbers, const PlyElement& element, const Receive& receive) {
   static constexpr std::array<std::string_view, 6> names{"x", "y", "z", "nx", "ny", "nz"};
   // For each property, which of the six coordinates it is; -1 for others.
   std::vector<int> coordinate(element.properties.size(), -1);
@@ -151,9 +151,9 @@ Status read_vertices(PlyNumbers& numbers, const PlyElement& element, const Take&
           coordinate[p] < 0 ? numbers.skip(property) : numbers.read(property.type, values[coordinate[p]]);
       if (!is_read) return row_error(numbers, element, row);
     }
-    const Status taken =
-        take(Vector3(values[0], values[1], values[2]), Vector3(values[3], values[4], values[5]));
-    if (!taken) return taken;
+    const Status received =
+        receive(Vector3(values[0], values[1], values[2]), Vector3(values[3], values[4], values[5]));
+    if (!received) return received;
   }
   return {};
 }
@@ -239,7 +239,7 @@ class PlyMeshBuilder {
 
   static Error index_error(double number) {
     return Error{ErrorCode::malformed,
-                 "a face names the vertex " + number_text(number) + ", which is no index; it is damaged"};
+                 "a face names the vertex " + number_text(number) + ", which is not an index; it is damaged"};
   }
 
   Status add_face() {

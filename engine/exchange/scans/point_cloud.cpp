@@ -1,5 +1,5 @@
 // Collection of points, the choice of a reader by the file's name, and the readers of text and OBJ files.
-#include "engine/exchange/points/point_cloud.h"
+#include "engine/exchange/scans/point_cloud.h"
 
 #include <algorithm>
 #include <array>
@@ -7,12 +7,11 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <variant>
 
+#include "engine/base/assert.h"
 #include "engine/base/text.h"
 #include "engine/exchange/file_format.h"
-#include "engine/exchange/points/number_lines.h"
-#include "engine/exchange/points/ply_file.h"
+#include "engine/exchange/scans/number_lines.h"
 
 namespace spoonbill {
 namespace {
@@ -206,19 +205,6 @@ Result<PointCloud> parse_text_points(std::string_view bytes) {
   return cloud;
 }
 
-Result<PointCloud> parse_ply_points(std::string_view bytes) {
-  auto content = parse_ply(bytes);
-  if (!content) return content.error();
-  if (auto* cloud = std::get_if<PointCloud>(&content.value())) return std::move(*cloud);
-  const std::vector<Vector3>& vertices = std::get<PlyMesh>(content.value()).vertices;
-  PointCollector collector;
-  if (Status begun = collector.begin(vertices.size(), false); !begun) return begun.error();
-  for (const Vector3& vertex : vertices) {
-    if (Status added = collector.add(vertex, Vector3::Zero()); !added) return added.error();
-  }
-  return std::move(collector).finish();
-}
-
 Result<PointCloud> parse_obj_points(std::string_view bytes) {
   PointCollector collector;
   std::vector<Vector3> normals;
@@ -256,8 +242,8 @@ bool obj_has_faces(std::string_view bytes) {
 
 Result<PointCloud> points_of(std::string_view bytes, const std::filesystem::path& file) {
   const FileFormat format = format_from_name(file);
-  auto cloud = format == FileFormat::ply   ? parse_ply_points(bytes)
-               : format == FileFormat::pcd ? parse_pcd_points(bytes)
+  SPOONBILL_ASSERT(format != FileFormat::ply);
+  auto cloud = format == FileFormat::pcd   ? parse_pcd_points(bytes)
                : format == FileFormat::obj ? parse_obj_points(bytes)
                                            : parse_text_points(bytes);
   if (!cloud) return cloud.error().in(file.string());

@@ -9,7 +9,7 @@
 
 #include "engine/base/geometry.h"
 #include "engine/base/result.h"
-#include "engine/exchange/points/point_cloud.h"
+#include "engine/exchange/scans/point_cloud.h"
 
 namespace spoonbill {
 
