@@ -170,8 +170,14 @@ bool has_extent(const Surface& surface) {
 
 namespace {
 
-// Curvatures of a surface of this size. A radius of less than a collapsed edge, as at a cusp, is no radius.
-std::optional<PrincipalCurvatures> physical_curvatures(const SurfacePoint& point, double size_m) {
+// Returns the curvatures at a point of a surface of this size. None where a derivative is the rounding of the
+// control points, or where the radius is less than a collapsed edge, as at a cusp.
+std::optional<PrincipalCurvatures> physical_curvatures(const Surface& surface, const SurfacePoint& point,
+                                                       double size_m) {
+  constexpr double least_relative_speed = 1e-9;
+  const double slowest_m =
+      std::min(point.du.norm() * surface.u.domain_length(), point.dv.norm() * surface.v.domain_length());
+  if (!(slowest_m > least_relative_speed * size_m)) return std::nullopt;
   const auto found = compute_principal_curvatures(point);
   if (!found) return std::nullopt;
   const double sharpest = std::max(std::abs(found->smallest), std::abs(found->largest));
@@ -190,7 +196,7 @@ CurvatureRange find_curvature_range(const Surface& surface, const TrimmedArea& a
     const auto value = [&](double u, double v) {
       constexpr double none = std::numeric_limits<double>::infinity();
       if (!area.contains(u, v)) return none;
-      const auto found = physical_curvatures(evaluate(surface, u, v), size_m);
+      const auto found = physical_curvatures(surface, evaluate(surface, u, v), size_m);
       if (!found) return none;
       return largest ? -found->largest : found->smallest;
     };
@@ -214,7 +220,7 @@ double compute_bending_energy(const Surface& surface, const TrimmedArea& area) {
     if (!area.contains(cell.centre_u(), cell.centre_v())) continue;
     // Midpoint rule, because the integrand is not smooth at knots, poles and trims.
     const SurfacePoint point = evaluate(surface, cell.centre_u(), cell.centre_v());
-    const auto found = physical_curvatures(point, size_m);
+    const auto found = physical_curvatures(surface, point, size_m);
     if (!found) continue;
     const double squares = found->smallest * found->smallest + found->largest * found->largest;
     sum += squares * point.du.cross(point.dv).norm() * (cell.u1 - cell.u0) * (cell.v1 - cell.v0);

@@ -32,11 +32,13 @@ std::vector<FixedAxis> find_fixed_axes(const BodyState& state, const Body& body)
   return fixed;
 }
 
-// Returns the principal Green-Lagrange strain of the largest magnitude at a point of a cell.
+// Returns the principal Green-Lagrange strain of the largest magnitude at a point of a cell. The
+// displacement's gradient keeps the digits of a small strain, which the deformation gradient rounds away.
 double principal_strain(const CellCorners& rest, const CellCorners& bent, const Vector3& at) {
-  const Eigen::Matrix3d gradient = trilinear_jacobian(bent, at.x(), at.y(), at.z()) *
-                                   trilinear_jacobian(rest, at.x(), at.y(), at.z()).inverse();
-  const Eigen::Matrix3d strain = 0.5 * (gradient.transpose() * gradient - Eigen::Matrix3d::Identity());
+  const Eigen::Matrix3d jacobian = trilinear_jacobian(rest, at.x(), at.y(), at.z());
+  const Eigen::Matrix3d gradient =
+      (trilinear_jacobian(bent, at.x(), at.y(), at.z()) - jacobian) * jacobian.inverse();
+  const Eigen::Matrix3d strain = 0.5 * (gradient + gradient.transpose() + gradient.transpose() * gradient);
   const Vector3 principal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(strain).eigenvalues();
   return principal[std::abs(principal[0]) > std::abs(principal[2]) ? 0 : 2];
 }

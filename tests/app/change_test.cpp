@@ -158,11 +158,12 @@ TEST(ChangeCommand, RefusesInOneLine) {
 TEST(ChangeCommand, SaysWhatADegreeTakes) {
   const Workplace place;
   const std::string ball = place.text("ball.json");
-  ASSERT_EQ(run({"new", "sphere", "--control", "40x40", "--out", ball}).code, exit_done);
-  // The control points follow from 37 spans in v: 36 inner knots of multiplicity seven, and ten at an end.
+  ASSERT_EQ(run({"new", "sphere", "--control", "40x48", "--out", ball}).code, exit_done);
+  // The control points follow from 43 spans of degree 5 in v: 42 inner knots of multiplicity five, and ten at
+  // an end.
   const Outcome outcome = run({"change", ball, "degree", "v", "9", "--out", place.text("out.json")});
   EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
-  EXPECT_NE(outcome.err.find("needs 262 control points, and a document holds 200"), std::string::npos)
+  EXPECT_NE(outcome.err.find("needs 220 control points, and a document holds 200"), std::string::npos)
       << outcome.err;
 }
 
