@@ -81,6 +81,17 @@ TEST(Check, AnEdgeOfAMillionthIsAPoint) {
   }
 }
 
+// A bent handle whose poles were fitted in single precision, so that their points lie some 10 nm apart. The
+// thickness is that of its bent part, found from a fine triangulation.
+TEST(Check, ABentHandleIsNotThinAtItsPoles) {
+  const Outcome outcome = run({"check", SPOONBILL_TEST_INPUTS "/bent-handle.json", "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  const Json body = json_of(outcome.out)["bodies"][0];
+  EXPECT_EQ(body["sound"], true);
+  EXPECT_NEAR(body["smallest_thickness_m"], 0.0045, 1e-4);
+  EXPECT_GT(body["smallest_convex_radius_m"], 0.0005);
+}
+
 bool has_null(const Json& json) {
   if (!json.is_structured()) return json.is_null();
   return std::any_of(json.begin(), json.end(), [](const Json& part) { return has_null(part); });

@@ -136,6 +136,16 @@ TEST(Rest, SaysWhereEverythingIsFixed) {
   EXPECT_NEAR(json_of(moved.out)["bodies"][0]["largest_displacement_m"].get<double>(), 0.003, 1e-12);
 }
 
+TEST(Rest, AnswersForBallsThatAreFixedEverywhere) {
+  for (const char* file : {"rest-all-held.json", "rest-all-behind-plane.json"}) {
+    const Outcome outcome = run({"rest", SPOONBILL_TEST_INPUTS "/" + std::string(file), "--json"});
+    ASSERT_EQ(outcome.code, exit_done) << file << outcome.err;
+    const Json body = json_of(outcome.out)["bodies"][0];
+    EXPECT_EQ(body["fixed_everywhere"], true) << file;
+    EXPECT_EQ(body["largest_displacement_m"], 0.0) << file;
+  }
+}
+
 TEST(Rest, TellsAPersonInLines) {
   const Workplace place;
   Document document = elastic_document(place);

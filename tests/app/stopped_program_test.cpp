@@ -135,8 +135,7 @@ TEST(StoppedProgram, LeavesALiveRecordingUnpublished) {
 TEST(StoppedProgram, EndsInTheMidstOfALongTick) {
   const Workplace place;
   for (const char* name : {"endless-tick.script.json", "endless-tick-model.json"}) {
-    std::filesystem::copy_file(std::filesystem::path(SPOONBILL_TESTS) / "app/inputs" / name,
-                               place.path(name));
+    std::filesystem::copy_file(std::filesystem::path(SPOONBILL_TEST_INPUTS) / name, place.path(name));
   }
   const std::vector<std::string> record = {"record", place.text("endless-tick.script.json"), "--out",
                                            place.text("e.jsonl")};
