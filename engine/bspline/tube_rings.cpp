@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "engine/base/assert.h"
+#include "engine/bspline/basis.h"
 
 namespace spoonbill {
 namespace {
@@ -190,13 +191,33 @@ void turn_to_sides(const Ring& ring, const Vector3& axis, Vector3& e1) {
 
 Ring sample_ring(const Surface& surface, double v) {
   SPOONBILL_ASSERT(surface.u.is_periodic());
+  // The control points of the ring and of its derivative by v, to the bits of evaluate().
+  const BasisFunctions along = basis_functions(surface.v, surface.v.into_domain(v));
+  std::vector<Vector3> controls, derivatives;
+  for (int i = 0; i < surface.net.rows; ++i) {
+    Vector3 value = Vector3::Zero(), derivative = Vector3::Zero();
+    for (int j = 0; j <= surface.v.degree(); ++j) {
+      const Vector3 control = surface.net.point(i, surface.v.control_index(along.span, j));
+      value += along.values[0][j] * control;
+      derivative += along.values[1][j] * control;
+    }
+    controls.push_back(value);
+    derivatives.push_back(derivative);
+  }
   Ring ring;
+  BasisFunctions around;
   for (int s = 0; s < ring_samples; ++s) {
-    const SurfacePoint point =
-        evaluate(surface, surface.u.parameter_at(static_cast<double>(s) / ring_samples), v);
-    ring.points.push_back(point.position_m);
-    ring.centre += point.position_m / ring_samples;
-    ring.along += point.dv / ring_samples;
+    const double u = surface.u.parameter_at(static_cast<double>(s) / ring_samples);
+    basis_values(surface.u, surface.u.into_domain(u), around);
+    Vector3 point = Vector3::Zero(), derivative = Vector3::Zero();
+    for (int i = 0; i <= surface.u.degree(); ++i) {
+      const int row = surface.u.control_index(around.span, i);
+      point += around.values[0][i] * controls[row];
+      derivative += around.values[0][i] * derivatives[row];
+    }
+    ring.points.push_back(point);
+    ring.centre += point / ring_samples;
+    ring.along += derivative / ring_samples;
   }
   for (int s = 0; s < ring_samples; ++s) {
     ring.perimeter += (ring.points[(s + 1) % ring_samples] - ring.points[s]).norm();
