@@ -46,18 +46,20 @@ std::vector<NetEdge> find_collapsed_edges(const Surface& surface) {
   return edges;
 }
 
+bool join_edge(ControlNet& net, const NetEdge& edge) {
+  if (extent_of_edge(net, edge) == 0.0) return false;
+  for (std::vector<double>* axis : {&net.x, &net.y, &net.z}) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < edge.count; ++k) sum += (*axis)[edge.first + k * edge.stride];
+    const double mean = sum / static_cast<double>(edge.count);
+    for (std::size_t k = 0; k < edge.count; ++k) (*axis)[edge.first + k * edge.stride] = mean;
+  }
+  return true;
+}
+
 bool join_collapsed_edges(Surface& surface) {
   bool moved = false;
-  for (const NetEdge& edge : find_collapsed_edges(surface)) {
-    if (extent_of_edge(surface.net, edge) == 0.0) continue;
-    moved = true;
-    for (std::vector<double>* axis : {&surface.net.x, &surface.net.y, &surface.net.z}) {
-      double sum = 0.0;
-      for (std::size_t k = 0; k < edge.count; ++k) sum += (*axis)[edge.first + k * edge.stride];
-      const double mean = sum / static_cast<double>(edge.count);
-      for (std::size_t k = 0; k < edge.count; ++k) (*axis)[edge.first + k * edge.stride] = mean;
-    }
-  }
+  for (const NetEdge& edge : find_collapsed_edges(surface)) moved = join_edge(surface.net, edge) || moved;
   return moved;
 }
 

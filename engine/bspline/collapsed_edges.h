@@ -20,8 +20,11 @@ struct NetEdge {
 // Returns the edges of a direction's clamped ends whose control points are a single point up to the fraction.
 std::vector<NetEdge> find_collapsed_edges(const Surface& surface);
 
-// Moves the control points of each collapsed edge to their mean, unless they already are exactly together.
-// Returns whether a point moved.
+// Moves the control points of an edge to their mean, unless they already are exactly together. Returns
+// whether a point moved. Does not allocate.
+bool join_edge(ControlNet& net, const NetEdge& edge);
+
+// Joins each collapsed edge. Returns whether a point moved.
 bool join_collapsed_edges(Surface& surface);
 
 }  // namespace spoonbill

@@ -216,6 +216,7 @@ Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& curren
     mapping.current_ = std::move(finer).value();
   }
   mapping.base_ = mapping.current_;
+  mapping.collapsed_edges_ = find_collapsed_edges(mapping.rest_);
   const KnotVector& v = mapping.rest_.v;
   RefitConstraints constraints{find_fixed_columns(v, fixed), true, true};
   if (lattice.mesh().thin || v.is_periodic()) {
@@ -319,6 +320,8 @@ void BodyMapping::update(const SpringLattice& lattice) {
       (*net[axis])[p] = (*base[axis])[p] + static_cast<double>(control_[axis][p]);
     }
   }
+  // Single precision moves the points of a pole apart.
+  for (const NetEdge& edge : collapsed_edges_) join_edge(current_.net, edge);
 }
 
 void BodyMapping::measure_residual() {

@@ -10,6 +10,7 @@
 #include "engine/base/containers.h"
 #include "engine/base/processor.h"
 #include "engine/base/result.h"
+#include "engine/bspline/collapsed_edges.h"
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/surface.h"
@@ -88,6 +89,7 @@ class BodyMapping {
   AlignedVector<float> sample_[3];         // by axis, in the layout of the refit
   std::vector<float> control_[3];
   bool first_pole_ = true, last_pole_ = true;    // whether v starts and ends with a pole
+  std::vector<NetEdge> collapsed_edges_;         // kept exactly together
   std::vector<DisplacementRefit> refit_;         // one element once made
   std::vector<GridEvaluator<float>> evaluator_;  // one element once made
   GridSamples<float> followed_;                  // displacement of the surface at the samples

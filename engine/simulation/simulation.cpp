@@ -10,7 +10,6 @@
 
 #include "engine/base/assert.h"
 #include "engine/base/processor.h"
-#include "engine/bspline/collapsed_edges.h"
 #include "engine/simulation/simulation_state.h"
 
 namespace spoonbill {
@@ -244,8 +243,6 @@ void Simulation::write_scene(Scene& scene) const {
   scene = state_->scene;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     scene.bodies[b].surface = state_->bodies[b].mapping().current();
-    // The refit leaves the points of a pole apart by the rounding of single precision.
-    join_collapsed_edges(scene.bodies[b].surface);
   }
 }
 
