@@ -220,6 +220,7 @@ TEST(PluggedDevice, DrivesTheLockStepLoopThroughTheSameChain) {
     EXPECT_GT(hardware->noticeable_ticks, before + 20);
   }
   ASSERT_TRUE(lockstep.finish());
+  ASSERT_TRUE(writer->commit());
   EXPECT_EQ(hardware->faulty_ticks, 200U);
   EXPECT_NEAR(hardware->largest_n, plugged_limit_n, 1e-3);
   expect_harmless(*hardware);

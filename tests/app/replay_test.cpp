@@ -104,15 +104,16 @@ TEST(Replay, AReadOnlyFileIsReplacedOnlyByForce) {
   const Workplace place;
   const auto read_only = std::filesystem::perms(0444);
   const std::string recording = place.record("bend.jsonl").string();
-  const auto again = place.write("again.jsonl", "old"), model = place.write("old.json", "old");
+  const auto again = place.write("again.jsonl", "old"), model = place.write("old.json", "old"),
+             mesh = place.write("old.stl", "old");
   std::filesystem::create_directory(place.path("out"));
   const auto frame = place.write("out/frame-0000.png", "old");
-  for (const auto& file : {again, model, frame}) std::filesystem::permissions(file, read_only);
+  for (const auto& file : {again, model, mesh, frame}) std::filesystem::permissions(file, read_only);
   const std::vector<std::vector<std::string>> commands = {
       {"record", place.text("script.json"), "--out", again.string()},
       {"replay", recording, "--no-frames", "--rerecord", again.string()},
       {"replay", recording, "--out", place.text("out"), "--size", "96x64", "--every", "99"},
-      {"convert", place.text("model.json"), model.string()},
+      {"convert", place.text("model.json"), mesh.string()},
       {"new", "sphere", "--out", model.string(), "--control", "12x12"},
       {"sample", place.text("model.json"), "--out", again.string()}};
   for (std::vector<std::string> command : commands) {
@@ -120,12 +121,12 @@ TEST(Replay, AReadOnlyFileIsReplacedOnlyByForce) {
     EXPECT_EQ(refused.code, exit_failed) << command[0];
     EXPECT_TRUE(is_clean_failure(refused)) << refused.err;
   }
-  for (const auto& file : {again, model, frame}) EXPECT_EQ(content_of(file), "old");
+  for (const auto& file : {again, model, mesh, frame}) EXPECT_EQ(content_of(file), "old");
   for (std::vector<std::string> command : commands) {
     command.push_back("--force");
     EXPECT_EQ(run(command).code, exit_done) << command[0];
   }
-  for (const auto& file : {again, model}) {
+  for (const auto& file : {again, model, mesh}) {
     EXPECT_NE(content_of(file), "old");
     EXPECT_EQ(std::filesystem::status(file).permissions(), read_only) << "the mode is kept";
   }
