@@ -49,6 +49,13 @@ NearestOnCell nearest_on_cell(const Vector3& point, const PatchCorners& at) {
 
 namespace {
 
+// Returns a lower bound of the distance to a patch, that to the box of its corners.
+double distance_bound(const Vector3& point, const PatchCorners& at) {
+  Box box;
+  for (const Vector3& corner : at) box.include(corner);
+  return (point - point.cwiseMax(box.low).cwiseMin(box.high)).norm();
+}
+
 constexpr std::size_t near_surface_capacity = 4096;
 // Limit of the surface points evaluated in one search, some fifty milliseconds. Points of smooth bodies take
 // about five each; those of crumpled ones would take thousands.
@@ -87,8 +94,10 @@ void NearPoints::offer(int i, int j, const SurfaceLevels& other, const LevelCell
   const Grid& grid = levels_.nested().grid;
   const int sample = i * grid.columns() + j;
   const Vector3 point = levels_.sample(sample);
+  const bool known = indexed_at_[sample] == generation_;
+  if (known && distance_bound(point, corners) >= near_[index_[sample]].gap_m) return;
   const NearestOnCell on = nearest_on_cell(point, corners);
-  if (indexed_at_[sample] != generation_) {
+  if (!known) {
     if (near_.size() == near_surface_capacity) {
       overflow_ = true;
       return;
