@@ -83,7 +83,7 @@ class FrameBudget {
   // Lowers settings to quality(); never raises them.
   void apply(ViewSettings& settings) const;
 
-  // Returns one line for the panel that says how the quality is reduced; empty at full quality.
+  // Returns one line for the panel that reports how the quality is reduced; empty at full quality.
   std::string text() const;
 
  private:

@@ -1,6 +1,6 @@
-// main() of the test programs. Where SPOONBILL_CASE_REPORT names a file, each case appends a line to it when
-// it starts and one when it has ended, so that a process that ends in a case has said which; tests/run_suite
-// reads them.
+// main() of the test programs. If SPOONBILL_CASE_REPORT names a file, each case appends a line to it when it
+// starts and another when it has ended. If the process dies during a case, the file therefore shows which
+// one; tests/run_suite reads it.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -42,7 +42,7 @@ class CaseReport final : public testing::EmptyTestEventListener {
   }
 
  private:
-  // One write, without a buffer that a crash would lose or a forked child would write twice.
+  // Writes the line in one call: a crash could lose a buffer, or a forked child could write it twice.
   void write_line(const char* verdict, double seconds, const testing::TestInfo& test) const {
     if (file_ < 0 || getpid() != owner_) return;
     const std::string line = std::string(verdict) + " " + std::to_string(seconds) + " " +
@@ -60,7 +60,7 @@ class CaseReport final : public testing::EmptyTestEventListener {
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   if (const char* path = std::getenv("SPOONBILL_CASE_REPORT")) {
-    testing::UnitTest::GetInstance()->listeners().Append(new CaseReport(path));  // which GoogleTest deletes
+    testing::UnitTest::GetInstance()->listeners().Append(new CaseReport(path));  // GoogleTest deletes it
   }
   return RUN_ALL_TESTS();
 }

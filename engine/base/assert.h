@@ -36,7 +36,7 @@ using AssertionHandler = void (*)(const FailedAssertion& failure);
 // Sets the process's handler and returns the previous one. Must be called while the process has one thread.
 AssertionHandler set_assertion_handler(AssertionHandler handler);
 
-// Throws the failure. Serves as the handler of programs that catch it where work can be abandoned.
+// Throws the failure. This is the handler for programs that catch failures and abandon the work in progress.
 void throw_failed_assertion(const FailedAssertion& failure);
 
 // Calls the handler, and aborts if it returns.

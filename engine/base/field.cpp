@@ -19,8 +19,8 @@ std::string name_in_si(const FieldForm& form) {
   return in_millimetres ? std::string(name.substr(0, name.size() - 2)) + "m" : std::string(name);
 }
 
-// The name is built only for a refused number: a tool, whose fields are numbers, is set between two ticks,
-// where nothing may allocate.
+// Builds the name only for a refused number, because a valid tool must be accepted between two ticks without
+// allocating.
 Status check_value(const std::string& about, const FieldForm& form, double value, Range<double> range) {
   if (range.contains(value)) return {};
   return with_field(check_range(about + name_in_si(form), value, range), form);

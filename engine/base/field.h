@@ -71,14 +71,14 @@ struct FieldForm {
   const char* name = nullptr;  // name in files
   const char* help = "";       // a phrase without a full stop; empty if the name is self-explanatory
   FieldUnit unit = FieldUnit::none;
-  Range<double> range{-unlimited, unlimited};  // of a number, or of each component of a vector
+  Range<double> range{-unlimited, unlimited};  // range of a number, or of each component of a vector
   double length_limit = unlimited;             // largest length of a vector
   VectorSense sense = VectorSense::quantity;   // meaning of a vector
   // True if files may omit the field. A missing field then has its struct's default, and a field is written
   // only if it differs from the default.
   bool optional = false;
-  // Name of an earlier optional field that this field accompanies: this field is required if the earlier one
-  // is given, and unknown otherwise.
+  // Name of an earlier optional field, the partner. If the partner is given, this field is required;
+  // otherwise this field is unknown.
   const char* partner = nullptr;
   FieldAlias alias = {};
   FieldSlider slider = {};
@@ -92,8 +92,8 @@ struct ChoiceMember {
   void (*set)(Object&, std::size_t);
 };
 
-// A pointer to the field in its struct. A union rather than a std::variant, which every source that includes
-// a table would instantiate for each struct.
+// A pointer to a field of a struct. It is a union because a std::variant would be instantiated for each
+// struct in every source that includes a table.
 template <class Object>
 class FieldMember {
  public:
@@ -155,9 +155,10 @@ template <class Object>
 struct Field {
   FieldForm form;
   FieldMember<Object> member;
-  // Returns the number's range if it depends on the object's other fields; null if it does not.
+  // Function that returns the number's range if the range depends on other fields of the object; otherwise
+  // null.
   Range<double> (*range_by_object)(const Object&) = nullptr;
-  // Returns whether this object has the field at all; null if every object has it.
+  // Function that returns whether an object has the field at all; null if every object has it.
   bool (*applies_to)(const Object&) = nullptr;
 
   Range<double> range_for(const Object& object) const {
@@ -203,7 +204,7 @@ struct NoFields {};
 template <class Object>
 inline constexpr NoFields fields_of;
 
-// Name in files of a struct that is an alternative of a variant.
+// Name, in files, of a struct that is one of the alternatives of a variant.
 template <class Object>
 inline constexpr const char* kind_name = nullptr;
 
@@ -311,8 +312,8 @@ consteval const Field<Object>& field_of(Value Object::*member) {
 // Returns the name under which messages report the field in SI units, such as "radius_m" for "radius_mm".
 std::string name_in_si(const FieldForm& form);
 
-// Returns an error unless the value is within its range. The message has `about`, such as "tool: ", before
-// the field's name, then the value and the range. The error's field is the name in files.
+// Returns an error unless the value is within its range. The message consists of `about` (such as "tool: "),
+// the field's name, the value and the range. The error's field is the name in files.
 Status check_value(const std::string& about, const FieldForm& form, double value, Range<double> range);
 Status check_value(const std::string& about, const FieldForm& form, int value, Range<double> range);
 Status check_value(const std::string& about, const FieldForm& form, const Vector3& value);

@@ -161,7 +161,7 @@ Status save_backup(const std::filesystem::path& file) {
 Status check_replaceable(const std::filesystem::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return {};
-  // The bits are asked too, because the administrator may write every file.
+  // The permission bits are tested too, because access() allows the administrator to write every file.
   if ((status.st_mode & 0222) != 0 && ::access(file.c_str(), W_OK) == 0) return {};
   return Error{ErrorCode::unwritable, file.string() + ": is read-only; choose another name or use --force"};
 }
@@ -188,7 +188,7 @@ Result<OutputFile> OutputFile::create(const std::filesystem::path& file, Mode mo
   OutputFile out;
   out.mode_ = mode;
   out.file_ = out.target_ = file;
-  // The link itself is replaced if it cannot be resolved.
+  // If the link cannot be resolved, the link itself is replaced.
   if (replaces && follows) out.target_ = std::filesystem::canonical(file, ignored);
   if (out.target_.empty()) out.target_ = file;
   out.written_ = out.target_;
@@ -208,7 +208,7 @@ Result<OutputFile> OutputFile::create(const std::filesystem::path& file, Mode mo
 
 namespace {
 
-// O_EXCL never follows a link of that name.
+// With O_EXCL, open() fails if the name exists, even as a link.
 constexpr int new_file_flags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
 
 // Returns true unless another process holds the file. A file system without locks counts as free.
@@ -224,12 +224,13 @@ bool has_name(int descriptor, const std::filesystem::path& file) {
 }
 
 Error held_by_another(const std::filesystem::path& file) {
-  return {ErrorCode::unavailable,
-          file.string() + ": another program is writing it; wait for its end or choose another name"};
+  return {
+      ErrorCode::unavailable,
+      file.string() + ": another program is writing it; wait until it has finished or choose another name"};
 }
 
-// Gives what has the name another one, FILE.1 or the first that is free. Returns that name; empty if nothing
-// has the name, or it was an empty file, which is removed.
+// Renames whatever is named `file` to FILE.1, or to the first such name that is free, and returns the new
+// name. Returns an empty path if nothing has the name, or if it was an empty file, which is removed.
 Result<std::filesystem::path> move_aside(const std::filesystem::path& file) {
   const OpenFile old(::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   struct stat status {};
@@ -237,7 +238,7 @@ Result<std::filesystem::path> move_aside(const std::filesystem::path& file) {
       old.descriptor() >= 0 && ::fstat(old.descriptor(), &status) == 0 && S_ISREG(status.st_mode);
   if (is_regular) {
     if (!lock_file(old.descriptor())) return held_by_another(file);
-    // Another process has moved or finished it meanwhile.
+    // Another process has moved or finished the file in the meantime.
     if (!has_name(old.descriptor(), file)) return std::filesystem::path();
     if (status.st_size == 0) {
       ::unlink(file.c_str());
@@ -250,7 +251,7 @@ Result<std::filesystem::path> move_aside(const std::filesystem::path& file) {
     if (::renameat2(AT_FDCWD, file.c_str(), AT_FDCWD, other.c_str(), RENAME_NOREPLACE) == 0) return other;
     if (errno == ENOENT) return std::filesystem::path();
     if (errno == EEXIST) continue;
-    // Some file systems know no RENAME_NOREPLACE.
+    // Some file systems do not support RENAME_NOREPLACE.
     std::error_code ignored;
     if (std::filesystem::exists(std::filesystem::symlink_status(other, ignored))) continue;
     if (::rename(file.c_str(), other.c_str()) == 0) return other;
@@ -263,18 +264,18 @@ Result<std::filesystem::path> move_aside(const std::filesystem::path& file) {
 
 Status OutputFile::open_whole() {
   written_ += ".new-" + std::to_string(::getpid());
-  ::unlink(written_.c_str());  // left by a killed process with the same process ID
+  ::unlink(written_.c_str());  // may be left from a killed process with the same ID
   descriptor_ = ::open(written_.c_str(), new_file_flags, 0666);
   if (descriptor_ < 0) return write_error("cannot be written");
   unfinished_ = UnfinishedFile(written_);
   return {};
 }
 
-// Opens FILE.part. Its lock, which ends with the process, tells a recording in progress from what a crash
-// left.
+// Opens FILE.part and locks it. The lock ends with the process, so it distinguishes a recording in progress
+// from the file that a crash left.
 Status OutputFile::open_growing() {
   written_ += ".part";
-  constexpr int most_tries = 100;  // each fails only if another process acts in the same moment
+  constexpr int most_tries = 100;  // a try fails only if another process acts at the same moment
   for (int n = 0; n < most_tries; ++n) {
     OpenFile opened(::open(written_.c_str(), new_file_flags, 0666));
     if (opened.descriptor() < 0 && errno != EEXIST) return write_error("cannot be written");
@@ -397,7 +398,7 @@ Status replace_file(const std::filesystem::path& file, std::string_view bytes, c
   const auto status = std::filesystem::status(file, ignored);
   const bool may_replace = options.named_by == NamedBy::program || std::filesystem::is_regular_file(status);
   if (std::filesystem::exists(status) && !may_replace) {
-    return Error{ErrorCode::unwritable, file.string() + ": is not a regular file, choose another name"};
+    return Error{ErrorCode::unwritable, file.string() + ": is not a regular file; choose another name"};
   }
   auto out = OutputFile::create(file, options);
   if (!out) return out.error();

@@ -35,19 +35,20 @@ std::string read_last_bytes(const std::filesystem::path& file, std::size_t count
 // `later`, then flushed by one call of flush_to_disk().
 enum class Durability { now, later };
 
-// The one who has chosen a file's name. A name that a person gave may be a link, which is written through to
-// its target, or a device or pipe, which is written directly. A name that the program, a script or a
-// recording made may lie in a folder from elsewhere: whatever has that name is replaced, and never followed.
+// The chooser of a file's name. A name given by a person may be a link, whose target is then written, or a
+// device or pipe, which is written directly. A name made by the program, a script or a recording may be in a
+// folder of unknown origin: whatever has that name is replaced, and links are not followed.
 enum class NamedBy { person, program };
 
-// How a file is written over what already has its name. A regular file without permission to write is
-// refused unless `replaces_read_only`.
+// Options for writing a file whose name may be in use. A regular file without permission to write is refused
+// unless `replaces_read_only`.
 struct OutputOptions {
   NamedBy named_by = NamedBy::person;
   bool replaces_read_only = false;
 };
 
-// Returns an error if the name is a regular file that this process, or everybody, may not write.
+// Returns an error if the name is a regular file that this process may not write, or without any
+// permission to write.
 Status check_replaceable(const std::filesystem::path& file);
 
 // A file being written. One owner, one thread; never the haptic thread, because writing may block.
@@ -58,10 +59,10 @@ class OutputFile {
   // buffered, so errors may be reported as late as commit().
   static Result<OutputFile> create(const std::filesystem::path& file, const OutputOptions& options = {});
 
-  // Creates a file that others may read while it grows: everything that write() has accepted survives a crash
-  // of this program. It grows as FILE.part, which becomes FILE at commit() and remains without it. Refuses
-  // a file that another process is growing (ErrorCode::unavailable). A FILE.part that a crash left is kept
-  // under another name, see kept_aside().
+  // Creates a file that others may read while it grows: whatever write() has accepted survives a crash of
+  // this program. The file grows as FILE.part and becomes FILE at commit(); without commit() it remains
+  // FILE.part. Refuses a file that another process is growing (ErrorCode::unavailable). A FILE.part that a
+  // crash left is renamed, see kept_aside().
   static Result<OutputFile> create_growing(const std::filesystem::path& file,
                                            const OutputOptions& options = {});
 
@@ -69,9 +70,9 @@ class OutputFile {
   OutputFile& operator=(OutputFile&& other) noexcept;
   ~OutputFile();  // removes an uncommitted file of create()
 
-  // The name under which the file grows: FILE.part, or FILE itself for a device or pipe.
+  // Returns the name under which the file grows: FILE.part, or FILE itself for a device or pipe.
   const std::filesystem::path& written_file() const { return written_; }
-  // The new name of what had the name FILE.part before; empty if there was none.
+  // Returns the new name of an older FILE.part that was moved out of the way; empty if there was none.
   const std::filesystem::path& kept_aside() const { return kept_aside_; }
 
   Status write(std::string_view bytes);

@@ -98,7 +98,7 @@ struct AlignedBox {
   Scalar squared_distance(const Vector& point) const {
     return (low - point).cwiseMax(point - high).cwiseMax(Scalar(0)).squaredNorm();
   }
-  // Returns whether the boxes, axis by axis, are at most `reach` apart.
+  // Returns whether the gap between the boxes is at most `reach` along each axis.
   bool is_near(const AlignedBox& other, Scalar reach) const {
     bool near = true;
     for (int axis = 0; axis < low.size(); ++axis) {

@@ -17,7 +17,7 @@ enum class ErrorCode {
   missing,            // a required file, field, option or part is absent
   unknown,            // a name, field, kind or option that does not exist
   duplicate,          // a name or field given twice
-  wrong_type,         // a field of another type, such as text where a number belongs
+  wrong_type,         // a field of the wrong type, such as text where a number belongs
   malformed,          // text or bytes that cannot be parsed
   out_of_range,       // a value outside its range, or not finite
   inconsistent,       // values that contradict each other

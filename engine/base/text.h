@@ -24,17 +24,18 @@ std::string length_text(double length_m);
 // Returns a point with tenths of a millimetre, such as "(10.0, -5.2, 0.0) mm"; zeros have no sign.
 std::string position_text(const Vector3& point_m);
 
-// Returns the text with every character that could drive a terminal, end its line or reorder what it shows
-// written as JSON escapes it, such as "\u001b": control characters (U+0000 to U+001F, U+007F to U+009F),
-// marks of direction and line separators. A byte that is not UTF-8 becomes "\u00" and its two digits. Names
-// in files can hold all of these. Also valid for the text of a JSON document without line breaks.
+// Returns the text with dangerous characters in JSON's escaped form, such as "\u001b". These are the
+// characters that could control a terminal, end its line or reorder its display: control characters (U+0000
+// to U+001F, U+007F to U+009F), direction marks and line separators. Names in files can contain all of these.
+// A byte that is not UTF-8 becomes "\u00" and its two hexadecimal digits. A JSON document without line breaks
+// stays valid.
 std::string escaped(std::string_view text);
 
 // Returns the text with the characters that escaped() escapes replaced by "?".
 std::string without_controls(std::string_view text);
 
-// Returns the beginning of a text for quotation in a message: at most `longest` bytes, no UTF-8 character cut
-// in two, without_controls().
+// Returns the beginning of a text for quotation in a message: at most `longest` bytes, not ending within a
+// UTF-8 character, with control characters replaced as by without_controls().
 std::string excerpt(std::string_view text, std::size_t longest = 40);
 
 }  // namespace spoonbill

@@ -55,7 +55,7 @@ UnfinishedFile::~UnfinishedFile() {
 
 std::vector<std::string> end_unfinished_files() {
   UnfinishedList& list = unfinished_list();
-  list.mutex.lock();  // for good
+  list.mutex.lock();  // never unlocked, because the process is about to end
   std::vector<std::string> lines;
   for (const auto& [number, ending] : list.endings) {
     if (std::string line = ending(); !line.empty()) lines.push_back(std::move(line));

@@ -1,4 +1,5 @@
-// The files that this process has begun and not finished, for the moment when a signal ends it.
+// List of the files that this process has begun but not finished, so that they can be removed or completed
+// when a signal ends the process.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +10,12 @@
 
 namespace spoonbill {
 
-// An entry in the process's list of unfinished files, which lasts as long as the object. The list belongs to
-// the process, because a signal does. Thread-safe; never made on the haptic thread.
+// An entry in the process's list of unfinished files. The entry exists as long as this object. The list is
+// global, because a signal ends the whole process. Thread-safe; never constructed on the haptic thread.
 class UnfinishedFile {
  public:
-  // Ends the file when the process stops early, from another thread than the file's own: removes or completes
-  // it. Returns one line for the user, or nothing.
+  // Removes or completes the file when the process stops early; called on a thread other than the file's own.
+  // Returns one line for the user, or an empty text.
   using Ending = std::function<std::string()>;
 
   UnfinishedFile() = default;                           // no entry
@@ -28,8 +29,8 @@ class UnfinishedFile {
   std::uint64_t number_ = 0;  // 0 without an entry
 };
 
-// Ends every unfinished file and returns the lines for the user. The process must end afterwards: an
-// unfinished file that another thread begins or finishes now waits for ever.
+// Ends every unfinished file and returns the lines for the user. Afterwards the process must end, because any
+// thread that begins or finishes an unfinished file then blocks forever.
 std::vector<std::string> end_unfinished_files();
 
 }  // namespace spoonbill

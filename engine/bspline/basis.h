@@ -23,17 +23,17 @@ struct BasisFunctions {
 // algorithm A2.3). Does not allocate.
 BasisFunctions basis_functions(const KnotVector& knots, double u);
 
-// Computes the span and values[0] alone, to the same bits.
+// Computes only the span and values[0], with the same bits as basis_functions().
 void basis_values(const KnotVector& knots, double u, BasisFunctions& basis);
 
 // Weights of a span's control points in the order of KnotVector::control_index(); their sum is 1.
 using BlossomWeights = std::array<double, max_degree + 1>;
 
 // Returns the blossom of a polynomial piece at the arguments: the symmetric multi-affine function that equals
-// the polynomial where all arguments are equal. At consecutive knots it gives control points, which converts
-// between knot vectors (Ramshaw 1989). `span` is a result of find_span(). There may be more arguments than
-// the degree, up to max_degree: the piece is then treated as a polynomial of that degree, and the blossom is
-// the mean over all choices of as many arguments as the degree. Does not allocate.
+// the polynomial where all arguments are equal. At consecutive knots its values are control points; this
+// property converts between knot vectors (Ramshaw 1989). `span` is a result of find_span(). If there are more
+// arguments than the degree (at most max_degree), the piece is treated as a polynomial of that higher degree;
+// the blossom is then the mean over all subsets of as many arguments as the degree. Does not allocate.
 BlossomWeights blossom(const KnotVector& knots, int span, std::span<const double> arguments);
 
 // Parallel lines of control points: the next point of a line is `along` elements further, the next line

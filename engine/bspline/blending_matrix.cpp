@@ -44,8 +44,8 @@ BlendingMatrix blending_matrix(const KnotVector& knots, std::span<const double> 
 
 namespace {
 
-// Smallest usable diagonal entry of R relative to the largest. Usable samplings up to degree 9 stay above
-// 1e-8; singular ones of periodic directions end near 1e-16.
+// Smallest usable diagonal entry of R relative to the largest. For usable samplings up to degree 9 the ratio
+// stays above 1e-8; for singular samplings of periodic directions it is about 1e-16.
 constexpr double rank_tolerance = 1e-12;
 
 // QR factorization with column pivoting by Householder reflections. Written by hand, because the order of
@@ -282,8 +282,8 @@ Result<Eigen::MatrixXd> constrained_inverse(const KnotVector& knots, std::span<c
     return Error{ErrorCode::degenerate,
                  "the samples do not determine the free control points; take more samples"};
   for (std::size_t f = 0; f < free.size(); ++f) inverse.row(free[f]) = fit->row(static_cast<Eigen::Index>(f));
-  // An interpolated end copies its sample. Its contribution to the other samples is subtracted from what the
-  // free control points fit.
+  // An interpolated end control point copies its sample. Its contribution to the other samples is subtracted
+  // before the free control points are fitted.
   for (const Eigen::Index c : interpolated) {
     const Eigen::Index sample = c == 0 ? 0 : samples - 1;
     for (std::size_t f = 0; f < free.size(); ++f) {

@@ -43,8 +43,9 @@ Status check_schoenberg_whitney(const KnotVector& knots, std::span<const double>
 
 // Returns the pseudo-inverse A^+ (columns x rows) by QR; never by inverting A^T A, which squares the
 // condition number. Refuses samples that do not determine the control points: fewer samples than control
-// points, a gap, or a singular periodic sampling. The last occurs with as many samples as control points
-// if their number is even and an even degree is sampled at knots, or an odd degree at mid-spans.
+// points, a gap, or a singular periodic sampling. A periodic sampling is singular if there are as many
+// samples as control points, their number is even, and an even degree is sampled at knots or an odd degree at
+// mid-spans.
 Result<Eigen::MatrixXd> pseudo_inverse(const KnotVector& knots, std::span<const double> parameters);
 
 // Constraints of a fit in one direction.

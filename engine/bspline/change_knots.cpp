@@ -18,8 +18,8 @@ namespace spoonbill {
 
 namespace {
 
-// The longest piece in a control point's support: blossoms lose digits with the distance of their arguments
-// from the piece.
+// The longest polynomial piece in a control point's support. The longest is used because blossoms lose digits
+// if their arguments are far from the piece.
 struct Piece {
   double length = 0.0;
   int span = 0;
@@ -110,8 +110,8 @@ std::vector<double> distinguishing_parameters(const KnotVector& a, const KnotVec
   return parameters;
 }
 
-// Distances of the control points of two surfaces over their common knots: the largest for each index along
-// the direction.
+// Distances between the control points of two surfaces over common knots: for each index along the direction,
+// the largest distance.
 struct Difference {
   KnotVector knots;
   std::vector<double> largest_m;
@@ -205,8 +205,8 @@ Result<KnotVector> without_knots(const KnotVector& knots, std::span<const SpareK
                              : KnotVector::open(knots.degree(), std::move(fewer));
 }
 
-// The pieces around an inner knot, as far as its removal has an effect, and the knot's parameter in this
-// part.
+// A part of a surface that contains everything that the removal of an inner knot changes, and the knot's
+// parameter in that part.
 struct Neighbourhood {
   Surface surface;
   double knot;
@@ -235,9 +235,9 @@ Result<Neighbourhood> around_knot(const Surface& surface, Direction direction, i
   return Neighbourhood{std::move(near).value(), end_at(breakpoint)};
 }
 
-// Returns the cost of removing each copy of an inner knot together with the copies before it, cheapest
-// first, as far as the cost is within the tolerance. Each cost is computed in the knot's neighbourhood
-// alone, which is much faster than in the whole direction.
+// Returns the copies of inner knots that can be removed within the tolerance, cheapest first. The cost of a
+// copy is the deviation after removing it together with the copies before it. Each cost is computed in the
+// knot's neighbourhood alone, which is much faster than in the whole direction.
 Result<std::vector<SpareKnot>> spare_knots(const Surface& surface, Direction direction, double tolerance_m,
                                            const Progress& progress) {
   std::vector<SpareKnot> spare;

@@ -28,25 +28,25 @@ struct Approximation {
 };
 
 // Fits a surface over any knots of the same domain by least squares; clamped ends are interpolated. A
-// periodic surface may become open; an open surface whose edges meet may become periodic. Refuses knots
-// over another domain.
+// periodic surface may become open; an open surface whose edges meet may become periodic. Refuses knots with
+// a different domain.
 Result<Approximation> fit_coarser_knots(const Surface& surface, Direction direction,
                                         const KnotVector& coarser);
 
-// Fits a surface over `first`, halving pieces where the deviation is too large, until it is at most
-// `tolerance_m`. Refuses if `largest_count` control points do not suffice; the message states the deviation
-// reached. `progress` can cancel it.
+// Fits a surface over `first` and halves pieces where the deviation is too large, until the deviation is at
+// most `tolerance_m` everywhere. Refuses if `largest_count` control points do not suffice; the message states
+// the deviation reached. `progress` can cancel the fit.
 Result<Approximation> approximated(const Surface& surface, Direction direction, const KnotVector& first,
                                    double tolerance_m, int largest_count, const Progress& progress = {});
 
 // Removes knots, cheapest first, as long as the deviation stays within the tolerance. Keeps the degree and
-// the knots at the ends. `progress` can cancel it.
+// the knots at the ends. `progress` can cancel the removal.
 Result<Approximation> remove_spare_knots(const Surface& surface, Direction direction, double tolerance_m,
                                          const Progress& progress = {});
 
-// Returns a surface over `knots` whose control points along the direction are weighted sums of the old ones:
-// a row of weights for each new one, a column for each old one. Sums are ordered, so that the bits are the
-// same everywhere.
+// Returns a surface over `knots` whose control points along the direction are weighted sums of the old ones.
+// `weights` has a row for each new control point and a column for each old one. The order of summation is
+// fixed, so that the result has the same bits on every machine.
 Surface combine_along(const Surface& surface, Direction direction, const Eigen::MatrixXd& weights,
                       const KnotVector& knots);
 

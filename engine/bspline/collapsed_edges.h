@@ -8,8 +8,8 @@
 
 namespace spoonbill {
 
-// Largest extent of an edge that counts as a point, as a fraction of the control net's size. Single precision
-// and other programs leave the points of a pole that far apart.
+// Largest extent of an edge that counts as a point, as a fraction of the control net's size. The points of a
+// pole may be this far apart because of single precision or because another program wrote them.
 inline constexpr double collapsed_edge_fraction = 1e-6;
 
 // Control points that belong to one edge: `count` of them from index `first` on, `stride` apart.
@@ -17,7 +17,7 @@ struct NetEdge {
   std::size_t first = 0, stride = 1, count = 0;
 };
 
-// Returns the edges of a direction's clamped ends whose control points are a single point up to the fraction.
+// Returns the edges at clamped ends whose control points coincide up to collapsed_edge_fraction.
 std::vector<NetEdge> find_collapsed_edges(const Surface& surface);
 
 // Moves the control points of an edge to their mean, unless they already are exactly together. Returns

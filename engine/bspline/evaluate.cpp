@@ -253,9 +253,9 @@ auto GridEvaluator<Real>::collapsed_edges(const NetView<Real>& net, Real reach) 
   return edges;
 }
 
-// Returns a value of |du x dv|^2 above which the kernels' test passes for every sample. The test compares
-// |du x dv|^2 with noise(du)^2 |dv|^2 + noise(dv)^2 |du|^2; the least normal number exceeds anything that
-// underflow may round up.
+// Returns a value of |du x dv|^2 above which every sample passes the kernels' test. The test compares |du x
+// dv|^2 with noise(du)^2 |dv|^2 + noise(dv)^2 |du|^2. The value is at least the smallest normal number, which
+// exceeds any value that underflow may round up.
 template <class Real>
 Real GridEvaluator<Real>::regularity_bound(const NetView<Real>& net, double largest_coordinate) const {
   const int rows = grid_->u.knots.control_point_count(), columns = net.columns;
@@ -280,8 +280,8 @@ void GridEvaluator<Real>::blend_control_rows(const NetView<Real>& net) {
   }
 }
 
-// Fills the two limit columns, of which only the normals are used. At a collapsed column du vanishes; at a
-// distance h inside, it is about h duv. The derivatives by v therefore replace the values.
+// Fills the two limit columns, which are used only for their normals. At a collapsed column du vanishes; at a
+// distance h inside the surface, du is about h duv. The derivatives along v therefore replace the values.
 template <class Real>
 void GridEvaluator<Real>::set_up_limit_columns(const CollapsedEdges& edges) {
   const int columns = grid_->columns();
@@ -321,9 +321,9 @@ EvaluateRow<Real> GridEvaluator<Real>::row_task(int row) const {
           Real(0)};
 }
 
-// Computes a row and returns how many of its samples have no normal. A surely regular row is written
-// directly, its padding over the next row, which is computed later. Otherwise whole blocks are written
-// directly, and the remaining columns and limit columns pass through the spare row.
+// Computes a row and returns the number of its samples without a normal. A row that is known to be regular is
+// written directly; its padding overwrites the start of the next row, which is computed later. Otherwise only
+// whole blocks are written directly, and the remaining columns and limit columns pass through the spare row.
 template <class Real>
 int GridEvaluator<Real>::compute_row(const EvaluateRow<Real>& task, int row, const CollapsedEdges& edges,
                                      GridSamples<Real>& samples) {
@@ -351,7 +351,8 @@ int GridEvaluator<Real>::compute_row(const EvaluateRow<Real>& task, int row, con
   return degenerate;
 }
 
-// Computes the normals of a collapsed row, where dv vanishes; at a distance h inside, it is about h duv.
+// Computes the normals of a collapsed row. There dv vanishes; at a distance h inside the surface, dv is about
+// h duv.
 template <class Real>
 void GridEvaluator<Real>::compute_limit_row(EvaluateRow<Real> task, int row, int inward,
                                             GridSamples<Real>& samples) {

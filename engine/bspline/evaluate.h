@@ -29,8 +29,9 @@ struct GridSamples {
 // allocation after construction. The grid must outlive it.
 //
 // A clamped edge whose control points coincide to a millionth of the net's extent counts as collapsed: its
-// samples get the limit of the normal from inside. Other samples where du x dv is rounding noise get
-// unit_normal(); their number is limited to bound the time of a pass, and the rest get zero.
+// samples get the limit of the normal from inside. Other samples at which du x dv is only rounding noise get
+// unit_normal(), but only a limited number of them in each pass, to bound its time; the rest get zero
+// normals.
 template <class Real>
 class GridEvaluator {
  public:
@@ -40,7 +41,7 @@ class GridEvaluator {
   // `samples` must have been resized to grid.rows() * grid.columns().
   void points_and_normals(const Real* x, const Real* y, const Real* z, GridSamples<Real>& samples);
 
-  // Computes samples.x, y, z alone, to the same bits.
+  // Computes only samples.x, y and z, with the same bits as points_and_normals().
   void points(const Real* x, const Real* y, const Real* z, GridSamples<Real>& samples);
 
  private:

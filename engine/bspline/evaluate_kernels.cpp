@@ -82,7 +82,7 @@ void points_row(const EvaluateRow<Real>& row, int first_block, int blocks, const
   }
 }
 
-// Normals of irregular samples are zeroed (full) or left undefined (if_regular).
+// Treatment of irregular samples: their normals are set to zero (full) or left undefined (if_regular).
 enum class Care { full, if_regular };
 
 // Computes points and normals of a row; returns the number of irregular samples.

@@ -63,7 +63,7 @@ struct EvaluateKernels {
   // Blends one control row along v into band.blocks blocks.
   void (*blend)(const EvaluateBand<Real>& band, const Real* x, const Real* y, const Real* z, Real* blended);
 
-  // Computes points alone.
+  // Computes only points.
   void (*points)(const EvaluateRow<Real>& row, int first_block, int blocks, const EvaluateOutput<Real>& out);
 
   // Computes points and unit normals. Returns the number of samples whose du x dv does not exceed the
@@ -71,8 +71,8 @@ struct EvaluateKernels {
   int (*points_and_normals)(const EvaluateRow<Real>& row, int first_block, int blocks,
                             const EvaluateOutput<Real>& out);
 
-  // Computes the same bits at a fraction of the cost if every sample is surely regular, and returns whether
-  // that is so. Otherwise the normals are undefined.
+  // Same as points_and_normals(), bit for bit, at a fraction of the cost; valid only if every sample is
+  // surely regular. Returns whether that is so; if not, the normals are undefined.
   bool (*points_and_normals_if_regular)(const EvaluateRow<Real>& row, int first_block, int blocks,
                                         const EvaluateOutput<Real>& out);
 };

@@ -116,8 +116,8 @@ namespace {
 // Lines of points: three columns of coordinates for each point of a line.
 using Lines = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Multiplies with sums in order of the rows, so that the same points give the same bits on every machine,
-// which Eigen's product does not guarantee.
+// Multiplies the matrices. Each sum adds its terms in the order of the rows, so that the same points give the
+// same bits on every machine; Eigen's product does not guarantee this.
 Lines product_in_order(const Eigen::MatrixXd& matrix, const Lines& lines) {
   Lines product = Lines::Zero(matrix.rows(), lines.cols());
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {

@@ -26,9 +26,9 @@ struct GridDirection {
   BlendingMatrix first_derivatives;
   BlendingMatrix second_derivatives;
 
-  // Cells lie between neighbouring parameters.
+  // Returns the number of cells; each cell is between two neighbouring parameters.
   int cell_count() const { return static_cast<int>(parameters.size()) - 1; }
-  // The cell that contains the parameter, or the one at the end beside it.
+  // Returns the cell that contains the parameter; outside the sampled range, the first or the last cell.
   int find_cell(double parameter) const;
   // Maps a cell index across the seam of a periodic direction; returns -1 beyond an open end.
   int wrap_cell(int i) const;
@@ -53,7 +53,7 @@ Result<Grid> make_grid(const KnotVector& u, const KnotVector& v, std::vector<dou
 // seam occurs twice.
 std::vector<double> uniform_parameters(const KnotVector& knots, int count);
 
-// Returns `count` parameters evenly spaced over one period, the seam once.
+// Returns `count` parameters evenly spaced over one period, with the seam only once.
 std::vector<double> uniform_parameters_without_seam(const KnotVector& knots, int count);
 
 // Parameters of a grid with nested levels: each polynomial piece is cut into pieces_per_span * 2^levels equal
@@ -138,9 +138,9 @@ class DisplacementRefit {
   // Returns the length of a row of samples in memory; values past grid.columns() have no effect.
   int sample_stride() const { return sample_stride_; }
 
-  // Computes displacements of the control points (rows x columns) from `sample`, grid.rows() x
-  // sample_stride() displacements of one coordinate in metres at an address that is a multiple of 64 bytes.
-  // Exactly zero input gives exactly zero output.
+  // Computes the displacements of the control points (rows x columns) from those of the samples. `sample`
+  // holds grid.rows() x sample_stride() displacements of one coordinate in metres and must be aligned to 64
+  // bytes. Exactly zero input gives exactly zero output.
   void control_displacement(const float* sample, float* control);
 
  private:

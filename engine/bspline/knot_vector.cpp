@@ -43,8 +43,8 @@ std::optional<Error> domain_error(double start, double end) {
 
 Error multiplicity_error(double knot, int multiplicity, int allowed, const char* where) {
   return Error{ErrorCode::malformed, "knot " + number_text(knot) + " appears " +
-                                         std::to_string(multiplicity) + " times " + where + "; at most " +
-                                         std::to_string(allowed) + " are allowed, remove " +
+                                         std::to_string(multiplicity) + " times " + where + ", but at most " +
+                                         std::to_string(allowed) + " are allowed; remove " +
                                          std::to_string(multiplicity - allowed)};
 }
 
@@ -80,8 +80,9 @@ std::optional<Error> periodic_multiplicity_error(const std::vector<double>& knot
   return std::nullopt;
 }
 
-// Extends the knots of one period on both sides. Differences to the seam make knots that coincide at one end
-// of the period coincide to the last bit at the other, and never let the sequence decrease.
+// Extends the knots of one period on both sides. The new knots are computed from their differences to the
+// seam, so that knots that coincide at one end of the period coincide exactly at the other end, and the
+// sequence never decreases.
 std::vector<double> extend_periodic(const std::vector<double>& knots, int degree) {
   const int r = static_cast<int>(knots.size()) - 1;
   const double start = knots.front(), end = knots.back(), period = end - start;
@@ -190,7 +191,7 @@ double KnotVector::into_domain(double u) const {
   const double start = domain_start(), end = domain_end();
   if (!periodic_) return u > start ? std::min(u, end) : start;
   if (u >= start && u < end) return u;
-  if (u == end) return start;  // the rounded period may miss it
+  if (u == end) return start;  // subtracting the rounded period may miss the start
   const double period = end - start;
   const double wrapped = u - period * std::floor((u - start) / period);
   return wrapped >= start && wrapped < end ? wrapped : start;

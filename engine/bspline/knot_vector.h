@@ -64,7 +64,7 @@ class KnotVector {
   std::vector<double> breakpoints() const;
 
   // Returns u wrapped (periodic; the end maps to the start) or clamped (open) into the domain. NaN maps to
-  // the start, so that no value leads outside the knots.
+  // the start, so that every result is within the knots.
   double into_domain(double u) const;
 
   // Returns the index k into extended_knots() with extended[k] <= u < extended[k + 1]; the last span is
@@ -84,8 +84,8 @@ class KnotVector {
   std::vector<double> extended_;
 };
 
-// Fraction of the domain within which two knots count as one; documents contain no distinct knots that are
-// closer.
+// Fraction of the domain below which the distance of two knots is ignored, so that they count as one.
+// Documents contain no distinct knots that are closer.
 inline constexpr double same_knot_fraction = 1e-9;
 
 // A distinct knot and its multiplicity.
@@ -97,8 +97,8 @@ struct KnotMultiplicity {
 // clamped; the start of a period has the multiplicity of the seam.
 std::vector<KnotMultiplicity> knot_multiplicities(const KnotVector& knots);
 
-// Returns the two positions of a periodic knot from `start` on, one period apart; returns the knot itself
-// in an open direction.
+// Returns the first two positions of a periodic knot at or after `start`, one period apart; in an open
+// direction, the knot itself.
 std::vector<double> knot_positions_from(const KnotVector& knots, double knot, double start);
 
 // Returns a knot vector of a higher or equal degree that represents every spline over `knots`: each
@@ -118,7 +118,7 @@ Result<KnotVector> knot_union(const KnotVector& a, const KnotVector& b);
 // seam, with `end` at most one period beyond `start`. Refuses an empty part and one outside the domain.
 Result<KnotVector> clamped_part(const KnotVector& knots, double start, double end);
 
-// Returns the knots scaled to the domain [start, end]. Refuses ends unless start < end and both are finite.
+// Returns the knots scaled to the domain [start, end]. Refuses ends that are not finite or not increasing.
 Result<KnotVector> with_domain(const KnotVector& knots, double start, double end);
 
 // Returns the knots mirrored within the same domain.

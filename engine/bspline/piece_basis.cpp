@@ -14,8 +14,8 @@ constexpr double min_sine = 1e-5;
 
 using Polynomials = std::array<std::array<double, max_degree + 1>, max_degree + 1>;
 
-// Returns the basis functions of a span (Cox-de Boor recursion) as coefficients in x, u = centre + half x:
-// result[j][k] belongs to x^k of the j-th function.
+// Returns the basis functions of a span (Cox-de Boor recursion) as polynomials in x, where u = centre + half
+// x: result[j][k] is the coefficient of x^k in the j-th function.
 Polynomials compute_polynomials(const double* at, int degree, double centre, double half) {
   Polynomials result{};
   result[0][0] = 1.0;
@@ -63,7 +63,8 @@ PieceBasis::PieceBasis(const KnotVector& knots)
   }
 }
 
-// The estimate is exact for evenly spaced knots; a few steps correct it for others.
+// Finds the piece by an estimate that is exact for evenly spaced knots; for other knots a few steps correct
+// the estimate.
 int PieceBasis::find_piece(double u) const {
   const int pieces = static_cast<int>(breaks_.size()) - 1;
   int piece = std::clamp(static_cast<int>((u - breaks_.front()) * pieces_a_unit_), 0, pieces - 1);

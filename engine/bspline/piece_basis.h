@@ -10,9 +10,8 @@
 
 namespace spoonbill {
 
-// The polynomials of a knot vector, which must outlive the object. Allocates only when constructed;
-// immutable afterwards, so that any thread may read it. Values agree with basis_functions() to rounding,
-// not to the bit.
+// The polynomials of a knot vector, which must outlive the object. Allocates only when constructed; immutable
+// afterwards, so that any thread may read it. Values equal those of basis_functions() except for rounding.
 class PieceBasis {
  public:
   explicit PieceBasis(const KnotVector& knots);
@@ -25,7 +24,7 @@ class PieceBasis {
   // Computes the values and both derivatives at u, which must be in the domain.
   void evaluate(double u, Values& values) const;
 
-  // Computes value[0] alone at u, which must be in the domain.
+  // Computes only value[0] at u, which must be in the domain.
   void evaluate_values(double u, Values& values) const;
 
   const KnotVector& knots() const { return *knots_; }
@@ -51,7 +50,7 @@ struct PiecewiseSurface {
   const PieceBasis* v;
 };
 
-// Same as evaluate() and position() of the surface, to rounding.
+// Same as evaluate() and position() of the surface, except for rounding.
 SurfacePoint evaluate(const PiecewiseSurface& surface, double u, double v);
 Vector3 position(const PiecewiseSurface& surface, double u, double v);
 // Returns the unit normal of the surface at u, v, given the result of evaluate() there.

@@ -55,8 +55,9 @@ std::vector<double> with_knot(const KnotVector& knots, double knot) {
   return more;
 }
 
-// Inserts the knot into the central period and every period whose insertion affects it, and returns the
-// lines of the central period. Further periods on either side make every insertion one of an inner knot.
+// Inserts the knot into the central period and into every period whose insertion affects it, and returns the
+// lines of the central period. Further periods are added on either side, so that each inserted knot is an
+// inner one.
 std::vector<ControlLine> insert_into_periodic(const KnotVector& knots, const std::vector<ControlLine>& lines,
                                               double knot) {
   const int degree = knots.degree(), count = knots.control_point_count();
@@ -81,7 +82,7 @@ std::vector<ControlLine> insert_into_periodic(const KnotVector& knots, const std
 int count_multiplicity(const KnotVector& knots, double knot) {
   const auto& all = knots.knots();
   int multiplicity = static_cast<int>(std::count(all.begin(), all.end(), knot));
-  // The seam is at both ends of the period, which share one of its knots.
+  // The seam's knots are listed at both ends of the period, one of them at both.
   if (knots.is_periodic() && knot == all.front()) {
     multiplicity += static_cast<int>(std::count(all.begin(), all.end(), all.back())) - 1;
   }
@@ -192,7 +193,7 @@ Result<KnotVector> rotate_knots(const KnotVector& knots, int first) {
   for (int i = 0; i < count; ++i) {
     const int from = (first + i) % count;
     const bool wrapped = first + i >= count;
-    // The seam's first knot is at the domain's start to the last bit.
+    // The seam's first knot is exactly at the domain's start.
     turned.push_back(wrapped ? (all[from] - start) + (end - all[first]) + start
                              : start + (all[from] - all[first]));
   }

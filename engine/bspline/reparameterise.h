@@ -19,7 +19,7 @@ Surface reversed(const Surface& surface, Direction direction);
 // Returns the surface with u and v exchanged; its normals are flipped.
 Surface exchanged(const Surface& surface);
 
-// Returns the surface over the domain [start, end]. Refuses ends unless start < end and both are finite.
+// Returns the surface over the domain [start, end]. Refuses ends that are not finite or not increasing.
 Result<Surface> with_domain(const Surface& surface, Direction direction, double start, double end);
 
 // Returns the surface with the seam of a periodic direction at the parameter `seam` (wrapped into the

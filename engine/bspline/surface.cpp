@@ -116,7 +116,7 @@ SurfacePoint evaluate(const Surface& surface, double u, double v) {
 
 Vector3 position(const Surface& surface, double u, double v) {
   SPOONBILL_ASSERT_DEBUG(has_matching_net(surface));
-  // Only values[0] is set and read.
+  // basis_values() sets only values[0], which is all that is read.
   BasisFunctions bu, bv;
   basis_values(surface.u, surface.u.into_domain(u), bu);
   basis_values(surface.v, surface.v.into_domain(v), bv);
@@ -149,16 +149,17 @@ namespace {
 template <class Real>
 constexpr double product_noise = 16.0 * std::numeric_limits<Real>::epsilon();
 
-// Distance, in domain lengths, within which du x dv must grow beyond its own size for an edge to count as
-// collapsed. A ring of control points that a refit in single precision has moved together coincides only to
-// about 1e-7, and the normal of the remaining hole would be arbitrary.
+// Distance, in domain lengths. An edge counts as collapsed if du x dv, over this distance, grows by more than
+// its own size at the edge. A ring of control points that a refit in single precision has moved together
+// coincides only to about 1e-7, and the normals of the remaining hole would be arbitrary.
 constexpr double hole = 1e-6;
 
-// Distances, in domain lengths, at which neighbours replace a sample whose first-order limit vanishes too.
+// Distances, in domain lengths, to the points from which the normal is taken where the first-order limit
+// vanishes too.
 constexpr double steps_inside[] = {0x1p-14, 0x1p-10, 0x1p-6};
 
-// Derivatives with respect to parameters over a domain of length 1, and a bound of |du x dv| from the
-// control points in reach.
+// Derivatives for parameters scaled to a domain of length 1, and an upper bound of |du x dv| that follows
+// from the control points in reach.
 struct LimitTangents {
   Vector3 du = Vector3::Zero(), dv = Vector3::Zero();
   Vector3 duu = Vector3::Zero(), duv = Vector3::Zero(), dvv = Vector3::Zero();

@@ -78,8 +78,8 @@ Result<Surface> make_surface(KnotVector u, KnotVector v, ControlNet net);
 
 // Returns the surface moved rigidly by a pose.
 Surface placed(Surface surface, const Pose& pose);
-// Writes the control points of `net`, rotated or reflected by `turn` and then moved, to a net of the same
-// size.
+// Rotates or reflects the control points of `net` by `turn`, moves them, and writes them to `placed`, which
+// must have the same size.
 void place(const ControlNet& net, const Eigen::Matrix3d& turn, const Vector3& position_m, ControlNet& placed);
 
 // A point of a surface and its derivatives with respect to the parameters, in metres.
@@ -92,16 +92,16 @@ struct SurfacePoint {
 // Returns the point and its derivatives. u, v are wrapped or clamped into the domain. Does not allocate.
 SurfacePoint evaluate(const Surface& surface, double u, double v);
 
-// Returns the position alone, to the same bits, at two fifths of the cost.
+// Returns only the position, with the same bits as evaluate(), at two fifths of the cost.
 Vector3 position(const Surface& surface, double u, double v);
 
 // Returns the unit normal along du x dv. At poles and collapsed edges, where that product vanishes, returns
 // the limit from inside the surface; zero where the surface has no normal (a single point or a line).
 Vector3 unit_normal(const Surface& surface, double u, double v);
 
-// Returns a bound in metres of how far a surface point moves for a parameter step of the length of the
-// domain. A step of fractions a and b of the domain along u and v moves a point by at most hypot(a, b) times
-// the bound.
+// Returns a bound, in metres, of how far a surface point moves when a parameter changes by the length of its
+// domain. If u and v change by the fractions a and b of their domains, a point moves by at most hypot(a, b)
+// times the bound.
 double stretch_bound_m(const Surface& surface);
 
 }  // namespace spoonbill

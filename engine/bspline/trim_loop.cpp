@@ -30,7 +30,8 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-// Returns the edges sorted by x, in units of the tolerance: edges at most 1 apart touch.
+// Returns the edges sorted by x. Coordinates are in units of the tolerance, so that edges at most 1 apart
+// touch.
 std::vector<PolygonEdge> sorted_edges(const std::vector<std::vector<Eigen::Vector2d>>& polygons,
                                       const Eigen::Vector2d& tolerance) {
   std::vector<PolygonEdge> edges;
@@ -97,7 +98,7 @@ Status check_coordinates(const KnotVector& knots, const std::vector<double>& val
   if (values.size() != static_cast<std::size_t>(knots.control_point_count())) {
     return Error{ErrorCode::mismatch, "a trim loop's knots require " +
                                           std::to_string(knots.control_point_count()) +
-                                          " control points, it has " + std::to_string(values.size()) +
+                                          " control points, but it has " + std::to_string(values.size()) +
                                           "; change the knots or the points"};
   }
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -169,7 +170,7 @@ double second_derivative_bound(const TrimLoop& loop, int span, const Eigen::Vect
   return largest;
 }
 
-// Even chords of one piece.
+// Number and error of the chords, evenly spaced in the parameter, that replace one piece.
 struct PieceChords {
   int count = 1;
   double error_fraction = 0.0;  // largest distance of a chord from the curve
@@ -182,8 +183,8 @@ PieceChords count_chords(const TrimLoop& loop, double start, double length, cons
   return {count, bound * length * length / (8.0 * count * count)};
 }
 
-// Returns the points of the curve at the ends of chords, unclamped; nothing if there are more chords than the
-// limit.
+// Returns the curve's points at the ends of the chords, which may be outside the domain; nullopt if there are
+// more chords than the limit.
 std::optional<std::vector<Eigen::Vector2d>> sample_corners(const TrimLoop& loop,
                                                            const Eigen::Vector2d& lengths) {
   std::vector<Eigen::Vector2d> corners;

@@ -28,8 +28,8 @@ std::optional<PolygonCrossing> find_crossing(const std::vector<std::vector<Eigen
 
 // A closed curve with open knots whose ends meet, or with periodic knots; a polygon has degree 1. The part to
 // its left remains, seen with u to the right and v up: outer loops run counter-clockwise, holes clockwise. In
-// a periodic direction of the surface a loop may cross the seam and then leaves the domain, by a period at
-// most.
+// a periodic direction of the surface a loop may cross the seam; it then leaves the domain, by at most a
+// period.
 struct TrimLoop {
   KnotVector knots;
   std::vector<double> u, v;  // one for each control point
@@ -56,9 +56,10 @@ Result<TrimLoop> make_trim_loop(const KnotVector& along_u, const KnotVector& alo
 // Returns the point of the curve at a parameter of its own domain.
 Eigen::Vector2d position(const TrimLoop& loop, double parameter);
 
-// Returns the corners of a polygon within trim_chord_fraction of the loop, each once and none outside an open
-// direction's domain. Every piece of the curve is cut evenly: a chord over the length h of parameter is
-// within h^2 / 8 of the largest second derivative, which the control points of that derivative bound.
+// Returns the corners of a polygon that is within trim_chord_fraction of the loop. Each corner occurs once;
+// none is outside the domain of an open direction. Every piece of the curve is cut evenly. A chord over the
+// length h of parameter deviates by at most h^2 / 8 times the largest second derivative, which is bounded by
+// the control points of that derivative.
 std::vector<Eigen::Vector2d> to_polygon(const TrimLoop& loop, const KnotVector& along_u,
                                         const KnotVector& along_v);
 
@@ -69,8 +70,8 @@ double polygon_error_fraction(const TrimLoop& loop, const KnotVector& along_u, c
 // Returns the signed area in units of u times v, positive for a counter-clockwise polygon.
 double signed_area(const std::vector<Eigen::Vector2d>& polygon);
 
-// Returns the loop of the same part of a surface after the change of the same name in reparameterise.h;
-// `knots` are those of the direction before the change.
+// Returns the loop that bounds the same part of a surface after the surface's change of the same name in
+// reparameterise.h; `knots` are those of the direction before the change.
 TrimLoop reversed(const TrimLoop& loop, Direction direction, const KnotVector& knots);
 TrimLoop exchanged(const TrimLoop& loop);
 TrimLoop with_domain(const TrimLoop& loop, Direction direction, const KnotVector& knots, double start,

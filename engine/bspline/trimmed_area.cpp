@@ -22,13 +22,14 @@ using Polygon = std::vector<Eigen::Vector2d>;
 
 constexpr std::size_t column_count_limit = 1024;
 constexpr std::size_t max_mean_listings = 16;  // largest mean number of columns that list an edge
-// Largest number of edges of a loop beside which winding numbers are sampled, and the distance of the
-// samples from the edges in domain lengths: less than touching loops may overlap, more than rounding.
+// Largest number of edges of a loop beside which winding numbers are sampled, and the distance of the samples
+// from the edges in domain lengths. The distance is larger than rounding, but smaller than the overlap that
+// touching loops may have.
 constexpr std::size_t sampled_edge_count = 32;
 constexpr double sample_offset = 1e-9;
 
-// Wraps a parameter into a periodic domain, or clamps it inside an open one, away from the ends by twice
-// the distance by which loops may miss them.
+// Wraps a parameter into a periodic domain, or clamps it into an open one, at least 2 trim_rounding_fraction
+// away from the ends.
 double inside(const KnotVector& knots, double parameter) {
   const double within = knots.into_domain(parameter);
   if (knots.is_periodic()) return within;
@@ -79,8 +80,8 @@ Result<TrimmedArea> TrimmedArea::make(const KnotVector& along_u, const KnotVecto
     chords += polygons.back().size();
   }
   if (chords > trim_chord_count_limit) {
-    return Error{ErrorCode::too_many, "the trim loops need " + std::to_string(chords) + " chords, at most " +
-                                          std::to_string(trim_chord_count_limit) +
+    return Error{ErrorCode::too_many, "the trim loops need " + std::to_string(chords) +
+                                          " chords, but at most " + std::to_string(trim_chord_count_limit) +
                                           " are allowed; simplify them"};
   }
   if (Status added = area.add_edges(polygons); !added) return added.error();
@@ -114,8 +115,8 @@ Status TrimmedArea::add_edges(const std::vector<std::vector<Eigen::Vector2d>>& p
   return {};
 }
 
-// Returns how often each winding number occurs beside sampled edges of the polygon, on the left for a
-// positive offset.
+// Samples winding numbers beside edges of the polygon, on the left for a positive offset, and returns how
+// often each number occurs.
 std::map<int, int> TrimmedArea::windings_beside(const std::vector<Eigen::Vector2d>& polygon,
                                                 double offset) const {
   const Eigen::Vector2d lengths(along_u_.domain_length(), along_v_.domain_length());
@@ -131,9 +132,9 @@ std::map<int, int> TrimmedArea::windings_beside(const std::vector<Eigen::Vector2
   return found;
 }
 
-// Returns the level at which the part left of a loop remains. The most frequent winding number on the left
-// decides, because rounding may change single samples where loops touch, or a loop touches itself across
-// the seam.
+// Returns the value of level_ for which the part on the left of the loop remains. The most frequent of the
+// winding numbers sampled on the left decides, because rounding may falsify single samples where loops touch,
+// or where a loop touches itself across the seam.
 int TrimmedArea::find_level(const std::vector<Eigen::Vector2d>& polygon) const {
   const bool outer = signed_area(polygon) > 0.0;
   const std::map<int, int> found = windings_beside(polygon, sample_offset);
@@ -218,7 +219,7 @@ bool TrimmedArea::fill_columns(std::size_t columns) {
 
 namespace {
 
-constexpr double snap_fraction = 1e-9;  // of the domain
+constexpr double snap_fraction = 1e-9;  // as a fraction of the domain
 
 using Edge = TrimmedArea::Edge;
 

@@ -36,9 +36,9 @@ class TrimmedArea {
 
   bool is_whole() const { return edges_.empty(); }
 
-  // Returns whether the point remains, by the winding number of the loops. u, v are wrapped or clamped
-  // into the domain. A point at an end of an open direction is tested 2 trim_rounding_fraction of the
-  // domain inside. On a loop the result is undefined. Does not allocate.
+  // Returns whether the point is in the remaining part, according to the loops' winding number. u, v are
+  // wrapped or clamped into the domain. A point at an end of an open direction is tested 2
+  // trim_rounding_fraction of the domain inside. On a loop the result is undefined. Does not allocate.
   bool contains(double u, double v) const;
 
   // Returns the remaining fraction of the domain, above 0 and at most 1.
@@ -62,10 +62,10 @@ class TrimmedArea {
 
   KnotVector along_u_, along_v_;
   std::vector<Edge> edges_;
-  int level_ = 0;  // added to the winding number, so that points with a sum above 0 remain
+  int level_ = 0;  // added to the winding number; a point remains if the sum is above 0
   double remaining_fraction_ = 1.0;
-  // Indices of edges by columns of equal width in u. Those that may cross a vertical line in column c are
-  // column_edges_ from column_starts_[c] to column_starts_[c + 1] - 1.
+  // Indices of the edges, listed for columns of equal width in u. The edges that may cross a vertical line in
+  // column c are the entries column_starts_[c] to column_starts_[c + 1] - 1 of column_edges_.
   std::vector<std::size_t> column_starts_, column_edges_;
 };
 
@@ -81,7 +81,7 @@ class GridLines {
   double at(int line) const { return at_[static_cast<std::size_t>(line)]; }
   const std::vector<double>& all() const { return at_; }
 
-  // Returns the parameter, moved onto a line that is nearer than a billionth of the domain, so that no sliver
+  // Returns the parameter, or the nearest line if that is within a billionth of the domain, so that no sliver
   // is cut off.
   double snap(double parameter) const;
   // Returns the cell of a parameter, clamped to the domain; for a parameter on a line, the cell after it.
@@ -101,7 +101,7 @@ class GridLines {
 // may read it.
 class TrimmedCells {
  public:
-  // A cell outside the area, cut by its edges, or inside.
+  // Position of a cell relative to the area: outside, cut by its edges, or inside.
   enum class State : std::uint8_t { away, cut, kept };
 
   TrimmedCells(const GridLines& u, const GridLines& v, const TrimmedArea& area);
@@ -124,8 +124,8 @@ class TrimmedCells {
   std::vector<TrimmedArea::Edge> edges_;
 };
 
-// A vertex between the grid's samples. Bilinear interpolation among the corners of its cell keeps a vertex
-// on a side of the cell on the side's chord, so that neighbouring triangles meet without a gap.
+// A vertex between the grid's samples, interpolated bilinearly among the corners of its cell. A vertex on a
+// side of the cell therefore stays on the side's chord, and neighbouring triangles meet without a gap.
 struct CutVertex {
   double u = 0.0, v = 0.0;
   std::array<std::uint32_t, 4> corners{};  // samples of the grid, counter-clockwise from the lowest u and v

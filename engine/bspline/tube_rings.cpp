@@ -30,8 +30,8 @@ std::size_t near_rim(const Profile& profile, bool from_end) {
   return station(s);
 }
 
-// Fraction of the body's length, from the pole, that contains a hollow end with everything that protrudes
-// around it.
+// Distance from the pole, as a fraction of the body's length, within which a hollow end must be, with
+// everything that protrudes around it.
 constexpr double end_fraction = 0.4;
 
 std::size_t shoulder(const Profile& profile, bool from_end) {
@@ -58,7 +58,7 @@ std::size_t shoulder(const Profile& profile, bool from_end) {
 // from the centre than this fraction of the distance to the tip on that side.
 constexpr double bent_fraction = 0.9;
 
-// The ring's points farthest along e1 and against it.
+// Indices of the ring's points that are farthest along +e1 and along -e1.
 struct Tips {
   int high = 0, low = 0;
 };
@@ -90,7 +90,8 @@ bool is_bent(const Ring& ring, const Vector3& e1, const Vector3& e2) {
   return crossings > 0 && !(crossings == 2 && at_ends);
 }
 
-// Measures a bent section along and across, from points at equal fractions of both sides from tip to tip.
+// Measures a bent section's width along the bend and its thickness across it, from points at equal fractions
+// of the two sides between the tips.
 void measure_bent(const Ring& ring, CrossSection& section) {
   const Tips tips = find_tips(ring, section.e1);
   const auto samples = [](int from, int to) { return (to - from + ring_samples) % ring_samples; };
@@ -146,8 +147,8 @@ RingArc ring_arc(const Surface& surface, const Ring& ring, const CrossSection& s
   return result;
 }
 
-// Computes the arc of a bent section. Its tips replace the crossings of the wide axis, and the midpoints
-// of its sides those of the narrow axis.
+// Computes the arc of a bent section. Its tips replace the crossings of the wide axis, and the midpoints of
+// its sides replace the crossings of the narrow axis.
 RingArc bent_arc(const Surface& surface, const Ring& ring, const CrossSection& section) {
   const Tips tips = find_tips(ring, section.e1);
   RingArc result;
@@ -191,7 +192,7 @@ void turn_to_sides(const Ring& ring, const Vector3& axis, Vector3& e1) {
 
 Ring sample_ring(const Surface& surface, double v) {
   SPOONBILL_ASSERT(surface.u.is_periodic());
-  // The control points of the ring and of its derivative by v, to the bits of evaluate().
+  // The control points of the ring and of its derivative by v, with the same bits as evaluate().
   const BasisFunctions along = basis_functions(surface.v, surface.v.into_domain(v));
   std::vector<Vector3> controls, derivatives;
   for (int i = 0; i < surface.net.rows; ++i) {

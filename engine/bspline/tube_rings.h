@@ -59,9 +59,9 @@ struct Rims {
 // (within a tenth of the length).
 Rims near_rims(const Profile& profile);
 
-// Returns, from each pole, the first station after the outermost one from which the length grows at least
-// as fast as the mean radius, perimeter / 2 pi. The cap of a body that is hollow around its pole thus
-// extends over the edge of the hollow to the side.
+// Returns, for each end, the first station after the outermost one from which the length along the tube grows
+// at least as fast as the mean radius (perimeter / 2 pi). The cap of a body that is hollow around its pole
+// therefore extends over the edge of the hollow to the side.
 Rims shoulder_rims(const Profile& profile);
 
 // Returns, for each end, the rim that is farther from the pole.
@@ -71,7 +71,7 @@ Rims further_rims(const Rims& a, const Rims& b);
 struct CrossSection {
   Vector3 e1, e2;                       // the wide and the narrow axis
   double width = 0.0, thickness = 0.0;  // for a bent section, measured along its bend and across it
-  bool bent = false;                    // such as the section of a spoon's bowl
+  bool bent = false;                    // true for a section such as that of a spoon's bowl
 };
 
 // Returns the axes and extents of a ring's section perpendicular to `axis`.

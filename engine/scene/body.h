@@ -56,8 +56,8 @@ struct LatticeRequest {
   // - shells: along u, through the thickness, along v;
   // - closed shells: around, through, along, with the first node around counted twice.
   std::optional<std::array<int, 3>> counts;
-  // Spreads the inner nodes of a tube after transfinite interpolation has placed them. Empty: they stay
-  // where interpolation placed them.
+  // Settings of the map that spreads the inner nodes of a tube after transfinite interpolation has placed
+  // them. If empty, the nodes stay where interpolation placed them.
   std::optional<FeatureMapSettings> feature_map = {};
 };
 
@@ -88,7 +88,7 @@ inline constexpr Range<double> shell_thickness_range_m{1e-5, 0.1};
 // range.
 Status check_feature_map(const FeatureMapSettings& settings);
 Status check_lattice_request(const LatticeRequest& lattice);
-// Checks the numbers of loads and supports, and that point loads are within the surface's domain.
+// Checks how many loads and supports there are, and that point loads are within the surface's domain.
 Status check_loads(const Body& body);
 
 // Returns the area within the body's trim loops; null without trims.

@@ -81,7 +81,7 @@ struct Ground {
 
 // Returns the displacement of a moving support at a time of at least 0.
 Vector3 displacement_at(const SupportMotion& motion, double time_s);
-// Returns an upper bound of a motion's speed, which a ramp attains.
+// Returns an upper bound of a motion's speed; a ramp reaches it.
 double top_speed_m_per_s(const SupportMotion& motion);
 
 inline constexpr Range<int> fixing_plane_count_range{0, 64};
@@ -143,7 +143,7 @@ inline constexpr auto fields_of<Ground> = std::to_array<Field<Ground>>({
 // The error of each of the following checks names the first field that is out of range, with its value and
 // range.
 Status check_fixing_plane(const FixingPlane& plane);
-Status check_load(const Load& load);  // u and v of a point load excepted: see check_loads()
+Status check_load(const Load& load);  // except u and v of a point load: see check_loads()
 Status check_support(const Support& support);
 Status check_ground(const Ground& ground);
 

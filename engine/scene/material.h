@@ -106,15 +106,15 @@ struct BodyCoordinates {
 // Part of a body in the body's own coordinates, which deformation does not change. The default is the whole
 // body.
 struct BodyRegion {
-  Range<double> along{0.0, 1.0};   // fraction of the length in the direction of v; of the turn for a ring
+  Range<double> along{0.0, 1.0};   // fraction of the length in the direction of v; for a ring, of the turn
   Range<double> around{0.0, 1.0};  // fraction of a turn in the direction of u; crosses the seam if low > high
-  Range<double> depth_m{0.0, std::numeric_limits<double>::infinity()};  // below the surface, at rest
+  Range<double> depth_m{0.0, std::numeric_limits<double>::infinity()};  // depth below the surface at rest
 };
 
 bool contains(const BodyRegion& region, const BodyCoordinates& point);
 
-// Requires fractions within 0 to 1 and in order, and depths that are at least 0 and in order. The error names
-// the field.
+// Returns an error unless all fractions are from 0 to 1, `along` and the depths do not decrease, the depths
+// are at least 0, and `around` is not empty. The error names the field.
 Status check_region(const BodyRegion& region);
 
 // Region of a body whose material or friction differs from the rest.

@@ -125,8 +125,8 @@ struct ResetProxy {};
 struct LiftTool {};
 // Makes the current shape the rest shape.
 struct KeepShape {};
-// Inserts a knot in each direction where the body's surface follows its lattice worst. The shape does not
-// change, and gains control points for further strokes.
+// Inserts a knot in each direction where the body's surface follows its lattice least closely. The shape does
+// not change, but later strokes have more control points to move.
 struct RefineKnots {
   int body = 0;  // index in the scene
 };

@@ -53,7 +53,7 @@ Status check_soft(const MeshSolid& solid) {
   const std::size_t triangles = solid.mesh.mesh.triangles.size();
   if (triangles > soft_mesh_triangle_limit) {
     return Error{ErrorCode::too_many,
-                 "mesh: has " + std::to_string(triangles) + " triangles, a soft mesh may have at most " +
+                 "mesh: has " + std::to_string(triangles) + " triangles, but a soft mesh may have at most " +
                      std::to_string(soft_mesh_triangle_limit) + "; reduce it or omit soft",
                  "mesh"};
   }
@@ -61,7 +61,7 @@ Status check_soft(const MeshSolid& solid) {
                                   [](const MeshPart& part) { return part.closed; });
   if (!closed) {
     return Error{ErrorCode::inconsistent,
-                 "mesh: is open, a soft mesh must be closed; close its holes or omit soft", "mesh"};
+                 "mesh: is open, but a soft mesh must be closed; close its holes or omit soft", "mesh"};
   }
   return {};
 }

@@ -48,8 +48,8 @@ struct ToolKey {
 
 struct ToolActionRow {
   ToolAction action;
-  const char* name;   // in files
-  const char* label;  // in the panel
+  const char* name;   // name in files
+  const char* label;  // label in the panel
   const char* help;   // one sentence without a full stop
   // True if the tool holds what it first touches until the button is released. With other actions the tool
   // lets go as it leaves.
@@ -172,7 +172,7 @@ struct ToolBody {
 struct Tool {
   ToolKind kind = ToolKind::sphere;
   ToolAction action = ToolAction::push;
-  double radius_m = 0.008;  // of a sphere; 0 for a point; reach of smoothing for a solid
+  double radius_m = 0.008;  // radius of a sphere; 0 for a point; smoothing reach of a solid
   int iterations = 6;       // relaxation steps per tick, 1 to 8: few act locally, many globally
   std::shared_ptr<const ToolBody> body = {};  // required for a solid; may stay while another kind is in use
 };
@@ -184,7 +184,7 @@ inline Range<double> range_in_action(const Tool& tool, const char* field, Range<
   return parameter == nullptr ? any : parameter->range;
 }
 
-// Fields of a tool before its body, which files store as "solid" and "soft".
+// Fields of a tool except its body; files store the two parts of the body as "solid" and "soft".
 template <>
 inline constexpr auto fields_of<Tool> = std::to_array<Field<Tool>>({
     choice_field<&Tool::kind>("kind", tool_kind_names),

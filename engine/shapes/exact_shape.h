@@ -60,11 +60,12 @@ inline constexpr double min_rounding_fraction = 0.01;
 // Default rounding, as a fraction of the shortest side that it rounds.
 inline constexpr double default_rounding_fraction = 0.1;
 
-// Returns an out_of_range error in millimetres, such as "radius is 0.01 mm, must be 0.1 mm to 10000 mm".
+// Returns an out_of_range error unless the length is within the range. The message is in millimetres, such as
+// "radius is 0.01 mm, must be from 0.1 mm to 10000 mm".
 Status check_length(std::string_view name, double length_m, Range<double> range_m);
-// Requires a size within shape_size_range_m.
+// Returns an error unless the size is within shape_size_range_m.
 Status check_size(std::string_view name, double size_m);
-// Requires a rounding of at least min_rounding_fraction of the side and at most `max_m`.
+// Returns an error unless the rounding is at least min_rounding_fraction of the side and at most `max_m`.
 Status check_rounding(std::string_view name, double rounding_m, double side_m, double max_m);
 
 }  // namespace spoonbill

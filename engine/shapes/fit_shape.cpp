@@ -21,8 +21,8 @@ namespace {
 // Largest ratio of the lengths of neighbouring spans; keeps the control net even and least squares well
 // conditioned.
 constexpr double largest_step = 3.0;
-// Fraction of the largest error that may spill over into neighbouring cells. Cells with no larger error are
-// refined only once their own error shows.
+// Fraction of the largest error that may be only ringing from neighbouring cells. Cells whose errors are no
+// larger are refined in a later round, if their own error shows.
 constexpr double ringing_fraction = 0.1;
 // Largest refinement factor of one step, because an error far from its asymptote would lead to far too many
 // spans.
@@ -265,8 +265,8 @@ std::vector<double> midpoints(const std::vector<double>& parameters, const Shape
   return result;
 }
 
-// Returns the error of a fit along one direction alone, measured across the shape. Displacement along the
-// shape counts only if the fit keeps parameters.
+// Returns the error of a fit in u alone or v alone. Only the component along the normal counts, unless the
+// fit keeps the parameters.
 Result<DirectionError> error_along(const ExactShape& shape, bool along_u, const ShapeKnots& knots,
                                    const std::vector<double>& lines, bool keeps_parameters,
                                    FitRounds& rounds) {

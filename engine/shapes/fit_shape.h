@@ -20,7 +20,8 @@ namespace spoonbill {
 // the shape's may. One owner.
 class ShapeKnots {
  public:
-  // Makes cells of at most 1 / min_spans of the domain that grow gradually away from short ones.
+  // Makes cells of at most 1 / min_spans of the domain. Their lengths grow gradually with the distance from
+  // short cells.
   ShapeKnots(const ShapeDirection& direction, int degree, int min_spans);
 
   // Makes knots for about `control_count` control points, leaving some for refine_worst(). Ignores the

@@ -36,8 +36,8 @@ class RoundedRectangle {
   double length() const { return ends_.back(); }
   double rounding() const { return rounding_; }
 
-  // Returns the fractions of the length, from 0 to 1, at which a side meets a corner or its slowed part
-  // begins.
+  // Returns the fractions of the length, from 0 to 1, at which a side meets a corner, or at which the slowed
+  // part of a side ends.
   std::vector<double> breaks() const {
     std::vector<double> fractions = {0.0};
     const auto add = [&](double distance) {
@@ -158,8 +158,8 @@ class BoxAlong {
 
   double whole() const { return 2.0 * (face_ + roll_) + side_; }
 
-  // Returns the fraction of the distance from the pole to the edge, which is reached at the speed at which
-  // the roll over the edge begins.
+  // Returns the fraction of the distance from the pole to the edge of the end face. The edge is reached at
+  // the speed at which the roll over it begins.
   double fraction_from_pole(double half, double from_pole) const {
     const double speed = face_ / (half - rounding_), fraction = from_pole / face_;
     return fraction * (2.0 - speed - (1.0 - speed) * fraction);

@@ -279,7 +279,7 @@ class LoftSides {
            scale * ((a * a * a - a) * second_[s].at(u) + (b * b * b - b) * second_[s + 1].at(u));
   }
 
-  // Returns the derivative by the distance across the sections.
+  // Returns the derivative with respect to the distance across the sections.
   Vector3 across(double u, double t) const {
     const auto [s, length, b] = find_piece(t);
     const double a = 1.0 - b;

@@ -39,8 +39,8 @@ class GlContext {
 // A GL context without window or display: Mesa's software renderer, which draws into memory.
 class OsmesaContext final : public GlContext {
  public:
-  // Makes a core profile of 3.3 or later, which is not current yet. Errors, with the remedy: sizes outside 1
-  // to 16384, no libOSMesa, a Mesa without a core profile.
+  // Makes a context with a core profile of OpenGL 3.3 or later, which is not current yet. Errors, with the
+  // remedy: sizes outside 1 to 16384, no libOSMesa, a Mesa without a core profile.
   static Result<std::unique_ptr<OsmesaContext>> make(int width_px, int height_px);
 
   ~OsmesaContext() override;
@@ -78,7 +78,7 @@ class SharedLibrary {
   // package that provides it. The error names both.
   static Result<SharedLibrary> open(const char* file, const char* package);
 
-  // Returns the address of a function or variable, or null if the library has none of this name.
+  // Returns the address of a function or variable, or null if the library has none with this name.
   void* symbol(const char* name) const;
 
  private:

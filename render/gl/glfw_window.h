@@ -63,7 +63,7 @@ class GlfwWindow final : public GlContext {
   // Handles pending events.
   void poll_events();
 
-  // Returns whether the user requested to close the window. The owner decides and may clear the request.
+  // Returns whether the user has asked to close the window. The owner decides and may clear the request.
   bool should_close() const;
   void set_should_close(bool close);
 

@@ -49,7 +49,7 @@ Result<GlFunctions> load_gl_functions(const GlContext& context) {
 
 namespace {
 
-// Makes an object with one pair of functions, and lets the handle delete it.
+// Makes a GL object with `generate`; its handle deletes it with `remove`.
 template <auto generate, auto remove>
 GlHandle make_object(const GlFunctions& gl) {
   GLuint id = 0;

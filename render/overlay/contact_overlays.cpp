@@ -64,8 +64,8 @@ bool is_shown(const ViewSettings& settings) {
   return settings.stages && settings.overlays.contact_stage != ContactStage::none;
 }
 
-// Returns the point of the tool, or of its bounding box, that a ray from its centre leaves last. For a soft
-// tool, returns its position instead.
+// Returns the last point at which a ray from the tool's centre leaves the tool or its bounding box. For a
+// soft tool, returns the tool's position instead.
 Vector3 find_arrow_start(const Snapshot& snapshot, const Vector3& direction) {
   const ToolSnapshot& tool = snapshot.tool;
   const ToolBody* body = rigid_body(tool);

@@ -27,8 +27,8 @@ namespace spoonbill {
 
 // Returns the part of the picture that the scene can touch, as disjoint vertical strips with a margin for
 // marks. The strips enclose bodies, tool and overlays; one strip covers the whole viewport if any point is
-// behind the eye. With four samples, clearing and resolving empty pixels would take as long as drawing the
-// model. Defined in scene_area.cpp.
+// behind the eye. With four samples per pixel, clearing and resolving empty pixels would take as long as
+// drawing the model. Defined in scene_area.cpp.
 std::vector<PixelArea> scene_area(const Snapshot& snapshot, const ViewSettings& settings,
                                   const FrameView& view, const std::vector<TessellatedSurface>& bodies);
 

@@ -73,7 +73,7 @@ const int taps = 14;
 
 float level_for(float radius) { return max(log2(radius * cover_texels / side * 0.5), 0.0); }
 
-// Returns the sum over a disc around uv; without taps if `any` is 0.
+// Returns the sum of the taps over a disc around uv; takes no taps if `any` is 0.
 vec3 gather(vec2 uv, float radius, float level, int count, float any) {
   const mat2 golden_turn = mat2(-0.7373688, 0.6754903, -0.6754903, -0.7373688);
   vec2 way = vec2(radius / side, 0.0);

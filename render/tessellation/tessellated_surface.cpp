@@ -79,8 +79,8 @@ class NetLine {
   int stride_;
 };
 
-// Bounds for each control point of the derivatives, over all lines of the net: the length of S' in metres per
-// parameter, and the length of the part of S'' perpendicular to S', which bends a line.
+// Upper bounds, for each control point of the derivatives, over all lines of the net: of the length of S' in
+// metres per parameter, and of the length of the component of S'' perpendicular to S', which bends a line.
 struct DerivativeBounds {
   std::vector<double> speed;  // control point i acts on spans i + 1 to i + degree
   std::vector<double> bend;   // control point i acts on spans i + 2 to i + degree

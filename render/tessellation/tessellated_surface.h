@@ -32,7 +32,7 @@ SamplingLevel uniform_sampling_level(const SurfaceSnapshot& surface, int pieces)
 
 struct SamplingTarget {
   double longest_edge_px = 48.0;
-  double largest_sagitta_px = 0.3;  // distance of a chord from its arc; near the resolution of four samples
+  double largest_sagitta_px = 0.3;  // distance of a chord from its arc; about what 4 samples per pixel show
 };
 
 // Maximum number of cells of one surface. Without a limit, all of a large surface seen from close up would be
@@ -41,8 +41,8 @@ inline constexpr std::int64_t sampling_cell_limit = 1'000'000;
 
 // Returns the level at which no edge and no sagitta exceeds the target, estimated from the control points of
 // the derivatives. `previous` is retained, span by span, while it is neither too coarse nor more than about
-// twice too fine, so that a slowly changing shape does not flicker between levels. The level is coarser if
-// the cells would exceed the limit. The size of the net must fit the knots.
+// twice as fine as needed, so that a slowly changing shape does not flicker between levels. The level is
+// coarser if the cells would exceed the limit. The size of the net must fit the knots.
 SamplingLevel choose_sampling_level(const SurfaceSnapshot& surface, double pixels_per_metre,
                                     const SamplingLevel& previous, const SamplingTarget& target = {});
 
@@ -137,9 +137,9 @@ class TessellatedSurface {
   std::vector<CutVertex> cut_vertices_;  // sources of the samples after those of the grid
 };
 
-// Returns the box around all surfaces of a snapshot. The surfaces are evaluated, because control nets extend
-// farther. Meant for framing and for the ground, not for every frame. Surfaces that cannot be evaluated are
-// skipped.
+// Returns the box around all surfaces of a snapshot. The surfaces are evaluated, because boxes around control
+// nets would be larger. Meant for framing and for the ground, not for every frame. Surfaces that cannot be
+// evaluated are skipped.
 Box drawn_bounds(const Snapshot& snapshot);
 
 }  // namespace spoonbill

@@ -17,8 +17,8 @@ std::size_t allocation_count() {
 
 }  // namespace spoonbill
 
-// The operators for arrays and with sizes call these two. In most programs the operators without exceptions
-// do too, but the address sanitizer has its own.
+// The operators for arrays and sized deletion call these two. In most programs the nothrow operators do too,
+// but the address sanitizer has its own.
 void* operator new(std::size_t size) {
   ++count;
   if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;

@@ -16,12 +16,12 @@ constexpr int effort(int trials) {
   return sanitized ? (trials + 3) / 4 : trials;
 }
 
-// Returns true if tests of several seconds run too, as in tests/run --full.
+// Returns true if tests that take several seconds are run too, as in tests/run --full.
 inline bool is_full_run() {
   return std::getenv("SPOONBILL_FULL") != nullptr;
 }
 
-// Returns true if tests of minutes run too, as in tests/run --long random.
+// Returns true if tests that take minutes are run too, as in tests/run --long random.
 inline bool is_long_run() {
   return std::getenv("SPOONBILL_LONG") != nullptr;
 }
@@ -35,7 +35,7 @@ inline int random_cases(int quick, int many) {
 inline constexpr const char* only_in_full = "takes several seconds; runs with SPOONBILL_FULL alone";
 inline constexpr const char* only_in_long = "takes minutes; runs with SPOONBILL_LONG alone";
 
-// The reason for tests that take a sanitizer a minute and whose code shorter tests run as well.
+// Reason to skip tests that take a minute under a sanitizer and whose code shorter tests run as well.
 inline constexpr const char* long_when_sanitized =
     "a minute under a sanitizer, which shorter tests tell as much";
 

@@ -1,5 +1,5 @@
-// Functions assert the preconditions that their headers state; the tests take some of each folder.
-// Preconditions that only Debug builds check are at the end.
+// Tests that functions assert the preconditions stated in their headers, for some functions of each folder.
+// The preconditions that only Debug builds check are at the end.
 #include <gtest/gtest.h>
 
 #include <limits>

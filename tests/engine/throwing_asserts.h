@@ -1,4 +1,5 @@
-// Asserts that throw while it lives, for tests of what they refuse: EXPECT_THROW(..., FailedAssertion).
+// Makes failed assertions throw while an object of this class exists. For tests of preconditions:
+// EXPECT_THROW(..., FailedAssertion).
 #pragma once
 
 #include "engine/base/assert.h"

@@ -24,7 +24,8 @@
 namespace spoonbill {
 namespace {
 
-// Two renderings of the same view may differ by at most this in any block; see worst_block_difference().
+// Largest difference allowed in any block between two renderings of the same view; see
+// worst_block_difference().
 constexpr double tolerance = 2.0;
 
 constexpr const char* font_path = "/usr/share/fonts/truetype/roboto/unhinted/RobotoTTF/Roboto-Regular.ttf";

@@ -107,7 +107,7 @@ class SolidToolPicture : public ::testing::Test {
   std::unique_ptr<Renderer> renderer_;
 };
 
-// Returns the bounds in pixels of a box at a frame.
+// Returns the bounds, in pixels, of a box that is placed by a frame.
 Changed projected_tool(const Box& box, const ToolFrame& frame) {
   const ViewSettings settings = plain_view();
   const Viewport viewport = make_viewport(sample_width_px, sample_height_px, settings.panel_px);

@@ -15,7 +15,7 @@ namespace spoonbill {
 namespace {
 
 // Turns the child process into Xvfb, which writes the number of its display to `number_pipe`. With -noreset
-// it keeps its settings after its last client leaves; otherwise the next client might meet it during the
+// it keeps its settings after its last client leaves; otherwise the next client might connect during the
 // reset.
 [[noreturn]] void become_xvfb(int number_pipe, const std::string& screen) {
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);

@@ -20,7 +20,8 @@ namespace {
 
 constexpr int width = 640, height = 360;
 
-// Two rasterisers may differ by at most this in a block, as in the comparison with the approved pictures.
+// Largest difference allowed in any block between two rasterisers, as in the comparison with the approved
+// pictures.
 constexpr double tolerance = 2.0;
 
 ViewSettings settings_for(const Snapshot& snapshot, int width_px, int height_px) {

@@ -141,7 +141,7 @@ void ElementTree::update_strip(SurfaceLevels& levels, int element_u) {
     Box& box = boxes_[index];
     box = strip_[element_v];
     sizes_[index] = (box.high - box.low).sum();
-    // The sum of a box's sides includes six bulges.
+    // A box's size is the sum of its sides, each of which includes the bulge twice.
     if (bulges_[element_v] <= 0.1 * sizes_[index]) continue;
     const Box hull = control_box(levels.surface().net, element_u, element_v);
     box = {box.low.cwiseMax(hull.low), box.high.cwiseMin(hull.high)};
@@ -212,7 +212,7 @@ const std::vector<CellPair>& CellPairs::find_within_at_level(double reach_m, int
   return pairs_;
 }
 
-// Takes the larger surface's element nearest to the centre of the smaller surface's box, then the smaller
+// Pairs the larger surface's element nearest to the centre of the smaller surface's box with the smaller
 // surface's element nearest to that element.
 CellPair CellPairs::find_likely_near_elements() const {
   const auto centre = [](const Box& box) -> Vector3 { return 0.5 * (box.low + box.high); };

@@ -56,7 +56,7 @@ class CellSlabs {
   }
 
  private:
-  // Finds or claims the group of a key. Returns false if the group already has its slabs.
+  // Finds the cached group of a key, or claims a new one. Returns true if the slabs must still be computed.
   bool claim_slot(int key, SlabGroup*& group) {
     Slot& slot = slots_[key];
     const bool is_current = slot.generation == generation_;
@@ -147,8 +147,8 @@ class CellPairs {
  public:
   CellPairs(SurfaceLevels& first, SurfaceLevels& second);
 
-  // Reports that the control points of the first surface moved. Call after SurfaceLevels::begin() of that
-  // surface.
+  // Must be called when the control points of the first (second) surface have moved, after
+  // SurfaceLevels::begin() of that surface.
   void invalidate_first();
   void invalidate_second();
 

@@ -4,7 +4,8 @@ namespace spoonbill::SPOONBILL_KERNELS {
 
 namespace {
 
-// Bounds of the rounding error of a slab's extent in single precision, relative to its size and its position.
+// Bounds of the rounding error of a slab's extent in single precision, as fractions of its size and of its
+// position.
 constexpr double size_rounding = 1e-6;
 constexpr double position_rounding = 2.5e-7;
 // Bound of the relative rounding error of the offset between two centres.
@@ -12,7 +13,7 @@ constexpr float offset_rounding = 1e-6F;
 constexpr float rounded_down = 1.0F - 1e-5F;
 constexpr float rounded_up = 1.0F + 1e-5F;
 
-// One sum per lane. Requires the alignment of one number only, not of the whole vector.
+// A vector with one sum per lane. Its address needs only the alignment of a single number.
 typedef double Lanes __attribute__((vector_size(slab_lanes * sizeof(double)), aligned(sizeof(double))));
 
 // Adds weights[k] * values[k][j] over k for four neighbouring j.

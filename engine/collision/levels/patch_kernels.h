@@ -52,7 +52,7 @@ struct PatchKernels {
                       double* lines, const PlanarOutput& samples, long columns);
 
   // Computes the slabs of the four cells between 3 x 3 samples (9 numbers per coordinate, row by row). The
-  // surface leaves each bilinear patch by at most `bulge`.
+  // surface deviates from each bilinear patch by at most `bulge`.
   void (*compute_slabs)(const PlanarPoints& samples, double bulge, SlabGroup& group);
 
   // Returns bit 4 i + j set if slab i of the first group may be within `reach` of slab j of the second. The

@@ -346,7 +346,7 @@ bool SurfaceLevels::begin(const Surface& surface, const PlanarPoints& samples) {
   return true;
 }
 
-// Stores the control points. Returns false if they are the same as in the last call.
+// Stores the control points. Returns false if they equal those of the last call.
 bool SurfaceLevels::store_net(const ControlNet& net) {
   const bool known = generation_ > 0 && net.x == net_.x && net.y == net_.y && net.z == net_.z;
   if (!known) net_ = net;

@@ -122,9 +122,9 @@ class SurfaceLevels {
  public:
   explicit SurfaceLevels(const NestedGrid& nested, InstructionSet set = best_instruction_set());
 
-  // Starts a query. Call it whenever the control points may have moved. If none moved since the last call, it
-  // returns false and all evaluated values stay valid. The surface must have the grid's knots and outlive the
-  // calls below. The optional `samples` are all samples of the finest grid in the order of
+  // Starts a query. Must be called whenever the control points may have moved. Returns false if none moved
+  // since the last call; all evaluated values then stay valid. The surface must have the grid's knots and
+  // outlive the calls below. The optional `samples` are all samples of the finest grid in the order of
   // GridEvaluator<double>; no sample is then evaluated. These samples must belong to the surface and outlive
   // the calls below.
   bool begin(const Surface& surface, const PlanarPoints& samples = {});

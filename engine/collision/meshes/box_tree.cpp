@@ -90,7 +90,8 @@ BoxTree::BoxTree(const std::vector<Box>& boxes, std::uint32_t leaf_size) {
 
 namespace {
 
-// Cosine of 50 degrees. Common edge angles are 45 and 60 degrees; between them, rounding does not decide.
+// Cosine of 50 degrees. The common edge angles of 45 and 60 degrees are far enough from it that rounding does
+// not decide.
 constexpr double wall_cosine = 0.6428;
 
 // Tests a ray against a box by its slabs (Kay and Kajiya 1986).

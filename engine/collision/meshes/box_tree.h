@@ -100,8 +100,8 @@ class LineExits {
   // `triangles` must not be empty and must be counter-clockwise seen from outside.
   explicit LineExits(std::vector<Triangle> triangles);
 
-  // Returns the nearest triangle hit along the unit direction whose outward normal has a positive component
-  // along that direction. Triangles through which the line enters the body are ignored.
+  // Returns the nearest exit: the first triangle along the unit direction through which the line leaves the
+  // body. Triangles through which the line enters the body are ignored.
   std::optional<LineExit> first(const Vector3& from, const Vector3& direction) const;
 
   const std::vector<Triangle>& triangles() const { return triangles_; }
@@ -119,8 +119,8 @@ bool exits_through_wall(const Triangle& triangle, const Vector3& direction);
 
 struct MeshIntersection {
   std::uint32_t first = 0, second = 0;  // triangle indices
-  // Smaller of the two depths by which each triangle penetrates the plane of the other, in metres. The size
-  // of the triangles limits it.
+  // The smaller of the two depths, in metres, to which each triangle penetrates the plane of the other. The
+  // size of the triangles limits it.
   double depth_m = 0.0;
 };
 
@@ -133,8 +133,8 @@ struct MeshIntersections {
 // millionth. `triangles` must be in the order of the tree's leaves.
 //
 // The search takes about a microsecond per triangle without intersections. It ends early if it needs more
-// than 200 pair tests per triangle, as with long needles. `progress` can stop it; no finished fraction is
-// reported.
+// than 200 pair tests per triangle, as with long needles. `progress` can stop it, but receives no
+// fraction done.
 MeshIntersections self_intersections(const std::vector<Vector3>& vertices_m,
                                      const std::vector<TriangleCorners>& triangles, const BoxTree& tree,
                                      std::size_t limit, const Progress& progress = {});

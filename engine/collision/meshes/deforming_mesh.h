@@ -54,7 +54,7 @@ class DeformingMesh {
   std::vector<Vector3> vertices_m_;
   std::vector<TriangleCorners> triangles_;
   BoxTree tree_;
-  std::vector<std::uint32_t> across_;        // adjacent triangle of each side, 3 t + k
+  std::vector<std::uint32_t> across_;        // adjacent triangle of each side 3 t + k
   std::vector<std::uint32_t> first_corner_;  // per vertex, start in corners_; one more entry at the end
   std::vector<std::uint32_t> corners_;       // 3 t + k for corner k of triangle t, grouped by vertex
 };

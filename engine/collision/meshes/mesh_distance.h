@@ -61,7 +61,7 @@ class ShellDistance {
   // long.
   bool uses_normals() const { return !corner_normals_.empty(); }
 
-  // True if all vertices are behind all faces, to 1e-7 of the size. It is also false if convexity was not
+  // True if all vertices are behind all faces, within 1e-7 of the size. False as well if convexity was not
   // tested.
   bool is_convex() const;
 

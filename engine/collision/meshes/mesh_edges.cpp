@@ -84,7 +84,8 @@ namespace {
 
 constexpr std::uint32_t uncut = 0xffffffffU;
 
-// Adds a midpoint vertex to each edge longer than `longest`. Returns the midpoint of each side, or uncut.
+// Adds a midpoint vertex to each edge longer than `longest`. Returns the midpoint of each side, or `uncut`
+// for a side without one.
 std::vector<std::uint32_t> cut_edges(TriangleMesh& mesh, double longest) {
   const MeshEdges edges(mesh.triangles, mesh.vertices_m.size());
   std::vector<std::uint32_t> midpoint(3 * mesh.triangles.size(), uncut);
@@ -103,8 +104,8 @@ std::vector<std::uint32_t> cut_edges(TriangleMesh& mesh, double longest) {
   return midpoint;
 }
 
-// Appends the pieces of a triangle. Rotates `corner` so that a single cut is in the first side, or so that a
-// single uncut side is the last.
+// Appends the pieces into which the midpoints divide a triangle. Rotates `corner` so that a single cut side
+// comes first, or a single uncut side last.
 void add_pieces(const TriangleMesh& mesh, TriangleCorners corner, std::array<std::uint32_t, 3> midpoint,
                 std::vector<TriangleCorners>& out) {
   int cuts = 0;

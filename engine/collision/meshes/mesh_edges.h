@@ -31,7 +31,7 @@ class MeshEdges {
   // The two ends of each side must differ, and all corners must be below `vertices`.
   MeshEdges(const std::vector<TriangleCorners>& triangles, std::size_t vertices);
 
-  // Returns the only other side on the same edge, or `open` or `branching`.
+  // Returns the other side on the same edge if there is exactly one, otherwise `open` or `branching`.
   MeshSide across(MeshSide side) const { return across_[side]; }
 
   std::size_t open_count() const { return open_count_; }

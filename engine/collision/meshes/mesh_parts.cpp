@@ -17,8 +17,8 @@ namespace spoonbill {
 namespace {
 
 constexpr std::uint32_t no_part = 0xffffffffU;
-// Limit of the box tests and triangles visited in the search for cavities. It bounds the time for files with
-// countless specks.
+// Limit on the number of box tests and visited triangles in the search for cavities. It bounds the time for
+// files with countless specks.
 constexpr std::size_t cavity_work = 50'000'000;
 
 struct Flood {

@@ -218,8 +218,8 @@ void join_and_drop(TriangleMesh& mesh, double size, MeshReport& report) {
   report.duplicates_dropped = drop_duplicates(mesh.triangles);
 }
 
-// Renumbers vertices in the order of their first use, because flipping triangles has changed the order of
-// their corners. Cleaning therefore leaves a clean mesh unchanged, and a document is written as it was read.
+// Renumbers vertices in the order of their first use, because flipping triangles has changed that order. As a
+// result, cleaning leaves a clean mesh unchanged, and a document is written as it was read.
 void number_by_first_use(TriangleMesh& mesh) {
   std::vector<std::uint32_t> new_index(mesh.vertices_m.size(), no_vertex);
   std::vector<Vector3> vertices_m;

@@ -19,8 +19,8 @@ struct TriangleMesh {
   std::vector<TriangleCorners> triangles;  // indices into vertices_m; counter-clockwise seen from outside
 };
 
-// A set of triangles that are connected over edges that exactly two of them share. Parts have no vertices in
-// common. An open part is a sheet without an inside.
+// A set of triangles connected over edges, each of which is shared by exactly two of them. Parts have no
+// vertices in common. An open part is a sheet without an inside.
 struct MeshPart {
   std::uint32_t first_vertex = 0, end_vertex = 0;
   std::uint32_t first_triangle = 0, end_triangle = 0;

@@ -13,7 +13,7 @@ namespace spoonbill {
 namespace {
 
 constexpr std::size_t near_mesh_capacity = 4096;
-// Limit of the surface points evaluated for vertices in one search, some fifty milliseconds.
+// Limit on the number of surface points evaluated for vertices in one search, which take about 50 ms.
 constexpr int vertex_evaluation_capacity = 1 << 17;
 
 // Box of the control net, which contains the surface.
@@ -105,7 +105,8 @@ void MeshProximity::search_element(const ElementTree::Node& element, const Box& 
   if (is_near) collect_samples(element, mesh, margin);
 }
 
-// Only the first vertex of a patch that is found near is offered to the elements.
+// Offers a vertex to an element if the element is within the margin. Of each patch, only the first vertex
+// found near is offered.
 void MeshProximity::offer_vertex(const ElementTree::Node& element, const Box& box, std::uint32_t vertex,
                                  const Vector3& point, double margin) {
   const int patch = patches_[vertex];

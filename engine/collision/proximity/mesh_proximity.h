@@ -33,8 +33,8 @@ struct VertexNearSurface {
 class MeshProximity {
  public:
   // `patches` assigns each vertex of the mesh to a patch, counted from 0. Vertices may be much denser than
-  // the lattice nodes that move them, so each patch reports only its deepest or nearest vertex, assuming that
-  // the surface is flat beside it.
+  // the lattice nodes that move them. Each patch therefore reports only one vertex, the deepest or nearest;
+  // to find it, the surface is assumed to be flat near the patch.
   MeshProximity(const NestedGrid& surface, std::vector<int> patches);
   MeshProximity(const MeshProximity&) = delete;
   MeshProximity& operator=(const MeshProximity&) = delete;
@@ -58,7 +58,8 @@ class MeshProximity {
   // Returns the vertices of the mesh near the surface that the last find() found.
   const std::vector<VertexNearSurface>& mesh_vertices() const { return vertices_; }
   double least_gap_m() const { return least_gap_m_; }  // infinite if nothing is near
-  // A capacity was exceeded, and points may be missing. Remedy: fewer control points or a smaller margin.
+  // Returns true if a capacity was exceeded, so that points may be missing. Remedy: fewer control points or a
+  // smaller margin.
   bool overflow() const { return overflow_ || budget_.is_spent(); }
 
  private:
@@ -96,7 +97,7 @@ class MeshProximity {
   std::vector<int> pending_;  // working memory: nodes of the tree
   std::uint32_t search_ = 0, elements_ = 0;
   double least_gap_m_ = 0.0;
-  PolishBudget budget_{0};  // left in the last search
+  PolishBudget budget_{0};  // evaluations left in the last search
   bool overflow_ = false;
 };
 

@@ -91,7 +91,8 @@ void RestPairs::find_neighbours() {
   }
 }
 
-// Dijkstra's shortest paths from one block to the others, up to the neighbour distance.
+// Measures the shortest paths from one block to the others by Dijkstra's algorithm, up to the neighbour
+// distance.
 void RestPairs::measure_from(int block, std::vector<double>& distances) const {
   using Path = std::pair<double, int>;
   std::priority_queue<Path, std::vector<Path>, std::greater<>> queue;
@@ -225,14 +226,15 @@ bool RingSeparation::are_apart_along(const ControlNet& net, int axis_ring, int o
 
 namespace {
 
-// Number of sampled positions around a ring for the test whether it can meet another one.
+// Number of positions sampled around a ring to test whether it can meet another ring.
 constexpr int positions_around = 24;
-// Extra distance beyond the margin, in lattice cells. If no elements are within the sum, none can come within
-// the margin until a control point has moved by half the extra distance.
+// Extra distance beyond the margin, in lattice cells. If no two elements are within the margin plus this
+// distance of each other, none can come within the margin until a control point has moved by half the extra
+// distance.
 constexpr double lead_cells = 1.0;
 constexpr std::size_t element_pair_capacity = 1 << 14;
-// Limit of the element pairs compared in one search, some fifty milliseconds: a body crumpled to a point has
-// all of its elements near each other.
+// Limit on the number of element pairs compared in one search, which take about 50 ms. In a body crumpled to
+// a point, all elements are near each other.
 constexpr int element_test_capacity = 1 << 23;
 // Number of elements whose cells are cached; beyond it the cache is cleared.
 constexpr int slot_capacity = 1024;
@@ -271,7 +273,7 @@ std::vector<std::array<int, 2>> SelfProximity::find_rings_that_can_meet() const 
   return pairs;
 }
 
-// Samples positions around both ends of each ring.
+// Tests positions sampled around both ends of each ring.
 bool SelfProximity::can_meet(int ring, int other) const {
   const Grid& grid = near_.levels().nested().grid;
   const int step = near_.levels().step(0), stride = std::max(1, (grid.rows() - 1) / positions_around);
@@ -311,7 +313,8 @@ void SelfProximity::find(const Surface& surface, double margin_m) {
     const bool missing = missing_elements_;
     find_near_elements(margin_m + lead_cells * cell_m_);
     clear_ = nearby_.empty() && !missing_elements_;
-    missing_elements_ = missing || (nearby_.empty() && missing_elements_);  // the others are too far away
+    // Elements missing only from the wider search are too far away to matter.
+    missing_elements_ = missing || (nearby_.empty() && missing_elements_);
     if (clear_) clear_net_ = surface.net;
     return;
   }
@@ -398,8 +401,8 @@ void SelfProximity::offer_elements(const LevelCell& one, const LevelCell& other,
   offer_samples(other, bounding_box(one), cells, reach);
 }
 
-// Offers the samples of an element to the cells of another one, which is within the box, unless a cell
-// offered before is nearer.
+// Offers the samples of an element to the cells of another element, which is within `box`. Omits a cell if
+// one offered before is nearer.
 void SelfProximity::offer_samples(const LevelCell& element, const Box& box, std::span<const NearCell> cells,
                                   double reach) {
   SurfaceLevels& levels = near_.levels();

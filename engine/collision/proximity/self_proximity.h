@@ -101,8 +101,8 @@ class SelfProximity {
   SelfProximity(const SelfProximity&) = delete;
   SelfProximity& operator=(const SelfProximity&) = delete;
 
-  // Finds all points within `margin_m` of another part that they face and can touch (see RestPairs). The
-  // margin must be the same in each call. Takes almost no time while the body is not folded.
+  // Finds all points that face another part within `margin_m` and can touch it (see RestPairs). The margin
+  // must be the same in each call. Takes almost no time while the body is not folded.
   void find(const Surface& surface, double margin_m);
 
   // Removes the points for which `keep` returns false.
@@ -152,7 +152,7 @@ class SelfProximity {
   std::vector<NearCell> cells_;  // cells of the elements in the slots
   std::uint32_t generation_ = 0;
   int slots_used_ = 0;
-  // Control points for which no elements were within the margin plus the lead (lead_cells) of each other;
+  // Control points for which no two elements were within the margin plus the lead (lead_cells) of each other;
   // valid while clear_ is true.
   ControlNet clear_net_;
   bool clear_ = false;

@@ -57,8 +57,8 @@ double distance_bound(const Vector3& point, const PatchCorners& at) {
 }
 
 constexpr std::size_t near_surface_capacity = 4096;
-// Limit of the surface points evaluated in one search, some fifty milliseconds. Points of smooth bodies take
-// about five each; those of crumpled ones would take thousands.
+// Limit on the number of surface points evaluated in one search, which take about 50 ms. Samples near a
+// smooth body need about five each; those near a crumpled one would need thousands.
 constexpr int evaluation_capacity = 1 << 17;
 
 }  // namespace
@@ -154,8 +154,8 @@ bool NearPoints::is_local_deepest(const NearPoint& near) const {
   return true;
 }
 
-// Starts at the locally deepest samples and uses the exact surfaces. deepest_pair() also ascends from points
-// in front of the other surface, where the depth is the negative gap.
+// Searches from the locally deepest samples, on the exact surfaces. deepest_pair() also works from points in
+// front of the other surface, where the depth is negative.
 void NearPoints::add_between_samples(const SurfaceLevels& other, double outside) {
   SPOONBILL_ASSERT(std::abs(outside) == 1.0);
   const std::size_t samples = near_.size();

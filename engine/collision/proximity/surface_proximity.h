@@ -12,8 +12,8 @@
 
 namespace spoonbill {
 
-// The nearest point of a cell between samples, taken as two triangles: local coordinates along u and v, 0 to
-// 1, and the distance in metres.
+// The nearest point of a cell, which is treated as two triangles between its samples: local coordinates along
+// u and v, 0 to 1, and the distance in metres.
 struct NearestOnCell {
   double u, v, distance;
 };
@@ -26,7 +26,7 @@ struct NearPoint {
   double other_u = 0.0, other_v = 0.0;
   Vector3 point_m = Vector3::Zero();
   Vector3 normal = Vector3::UnitY();  // unit outward normal of the other surface
-  double gap_m = 0.0;                 // along the normal; negative if the point is inside the other body
+  double gap_m = 0.0;                 // distance along the normal; negative inside the other body
 };
 
 // Collects the points of one surface that are near another. Call the functions in the order of their
@@ -72,7 +72,7 @@ class NearPoints {
   const SurfaceLevels& levels() const { return levels_; }
   const std::vector<NearPoint>& points() const { return near_; }
   double least_gap_m() const { return least_gap_m_; }  // infinite if nothing is near
-  // A capacity was exceeded, and points may be missing or not yet the nearest.
+  // Returns true if a capacity was exceeded, so that points may be missing or not yet the nearest.
   bool overflow() const { return overflow_ || budget_.is_spent(); }
 
  private:
@@ -83,7 +83,7 @@ class NearPoints {
   std::vector<std::uint32_t> indexed_at_;  // generation in which that index was set
   std::vector<NearPoint> near_;
   std::uint32_t generation_ = 0;
-  PolishBudget budget_{0};  // left in the search since begin()
+  PolishBudget budget_{0};  // evaluations left since begin()
   double least_gap_m_ = 0.0;
   bool overflow_ = false;
 };

@@ -14,7 +14,8 @@ namespace {
 
 using Object = fcl::CollisionObject<double>;
 
-// Slack as a fraction of the largest coordinate, because FCL takes a rounded centre and rounded sides.
+// Slack of the boxes, as a fraction of the largest coordinate, because FCL computes with a rounded centre and
+// rounded sides.
 constexpr double box_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 
 std::size_t body_index(const Object* object) {

@@ -326,7 +326,7 @@ Status check_axes(const std::string& shape, const Vector3& lengths) {
                "semi_axes_mm");
 }
 
-// Checks conditions between the fields of a shape, beyond their ranges.
+// Checks the relations between the fields of a shape. The ranges of the fields are checked elsewhere.
 template <class Shape>
 Status check_proportions(const Shape&) {
   return {};

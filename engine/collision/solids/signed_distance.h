@@ -23,8 +23,9 @@ class SignedDistance {
   // at the centre of a ball, minus the radius, is a lower bound within the ball.
   virtual DistanceSample at(const Vector3& point_m) const = 0;
 
-  // Returns the distance if it is less than `enough_m`. Otherwise, a convex solid may return the distance to
-  // any plane that bounds it and is at least `enough_m` away, which saves time if the distance is costly.
+  // Returns the distance if it is less than `enough_m`. Otherwise a convex solid may instead return the
+  // distance to any bounding plane that is at least `enough_m` away, which saves time if the exact distance
+  // is costly.
   virtual DistanceSample at_within(const Vector3& point_m, double enough_m) const {
     (void)enough_m;
     return at(point_m);

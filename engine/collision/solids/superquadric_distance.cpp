@@ -29,8 +29,8 @@ struct Coordinate {
   double slope = 0.0;  // derivative of log_value with respect to log(price)
 };
 
-// Starts where the larger term alone would be the target, which is at or above the root. Both terms are
-// convex in L, so Newton's method descends monotonically from there.
+// Solves for the coordinate by Newton's method, starting where the larger term alone equals the target, which
+// is at or above the root. Both terms are convex in L, so the iteration descends monotonically.
 Coordinate solve_coordinate(double log_target, double log_price, double q) {
   if (log_target == nothing) return {};
   const double target = stable_exp(log_target);
@@ -121,7 +121,7 @@ DistanceSample SuperquadricDistance::outside(const Vector3& point) const {
     double move = std::clamp(-gauge / slope, -8.0, 8.0);
     if (!(std::abs(move) >= 0.0)) move = gauge > 0.0 ? 8.0 : -8.0;
     double next = log_price + move;
-    // While one of the bounds is missing, only rounding can lead back beyond the other.
+    // Until both bounds are known, only rounding can make a step pass the known bound.
     const bool bounded = low > -1e300 && high < 1e300, leads_back = next <= low || next >= high;
     if (leads_back) next = bounded ? 0.5 * (low + high) : log_price;
     const bool converged = std::abs(gauge) < 2e-16 || std::abs(next - log_price) < convergence_step;
@@ -193,7 +193,7 @@ void SuperquadricDistance::expand(const Spot& spot, const Vector3& point, Expans
   out.curvature[2] = square.dot(by_along.cwiseAbs2()) + pull.dot(along_twice);
 }
 
-// Moves the spot to a minimum by Newton's method, damped until the distance decreases.
+// Moves the spot to a local minimum of the distance by Newton's method, damped until the distance decreases.
 SuperquadricDistance::Spot SuperquadricDistance::improve(Spot spot, const Vector3& point) const {
   Expansion here, there;
   expand(spot, point, here);

@@ -5,12 +5,14 @@
 
 namespace spoonbill {
 
-// With q1 = 2 / e1, q2 = 2 / e2 the solid is |(|(x/a, z/c)|_q2, y/b)|_q1 <= 1, the unit ball of nested norms.
+// Signed distance of the solid |(|(x/a, z/c)|_q2, y/b)|_q1 <= 1 with q1 = 2 / e1 and q2 = 2 / e2, the unit
+// ball of nested norms.
 //
-// Outside, the nearest point x of p solves p_i - x_i = mu_i |x_i / a_i|^(q-1) / a_i. The multiplier mu_i is
-// mu for x and z, and lambda for y. Each of these equations has one root. The multipliers are related by
-// lambda = mu rho^(q2-q1), rho = |(x/a, z/c)|_q2. Minimising the distance for a given price lambda of the
-// constraint is convex, so lambda and mu increase together. One monotone equation in mu remains.
+// Outside, the surface point x nearest to p satisfies p_i - x_i = mu_i |x_i / a_i|^(q-1) / a_i. The
+// multiplier mu_i is mu for x and z, and lambda for y. Each of these equations has one root. The multipliers
+// are related by lambda = mu rho^(q2-q1), rho = |(x/a, z/c)|_q2. Minimising the distance for a given price
+// lambda of the constraint is convex, so lambda and mu increase together. One monotone equation in mu
+// remains.
 //
 // Inside, the distance to the surface has several local minima. Newton's method searches for them from
 // several starting points, in logit coordinates of the surface (Spot). The nearest of the tangent planes at
@@ -22,7 +24,8 @@ class SuperquadricDistance final : public SignedDistance {
   // Returns the distance to the tangent plane at which the ray from the centre leaves the solid, if this
   // distance is at least `enough_m`; otherwise the distance to the solid.
   DistanceSample at_within(const Vector3& point_m, double enough_m) const override;
-  // Decides by the gauge alone for points inside, without computing a distance.
+  // Returns whether the distance exceeds `limit_m`. For points inside, the gauge alone decides, without
+  // computing a distance.
   bool is_beyond(const Vector3& point_m, double limit_m) const override;
   bool is_convex() const override { return true; }
   Box bounds() const override { return {-axes_, axes_}; }

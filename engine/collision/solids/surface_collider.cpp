@@ -193,7 +193,8 @@ void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
   }
 }
 
-// Offers the nearest point of the last query: mostly it is still almost the nearest, which prunes the search.
+// Offers the nearest point of the last query. It is usually still almost the nearest, and then it prunes the
+// search.
 void SurfaceCollider::offer_last(const Surface& surface, const ToolShape& tool) {
   best_ = {};
   best_.distance_m = std::numeric_limits<double>::infinity();
@@ -448,8 +449,8 @@ void SurfaceCollider::minimise_on_edges(const Surface& surface, const ToolShape&
   }
 }
 
-// Nothing is proven for a cell that trim loops cross. Newton's method starts from its centre, if that is not
-// trimmed away and is nearer than the corners, samples and loops offered before.
+// Searches a cell that trim loops cross; nothing is proven there. Newton's method starts from the cell's
+// centre, if the centre is not trimmed away and is nearer than the corners, samples and loops offered before.
 void SurfaceCollider::search_trimmed_cell(const Surface& surface, const ToolShape& tool,
                                           const LevelCell& cell) {
   const Patch patch = whole_patch(cell);

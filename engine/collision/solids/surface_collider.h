@@ -17,7 +17,7 @@
 
 namespace spoonbill {
 
-// Lookup of the untrimmed cells and samples. Immutable; queries allocate nothing.
+// Table of the cells and samples that are not trimmed away. Immutable; queries allocate nothing.
 class TrimmedLevels {
  public:
   TrimmedLevels(const NestedGrid& nested, std::shared_ptr<const TrimmedArea> area);
@@ -74,25 +74,26 @@ struct Clearance {
 class SurfaceCollider {
  public:
   // The optional `trim` restricts the surface to the trimmed area. Nearest points on trim loops are points of
-  // the polygons that replace them. In cells that loops cross, the nearest point is the best that Newton's
-  // method finds from samples and loops, without proof.
+  // the polygons that replace the loops. In cells that loops cross, the nearest point is the best that
+  // Newton's method finds from samples and loops, without proof.
   explicit SurfaceCollider(const NestedGrid& nested, std::shared_ptr<const TrimmedArea> trim = nullptr);
 
   // Finds the deepest contact within `margin_m`. The surface must have the grid's knots. `closed` is true if
-  // the surface bounds a body, which may contain the tool; the depth is then the exit along the nearest
-  // wall's normal. Afterwards, near_samples() returns the samples within the margin. `samples` are optional,
-  // see SurfaceLevels::begin().
+  // the surface bounds a body, which may contain the tool; the depth is then the distance by which the tool
+  // leaves the body along the nearest wall's normal. Afterwards, near_samples() returns the samples within
+  // the margin. `samples` are optional, see SurfaceLevels::begin().
   CollisionResult collide(const Surface& surface, const ToolShape& tool, double margin_m, bool closed,
                           const PlanarPoints& samples = {});
 
   // Finds every region of the surface that the tool touches, deepest first. Call after collide() with the
-  // same surface and tool. Valid until the next call of a member function.
+  // same surface and tool. The result is valid until the next call of a member function.
   const std::vector<ToolContactRegion>& find_contact_regions(const Surface& surface, const ToolShape& tool);
   // True if the last find_contact_regions() exceeded a capacity, so that regions or parts of them may be
   // missing.
   bool regions_overflow() const { return regions_overflow_; }
 
-  // Returns a guaranteed distance to the surface, ignoring its interior.
+  // Returns a lower bound of the distance between the tool and the surface. A tool inside a closed surface
+  // counts as apart unless it touches the wall.
   Clearance clearance(const Surface& surface, const ToolShape& tool);
 
   const std::vector<NearSample>& near_samples() const { return near_; }
@@ -115,7 +116,7 @@ class SurfaceCollider {
   // Goal of a search: the deepest contact within the tolerance, or a clearance.
   enum class Proof { deepest, clearance };
 
-  // The private functions require SurfaceLevels::begin().
+  // The private functions below must be called after SurfaceLevels::begin().
   void find_nearest(const Surface& surface, const ToolShape& tool, double margin, Proof proof,
                     CollisionResult& result);
   void offer_last(const Surface& surface, const ToolShape& tool);

@@ -300,8 +300,8 @@ class Descent {
     for (int k = 0; k < count_; ++k) {
       const ShapeFace& face = faces_[k];
       const Vector2d slope = face.slope + face.curvature * (at_ - face.at);
-      // No face may exceed the distance, which is the maximum of the faces wherever a minimum may be on an
-      // edge.
+      // The value of a face is limited to the distance, because the distance is the maximum over the faces
+      // wherever a minimum can be on an edge.
       planes[k] = {k == current_ ? 0.0 : std::min(face.value(at_) - here, 0.0), scale.cwiseProduct(slope)};
     }
     Matrix2d curvature = quadratic();

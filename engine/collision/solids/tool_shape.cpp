@@ -112,8 +112,8 @@ double lower_bound(const ToolShape& tool, const PatchCorners& corners, double bu
   }
   double foremost = infinity;
   for (const Vector3& corner : corners) foremost = std::min(foremost, direction.dot(corner - tool.centre_m));
-  // The direction gives no bound for corners behind the centre, but the distance to the centre is never
-  // negative.
+  // The direction gives no useful bound for corners behind the centre, but the distance to the centre is
+  // never negative.
   if (tool.kind == ToolShape::Kind::sphere) foremost = std::max(foremost, 0.0);
   return foremost - tool.radius_m - bulge;
 }

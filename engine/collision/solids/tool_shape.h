@@ -90,8 +90,8 @@ struct ToolShape {
 // Returns a lower bound of the tool's distance over a box, in metres.
 double lower_bound(const ToolShape& tool, const Box& box);
 
-// Returns a lower bound of the tool's distance over a patch that leaves the bilinear patch of its corners by
-// at most `bulge`, in metres. The bound is not improved once it is at least `enough`.
+// Returns a lower bound of the tool's distance over a patch that deviates from the bilinear patch of its
+// corners by at most `bulge`, in metres. The bound is not improved once it is at least `enough`.
 double lower_bound(const ToolShape& tool, const PatchCorners& corners, double bulge, double enough);
 
 // Returns the distance by which the tool must move along the unit normal to be in front of the plane through

@@ -13,10 +13,11 @@ namespace spoonbill {
 
 namespace {
 
-// Number of steps along the longest side. A volume, six products of three differences, stays below 2^63.
+// Number of grid steps along the longest side of the box of the points. With this number a volume, which is a
+// sum of six products of three differences, stays below 2^63.
 constexpr double steps_a_side = 1 << 20;
 
-// Bend below which an edge is omitted. The triangulation of nearly flat sides depends on rounding.
+// Bend below which an edge is omitted, because the triangulation of nearly flat sides depends on rounding.
 constexpr double least_bend_rad = 0.5 * std::numbers::pi / 180.0;
 
 using Steps = Eigen::Matrix<std::int64_t, 3, 1>;
@@ -40,8 +41,8 @@ std::vector<Steps> round_points(const std::vector<Vector3>& points_m) {
   return steps;
 }
 
-// Incremental convex hull. A point in the plane of a triangle does not see it, as if it were slightly inside,
-// so the border of the visible triangles is one closed loop.
+// Incremental convex hull. A point in the plane of a triangle counts as not seeing the triangle, as if the
+// point were slightly inside. The border of the visible triangles is therefore one closed loop.
 class HullBuilder {
  public:
   explicit HullBuilder(const std::vector<Steps>& points) : points_(points) {}

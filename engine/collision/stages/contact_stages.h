@@ -51,8 +51,8 @@ struct StageSphere {
   bool kept = false;       // true: refined, or triangulated at the last level; false: dropped
 };
 
-// One of the two triangles of a cell of the last level, stored if it may meet the other body, given the
-// surface's deviation from the triangle.
+// One of the two triangles of a cell of the last level. It is stored if it may meet the other body, allowing
+// for the surface's deviation from the triangle.
 struct StageTriangle {
   Triangle corners;
   LevelCell cell;

@@ -46,8 +46,8 @@ Status check_thickness(const Surface& surface) {
                "surface: encloses no volume halfway along v; a body must be thick everywhere");
 }
 
-// Uses the volume, because a ring of a hollow body may be on its inner wall, where the normals point to the
-// axis.
+// Checks the sign of the enclosed volume. The normals of a single ring do not suffice, because a ring of a
+// hollow body may be on its inner wall, where the normals point toward the axis.
 Status check_outward(const Surface& surface) {
   const double volume = enclosed_volume_m3(make_skin(surface));
   if (volume > 0.0) return {};

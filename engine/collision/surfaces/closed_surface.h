@@ -28,8 +28,8 @@ struct ClosedSkin {
 // Samples a closed surface at its skin_parameters().
 ClosedSkin make_skin(const Surface& surface);
 
-// Number of samples per direction that skin_parameters() aims at. Each element gets two to eight samples, so
-// a surface of many elements has more samples than this, and a surface of few elements fewer.
+// Approximate number of samples in each direction of skin_parameters(). Each element gets two to eight
+// samples, so a surface of many elements has more samples than this, and a surface of few elements fewer.
 inline constexpr int skin_samples = 200;
 std::vector<double> skin_parameters(const KnotVector& knots);
 

@@ -52,7 +52,7 @@ void ContactRegions::join(const std::vector<CellPair>& pairs, const Paired& cell
   }
 }
 
-// Visits half of the cell's neighbours, because the other half visit the cell.
+// Joins the pair to half of the cell's neighbours. The other neighbours join the pair when they are visited.
 void ContactRegions::join_neighbours(const std::vector<CellPair>& pairs, int pair) {
   const LevelCell& cell = pairs[pair].first;
   const Grid& grid = first_->nested().grid;

@@ -58,7 +58,7 @@ struct Problem {
   Eigen::Matrix<double, size, 1> speed;  // metres per unit of each parameter
   std::array<const KnotVector*, size> knots;
   Eigen::Matrix<double, size, 1> parameters;
-  double least_promise = 0.0;  // in the unit of the objective
+  double least_promise = 0.0;  // smallest gain that the model must predict, in the objective's unit
 
   // Returns the step to the minimum of the quadratic model; NaN if it is not convex. `damping` has the unit
   // of the curvature.
@@ -86,8 +86,8 @@ bool is_spent(const PolishBudget* budget) {
   return budget != nullptr && budget->is_spent();
 }
 
-// Takes one accepted Levenberg-Marquardt step. offer(parameters) returns true if the value decreased. Returns
-// false if no step is found.
+// Makes one Levenberg-Marquardt step that decreases the value. offer(parameters) returns true if the value
+// decreased. Returns false if no such step is found.
 template <int size, class Offer>
 bool descend(const Problem<size>& problem, double& damping, const Offer& offer,
              const PolishBudget* budget = nullptr) {
@@ -198,7 +198,7 @@ NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point
 
 namespace {
 
-// A point of the first surface, the second surface's nearest point to it and the depth.
+// A point of the first surface, the point of the second surface nearest to it, and the depth.
 struct DepthPoint {
   PairParameters at;
   SurfacePoint a, b;

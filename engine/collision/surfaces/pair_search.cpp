@@ -106,8 +106,8 @@ namespace {
 
 constexpr std::size_t pair_capacity = 1024;
 constexpr int max_depth = 40;
-// Limit of the patches split in one query, a few seconds. Surfaces that fit snugly or are crumpled would be
-// cut down everywhere to the size of the tolerance.
+// Limit on the number of patches split in one query, which takes a few seconds. Surfaces that fit snugly or
+// are crumpled would otherwise be cut down everywhere to the size of the tolerance.
 constexpr int split_capacity = 1 << 20;
 
 }  // namespace

@@ -71,7 +71,7 @@ class PairSearch {
   std::vector<Pair> pairs_;
   SurfacePair best_;
   double best_distance_m_ = 0.0;
-  int splits_left_ = 0;  // until the next begin()
+  int splits_left_ = 0;  // splits left until the next begin()
   bool overflow_ = false;
 };
 

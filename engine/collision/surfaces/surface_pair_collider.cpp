@@ -85,8 +85,8 @@ void SurfacePairCollider::find_contacts(const PairQuery& query) {
   }
 }
 
-// Returns the seed of the last collide() within the region, or null. Regions mostly come in the same order,
-// and their ranges may overlap.
+// Returns the seed of the last collide() within the region, or null. Looks first at the seed with the
+// region's number, because regions mostly keep their order and their ranges may overlap.
 const SurfacePairCollider::Seed* SurfacePairCollider::last_seed(const PairContact& contact) const {
   for (std::size_t k = 0; k < last_seeds_.size(); ++k) {
     const Seed& seed = last_seeds_[(contacts_.size() + k) % last_seeds_.size()];
@@ -160,9 +160,9 @@ RegionCentre SurfacePairCollider::find_centre(const RegionCells& cells) const {
   return centre;
 }
 
-// Tries the centre of the region and, in the direction of a few pairs, at which the surfaces cross, the
-// points at half and at twice the distance of the pair. Keeps the deepest point and the one farthest in
-// front. With a seed from the last call, only one of the points in a direction is tried per call.
+// Offers the centre of the region and, in the directions of a few pairs at which the surfaces cross, the
+// points at half and at twice the distance of the pair. Keeps the deepest point and the point farthest in
+// front. With a seed from the last call, only one of the points in these directions is offered per call.
 SurfacePairCollider::Seeds SurfacePairCollider::find_seeds(const RegionCells& cells, const Seed* last) const {
   const RegionCentre centre = find_centre(cells);
   Seeds seeds;
@@ -190,8 +190,8 @@ SurfacePairCollider::Seeds SurfacePairCollider::find_seeds(const RegionCells& ce
   return seeds;
 }
 
-// Computes the depth of a touch with both interiors on the same side, where one body is inside the other. A
-// few such points are tried; the one with the shortest exit counts.
+// Computes the depth where the surfaces touch with both interiors on the same side, that is, where one body
+// is inside the other. Of a few such points, the one with the shortest exit counts.
 void SurfacePairCollider::find_inner_touch(const RegionCells& cells, PairContact& contact) const {
   const Surface& first = first_.surface();
   const Surface& second = second_.surface();
@@ -213,7 +213,7 @@ void SurfacePairCollider::find_inner_touch(const RegionCells& cells, PairContact
   }
 }
 
-// Updates the contact if each surface is deeper behind the other than the contact's depth; moving by the
+// Updates the contact if each surface is deeper behind the other than contact.depth_m; a displacement by the
 // smaller of both depths separates them. Depths beyond `shortest` need not be exact. `from` receives the
 // parameters of the first surface's deepest point.
 void SurfacePairCollider::deepen_contact(PairContact& contact, PairParameters& from, double outside,
@@ -242,7 +242,8 @@ void SurfacePairCollider::deepen_contact(PairContact& contact, PairParameters& f
   }
 }
 
-// Returns true if one body may be inside the other: this requires its box to be inside the other's box.
+// Returns true if the box of one surface is inside the box of the other, and the other is closed. Both are
+// necessary for one body to be inside the other.
 bool SurfacePairCollider::may_contain(const PairQuery& query) const {
   const Box& first = cells_.first_tree().box(cells_.first_tree().root());
   const Box& second = cells_.second_tree().box(cells_.second_tree().root());

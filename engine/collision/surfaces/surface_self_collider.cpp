@@ -82,7 +82,8 @@ void PatchFolds::update_mixed_bounds() {
   }
 }
 
-// The cones are around the tangents at the cell's centre, which change at most by the second derivatives.
+// Computes cones around the tangents at the cell's centre. Their angles follow from the second derivatives,
+// which bound how far the tangents change.
 PatchFolds::Cones PatchFolds::compute_cones(const LevelCell& cell) {
   const Grid& grid = levels_->nested().grid;
   const int step = levels_->step(cell.level), shift = levels_->nested().levels;

@@ -32,7 +32,7 @@ class PatchFolds {
  public:
   explicit PatchFolds(SurfaceLevels& levels);
 
-  // Updates to the current shape. Call after SurfaceLevels::begin().
+  // Updates the cones to the current shape of the surface. Call after SurfaceLevels::begin().
   void begin();
 
   // Returns true if it is proven that the patch of the cells does not intersect itself. The cells must be of

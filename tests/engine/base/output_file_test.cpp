@@ -1,4 +1,4 @@
-// An output file appears complete or not at all, whatever was at its path before.
+// Tests that an output file appears complete or not at all, whatever was at its path before.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>

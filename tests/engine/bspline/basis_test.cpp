@@ -16,7 +16,7 @@ double sum_of(const BasisFunctions& basis, int derivative, int degree) {
   return sum;
 }
 
-// Sums of at most ten positive numbers below 1, each accurate to a few units in the last place.
+// Tolerance of sums of at most ten positive numbers below 1, each accurate to a few units in the last place.
 constexpr double unity_tolerance = 1e-14;
 
 TEST(Basis, SumsToOneEverywhereForEveryDegree) {

@@ -39,7 +39,7 @@ TEST(BlendingMatrix, AddsUpColumnsThatAppearTwice) {
   const BlendingMatrix matrix = blending_matrix(knots, at_knot, 0);
   EXPECT_EQ(matrix.bandwidth, 4);
   const Eigen::MatrixXd dense = matrix.dense();
-  // The control points 1, 0, 1, 0 have the weights 1/6, 4/6, 1/6 and 0.
+  // The four weights 1/6, 4/6, 1/6 and 0 belong to the two control points alternately.
   EXPECT_NEAR(dense(0, 0) + dense(0, 1), 1.0, 1e-15);
   EXPECT_NEAR(std::max(dense(0, 0), dense(0, 1)), 2.0 / 3, 1e-15);
 }
@@ -54,7 +54,8 @@ TEST(BlendingMatrix, TakesParametersFromOutside) {
   EXPECT_EQ(blending_matrix(periodic, wrapped, 0).values, blending_matrix(periodic, inside, 0).values);
 }
 
-// The published table has three digits and comes from another implementation of the same sampling.
+// Compares condition numbers with a published table, which has three digits and comes from another
+// implementation of the same sampling.
 TEST(BlendingMatrix, IsAsWellConditionedAsTheTableSays) {
   struct Row {
     int degree, controls, factor;
@@ -83,8 +84,8 @@ TEST(BlendingMatrix, PeriodicCubicIsWellConditionedAtKnots) {
   }
 }
 
-// The radii of a cubic periodic curve whose control polygon is regular with corners on the unit circle, at
-// the knots and between them.
+// A periodic cubic curve whose control polygon is regular, with corners on the unit circle, has known radii
+// at its knots and between them.
 TEST(BlendingMatrix, PeriodicCubicCircleHasItsRadii) {
   for (const int controls : {8, 16, 32}) {
     const auto knots = KnotVector::periodic_uniform(3, controls).value();
@@ -128,7 +129,7 @@ TEST(PseudoInverse, InvertsFromTheLeft) {
   }
 }
 
-// Inverting A^T A is wrong by 125 here; QR loses about ten digits.
+// Inverting A^T A would give an error of 125 here; QR loses about ten digits.
 TEST(PseudoInverse, SurvivesDegreeNineWithAsManySamplesAsControlPoints) {
   const auto knots = KnotVector::clamped_uniform(9, 24).value();
   EXPECT_LT(distance_from_inverse(knots, uniform_parameters(knots, 24)), 1e-6);
@@ -216,8 +217,8 @@ TEST(SchoenbergWhitney, NamesTheControlPointInAPeriodicGap) {
       << status.error().message;
 }
 
-// The condition and the rank must agree for random samplings: the condition applied periodically is not
-// sufficient in a periodic direction, but it is necessary in any direction.
+// For random samplings, the condition is compared with the rank of the matrix. In any direction the condition
+// is necessary; in a periodic direction it is not sufficient.
 TEST(SchoenbergWhitney, AgreesWithTheRank) {
   Random random(5);
   int refused = 0;

@@ -28,8 +28,8 @@ double largest_difference(Random& random, const Surface& a, const Surface& b,
   return largest;
 }
 
-// Coordinates are below 1 m. The dual functionals of degree 9 have norms of some thousands (de Boor 1990),
-// and knot intervals that differ fivefold increase the error further.
+// Tolerance of equal surfaces with coordinates below 1 m. The dual functionals of degree 9 have norms of some
+// thousands (de Boor 1990), and knot intervals that differ fivefold increase the error further.
 constexpr double same_surface = 1e-11;
 
 Direction any_direction(Random& random) {
@@ -129,8 +129,8 @@ TEST(ChangeKnots, TheDeviationOfACoarserSurfaceIsNeverPassed) {
     ASSERT_TRUE(coarse.ok()) << coarse.error().message;
     const double seen = largest_difference(random, surface, coarse->surface, along);
     EXPECT_LE(seen, coarse->deviation_m + 1e-12);
-    // Even a coarse result is bounded: control points are within a factor of the surface's size that grows
-    // with the degree.
+    // Even the deviation of a coarse fit is bounded: its control points exceed the surface's size by at most
+    // a factor that grows with the degree.
     EXPECT_LE(coarse->deviation_m, 1.0);
   }
 }

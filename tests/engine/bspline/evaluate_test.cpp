@@ -138,9 +138,9 @@ std::vector<double> some_of(Random& random, const std::vector<double>& values, i
   return some;
 }
 
-// Two rows of seven samples are too small for block evaluation: each sample is checked individually, while
-// most rows of the whole grid are known to be regular. Four rows stay below the number of unit_normal() calls
-// of a pass.
+// Compares a part of a grid with the whole grid. The part's two rows of seven samples are too small for block
+// evaluation: each sample is checked individually, while most rows of the whole grid are known to be regular.
+// The whole grid has only four rows, so that one pass may call unit_normal() for all irregular samples.
 void expect_same_bits_in_parts(Random& random, const Surface& surface) {
   const Grid grid = random_grid(random, surface, 4, random.integer(7, 60));
   const Grid part = make_grid(surface.u, surface.v, some_of(random, grid.u.parameters, 2),
@@ -185,7 +185,7 @@ TEST(GridEvaluator, TheSeamIsTheSameSampleTwice) {
   }
 }
 
-// An evaluator that has seen one surface gives the next one the same samples as a new evaluator.
+// An evaluator that has evaluated another surface before gives the same samples as a new evaluator.
 TEST(GridEvaluator, KeepsNothingFromTheSurfaceBefore) {
   Random random(21);
   const Surface tube = ellipsoid_tube(10, 8), sheet = random_surface(random, tube.u, tube.v);
@@ -332,7 +332,7 @@ TEST(GridEvaluator, CoincidingControlPointsBeyondAnUnclampedEndAreNoPole) {
   }
 }
 
-// Poles and a pinch send some samples through unit_normal().
+// Because of the poles and the pinch, some samples need unit_normal().
 TEST(GridEvaluator, AllocatesNothingAfterConstruction) {
   const Surface tube = pinched_tube();
   const Grid grid =

@@ -24,7 +24,7 @@ TEST(KnotRemoval, WhatWasInsertedIsTakenOutExactly) {
     const auto back = remove_knot(finer.value(), direction, place, copies);
     ASSERT_TRUE(back.ok()) << back.error().message;
     EXPECT_EQ(knots_along(back->surface, direction).control_point_count(), knots.control_point_count());
-    // The surfaces have a size of 1 m; least squares of degree 9 lose the other digits.
+    // The surfaces have a size of 1 m; least squares of degree 9 lose about eight digits.
     EXPECT_LT(back->deviation_m, 1e-8);
     for (int k = 0; k < 20; ++k) {
       const double u = random.uniform(surface.u.domain_start(), surface.u.domain_end());

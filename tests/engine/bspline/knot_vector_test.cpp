@@ -60,7 +60,7 @@ TEST(KnotVector, RefusesAnEmptyDomain) {
 
 TEST(KnotVector, RefusesExcessiveMultiplicity) {
   expect_refused(KnotVector::open(2, {0, 0, 0, 0.5, 0.5, 0.5, 1, 1, 1}), ErrorCode::malformed,
-                 "knot 0.5 appears 3 times inside the domain; at most 2");
+                 "knot 0.5 appears 3 times inside the domain, but at most 2");
   expect_refused(KnotVector::open(2, {0, 0, 0, 0, 0.5, 1, 1, 1}), ErrorCode::malformed,
                  "knot 0 appears 4 times at an end");
   expect_refused(KnotVector::open(2, {0, 0, 0, 0.5, 1, 1, 1, 1}), ErrorCode::malformed,

@@ -1,4 +1,4 @@
-// OpenCASCADE is an independent reference for values, derivatives and normals.
+// Compares values, derivatives and normals with OpenCASCADE, an independent implementation.
 #include <gtest/gtest.h>
 
 #include <Geom_BSplineSurface.hxx>
@@ -24,8 +24,8 @@ struct OcctDirection {
   bool periodic;
 };
 
-// OpenCASCADE evaluates a periodic surface wrongly if a pole reaches one sample from two periods. The same
-// surface is then given to it in an open direction, with the extended knots and repeated poles.
+// OpenCASCADE evaluates a periodic surface wrongly if the same pole affects a sample from two periods. Such a
+// surface is passed to it in an open direction, with the extended knots and repeated poles.
 bool needs_unrolling(const KnotVector& knots) {
   return knots.control_point_count() <= knots.degree();
 }
@@ -82,8 +82,8 @@ SurfacePoint occt_point(const Geom_BSplineSurface& surface, double u, double v) 
           vector(dvv)};
 }
 
-// Returns the largest sum of the magnitudes of all basis derivatives, to which a derivative's rounding error
-// is relative.
+// Returns the sum of the magnitudes of all basis derivatives, to which a derivative's rounding error is
+// relative.
 double magnitude(const KnotVector& knots, double u, int derivative) {
   const BasisFunctions basis = basis_functions(knots, knots.into_domain(u));
   double sum = 0.0;
@@ -107,7 +107,8 @@ double normal_amplification(const Surface& surface, const SurfacePoint& point, d
   return error / point.du.cross(point.dv).norm();
 }
 
-// At the end of a period we use the derivatives at the period's start, OpenCASCADE those from the left.
+// Returns true at the end of a period, where we use the derivatives at the period's start and OpenCASCADE
+// uses those from the left.
 bool has_two_tangents(const KnotVector& knots, double u) {
   return knots.is_periodic() && u == knots.domain_end();
 }

@@ -99,7 +99,8 @@ TEST(DisplacementRefit, GivesTheSameBitsOnEveryInstructionSet) {
   }
 }
 
-// The bits enter the hash of the simulation's state: a change here changes every recorded hash.
+// Compares a hash of the result with a recorded one. The bits enter the hash of the simulation's state: a
+// change here changes every recorded state hash.
 TEST(DisplacementRefit, HasTheBitsItHadBefore) {
   const Grid grid = usual_grid();
   auto refit = DisplacementRefit::make(grid, best_instruction_set()).value();

@@ -9,7 +9,7 @@
 namespace spoonbill {
 namespace {
 
-// Coordinates are below 1 m, and points are only weighted means of them.
+// Tolerance: coordinates are below 1 m, and points are only weighted means of them.
 constexpr double same_point = 1e-13;
 
 // Compares b at (u, v) with a at in_a(u, v).

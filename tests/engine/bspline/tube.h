@@ -11,7 +11,7 @@ namespace spoonbill {
 // outward.
 Surface ellipsoid_tube(int around, int along, const Vector3& centre = Vector3::Zero());
 
-// Exchanges the directions of the same surface: poles are then at the ends of u.
+// Returns the surface with u and v exchanged, so that its poles are at the ends of u.
 Surface transposed(const Surface& surface);
 
 }  // namespace spoonbill

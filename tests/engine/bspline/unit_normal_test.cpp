@@ -25,7 +25,8 @@ TEST(UnitNormal, IsTheProductOfTheTangents) {
     const double v = random.uniform(surface.v.domain_start(), surface.v.domain_end());
     const SurfacePoint point = evaluate(surface, u, v);
     const Vector3 expected = point.du.cross(point.dv).normalized();
-    // The normal's rounding error grows as the tangents become parallel; these are far from it.
+    // The rounding error of the normal grows as the tangents become parallel; these tangents are far from
+    // parallel.
     EXPECT_LT((unit_normal(surface, u, v) - expected).norm(), 1e-11);
   }
 }
@@ -46,7 +47,8 @@ TEST(UnitNormal, SmoothPolesHaveOneNormal) {
   }
 }
 
-// For any net, the normals at the pole and beside it differ by the curvature along a millionth of the domain.
+// Compares the normals at the poles with those beside them. For any net, the two differ only by the curvature
+// along a millionth of the domain.
 void expect_limits(const Surface& surface, bool poles_in_v) {
   constexpr double inside = 1e-6, tolerance = 1e-4;
   for (int step = 0; step < 15; ++step) {

@@ -36,8 +36,8 @@ void expect_box(const FittedShape& shape, const Rounded& box, double most_uneven
   const double r = box.end_m, length = box.size_m[box.axis] - 2.0 * r;
   const double a = x * y - (4.0 - pi) * box.edge_m * box.edge_m;
   const double perimeter = 2.0 * (x + y) - (8.0 - 2.0 * pi) * box.edge_m;
-  // Along the quarter circle of the rounding d = r (1 - cos): `first` and `second` are the integrals of d and
-  // d^2 over its height, `arc_first` that of d over its length.
+  // Along the quarter circle of the rounding, d = r (1 - cos). `first` and `second` are the integrals of d
+  // and d^2 over the circle's height; `arc_first` is the integral of d over its length.
   const double first = r * r * (1.0 - 0.25 * pi), second = r * r * r * (5.0 / 3.0 - 0.5 * pi);
   const double arc = 0.5 * pi * r, arc_first = r * r * (0.5 * pi - 1.0);
   const double volume = a * length + 2.0 * (a * r - perimeter * first + pi * second);

@@ -19,8 +19,8 @@ double cylinder_distance(const Vector3& p, const CylinderSize& size) {
 }
 
 // A surface within the tolerance of its shape encloses the shape's volume to within the tolerance times the
-// area. Its area differs by the tolerance times the mean curvature, which is less than a thousandth for these
-// smooth shapes.
+// area. Its area differs by a fraction of about twice the tolerance times the mean curvature; that fraction
+// is less than a thousandth for these smooth shapes.
 void expect_sound(const FittedShape& shape, double volume, double area) {
   EXPECT_LE(shape.deviation_m, shape_tolerance_m);
   EXPECT_NEAR(volume_m3(shape.surface), volume, shape_tolerance_m * area);

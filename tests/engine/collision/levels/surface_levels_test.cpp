@@ -8,8 +8,8 @@
 namespace spoonbill {
 namespace {
 
-// A flat sheet does not bulge beyond its corners: its bounding spheres are no larger than the corners need,
-// and must contain them up to rounding.
+// A flat sheet does not bulge beyond its corners: the bounding spheres of its cells must contain the corners,
+// up to rounding, and be no larger than that.
 TEST(SurfaceLevels, SpheresOfFlatCellsEndAtTheirCorners) {
   const KnotVector knots = KnotVector::clamped_uniform(1, 4).value();
   ControlNet net(4, 4);

@@ -29,7 +29,8 @@ std::vector<TriangleMesh> deforming_solids() {
           torus_mesh(24, 12, 0.8, 0.35)};
 }
 
-// Every second point is where sign errors hide: near a vertex, an edge or a face.
+// Returns a random point; every second point is near a vertex, an edge or a face, where sign errors are
+// likely.
 Vector3 point_near(Random& random, const TriangleMesh& mesh, int index) {
   if (index % 2 == 0) return random_point(random, 1.5);
   const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(

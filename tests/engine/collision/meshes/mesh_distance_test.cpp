@@ -16,7 +16,7 @@
 namespace spoonbill {
 namespace {
 
-// Every second point is near the surface, where sign errors hide.
+// Returns a random point; every second point is near the surface, where sign errors are likely.
 Vector3 point_about(Random& random, const TriangleMesh& mesh, int index) {
   if (index % 2 == 0) return random_point(random, 1.8);
   const auto vertex = random.integer(0, static_cast<int>(mesh.vertices_m.size()) - 1);
@@ -114,8 +114,8 @@ std::vector<NamedMesh> everything() {
   return all;
 }
 
-// The distance is continuous and never changes by more than the point moves, across every surface and hole,
-// near and far.
+// The distance is continuous and never changes by more than the distance that the point moves, across every
+// surface and hole, near and far.
 TEST(MeshDistance, ChangesByNoMoreThanTheWayMoved) {
   for (const NamedMesh& shape : everything()) {
     SCOPED_TRACE(shape.name);
@@ -179,7 +179,7 @@ TEST(MeshDistance, WhatOverlapsIsOneBody) {
   EXPECT_NEAR(balls.at({0.0, 0.0, 0.0}).distance_m, -0.3, 2e-3);
   EXPECT_NEAR(balls.at({-0.3, 0.0, 0.0}).distance_m, -0.6, 2e-3);  // near the surface of the other ball
   const MeshDistance spindle(cleaned(torus_mesh(60, 60, 0.4, 0.7)));
-  // The surface winds around this point once in each orientation, which makes it outside.
+  // The surface winds around this point once in each orientation, so the point is outside.
   EXPECT_GT(spindle.at({0.0, 0.0, 0.0}).distance_m, 0.2);
   EXPECT_LT(spindle.at({0.5, 0.0, 0.0}).distance_m, -0.1);
   EXPECT_GT(spindle.at({0.0, 0.65, 0.0}).distance_m, 0.01);  // in the dimple of the spindle

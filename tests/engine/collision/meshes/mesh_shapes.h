@@ -28,8 +28,8 @@ TriangleMesh without(TriangleMesh mesh, int first, int count);
 // Returns the cleaned mesh; fails the test if it cannot be cleaned.
 CleanMesh cleaned(const TriangleMesh& mesh);
 
-// Returns the unsigned distance by search over all triangles: the plane of each, if the foot is inside, and
-// its three sides.
+// Returns the unsigned distance, found by testing all triangles: the plane of each, if the foot of the
+// perpendicular is inside the triangle, and its three sides.
 double brute_distance(const TriangleMesh& mesh, const Vector3& point);
 // Casts three rays in random directions: the point is inside if most rays leave the mesh more often than they
 // enter it.

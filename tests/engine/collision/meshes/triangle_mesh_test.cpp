@@ -37,7 +37,7 @@ TEST(TriangleMesh, ASoupOfTrianglesBecomesABox) {
 TEST(TriangleMesh, VerticesAHairApartAreOne) {
   Random random(3);
   TriangleMesh mesh = soup(ball_mesh(12, 24, 0.02));
-  // Moves less than the tolerance of 7e-8.
+  // The vertices move by less than the tolerance of 7e-8.
   for (Vector3& vertex : mesh.vertices_m) vertex += random_point(random, 4e-9);
   const CleanMesh clean = cleaned(mesh);
   EXPECT_EQ(clean.mesh.vertices_m.size(), 11u * 24u + 2u);
@@ -177,7 +177,7 @@ TEST(TriangleMesh, ACavityStaysOneAndASolidInASolidIsNone) {
   EXPECT_EQ(both.report.cavities, 0u);
   EXPECT_EQ(both.report.closed_parts, 2u);
 
-  // Two boxes are beside each other, and one is inside out: that one is turned.
+  // Two boxes are beside each other, and one is inside out: the latter is turned.
   const CleanMesh beside = cleaned(joined(turned(box_of_triangles({2, 0, 0}, {2.5, 0.5, 0.5})), outer));
   EXPECT_EQ(beside.report.cavities, 0u);
   EXPECT_EQ(beside.report.parts_flipped, 1u);

@@ -35,7 +35,8 @@ struct Foot {
   double distance_m, u, v;
 };
 
-// A surface that finds the nearest point from the nearest of many samples, with ever finer samples around it.
+// Finds the nearest point of a surface from many samples, then from ever finer samples around the nearest
+// one.
 class BruteSurface {
  public:
   explicit BruteSurface(const Surface& surface) : surface_(surface) {
@@ -184,8 +185,8 @@ TEST(MeshProximity, TellsTheDeepestOfAPatch) {
   double least = 1.0;
   for (const VertexNearSurface& near : all.mesh_vertices()) least = std::min(least, near.gap_m);
   EXPECT_LT(least, -2e-4);
-  // It is chosen by the plane at the foot of another, here up to 6 mm away on a surface of some 20 mm of
-  // radius.
+  // The vertex is chosen by its distance from the tangent plane at the foot of another vertex, here up to 6
+  // mm away on a surface with a radius of about 20 mm. It is therefore only nearly the deepest.
   EXPECT_NEAR(one.mesh_vertices()[0].gap_m, least, 3e-4);
 }
 

@@ -1,4 +1,4 @@
-// A ring is as near to itself across its seams as elsewhere.
+// Tests that a ring is found to be as near to itself across its seams as elsewhere.
 #include "engine/collision/proximity/self_proximity.h"
 
 #include <gtest/gtest.h>

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double half_plate_m = 0.5 * sheet_thickness_m;
 
-// Computes exact distances of two triangles: if they do not cross, the nearest points are on a corner and a
-// face, or on two sides.
+// The following functions compute exact distances of two triangles. If the triangles do not cross, the
+// nearest points are on a corner and a face, or on two sides.
 double segments_apart(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
   const Vector3 ab = b - a, cd = d - c;
   double least = 1e300;
@@ -164,7 +164,8 @@ void expect_sound(const MeshPairResult& result, const CleanMesh& first, const Cl
     EXPECT_LE(contact.depth_m, last);
     last = contact.depth_m;
     EXPECT_NEAR(contact.normal.norm(), 1.0, 1e-9);
-    // A mesh that is completely inside the other must move further than to the other's surface.
+    // The two points are apart along the normal by at most the depth; the depth is larger if one mesh is
+    // completely inside the other.
     const Vector3 apart = contact.second_m - contact.first_m;
     EXPECT_LT(apart.cross(contact.normal).norm(), 2e-6);
     EXPECT_LT(apart.dot(contact.normal), contact.depth_m + 2e-6);
@@ -209,7 +210,7 @@ TEST(MeshPair, TwoHundredRandomPairsAreAsExactDistancesSay) {
   EXPECT_GT(apart, 40);
 }
 
-// FCL's triangle distance forgets faces whose normal is below an absolute size.
+// FCL's triangle distance ignores faces whose normal is shorter than an absolute length.
 TEST(MeshPair, SmallTrianglesAreNotForgotten) {
   for (const double scale : {1.0, 1e-3, 1e-5}) {
     SCOPED_TRACE(scale);

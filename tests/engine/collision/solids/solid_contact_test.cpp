@@ -129,7 +129,7 @@ TEST(SolidContact, BoxOnAPlaneByFaceEdgeAndCorner) {
   box(corner, half.sum() / std::sqrt(3.0), depth / std::sqrt(3.0));
 }
 
-// An edge lies across a ridge: the surface falls away along the edge and to both sides.
+// An edge of the box crosses a ridge: the surface falls away along the edge and to both sides of it.
 TEST(SolidContact, BoxEdgeOnADome) {
   const double depth = 0.002;
   const Surface dome = quadric_sheet(0.1, -3.0, -5.0, 12);

@@ -1,4 +1,4 @@
-// The stages of two round tubes that cross at a right angle; their common curve has a closed form.
+// Tests the stages of two round tubes that cross at a right angle; their common curve has a closed form.
 #include "engine/collision/stages/pair_stages.h"
 
 #include <gtest/gtest.h>
@@ -69,8 +69,8 @@ TEST_F(CrossingTubes, KeepTheirCommonCurveOnEachLevel) {
                                 }))
             << "at " << k << " degrees, surface " << surface << ", level " << level;
       }
-      // A chord's sagitta and the steps by which the triangle is sampled: less than half a cell of the last
-      // level, which is about 1 mm long.
+      // The tolerance allows for the sagitta of a chord and for the steps between the samples of a triangle.
+      // Both together are less than half a cell of the last level, which is about 1 mm long.
       EXPECT_TRUE(std::any_of(stages_.triangles.begin(), stages_.triangles.end(),
                               [&](const StageTriangle& t) {
                                 return t.surface == surface && distance_to(t.corners, point) < 5e-4;

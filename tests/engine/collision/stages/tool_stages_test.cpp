@@ -1,4 +1,4 @@
-// The stages are compared with dense samples of the surface.
+// Compares the stages with dense samples of the surface.
 #include "engine/collision/stages/tool_stages.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// A collider keeps data from one query to the next: they save work and change no result.
+// Tests that the data which a collider keeps from one query to the next save work but change no result.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace spoonbill {
 namespace {
 
-// Both results are guaranteed to this tolerance.
+// Tolerance in metres that both colliders guarantee.
 constexpr double deepest_m = 2e-5;
 
 Vector3 random_point(Random& random, double low, double high) {

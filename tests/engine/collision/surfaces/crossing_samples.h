@@ -5,8 +5,8 @@
 
 namespace spoonbill {
 
-// Each finest cell of the grid is divided into `parts` by `parts`. Triangles of cells that share a corner,
-// also across a periodic seam, are not compared.
+// Returns whether triangles between dense samples intersect. Each finest cell of the grid is divided into
+// `parts` by `parts`. Triangles of cells that share a corner, also across a periodic seam, are not compared.
 bool samples_cross(const Surface& surface, const NestedGrid& nested, int parts);
 
 }  // namespace spoonbill

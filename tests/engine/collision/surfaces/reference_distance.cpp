@@ -28,8 +28,8 @@ Ball ball_over(const Surface& surface, double u0, double u1, double v0, double v
           0.5 * ((u1 - u0) * speed_u + (v1 - v0) * speed_v)};
 }
 
-// Returns the largest degree (P[i+1] - P[i]) / (knot[i+degree+1] - knot[i+1]) along u, over the control
-// points of one element.
+// Returns the largest length of degree * (P[i+1] - P[i]) / (knot[i+degree+1] - knot[i+1]) along u, over the
+// control points of one element.
 double longest_step_by_u(const KnotVector& u, const KnotVector& v, int span_u, int span_v,
                          const auto& point) {
   const std::vector<double>& knots = u.extended_knots();

@@ -176,7 +176,7 @@ TEST(SurfacePair, PolesMeet) {
   PairQuery query;
   query.first_closed = query.second_closed = true;
   query.reach_m = std::numeric_limits<double>::infinity();
-  // The poles lie 0.05 from the centres.
+  // The poles are 0.05 from the centres.
   const Surface first = ellipsoid_tube(10, 8);
   EXPECT_NEAR(collide(ellipsoid_tube(9, 7, {0, 0, 0.1001}), first, query).result.distance_m, 1e-4, exact_m);
   const PairAnswer answer = collide(ellipsoid_tube(9, 7, {0, 0, 0.0999}), first, query);
@@ -198,7 +198,7 @@ TEST(SurfacePair, WhatHasNotMovedIsNotEvaluatedAgain) {
   EXPECT_EQ(collider.collide(first, second, query).samples_evaluated, 0);
   ASSERT_EQ(collider.contacts().size(), before.size());
   for (std::size_t k = 0; k < before.size(); ++k) {
-    // The tolerance is the change when Newton's method restarts from its own result.
+    // The tolerance allows for the change that occurs when Newton's method restarts from its own result.
     EXPECT_NEAR(collider.contacts()[k].depth_m, before[k].depth_m, 1e-12);
     EXPECT_LT((collider.contacts()[k].pair.first_m - before[k].pair.first_m).norm(), 1e-9);
   }
@@ -294,7 +294,7 @@ TEST(SurfacePair, AgreesWithDenseSamplesWhereTheyAreApart) {
     EXPECT_FALSE(answer.result.overflow) << trial << ' ' << pair.kind;
     EXPECT_FALSE(answer.result.touching) << trial << ' ' << pair.kind;
     EXPECT_GE(answer.result.distance_m, bounds.low_m) << trial << ' ' << pair.kind;
-    // The stated tolerance on surfaces of up to 4 m.
+    // The collider states a tolerance of 4e-4 m for surfaces of up to 4 m.
     EXPECT_LE(answer.result.distance_m, bounds.high_m + 4e-4) << trial << ' ' << pair.kind;
   }
   EXPECT_GT(apart, count / 5);

@@ -41,8 +41,8 @@ Surface drawn_out(const KnotVector& knots, const std::vector<Vector3>& curve) {
   return make_surface(knots, along, net).value();
 }
 
-// x = t^2, z = t^3 - t for t from -1.5 to 1.5: it crosses itself at t = -1 and t = 1, where x = 1, z = 0. Its
-// control points are the polar forms of both.
+// Returns the sheet x = t^2, z = t^3 - t for t from -1.5 to 1.5, which crosses itself at t = -1 and t = 1,
+// where x = 1, z = 0. Its control points are the polar forms of both.
 Surface looped_sheet() {
   std::vector<double> t = {-1.5, -1.5, -1.5};
   for (int k = 0; k <= 10; ++k) t.push_back(-1.5 + 0.3 * k);
@@ -99,7 +99,7 @@ TEST(SurfaceSelf, SeamsAndPolesAreNoContact) {
   EXPECT_FALSE(collide_with_itself(round_torus(0.05, 0.02), true, 1).result.touching);
 }
 
-// Open knots whose ends coincide form a seam as well.
+// A surface whose two ends coincide has a seam as well, even if its knots are open.
 TEST(SurfaceSelf, ATubeClosedByItsEndsIsNoContact) {
   const KnotVector knots = KnotVector::clamped_uniform(3, 9).value();
   std::vector<Vector3> curve;
@@ -122,7 +122,7 @@ TEST(SurfaceSelf, ALoopCrossesWhereTheClosedFormSays) {
   const bool swapped = contact.first.u0 > 0.0;
   const ParameterRange& low = swapped ? contact.second : contact.first;
   const ParameterRange& high = swapped ? contact.first : contact.second;
-  // The cells have a quarter of 0.3 and may meet up to one cell beyond the crossing.
+  // The sides of a cell are a quarter of 0.3, and a region may extend up to one cell beyond the crossing.
   constexpr double cell = 0.075;
   EXPECT_LE(low.u0, -1.0);
   EXPECT_GE(low.u1, -1.0);
@@ -135,7 +135,7 @@ TEST(SurfaceSelf, ALoopCrossesWhereTheClosedFormSays) {
   EXPECT_GT(contact.depth_m, 0.0);
 }
 
-// The walls are flat where they are deepest, so that the depth is the gap to rounding.
+// The walls are flat where they are deepest, so the depth equals their distance up to rounding.
 TEST(SurfaceSelf, APressedTubeIsAsDeepInItselfAsItsWallsHavePassed) {
   for (const double depth : {0.05, 0.01, 1e-3}) {
     const SelfAnswer answer = collide_with_itself(pressed_tube(-10.0 * depth), true);
@@ -168,7 +168,7 @@ TEST(SurfaceSelf, AFigureOfEightCrossesInItsMiddle) {
   EXPECT_LE(one.u1 - one.u0, 6.0 * cell);
 }
 
-// The seam lies in the crossing: regions that hang together across it are one.
+// The seam is at the crossing: regions that are connected across the seam count as one.
 TEST(SurfaceSelf, ACrossingInTheSeamIsOneContact) {
   std::vector<Vector3> curve;
   for (int k = 0; k < eight_points; ++k) {

@@ -169,7 +169,7 @@ TEST(ImplicitShapes, AllocateNothing) {
   }
 }
 
-// A ball's distance with one fault at a time.
+// The signed distance of a ball, with one of several deliberate faults.
 class WrongBall final : public SignedDistance {
  public:
   enum class Fault { none, not_finite, too_steep, not_unit, other_gradient, not_convex, bounds };
