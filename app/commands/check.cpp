@@ -51,7 +51,7 @@ CadModel make_model(const std::vector<Body>& bodies) {
   return model;
 }
 
-// Joins the solids that several bodies bound.
+// Joins the faces of each solid that consists of several bodies.
 Result<CadSolids> join_solids(const CheckOptions& options, const std::vector<Body>& all,
                               const InterruptWatch& interrupt) {
   if (std::all_of(all.begin(), all.end(), [](const Body& body) { return body.solid.empty(); })) {
@@ -63,7 +63,7 @@ Result<CadSolids> join_solids(const CheckOptions& options, const std::vector<Bod
   const double chord_m =
       std::clamp(solid_chord_fraction * size_of(all), solid_chord_range_m.low, solid_chord_range_m.high);
   auto solids = make_cad_solids(model, {chord_m, solid_triangle_limit}, options.model, child);
-  // A model with too many triangles is measured less exactly.
+  // If the model has too many triangles, it is measured less exactly.
   if (solids || interrupt.requested() || chord_m == solid_chord_range_m.high) return solids;
   return make_cad_solids(model, {solid_chord_range_m.high, solid_triangle_limit}, options.model, child);
 }

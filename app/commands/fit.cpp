@@ -56,7 +56,7 @@ Result<ScanFit> fit_with_progress(const FitOptions& options, Scan scan, Console&
   return fit;
 }
 
-// Returns the scan's name, short enough to be followed by the number of a body.
+// Returns the scan's name, shortened so that the number of a body can be appended.
 std::string document_name(const std::filesystem::path& scan) {
   return clean_cad_name(scan.stem().string(), "scan", cad_name_bytes_limit - 2);
 }

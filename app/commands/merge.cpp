@@ -61,7 +61,7 @@ struct MergeParts {
 
 struct MergeOutcome {
   Merged merged;
-  // corner k joins patch k + 1 to the result of the patches before it
+  // corner k is between patch k + 1 and the result of merging the patches before it
   std::vector<Joint> corners;
   std::vector<std::string> tight_fillets;     // notes
   std::vector<std::size_t> reversed_patches;  // patches whose normals pointed inwards
@@ -172,7 +172,7 @@ std::string corner_text(const Joint& corner, bool is_last) {
          (is_last ? " from v = " + start + " to " + end : "");
 }
 
-// Adds the corners between crossing bodies. Only the last one is at constant v in the result, so only its
+// Adds the corners between crossing bodies. Only the last corner is at constant v in the result, so only its
 // position is reported.
 void add_corners(FactSheet& facts, const std::vector<Joint>& corners) {
   Json list = Json::array();
@@ -188,7 +188,7 @@ void add_corners(FactSheet& facts, const std::vector<Joint>& corners) {
   facts.add("", "", "joints", list);
 }
 
-// Notes the joints that did not use the requested blend.
+// Adds a note for each joint that did not use the requested blend.
 void add_unused_blends(const std::vector<MergedJoint>& joints, std::vector<std::string>& notes) {
   for (const MergedJoint& merged : joints) {
     if (merged.joint.cut_back_m > 0.0) continue;
@@ -199,7 +199,8 @@ void add_unused_blends(const std::vector<MergedJoint>& joints, std::vector<std::
   }
 }
 
-// Returns four parameters in every span that overlaps the range, at the centres of its quarters.
+// Returns four parameters in every span that overlaps the range. They are at the centres of the span's
+// quarters.
 std::vector<double> sample_spans(const KnotVector& knots, double start, double end) {
   constexpr int parts = 4;
   const std::vector<double> ends = knots.breakpoints();
@@ -226,7 +227,8 @@ double tightest_radius_m(const Surface& merged, const Joint& corner) {
   return least;
 }
 
-// Notes a fillet that is tighter than requested. `which` distinguishes it from others, like " with patch 3".
+// Adds a note if the fillet is tighter than requested. `which` distinguishes it from others, like " with
+// patch 3".
 void add_tight_fillet(const Surface& merged, const Joint& corner, const std::string& which, double fillet_m,
                       int continuity, std::vector<std::string>& notes) {
   const double least_m = tightest_radius_m(merged, corner);
@@ -340,7 +342,7 @@ Result<MergeOutcome> merge_crossing_patches(const MergeParts& parts, const Merge
     merged.deviation_m += next->deviation_m;
     outcome.corners.push_back(next->corner);
     if (options.fillet_m > 0.0) {
-      // The fillet is measured before the next merge, while it is at constant v.
+      // The fillet is measured before the next merge, because it is at constant v only until then.
       const std::string which = patches.size() > 2 ? " with patch " + std::to_string(p + 1) : "";
       add_tight_fillet(merged.surface, next->corner, which, options.fillet_m, request.join.continuity,
                        outcome.tight_fillets);
@@ -454,7 +456,7 @@ CommandEntry add_merge(OptionSet root) {
       [options](double length_m) { options->fillet_m = length_m; },
       "Radius of the fillet where patches cross, up to 1 m; default: none, a sharp edge")
       .need(crossing);
-  // The order of these options is free, so this is checked after all of them.
+  // The options may be in any order, so this is checked after all of them.
   parser.set_final_check([options]() -> Status {
     if (options->crossing && options->fillet_m == 0.0 && options->continuity.value_or(0) > 0) {
       return Error{ErrorCode::inconsistent,

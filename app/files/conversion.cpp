@@ -134,7 +134,7 @@ Result<CadModel> read_model(const ConversionJob& job, const CadChild& child) {
   return model;
 }
 
-// Replaces the items by those that request.bodies selects, in its order.
+// Replaces the items by the selection in request.bodies, in the order of the selection.
 template <class Item>
 Status select_bodies(const ConversionRequest& request, std::vector<Item>& items) {
   if (request.bodies.empty()) return {};
@@ -234,8 +234,8 @@ class Mesher {
   }
 
  private:
-  // Returns the fraction of the work that is done after this number of surfaces; the last part is the writing
-  // of the file.
+  // Returns the fraction of the work that is done after this number of surfaces. Writing the file counts as
+  // one more surface.
   double fraction_after(std::size_t surfaces) const {
     return static_cast<double>(surfaces) / static_cast<double>(model_.surfaces.size() + 1);
   }
@@ -266,7 +266,8 @@ class Mesher {
   Status add_single_surface(std::size_t k) {
     const CadSurface& part = model_.surfaces[k];
     const std::size_t left = exported_triangle_limit - std::min(triangles_, exported_triangle_limit);
-    // The mesh of a shell contains its surface twice, and walls, so each part gets a third of the limit.
+    // The mesh of a shell contains its surface twice and the walls between, so each of these three parts gets
+    // a third of the limit.
     const std::size_t limit = part.shell_thickness_m > 0.0 ? left / 3 : left;
     const double before = fraction_after(k);
     auto alone =

@@ -87,8 +87,8 @@ bool has_three_words(std::istream& words) {
   return static_cast<bool>(words >> word >> word >> word);
 }
 
-// File system that contains only one file: a material that the file names could be a device, a pipe or a
-// secret.
+// File system that contains only one file. Other files that this one names, such as its materials, could be
+// devices, pipes or secrets.
 class SingleFileIo final : public Assimp::DefaultIOSystem {
  public:
   explicit SingleFileIo(std::string file) : file_(std::move(file)) {}

@@ -1,4 +1,4 @@
-// The convert command, run as a process.
+// Tests the convert command as a process.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -243,7 +243,7 @@ TEST_F(ConvertTest, AnOlderFileStaysWhenAConversionFails) {
     EXPECT_EQ(failed.code, exit_failed);
     EXPECT_EQ(content_of(place_.path(name)), "precious");
   }
-  // No temporary files remain.
+  // No temporary files are left.
   for (const auto& entry : std::filesystem::directory_iterator(place_.path(""))) {
     EXPECT_EQ(entry.path().string().find("unfinished"), std::string::npos) << entry.path();
   }
@@ -279,8 +279,8 @@ TEST_F(ConvertTest, WhatDoesNotGoOutIsSaid) {
   }
 }
 
-// A shell has both faces and walls along all edges, including holes; one that is too thick has only its
-// surface.
+// The mesh of a shell has both faces and walls along all edges, including those of holes. A shell that is too
+// thick has only its surface.
 TEST_F(ConvertTest, AShellGoesOutAsAMeshOfItsThickness) {
   const std::string plate = std::string(SPOONBILL_ASSETS) + "/models/trimmed-plate.json";
   Json document = json_of(content_of(plate));
@@ -327,7 +327,7 @@ TEST_F(ConvertTest, NoMessageCommandsTheTerminal) {
       << outcome.err;
 }
 
-// The child process presses Ctrl+C before the work begins; it takes effect at the first check.
+// The child process sends itself Ctrl+C before the work begins; the signal takes effect at the first check.
 int exit_code_when_interrupted(const std::string& in, const std::string& out) {
   const pid_t process = fork();
   if (process == 0) {

@@ -156,7 +156,7 @@ TEST(Panel, LetsBodiesSettleAndSwingAgain) {
   }
 }
 
-// Returns the answer to a text typed over the slider at this height, after Ctrl and a click.
+// Returns the answer after Ctrl+click on the slider at this height and typing of `text`.
 PanelAnswer type_over_slider(float y, const char* text) {
   Frame frame(1280, 720);
   const PanelModel model = full_model();
@@ -214,7 +214,7 @@ TEST(Panel, RefusesWrongMaterialsWithTheRange) {
             "plastic, creeps or stiffens");
 }
 
-// Clicks down the right edge until the button is hit; other widgets make other requests.
+// Clicks ever farther down along the right edge until the button is hit. Other widgets make other requests.
 TEST(Panel, AddsKnotsToTheBodyThatLagsMost) {
   Snapshot snapshot;
   snapshot.bodies.resize(3);

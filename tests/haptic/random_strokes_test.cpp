@@ -1,6 +1,6 @@
-// Tests random strokes with any material and any panel setting, by a hand moving at up to 5 m/s: the body
-// stays finite and near its place, no cell stays inverted, and the requested force never exceeds the device's
-// limit.
+// Tests random strokes with any material and any panel setting, by a hand that moves at up to 5 m/s. The body
+// stays finite and near its original position, no cell stays inverted, and the requested force never exceeds
+// the device's limit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -82,8 +82,8 @@ Scene random_stroke_scene(Random& random, const std::vector<Material>& bundled) 
 
 constexpr double fastest_m_per_s = 5.0;
 constexpr int stroke_ticks = 2000, rest_ticks = 1000;
-// The hand stays in the box with these half sides around the body's centre, and so does material that it
-// pulls out.
+// The hand stays in the box with these half sides around the body's centre. Material that the hand pulls out
+// therefore stays there too.
 const Vector3 roam_m(0.06, 0.03, 0.03);
 const Vector3 centre_m(0.03, 0.0, 0.0);
 constexpr double bounds_m = 0.5;
@@ -139,8 +139,8 @@ std::string in_words(const Scene& scene) {
   return words;
 }
 
-// Returns true if every node is finite and near: near the body's place if it is fixed, near its own centroid
-// if it is free.
+// Returns true if every node is finite and near: near the body's original position if the body is fixed, near
+// the nodes' centroid if it is free.
 bool is_in_bounds(const SpringLattice& lattice) {
   const std::vector<Vector3> nodes = lattice.positions();
   Vector3 middle = centre_m;

@@ -242,7 +242,7 @@ Error no_surface_error(const Content& content) {
   return Error{ErrorCode::missing, "contains no surface"};
 }
 
-// Adds notes about everything that is missing or ignored.
+// Adds notes about everything in the file that is lost, damaged or ignored.
 void add_loss_notes(const Content& content, CadModel& model) {
   const LossCount& losses = content.losses;
   const auto add_note = [&](int lost, int all, const char* what) {
@@ -272,7 +272,7 @@ void add_loss_notes(const Content& content, CadModel& model) {
   }
 }
 
-// Adds a note about solids, each face of which becomes a body. Counts the faces that came in.
+// Adds a note about solids, whose faces become one body each. States how many of the faces were converted.
 void add_solid_notes(const std::vector<NamedFace>& faces, const std::vector<bool>& converted,
                      CadModel& model) {
   std::set<std::string> solids;
@@ -299,7 +299,7 @@ double find_scale(const FileUnit& unit, const CadReading& reading) {
   return unit.declared ? 1e-3 : 1e-3 / unit.millimetres;
 }
 
-// Larger ones are of no use to a person and not passed on.
+// Larger deviations are reported as this one, because no reader of a message needs more.
 constexpr double trim_deviation_limit_m = 1e6;
 
 CadSurface make_cad_surface(const NamedFace& face, FaceSurface found) {
@@ -334,8 +334,8 @@ Result<FaceSurface> convert_near_face(const TopoDS_Face& face, double scale, dou
   return found;
 }
 
-// Passes the surfaces of all faces to the sink; notes report solids, and faces that cannot be converted.
-// Fails where that is all of them.
+// Passes the surfaces of all faces to the sink. Notes report solids and faces that cannot be converted. Fails
+// if no face can be converted.
 Status convert_faces(const std::vector<NamedFace>& faces, double scale, const CadReading& reading,
                      const SurfaceSink& sink, const Progress& progress, CadModel& model) {
   std::optional<Error> first;
@@ -344,7 +344,7 @@ Status convert_faces(const std::vector<NamedFace>& faces, double scale, const Ca
   for (std::size_t k = 0; k < faces.size(); ++k) {
     auto found = convert_near_face(faces[k].face, scale, reading.tolerance_m);
     if (found) {
-      // An approximated surface may be off the edge by the tolerance itself.
+      // The deviation of an approximated surface may add to that of its edges.
       if (found->trim_deviation_m > reading.tolerance_m + found->deviation_m) {
         const std::string place = face_place_text(faces[k].face, scale);
         bent.push_back("'" + faces[k].name + "'" + (place.empty() ? "" : " at " + place) + " ends up to " +

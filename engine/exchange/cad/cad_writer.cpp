@@ -133,7 +133,8 @@ std::string describe_open_shell(const CadSurface& surface, const BodyShape& body
                     : std::string());
 }
 
-// Counts a body. Adds a note if its surface was moved to close it, or if it would close but is not a solid.
+// Counts a body. Adds a note if its surface was moved to close it, or if its surface closes although the body
+// is not a solid.
 void add_body_notes(const CadSurface& surface, const BodyShape& body, double moved_m,
                     CadFileContent& content) {
   ++(body.solid ? content.solids : content.open_shells);

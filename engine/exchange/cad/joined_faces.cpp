@@ -34,7 +34,7 @@ namespace {
 // approximated faces.
 constexpr double tolerances_mm[] = {1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1};
 
-// Largest gap between two faces that is not reported; if the faces deviate more from the originals, this
+// Gaps between two faces up to this width are not reported. If the faces deviate more from the originals, the
 // limit is raised.
 constexpr double expected_gap_m = 2e-5;
 constexpr int gap_samples = 16;

@@ -146,7 +146,7 @@ Error truncated_error(std::uint64_t point, std::uint64_t points) {
                                          " of " + std::to_string(points) + "; it is cut or damaged"};
 }
 
-// Returns an error if more than blanks or zeros, as padding has, follow the last point.
+// Returns an error if anything but padding (blanks or zeros) follows the last point.
 Status check_rest(std::string_view rest, std::uint64_t points) {
   constexpr std::string_view padding("\0 \t\r\v\f\n", 7);
   if (rest.find_first_not_of(padding) == std::string_view::npos) return {};

@@ -85,8 +85,8 @@ std::optional<PlyFormat> find_format(std::string_view name) {
   return {};
 }
 
-// Removes the next line. A file whose first line ends with a carriage return alone has such lines only, and
-// the byte after its header may be a line feed of its numbers.
+// Removes and returns the next line. If the first line ends with a lone carriage return, all lines of the
+// header do; a line feed right after the header is then the first byte of the data.
 std::string_view extract_header_line(std::string_view& rest, bool ends_with_return) {
   if (!ends_with_return) return extract_line(rest);
   const std::size_t end = std::min(rest.find('\r'), rest.size());

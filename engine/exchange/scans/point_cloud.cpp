@@ -72,7 +72,7 @@ std::string_view trim_separators(std::string_view line) {
                                          : line.substr(begin, line.find_last_not_of(ignored) - begin + 1);
 }
 
-// Returns true if a comma has neighbours on both sides that are neither blank nor separator.
+// Returns true if a comma has characters on both sides that are neither blanks nor separators.
 bool has_inner_comma(std::string_view line) {
   constexpr std::string_view separators = " \t\r\v\f;,";
   for (std::size_t at = line.find(',', 1); at < line.size(); at = line.find(',', at + 1)) {
@@ -165,7 +165,7 @@ Result<PointCloud> parse_text_points(std::string_view bytes) {
   PointCollector collector;
   std::size_t columns = 0, line_number = 0, points = 0;
   bool has_heading = false;
-  std::optional<double> promised;  // count of points before the first one
+  std::optional<double> promised;  // number of points that the line before the first point states
   bytes = without_byte_order_mark(bytes);
   bool are_unit_normals = true;  // columns 4 to 6 of all points so far have length 1
   while (!bytes.empty()) {
@@ -177,7 +177,7 @@ Result<PointCloud> parse_text_points(std::string_view bytes) {
     const bool is_first = columns == 0;
     if (is_first && (!row.all_numbers || row.count == 1)) {
       if (has_heading) return no_point_error(line_number, line);
-      has_heading = true;  // names of the columns, or the count of points
+      has_heading = true;  // the line names the columns or states the number of points
       if (row.all_numbers) promised = row.numbers[0];
       continue;
     }

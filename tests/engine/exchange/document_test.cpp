@@ -18,7 +18,7 @@ Document through_text(const Document& document) {
   return read.value();
 }
 
-// Returns the error of reading a sample document after `change`.
+// Returns the error of reading a sample document to which `change` was applied.
 Refusal refusal(const std::function<void(Json&)>& change) {
   Json json = document_to_json(sample_document());
   change(json);
@@ -133,7 +133,8 @@ TEST(Document, NamesEveryMissingField) {
     ASSERT_FALSE(read.ok()) << item.key();
     const std::string& message = read.error().message;
     EXPECT_EQ(read.error().code, ErrorCode::missing) << item.key() << ": " << message;
-    // Either of nodes and node_budget will do, so their object lacks it.
+    // The lattice needs either of nodes and node_budget. Without node_budget, the error is that of the
+    // lattice.
     EXPECT_TRUE(read.error().field.ends_with(field == "node_budget" ? "lattice" : field))
         << item.key() << ": " << message;
     EXPECT_EQ(message.find('\n'), std::string::npos);

@@ -136,7 +136,7 @@ TEST_P(TrimmedRoundTrip, ASurfaceWithOneFaceKeepsItsParameters) {
   EXPECT_NEAR(after->remaining_fraction(), before.remaining_fraction(), 1e-6);
 }
 
-// Only the surfaces that would be closed without their trims get a note; a trimmed sheet gets none.
+// Only surfaces that would be closed without their trims get a note. A trimmed sheet gets none.
 TEST_P(TrimmedRoundTrip, WhatWouldCloseButForItsTrimsIsSaid) {
   CadModel model;
   for (const CadSurface& part : trimmed_surfaces()) model.surfaces.push_back(part);
@@ -156,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(Both, TrimmedRoundTrip, testing::Values(FileFormat::ste
                            return std::string(format.param == FileFormat::step ? "Step" : "Iges");
                          });
 
-// The hole is small, so that the sign of the enclosed volume still shows which way the normals point.
+// The hole is small, so that the sign of the enclosed volume still shows whether the normals point inwards.
 TEST(BodyShape, FacesOfWhatWouldCloseAreTurnedOutwards) {
   for (const Surface& tube : {ellipsoid_tube(10, 10), reversed(ellipsoid_tube(10, 10), Direction::u)}) {
     CadSurface part = named("tube", tube);
@@ -169,7 +169,7 @@ TEST(BodyShape, FacesOfWhatWouldCloseAreTurnedOutwards) {
   }
 }
 
-// A closed surface is exported cut in two; the two faces share their edges.
+// A closed surface is cut into two faces when it is exported. The two faces share their edges.
 TEST(BodyShape, FacesOfOneSurfaceAreOneShell) {
   for (const CadSurface& part : trimmed_surfaces()) {
     SCOPED_TRACE(part.name);
