@@ -167,7 +167,7 @@ Status RecordingWriter::reading(const DeviceReading& reading) {
   if (!state.ready().ok()) return state.failure;
   if (state.ticks >= recording_tick_limit) {
     return state.fail(ErrorCode::too_many,
-                      "has " + std::to_string(recording_tick_limit) + " ticks, start another recording");
+                      "has " + std::to_string(recording_tick_limit) + " ticks; start another recording");
   }
   if (!reading.is_valid()) {
     return state.fail(ErrorCode::out_of_range, "the reading of tick " + std::to_string(state.ticks) +

@@ -203,7 +203,7 @@ Result<Surface> extract_closed_surface(Body& body, const std::string& context) {
     return Error{ErrorCode::unsupported,
                  context +
                      ": the body is a shell, and collide needs solid bodies; export a mesh of it "
-                     "with `spoonbill convert` and collide that"};
+                     "with `spoonbill convert` and collide the mesh instead"};
   }
   if (!body.trims.empty()) {
     return Error{ErrorCode::unsupported,

@@ -70,7 +70,8 @@ Status convert_model(const ConvertOptions& options, Console& console) {
 Result<StepSchema> parse_schema(const std::string& text) {
   if (text == "ap214") return StepSchema::ap214;
   if (text == "ap242") return StepSchema::ap242;
-  return Error{ErrorCode::unknown, "'" + excerpt(text) + "' is not a schema of STEP: ap214 or ap242"};
+  return Error{ErrorCode::unknown,
+               "'" + excerpt(text) + "' is not a supported STEP schema; choose ap214 or ap242"};
 }
 
 }  // namespace

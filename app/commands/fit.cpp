@@ -122,7 +122,7 @@ Result<IslandChoice> parse_islands(const std::string& text) {
 Result<std::filesystem::path> parse_cloud_name(const std::string& text) {
   if (format_from_name(text) == FileFormat::ply) return std::filesystem::path(text);
   return Error{ErrorCode::unsupported,
-               "'" + excerpt(text) + "' does not end in .ply, as a coloured cloud must"};
+               "'" + excerpt(text) + "' does not end in .ply; the coloured cloud is a PLY file"};
 }
 
 void add_options(OptionSet parser, const std::shared_ptr<FitOptions>& options) {

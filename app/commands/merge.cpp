@@ -79,8 +79,9 @@ Result<double> parse_twist(const std::string& text) {
 Result<PatchEdge> parse_edge(const std::string& text) {
   const std::size_t dot = text.find('.');
   if (dot == 0 || dot == std::string::npos || dot > 3 || text.find_first_not_of("0123456789") != dot) {
-    return Error{ErrorCode::malformed,
-                 "'" + excerpt(text) + "' is not an edge like 2.v_start, of the second patch"};
+    return Error{
+        ErrorCode::malformed,
+        "'" + excerpt(text) + "' is not an edge; name one like 2.v_start, which belongs to the second patch"};
   }
   const auto side = parse_side(text.substr(dot + 1));
   if (!side) return side.error();
@@ -92,7 +93,7 @@ Result<ChosenEdges> parse_edges(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) {
     return Error{ErrorCode::malformed,
-                 "'" + excerpt(text) + "' is not a pair of edges like 1.v_end:2.v_start"};
+                 "'" + excerpt(text) + "' is not a pair of edges; name one like 1.v_end:2.v_start"};
   }
   std::string second = text.substr(colon + 1);
   ChosenEdges edges;
@@ -243,7 +244,7 @@ void add_merge_notes(const MergeOptions& options, const MergeOutcome& outcome,
                      std::vector<std::string>& notes) {
   if (options.request.join.blend_m > 0.0) add_unused_blends(outcome.merged.joints, notes);
   for (const auto& [a, b, reason] : outcome.merged.left_open) {
-    notes.push_back(edges_text(a, b) + " touch too and stay open: " + reason);
+    notes.push_back(edges_text(a, b) + " touch as well but are not joined: " + reason);
   }
   const Surface& surface = outcome.merged.surface;
   if (find_closing(surface).closedness == Closedness::solid &&
@@ -252,7 +253,7 @@ void add_merge_notes(const MergeOptions& options, const MergeOutcome& outcome,
   }
   for (const std::size_t patch : outcome.reversed_patches) {
     notes.push_back("the normals of patch " + std::to_string(patch + 1) +
-                    " pointed inwards; it was reversed first");
+                    " pointed inwards; the patch was reversed before merging");
   }
   notes.insert(notes.end(), outcome.tight_fillets.begin(), outcome.tight_fillets.end());
 }

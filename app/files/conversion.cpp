@@ -45,7 +45,7 @@ Status check_formats(const ConversionJob& job) {
   const std::string known = ".json, .step, .stp, .iges, .igs";
   if (!is_model(in) && !is_written_mesh(in)) {
     return file_error(ErrorCode::unsupported, request.in,
-                      "does not have the ending of a model that is read: " + known);
+                      "does not have the ending of a model that can be read: " + known);
   }
   if (is_written_mesh(in)) {
     return file_error(ErrorCode::unsupported, request.in,
@@ -54,7 +54,7 @@ Status check_formats(const ConversionJob& job) {
   if (!is_model(out) && !is_written_mesh(out)) {
     return file_error(
         ErrorCode::unsupported, request.out,
-        "does not have the ending of a format that is written: " + known + ", .stl, .obj, .ply, .3mf");
+        "does not have the ending of a format that can be written: " + known + ", .stl, .obj, .ply, .3mf");
   }
   if (in == FileFormat::document && out == FileFormat::document && request.bodies.empty()) {
     return file_error(ErrorCode::inconsistent, request.out,
@@ -85,7 +85,7 @@ Status check_options(const ConversionJob& job) {
   }
   if (request.schema && out != FileFormat::step) {
     return file_error(ErrorCode::inconsistent, request.out,
-                      "is not a STEP file, and only those have a schema; remove --schema", "--schema");
+                      "is not a STEP file, and only STEP files have a schema; remove --schema", "--schema");
   }
   if (request.unit && out == FileFormat::three_mf) {
     return file_error(ErrorCode::inconsistent, request.out, "3MF is written in millimetres; remove --unit",
@@ -403,7 +403,7 @@ Result<ConversionReport> export_bodies(std::vector<Body> bodies, const std::file
   ConversionRequest request;
   request.out = out;
   if (!is_exported_to(out)) {
-    return file_error(ErrorCode::unsupported, out, "has an ending that names no export format");
+    return file_error(ErrorCode::unsupported, out, "does not have the ending of an export format");
   }
   return write_and_report(model_from_bodies(std::move(bodies)), {request}, progress);
 }

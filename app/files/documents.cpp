@@ -253,7 +253,7 @@ Result<Document> make_cad_document(const CadModel& model, const std::string& nam
   const auto most = static_cast<std::size_t>(body_count_range.high);
   if (model.surfaces.size() > most) {
     return Error{ErrorCode::too_many,
-                 "has " + std::to_string(model.surfaces.size()) + " faces, and a document holds " +
+                 "has " + std::to_string(model.surfaces.size()) + " faces, and a document holds at most " +
                      std::to_string(most) + " bodies; choose some with --bodies 1,3-5",
                  "--bodies"};
   }

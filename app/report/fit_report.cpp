@@ -289,13 +289,13 @@ std::vector<std::string> find_fit_shortcomings(const ScanFit& fit, double tolera
   }
   if (fit.flipped_normals > 0) {
     notes.push_back("the normals of " + count_text(fit.flipped_normals, "point", "points") +
-                    " were opposite to those beside them and were flipped");
+                    " were opposite to those of their neighbours and were flipped");
   }
   for (const UnfittedIsland& island : fit.unfitted) notes.push_back(unfitted_island_text(island));
   if (fit.open_bridged > 0) {
     notes.push_back(
         count_text(fit.open_bridged, "island was", "islands were") +
-        " open at places other than the gaps; those were capped, because a bridged body is closed; "
+        " open at places other than the gaps; these openings were capped, because a bridged body is closed; "
         "--islands all leaves sheets and tubes open");
   }
   return notes;

@@ -397,7 +397,7 @@ Status replace_file(const std::filesystem::path& file, std::string_view bytes, c
   const auto status = std::filesystem::status(file, ignored);
   const bool may_replace = options.named_by == NamedBy::program || std::filesystem::is_regular_file(status);
   if (std::filesystem::exists(status) && !may_replace) {
-    return Error{ErrorCode::unwritable, file.string() + ": is not a regular file, choose another name"};
+    return Error{ErrorCode::unwritable, file.string() + ": is not a regular file; choose another name"};
   }
   auto out = OutputFile::create(file, options);
   if (!out) return out.error();

@@ -97,7 +97,7 @@ Status check_coordinates(const KnotVector& knots, const std::vector<double>& val
   if (values.size() != static_cast<std::size_t>(knots.control_point_count())) {
     return Error{ErrorCode::mismatch, "a trim loop's knots require " +
                                           std::to_string(knots.control_point_count()) +
-                                          " control points, it has " + std::to_string(values.size()) +
+                                          " control points, but it has " + std::to_string(values.size()) +
                                           "; change the knots or the points"};
   }
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -134,7 +134,7 @@ Status append(const aiMesh& from, const aiMatrix4x4& transform, TriangleMesh& to
     TriangleCorners corners{};
     for (int k = 0; k < 3; ++k) {
       if (face.mIndices[k] >= from.mNumVertices) {
-        return Error{ErrorCode::malformed, "a triangle names a vertex that does not exist"};
+        return Error{ErrorCode::malformed, "a triangle refers to a vertex that does not exist"};
       }
       corners[k] = static_cast<std::uint32_t>(first + face.mIndices[k]);
     }

@@ -139,8 +139,8 @@ Status check_points_used(const ScanFit& fit) {
   if (2 * used >= fit.distinct) return {};
   return Error(ErrorCode::too_few,
                "only " + std::to_string(used) + " of its " + std::to_string(fit.distinct) +
-                   " distinct points take part in the fit, which found " + std::to_string(fit.islands) +
-                   " islands; choose which with --islands, or repair the scan and join its vertices",
+                   " distinct points are used by the fit, which found " + std::to_string(fit.islands) +
+                   " islands; choose among them with --islands, or repair the scan and join its vertices",
                "--islands");
 }
 

@@ -160,7 +160,7 @@ Result<Parameterisation> start_tube(FitPoints& island) {
   if (island.boundary_loops.size() < 2) {
     return Error(ErrorCode::mismatch,
                  "a tube needs two open ends, " + std::to_string(island.boundary_loops.size()) +
-                     " found; try --kind closed",
+                     " were found; try --kind closed",
                  "kind");
   }
   const ShapeEnds ends{island.boundary_loops[0].nodes, island.boundary_loops[1].nodes};

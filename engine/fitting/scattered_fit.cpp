@@ -150,7 +150,7 @@ Result<Surface> NormalEquations::solve(const SurfaceStructure& structure) const 
   matrix.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
   const Error indefinite{ErrorCode::degenerate,
-                         "the points do not determine the surface; ask for fewer control points"};
+                         "the points do not determine the surface; use fewer control points"};
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0.0)) return indefinite;
   const Eigen::MatrixXd solution = factor.solve(right);
   if (!solution.allFinite()) return indefinite;

@@ -44,7 +44,7 @@ Status check_lattice_request(const LatticeRequest& lattice) {
   }
   if (product <= node_budget_range.high) return {};
   return Error{ErrorCode::too_many,
-               "lattice: nodes make " + std::to_string(product) + " nodes, must be at most " +
+               "lattice: the product of nodes is " + std::to_string(product) + ", must be at most " +
                    std::to_string(node_budget_range.high),
                "nodes"};
 }

@@ -103,8 +103,8 @@ Status check_length(std::string_view name, double length_m, Range<double> range_
   const Range<double> with_slack{range_m.low * (1.0 - slack), range_m.high * (1.0 + slack)};
   if (with_slack.contains(length_m)) return {};
   return Error{ErrorCode::out_of_range,
-               std::string(name) + " is " + length_text(length_m) + ", must be " + length_text(range_m.low) +
-                   " to " + length_text(range_m.high),
+               std::string(name) + " is " + length_text(length_m) + ", must be from " +
+                   length_text(range_m.low) + " to " + length_text(range_m.high),
                std::string(name)};
 }
 

@@ -210,7 +210,7 @@ TEST_F(ConvertTest, InfoTellsWhatACadFileHolds) {
 }
 
 TEST_F(ConvertTest, WhatMakesNoSenseIsRefused) {
-  expect_failure({handle_, place_.text("a.txt")}, "does not have the ending of a format that is written");
+  expect_failure({handle_, place_.text("a.txt")}, "does not have the ending of a format that can be written");
   expect_failure({place_.text("script.json.txt"), place_.text("a.step")},
                  "does not have the ending of a model");
   expect_failure({place_.text("a.stl"), place_.text("a.step")}, "is a mesh");
@@ -223,11 +223,12 @@ TEST_F(ConvertTest, WhatMakesNoSenseIsRefused) {
   expect_failure({handle_, place_.text("a.step"), "--tolerance", "1mm"}, "is converted exactly");
   expect_failure({handle_, place_.text("a.3mf"), "--unit", "in"}, "is written in millimetres");
   expect_failure({handle_, place_.text("a.stl"), "--chord", "5"}, "is not a length", exit_wrong_use);
-  expect_failure({handle_, place_.text("a.stl"), "--chord", "0mm"}, "must be 0.0001 mm to 100 mm",
+  expect_failure({handle_, place_.text("a.stl"), "--chord", "0mm"}, "must be from 0.0001 mm to 100 mm",
                  exit_wrong_use);
   expect_failure({handle_, place_.text("a.stl"), "--chord", "nanmm"}, "is not a length", exit_wrong_use);
   expect_failure({handle_, place_.text("a.stl"), "--unit", "ell"}, "is not a unit", exit_wrong_use);
-  expect_failure({handle_, place_.text("a.step"), "--schema", "ap1"}, "is not a schema", exit_wrong_use);
+  expect_failure({handle_, place_.text("a.step"), "--schema", "ap1"}, "is not a supported STEP schema",
+                 exit_wrong_use);
   expect_failure({handle_}, "OUT", exit_wrong_use);
 }
 

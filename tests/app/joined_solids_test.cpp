@@ -145,8 +145,8 @@ TEST_F(JoinedSolids, AGapThatIsBridgedIsSaid) {
     SCOPED_TRACE(out);
     EXPECT_EQ(
         convert("gap.json", out)["notes"],
-        Json::array({"the faces of 'bracket' miss each other by up to 0.05 mm; they are joined over that "
-                     "as if they met"}));
+        Json::array({"the faces of 'bracket' have gaps of up to 0.05 mm; they are joined as if there were "
+                     "none"}));
   }
   EXPECT_EQ(convert("gap.json", "gap.step")["solids"], 1);
   save("near.json", box_of_faces(0.015));

@@ -185,7 +185,8 @@ TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
   const Outcome turned =
       run({"merge", rod, inward, "--intersect", "--out", place.text("turned.json"), "--json"});
   ASSERT_EQ(turned.code, exit_done) << turned.err;
-  EXPECT_NE(turned.out.find("the normals of patch 2 pointed inwards; it was reversed"), std::string::npos)
+  EXPECT_NE(turned.out.find("the normals of patch 2 pointed inwards; the patch was reversed"),
+            std::string::npos)
       << turned.out;
   // The first fillet gets a note as well as the last, not only the last.
   Document third = read_document(rod).value();

@@ -254,9 +254,9 @@ TEST(New, SaysSizesAsTheyWereGiven) {
   const auto told = [&](const std::vector<std::string>& more) {
     return run(with({"new"}, with(more, {"--out", place.text("none.json")}))).err;
   };
-  EXPECT_NE(
-      told({"box", "--size", "60x40x20mm", "--rounding", "9mm"}).find("rounding is 9 mm, must be 0.2 mm"),
-      std::string::npos);
+  EXPECT_NE(told({"box", "--size", "60x40x20mm", "--rounding", "9mm"})
+                .find("rounding is 9 mm, must be from 0.2 mm"),
+            std::string::npos);
   EXPECT_NE(told({"plate", "--size", "60x40mm", "--sheet", "--thickness", "0"}).find("0.01 mm to 100 mm"),
             std::string::npos);
 }

@@ -109,7 +109,7 @@ Status move_seam(Direction direction, TrimmedSurface& part) {
   const auto seam = find_free_seam(knots, direction, part.trims);
   if (!seam) {
     return Error{ErrorCode::unsupported,
-                 "its trim loops cross its seam at every position of it; make one smaller"};
+                 "its trim loops cross the seam wherever the seam is placed; make a loop smaller"};
   }
   auto moved = with_seam_at(part.surface, direction, *seam);
   if (!moved) return moved.error();
@@ -151,7 +151,8 @@ Result<std::vector<TrimmedSurface>> divide(const TrimmedSurface& part, Direction
   for (const TrimLoop& loop : part.trims) {
     if (*reach(loop).first >= low) high = std::min(high, *reach(loop).first);
     if (*reach(loop).first<low&& * reach(loop).second> low) {
-      return Error{ErrorCode::unsupported, "its holes leave no position to cut it in two; make one smaller"};
+      return Error{ErrorCode::unsupported,
+                   "its holes leave no room for a cut into two parts; make a hole smaller"};
     }
   }
   const double cut = 0.5 * (low + high);

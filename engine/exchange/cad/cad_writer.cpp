@@ -128,8 +128,8 @@ std::string describe_open_shell(const CadSurface& surface, const BodyShape& body
     return "' closes, but OpenCASCADE cannot make a solid of it; an open shell is written";
   }
   const int faces = face_count(body.shape);
-  return "' would close, but is trimmed; an open shell of what is left is written" +
-         (faces > 1 ? ", cut in " + std::to_string(faces) + " faces, which come back as a body each"
+  return "' would close but is trimmed; the remaining part is written as an open shell" +
+         (faces > 1 ? ", cut in " + std::to_string(faces) + " faces, which are imported as a body each"
                     : std::string());
 }
 
@@ -139,7 +139,7 @@ void add_body_notes(const CadSurface& surface, const BodyShape& body, double mov
                     CadFileContent& content) {
   ++(body.solid ? content.solids : content.open_shells);
   if (body.solid && moved_m > smallest_move_m) {
-    content.notes.push_back("'" + surface.name + "' misses closing by " + short_length_text(moved_m) +
+    content.notes.push_back("'" + surface.name + "' is open by " + short_length_text(moved_m) +
                             "; it is written closed");
   }
   if (body.solid || !surface.solid.empty()) return;

@@ -313,7 +313,7 @@ Status write_meshes(const std::vector<NamedMesh>& meshes, FileFormat format, dou
   constexpr std::size_t index_limit = std::numeric_limits<std::int32_t>::max();
   if (counts.vertices > index_limit || counts.triangles > index_limit) {
     return Error{ErrorCode::too_many,
-                 "has more triangles than the format counts; choose a larger chord error"};
+                 "has more triangles than the format can count; choose a larger chord error"};
   }
   SPOONBILL_ASSERT(is_written_mesh(format));
   switch (format) {

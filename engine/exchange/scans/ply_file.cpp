@@ -210,7 +210,8 @@ class PlyMeshBuilder {
           return std::any_of(corners.begin(), corners.end(), is_beyond);
         });
     if (is_wrong) {
-      return Error{ErrorCode::inconsistent, "a face names a vertex that does not exist; it is damaged"};
+      return Error{ErrorCode::inconsistent,
+                   "a face refers to a vertex that does not exist; the file is damaged"};
     }
     std::span<const std::uint32_t> rest = polygon_corners_;
     for (const std::size_t corners : polygon_sizes_) {
@@ -239,15 +240,15 @@ class PlyMeshBuilder {
   }
 
   static Error index_error(double number) {
-    return Error{ErrorCode::malformed,
-                 "a face names the vertex " + number_text(number) + ", which is not an index; it is damaged"};
+    return Error{ErrorCode::malformed, "a face refers to vertex " + number_text(number) +
+                                           ", which is not an index; the file is damaged"};
   }
 
   Status add_face() {
     if (row_.size() > face_corner_limit) {
-      return Error{ErrorCode::too_many, "a face has " + std::to_string(row_.size()) + " corners, at most " +
-                                            std::to_string(face_corner_limit) +
-                                            " are read; export triangles"};
+      return Error{ErrorCode::too_many, "a face has " + std::to_string(row_.size()) +
+                                            " corners, but at most " + std::to_string(face_corner_limit) +
+                                            " can be read; export triangles"};
     }
     corners_.clear();
     for (const double number : row_) {
@@ -295,7 +296,7 @@ class PlyMeshBuilder {
 Status check_end(const PlyNumbers& numbers) {
   if (numbers.is_at_end()) return {};
   return Error{ErrorCode::inconsistent,
-               "has numbers after the last row that its header promises; it is damaged"};
+               "has numbers after the last row that its header states; the file is damaged"};
 }
 
 Result<PlyMesh> read_ply_mesh(const PlyHeader& header) {
@@ -339,7 +340,7 @@ Result<std::variant<PlyMesh, PointCloud>> parse_ply(std::string_view bytes) {
   if (!header) return header.error();
   const std::vector<PlyElement>& elements = header->elements;
   if (std::none_of(elements.begin(), elements.end(), [](const auto& e) { return e.name == "vertex"; })) {
-    return Error{ErrorCode::missing, "its header names no vertices"};
+    return Error{ErrorCode::missing, "its header declares no vertices"};
   }
   const bool has_faces = std::any_of(elements.begin(), elements.end(), [](const PlyElement& element) {
     return is_face(element) && element.rows > 0;

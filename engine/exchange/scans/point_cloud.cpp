@@ -18,7 +18,7 @@ namespace {
 
 Error too_many(std::uint64_t count) {
   return Error{ErrorCode::too_many, "has " + std::to_string(count) + " points, more than the " +
-                                        std::to_string(point_limit) + " that are read; thin it out"};
+                                        std::to_string(point_limit) + " that can be read; thin it out"};
 }
 
 constexpr std::size_t column_limit = 32;
@@ -118,7 +118,7 @@ Error ambiguity_error(std::size_t line, std::string_view text) {
 }
 
 Error count_error(double promised, std::size_t points) {
-  return Error{ErrorCode::inconsistent, "names " + number_text(promised) + " points and holds " +
+  return Error{ErrorCode::inconsistent, "states " + number_text(promised) + " points but holds " +
                                             std::to_string(points) + "; it is cut or damaged"};
 }
 
@@ -188,7 +188,8 @@ Result<PointCloud> parse_text_points(std::string_view bytes) {
     }
     if (row.count != columns) {
       return Error{ErrorCode::inconsistent, "line " + std::to_string(line_number) + " has " +
-                                                std::to_string(row.count) + " numbers, the first point has " +
+                                                std::to_string(row.count) +
+                                                " numbers, but the first point has " +
                                                 std::to_string(columns) + "; it is cut or damaged"};
     }
     const Vector3 normal(row.numbers[3], row.numbers[4], row.numbers[5]);

@@ -144,7 +144,7 @@ TEST(Document, NamesEveryMissingField) {
 TEST(Document, NamesWrongTypes) {
   EXPECT_EQ(refusal([](Json& j) { j["name"] = 5; }), Refusal(ErrorCode::wrong_type, "name"));
   EXPECT_EQ(refusal([](Json& j) { j["name"] = "two\nlines"; }).message,
-            "sample.json: name contains control characters, remove them");
+            "sample.json: name contains control characters; remove them");
   EXPECT_EQ(refusal([](Json& j) { j["body"]["material"]["plastic"] = 1; }),
             Refusal(ErrorCode::wrong_type, "body.material.plastic"));
   EXPECT_EQ(refusal([](Json& j) { j["tool"] = "sphere"; }), Refusal(ErrorCode::wrong_type, "tool"));
@@ -158,7 +158,7 @@ TEST(Document, NamesWrongTypes) {
 
 TEST(Document, StatesRangesInTheUnitOfTheFile) {
   EXPECT_EQ(refusal([](Json& j) { j["tool"]["radius_mm"] = 900; }).message,
-            "sample.json: tool.radius_mm is 900, must be 0 to 500");
+            "sample.json: tool.radius_mm is 900, must be from 0 to 500");
   EXPECT_EQ(refusal([](Json& j) { j["body"]["material"]["poissons_ratio"] = 0.5; }),
             Refusal(ErrorCode::out_of_range, "body.material.poissons_ratio"));
   EXPECT_EQ(refusal([](Json& j) {

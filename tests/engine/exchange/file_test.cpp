@@ -100,7 +100,7 @@ TEST(File, TheFirstBytesAreThoseOfFilesAlone) {
 TEST(File, RefusesToReplaceWhatIsNoFile) {
   const TemporaryFolder folder;
   EXPECT_EQ(replace_file(folder.path(), "x").error().message,
-            folder.path().string() + ": is not a regular file, choose another name");
+            folder.path().string() + ": is not a regular file; choose another name");
   const auto in_none = folder.path() / "none" / "a.json";
   EXPECT_EQ(replace_file(in_none, "x").error().message,
             in_none.string() + ": cannot be written: No such file or directory");

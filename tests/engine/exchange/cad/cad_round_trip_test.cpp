@@ -315,7 +315,7 @@ TEST_F(CadRoundTrip, WhatACheckCallsClosedIsASolidAndSaysWhatItMisses) {
     EXPECT_EQ(content->solids, 1);
     EXPECT_EQ(content->open_shells, 0);
     ASSERT_EQ(content->notes.size(), 1u);
-    EXPECT_NE(content->notes[0].find("'tube' misses closing by "), std::string::npos) << content->notes[0];
+    EXPECT_NE(content->notes[0].find("'tube' is open by "), std::string::npos) << content->notes[0];
     EXPECT_NE(content->notes[0].find("; it is written closed"), std::string::npos) << content->notes[0];
   }
 }

@@ -195,8 +195,8 @@ TEST_F(IgesFile, ACurveThatIsDamagedIsTold) {
   const FoundInIges found = read(iges_text({{128, sheet_at(0)}, {142, "1,99,0,1,1"}}));
   EXPECT_EQ(found.surfaces.size(), 1u);
   EXPECT_EQ(found.model.notes,
-            std::vector<std::string>{
-                "damaged entities of the file: 1; what they belong to is missing or wrong; export it again"});
+            std::vector<std::string>{"damaged entities of the file: 1; the parts that they belong to are "
+                                     "missing or wrong; export the file again"});
 }
 
 TEST_F(IgesFile, AMatrixThatStretchesIsTold) {

@@ -153,9 +153,10 @@ TEST_F(ImportedEdges, ACurveThatLeavesTheDomainIsCutThereAndNoted) {
     ++ends;
   }
   EXPECT_EQ(ends, 2);
-  EXPECT_GE(std::count_if(
-                model.notes.begin(), model.notes.end(),
-                [](const std::string& note) { return note.find("beside its edges") != std::string::npos; }),
+  EXPECT_GE(std::count_if(model.notes.begin(), model.notes.end(),
+                          [](const std::string& note) {
+                            return note.find("away from its edges") != std::string::npos;
+                          }),
             2);
 }
 

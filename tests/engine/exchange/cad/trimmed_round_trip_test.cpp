@@ -146,9 +146,8 @@ TEST_P(TrimmedRoundTrip, WhatWouldCloseButForItsTrimsIsSaid) {
   EXPECT_EQ(content->open_shells, 6);
   ASSERT_EQ(content->notes.size(), 3u);
   EXPECT_EQ(content->notes[0],
-            "'tube with a hole' would close, but is trimmed; an open shell of what is left is written, cut "
-            "in 2 faces, which "
-            "come back as a body each");
+            "'tube with a hole' would close but is trimmed; the remaining part is written as an open shell, "
+            "cut in 2 faces, which are imported as a body each");
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, TrimmedRoundTrip, testing::Values(FileFormat::step, FileFormat::iges),
