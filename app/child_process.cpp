@@ -19,8 +19,7 @@
 namespace spoonbill {
 namespace {
 
-// Address sanitizers reserve more address space than any limit allows, and sanitizers read their options from
-// the environment.
+// Sanitizers reserve more address space than any limit allows, and read their options from the environment.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool is_sanitized = true;
 #else

@@ -387,11 +387,11 @@ CommandEntry add_collide(OptionSet root) {
   const OptionSet parser =
       root.add_command("collide", "Find contacts between two models, or of one with itself");
   parser.set_footer(
-      "Computed on the B-spline surfaces, accurate to a micrometre. Models that touch: position, depth,\n"
-      "direction in which A separates, and the parameters on both. Others: distance and nearest points.\n"
-      "A mesh is cleaned first; its closed parts are solid, its open parts plates 1 mm thick. The depth of\n"
-      "two meshes is that of their deepest corner or edge. All bodies of a document count; a document alone\n"
-      "is also tested between its bodies.\n"
+      "Uses the B-spline surfaces themselves, accurate to a micrometre. If the models touch, reports the\n"
+      "position, the depth, the direction in which A separates, and the parameters on both; otherwise the\n"
+      "distance and the nearest points. A mesh is cleaned first; its closed parts are solid, its open\n"
+      "parts are plates 1 mm thick. The depth of two meshes is that of their deepest corner or edge. All\n"
+      "bodies of a document count; a document alone is also tested between its bodies.\n"
       "Example: spoonbill collide assets/models/spoon-handle.json assets/models/spoon-handle.json "
       "--pose 0,5mm,0,1,0,0,0");
   parser.add_option("A", options->first, "Document (.json) or mesh (.obj, .stl, .ply)").require();

@@ -171,10 +171,9 @@ CommandEntry add_fit(OptionSet root) {
   const OptionSet parser = root.add_command("fit", "Fit B-spline surfaces to a scan");
   parser.set_footer(
       "Outliers and specks are ignored, and the kind of shape is detected: a sheet (open in both\n"
-      "directions), a tube (closed in u) or a closed shape (closed in u, a pole at both ends of v). Knots "
-      "are\n"
-      "added where errors are large. The report gives the distances from scan to surface and back, and\n"
-      "whether the surface folds. Closed shapes become solids of clay, others shells.\n"
+      "directions), a tube (closed in u) or a closed shape (closed in u, a pole at both ends of v). Knots\n"
+      "are added where errors are large. The report gives the distances from scan to surface and back, and\n"
+      "whether the surface folds. Closed shapes become solids of clay, others become shells.\n"
       "Example: spoonbill fit assets/models/egg.stl --out egg.json --errors egg-errors.ply");
   add_options(parser, options);
   return {parser, [options](Console& console) { return fit(*options, console); }};

@@ -395,8 +395,8 @@ void add_joint_options(OptionSet parser, const std::shared_ptr<MergeOptions>& op
   add_parsed_option(
       parser, "--continuity", "C0..C8", parse_continuity,
       [options](int order) { options->continuity = order; },
-      "Continuity of joints and of a ring's seam; default: C2, of a fillet C1. A C2 fillet is tighter than "
-      "its radius");
+      "Continuity of joints and of a ring's seam; default: C2, or C1 for a fillet, because a C2 fillet is "
+      "tighter than its radius");
   add_parsed_option(
       parser, "--tolerance", "LENGTH", length_in(merge_tolerance_range_m),
       [options](double length_m) { options->request.join.tolerance_m = length_m; },
@@ -406,7 +406,7 @@ void add_joint_options(OptionSet parser, const std::shared_ptr<MergeOptions>& op
   add_parsed_option(
       parser, "--blend", "LENGTH", length_in(blend_range_m),
       [options](double length_m) { options->request.join.blend_m = length_m; },
-      "Length of blends, up to 1 m; patches that have a gap or a kink between them are cut back for one. "
+      "Length of blends, up to 1 m; patches with a gap or a kink between them are cut back to make room. "
       "Default: none; a kink is rounded within the tolerance, a small gap is bridged between two knots over "
       "10 to 40 times its width");
   parser
@@ -420,8 +420,8 @@ void add_joint_options(OptionSet parser, const std::shared_ptr<MergeOptions>& op
             }
             return {};
           },
-          "Edges to join instead of those found, once per joint: 1.v_end:2.v_start, with -2.v_start if the "
-          "second runs against the first, +2.v_start if along it")
+          "Edges to join instead of those found, once per joint: 1.v_end:2.v_start; -2.v_start if the second "
+          "edge runs against the first, +2.v_start if it runs along the first")
       .show_as("EDGE:EDGE");
 }
 
@@ -435,8 +435,9 @@ CommandEntry add_merge(OptionSet root) {
       "edges that are near each other are joined. If the last patch meets the first, the result is closed.\n"
       "Closed bodies that do not touch are opened at their nearest ends and bridged. A joint that already\n"
       "has the requested continuity is exact; elsewhere control points are added beside the joint until\n"
-      "the tolerance holds. Trimmed bodies are resampled up to their trims, discs and rings about their\n"
-      "centre. Material and tool are those of the first model; regions, loads and supports are dropped.\n"
+      "the error is within the tolerance. Trimmed bodies are resampled up to their trims; discs and rings\n"
+      "are resampled about their centre. Material and tool are those of the first model; regions, loads\n"
+      "and supports are dropped.\n"
       "Example: spoonbill merge assets/models/spoon-handle.json assets/models/spoon-bowl.json --out "
       "spoon.json");
   parser.add_option("MODEL", options->models, "Documents (.json), 1 to 64").require();

@@ -289,10 +289,9 @@ CommandEntry add_replay(OptionSet root) {
   const OptionSet parser =
       root.add_command("replay", "Replay a recording, verify its states and draw frames");
   parser.set_footer(
-      "Frame k shows the state after floor(k * 1000 / 60) ticks of 1 ms, on any machine and load. States "
-      "are\n"
-      "compared with those in the recording; a difference is an error that names the tick. A truncated\n"
-      "recording replays up to its end. Frames of an earlier replay in DIR are replaced.\n"
+      "Frame k shows the state after floor(k * 1000 / 60) ticks of 1 ms, on any machine and load. States\n"
+      "are compared with those in the recording; a difference is an error that names the tick. A truncated\n"
+      "recording replays up to its end. Frames of an earlier replay in the same folder are replaced.\n"
       "Example: spoonbill replay assets/recordings/spoon-handle-bend.recording.jsonl --out output/bend");
   parser.add_option("RECORDING", options->recording, "Recording (.recording.jsonl)").require();
   add_picture_options(parser, options);
