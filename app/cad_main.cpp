@@ -5,8 +5,8 @@
 //   spoonbill-cad write step|iges ap214|ap242 mm|cm|m|in
 //   spoonbill-cad solids CHORD_M TRIANGLE_LIMIT
 //
-// A UNIT_M of 0 is the unit that FILE declares. `write` and `solids` read the frames of a model from standard
-// input; `write` answers with the content of a file, `solids` with meshes.
+// A UNIT_M of 0 stands for the unit that FILE declares. `write` and `solids` read the frames of a model from
+// standard input; `write` answers with the content of a file, `solids` with meshes.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -123,7 +123,7 @@ void answer_write(const std::vector<std::string>& arguments, std::ostream& out) 
   write_frame(out, FrameKind::ending, json_to_line(ending));
 }
 
-// Sends one frame per solid, then the indices of the surfaces that are in no solid.
+// Sends one frame per solid, then the indices of the surfaces that belong to no solid.
 void answer_solids(const SolidMeshing& meshing, std::ostream& out) {
   const auto model = read_model(std::cin);
   if (!model) return write_failure(out, model.error().message);

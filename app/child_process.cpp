@@ -19,7 +19,7 @@
 namespace spoonbill {
 namespace {
 
-// Sanitizers reserve more address space than any limit allows, and their options come in the environment.
+// Sanitizers reserve more address space than any limit allows, and read their options from the environment.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool is_sanitized = true;
 #else
@@ -30,13 +30,13 @@ constexpr int first_free_descriptor = STDERR_FILENO + 1;
 constexpr int descriptors_limit = 65536;  // for kernels older than 5.11
 constexpr int exit_not_started = 127;
 
-// All that the child needs between fork and exec, where it may not allocate.
+// Everything that the child needs between fork and exec, where it must not allocate.
 struct Start {
   char* const* arguments;
   char* const* environment;
   int input, output;
   int failure;       // the end of a pipe that tells the parent that exec failed
-  bool with_parent;  // ends with the parent
+  bool with_parent;  // the child ends with the parent
   pid_t parent;
   sigset_t signals;  // the parent's mask
 };
@@ -68,7 +68,7 @@ int source(int descriptor, int mode) {
 }
 
 [[noreturn]] void become(const Start& start) {
-  // The parent may end before the request reaches the kernel, which then sends nothing.
+  // The parent may end before the kernel receives the request; the kernel then sends no signal.
   if (start.with_parent && (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != start.parent)) {
     _exit(exit_not_started);
   }
@@ -120,7 +120,8 @@ pid_t start_process(const std::vector<std::string>& arguments, int input, int ou
 }
 
 pid_t start_reader(const std::vector<std::string>& arguments, int input, int output) {
-  // The names of variables steer libraries, such as OpenCASCADE's CSF_ and the C library's own.
+  // The child gets only this variable: others can change the behaviour of libraries, such as OpenCASCADE's
+  // CSF_ variables.
   char locale[] = "LC_ALL=C";
   char* const clean[] = {locale, nullptr};
   return spawn(arguments, input, output, true, is_sanitized ? environ : clean);

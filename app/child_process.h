@@ -15,13 +15,13 @@
 namespace spoonbill {
 
 // Starts `arguments[0]`, searched in PATH unless it contains a slash. `input` becomes its standard input and
-// `output` its standard output; a negative one stands for /dev/null, where standard error always goes.
-// The child inherits no other descriptor. Returns -1 if the program cannot be started.
+// `output` its standard output; a negative descriptor stands for /dev/null. Standard error always goes to
+// /dev/null. The child inherits no other descriptor. Returns -1 if the program cannot be started.
 pid_t start_process(const std::vector<std::string>& arguments, int input, int output);
 
-// Starts a program that parses what may be hostile: as start_process(), but with an empty environment apart
-// from the locale C. The system kills the child when the calling thread ends, so call it in a thread that
-// outlives the child.
+// Starts a program that parses input which may be hostile. Works as start_process(), but the environment is
+// empty except for the locale C. The system kills the child when the calling thread ends, so call this
+// function in a thread that outlives the child.
 pid_t start_reader(const std::vector<std::string>& arguments, int input, int output);
 
 // Waits until the process ends. Returns its state as waitpid() does.

@@ -13,21 +13,21 @@
 
 namespace spoonbill {
 
-// The streams of a command: results go to `out`, progress, warnings and errors to `err`. Both must outlive
-// it.
+// The streams of a command: results go to `out`; progress, warnings and errors go to `err`. Both streams must
+// outlive the console.
 struct Console {
   std::ostream& out;
   std::ostream& err;
   bool err_is_terminal = false;
 };
 
-// Returns the first line of the text without_controls(). Messages quote files,
-// whose content could otherwise drive the terminal.
+// Returns the first line of the text without_controls(). Messages quote files, whose content could otherwise
+// send control sequences to the terminal.
 std::string one_line(const std::string& text);
 
 // Blocks the signals that stop a command (Ctrl+C, TERM and HUP) while it exists, so that they wait until the
-// work reaches a point where it can stop. In the program, work that does not reach one is ended by
-// watch_stop_signals(). Create it before other threads start: they inherit the signal mask.
+// work reaches a point where it can stop. Work of the program that does not reach such a point is ended by
+// watch_stop_signals(). Create the watch before other threads start: they inherit the signal mask.
 class InterruptWatch {
  public:
   InterruptWatch();
@@ -35,7 +35,7 @@ class InterruptWatch {
   InterruptWatch(const InterruptWatch&) = delete;
   InterruptWatch& operator=(const InterruptWatch&) = delete;
 
-  // Returns true once such a signal has arrived.
+  // Returns true once one of these signals has arrived.
   bool requested() const;
 
   // Discards the pending signal, so that the process can still report that it stopped the work.
@@ -46,11 +46,12 @@ class InterruptWatch {
   sigset_t before_;
 };
 
-// A progress bar on the console's error stream: one line that is redrawn on a terminal, a line for every
-// tenth of the work elsewhere, nothing when it is hidden.
+// A progress bar on the console's error stream. On a terminal it is one line that is redrawn; elsewhere it is
+// a new line for every tenth of the work. A hidden bar prints nothing.
 class ProgressBar {
  public:
-  // The bar is visible on a terminal, and elsewhere if it is forced. The console must outlive it.
+  // The bar is visible on a terminal; elsewhere it is visible only if it is forced. The console must outlive
+  // it.
   ProgressBar(Console& console, std::string label, bool is_forced);
   ~ProgressBar();  // ends the line that the bar was drawn on
   ProgressBar(const ProgressBar&) = delete;
@@ -70,7 +71,7 @@ class ProgressBar {
 // A long job of a command: it shows a progress bar, and Ctrl+C stops it. The console must outlive it.
 class CancellableJob {
  public:
-  // `out` is the file that stays unwritten when the job is stopped.
+  // `out` is the file that is not written if the job is stopped.
   CancellableJob(Console& console, std::string label, std::filesystem::path out)
       : out_(std::move(out)), bar_(console, std::move(label), false) {}
 

@@ -12,8 +12,8 @@
 #include "engine/base/assert.h"
 
 int main(int argc, char** argv) {
-  // A closed pipe and a file above the user's size limit are write errors to report, not the end of the
-  // process.
+  // A closed pipe and a file above the user's size limit must not end the process: writing fails, and the
+  // failure is reported.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   spoonbill::watch_stop_signals();

@@ -26,13 +26,13 @@ constexpr std::uint32_t processor = AUDIT_ARCH_X86_64;
 constexpr std::uint32_t processor = AUDIT_ARCH_AARCH64;
 #endif
 
-// Calls from here on are those of the x32 interface, which would evade the numbers below.
+// Numbers from here on belong to the x32 interface, whose calls would evade the numbers below.
 constexpr std::uint32_t first_foreign_call = 0x40000000;
 
 constexpr std::uint32_t denied = SECCOMP_RET_ERRNO | EPERM;
 
-// io_uring opens sockets without the call `socket`, and clone3 hides its flags from a filter: the C library
-// falls back to clone where clone3 is missing.
+// io_uring can open sockets without the call `socket`, and clone3 hides its flags from a filter. Without
+// clone3, the C library uses clone.
 constexpr std::uint32_t denied_calls[] = {
 #if defined(__x86_64__)
     __NR_fork,
@@ -72,7 +72,7 @@ std::vector<sock_filter> reader_filter() {
   for (const std::uint32_t call : denied_calls) deny(BPF_JEQ, call, denied);
   deny(BPF_JEQ, __NR_clone3, SECCOMP_RET_ERRNO | ENOSYS);
   deny(BPF_JEQ, __NR_clone, SECCOMP_RET_ALLOW);
-  // A clone is allowed for threads only. Both processors keep its flags in the low half of the first
+  // A clone may only make threads. Both processor families have its flags in the low half of the first
   // argument.
   filter.back() = BPF_JUMP(BPF_JMP | BPF_JA, 1, 0, 0);
   filter.push_back(answer(SECCOMP_RET_ALLOW));

@@ -3,11 +3,11 @@
 
 namespace spoonbill {
 
-// Forbids the calling process, for good, to gain privileges, to open sockets, to start processes or programs
-// and to trace others: those calls fail with EPERM. Threads stay allowed, because OpenCASCADE may start some.
+// Permanently forbids the calling process to gain privileges, open sockets, start processes or programs, and
+// trace others: these calls then fail with EPERM. Threads stay allowed, because OpenCASCADE may start some.
 // Call it before the file is opened. Returns false if the kernel or the processor offers no such filter, or
-// in a sanitizer build, whose runtime starts processes; the limits on memory, time and files hold all the
-// same.
+// in a sanitizer build, whose runtime starts processes. The limits on memory, time and files apply in any
+// case.
 bool confine_reader();
 
 }  // namespace spoonbill

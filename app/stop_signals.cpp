@@ -11,7 +11,7 @@
 namespace spoonbill {
 namespace {
 
-// Short enough that the whole takes less than a second, even on a busy machine.
+// Short enough for the process to end within a second, even on a busy machine.
 constexpr std::chrono::milliseconds patience{600};
 
 std::atomic<bool> stop_signal_arrived{false};
@@ -30,7 +30,7 @@ void wait_for_stop_signal(const sigset_t& watched) {
   std::string text = "stopped by a signal";
   for (const std::string& line : end_unfinished_files()) text += "; " + line;
   print_line(text);
-  // The signal's own effect tells the caller why the process has ended.
+  // The default effect of the signal tells the caller why the process has ended.
   std::signal(number, SIG_DFL);
   sigset_t only;
   sigemptyset(&only);

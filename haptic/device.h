@@ -25,7 +25,7 @@ struct DeviceSpecification {
   bool actuates_torque = false;
 
   // True for a device without physical bounds: a live session centres and sizes the workspace on the model.
-  // Not recorded, because recordings contain the resulting poses.
+  // The flag is not recorded, because recordings contain the resulting poses.
   bool workspace_follows_model = false;
 
   // Limits of the safety chain (haptic/safe_device.h).
@@ -33,8 +33,8 @@ struct DeviceSpecification {
   // Time for the force to ramp from zero to full. The short default suits the virtual device, which cannot
   // hurt anybody; use 2 s for real hardware.
   double ramp_time_s = 0.2;
-  // Limit on the change of the force. It is above the 700 N/s that a hand at maximum speed produces at
-  // maximum stiffness, so that only jumps are limited.
+  // Limit on the change of the force. A hand at maximum speed and maximum stiffness changes the force by 700
+  // N/s, so the limit affects only jumps.
   double maximum_force_rate_n_per_s = 1000.0;
   double maximum_speed_m_per_s = 1.0;  // the force fades above this speed and is zero at twice this
   std::uint32_t dead_man_buttons = 0;  // buttons that must all be pressed for any force; 0: none
@@ -66,7 +66,7 @@ struct DeviceReading {
   std::int64_t orientation_e9[4] = {0, 0, 0, 1'000'000'000};  // x, y, z, w
   std::uint32_t buttons = 0;  // button_main, button_hover and the device's own
 
-  // Returns whether every coordinate is within reading_limit_nm and the orientation is a unit quaternion.
+  // Returns true if every coordinate is within reading_limit_nm and the orientation is a unit quaternion.
   // Only valid readings may reach the simulation or a recording.
   bool is_valid() const;
   bool has_unit_orientation() const;
@@ -85,10 +85,10 @@ struct DeviceReading {
 // A haptic device, or a substitute for one.
 //
 // A factory function of each class opens the device, on a thread that may block, and returns an Error that
-// says what is missing. The destructor closes it. The ticking thread calls read() and set_force(); its owner
-// may also call them before that thread starts and after it has ended. Neither may allocate, lock, block or
-// throw. A driver with a callback thread or a socket exchanges readings and forces through a TripleBuffer,
-// and drops a force that is not renewed within 50 ms.
+// says what is missing. The destructor closes the device. The ticking thread calls read() and set_force();
+// its owner may also call them before that thread starts and after it has ended. Neither function may
+// allocate, lock, block or throw. A driver with a callback thread or a socket exchanges readings and forces
+// through a TripleBuffer, and drops a force that is not renewed within 50 ms.
 //
 // Only SafeDevice (haptic/safe_device.h) calls set_force().
 class Device {

@@ -95,8 +95,8 @@ std::string make_notice(const RealTimeGrant& grant) {
 RealTimeGrant grant_real_time(pthread_t thread) {
   RealTimeGrant grant;
   grant.fifo = make_fifo(thread);
-  // MCL_FUTURE would make every later allocation fail once the limit is reached. MCL_ONFAULT leaves memory
-  // that is mapped but never used, such as stacks of other threads, unlocked.
+  // MCL_FUTURE would make every later allocation fail once the limit is reached. With MCL_ONFAULT, memory
+  // that is mapped but never used stays unlocked, such as the stacks of other threads.
   grant.memory_locked = mlockall(MCL_CURRENT | MCL_ONFAULT) == 0;
   grant.notice = make_notice(grant);
   return grant;
@@ -160,16 +160,16 @@ double DurationHistogram::mean_s() const noexcept {
          nanosecond_s;
 }
 
-// Atomic members are written only by the thread of the loop (`stopping` only by the owner) and read by any
-// thread. The others are set before start() returns and constant until stop().
+// The thread of the loop alone writes the atomic members, except `stopping`, which the owner writes; any
+// thread may read them. All other members are set before start() returns and are constant until stop().
 struct HapticLoop::State {
   std::function<void(const LoopTick&)> body;
   std::int64_t period_ns = 0;
   RealTimeGrant grant;
   std::thread thread;
 
-  // Ends the real-time scheduling of a thread that is too long in one tick. Runs ahead of it, and only where
-  // it is first-in-first-out.
+  // Ends the real-time scheduling of the loop's thread if one tick takes too long. Has a higher priority than
+  // that thread, and exists only if that thread is scheduled first-in-first-out.
   std::thread watcher;
   std::atomic<std::int64_t> tick_begin_ns{0};  // 0 between ticks
   std::atomic<bool> fifo{false};
@@ -283,7 +283,7 @@ Result<HapticLoop> HapticLoop::start(const LoopSettings& settings,
       state->watcher = std::thread([&inner = *state] { inner.watch(); });
       set_priority(state->watcher.native_handle(), desired_priority + 1);
     } catch (const std::system_error&) {
-      // Without a watcher the loop runs as before.
+      // Without a watcher the loop runs all the same, but no tick loses its real-time scheduling.
     }
   }
   state->started.store(true, std::memory_order_release);

@@ -6,7 +6,7 @@
 //                                        ^ dropped    ^ late, but by less than a period
 //
 // A tick that is late by a whole period or more is dropped and never caught up; the next tick receives the
-// number of dropped ones. The function must not lock, allocate, access files or block in any other way.
+// number of dropped ticks. The function must not lock, allocate, access files or block in any other way.
 #pragma once
 
 #include <array>
@@ -22,22 +22,22 @@
 
 namespace spoonbill {
 
-// A lock-free histogram of durations. Exactly one thread calls add(). Any thread may read; values being added
-// may not yet be included.
+// A lock-free histogram of durations. Exactly one thread calls add(). Any thread may read; a reader may miss
+// values that are being added.
 class DurationHistogram {
  public:
   // Adds a duration. Negative durations count as zero.
   void add(std::int64_t duration_ns) noexcept;
 
-  // Returns the duration that `fraction` (0 to 1) of the added durations do not exceed, within 1/16; 0 if
-  // empty.
+  // Returns the quantile of the added durations for `fraction` (0 to 1), accurate within 1/16; 0 if the
+  // histogram is empty.
   double quantile_s(double fraction) const noexcept;
 
   double mean_s() const noexcept;
   std::uint64_t count() const noexcept { return count_.load(std::memory_order_relaxed); }
 
  private:
-  // Sixteen bins for each octave; below sixteen, one bin for each whole nanosecond.
+  // Sixteen bins for each octave. Below sixteen nanoseconds, one bin for each nanosecond.
   static constexpr std::size_t bins_per_octave = 16;
   static constexpr std::size_t bin_count = 61 * bins_per_octave;
 
@@ -51,8 +51,8 @@ class DurationHistogram {
 
 inline constexpr Range<double> loop_period_range_s{1e-4, 1.0};
 
-// Longest run of one tick with first-in-first-out scheduling. A thread that takes longer would keep the whole
-// machine waiting; it gets ordinary scheduling for the rest of its life.
+// Longest run of one tick with first-in-first-out scheduling. A thread that took longer would keep the whole
+// machine waiting, so it gets ordinary scheduling for the rest of its life.
 inline constexpr double longest_real_time_tick_s = 0.1;
 
 struct LoopSettings {
@@ -77,8 +77,8 @@ struct LoopFigures {
   // Run time of the function.
   double work_mean_s = 0.0;
   double work_p99_s = 0.0;
-  // True with first-in-first-out scheduling, ahead of every ordinary thread; false again after a tick of more
-  // than longest_real_time_tick_s.
+  // True while the thread has first-in-first-out scheduling, ahead of every ordinary thread. Becomes false
+  // after a tick that takes longer than longest_real_time_tick_s.
   bool fifo = false;
   bool memory_locked = false;  // true if the memory in use at the start is locked
   std::string notice;          // one line to show to the user once; empty if everything was permitted
@@ -97,8 +97,8 @@ class HapticLoop {
   HapticLoop& operator=(HapticLoop&&) noexcept;
   ~HapticLoop();  // calls stop()
 
-  // Stops the calls of `body` and waits until the last one has ended, at most a period. Does nothing if
-  // called again. Must be called from the owner's thread, never from within `body`.
+  // Stops the calls of `body` and waits until the last call has ended. Does nothing if called a second time.
+  // Must be called from the owner's thread, never from within `body`.
   void stop();
 
   // Returns the current figures. Callable from any thread while the object exists, also after stop().

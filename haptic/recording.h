@@ -10,8 +10,8 @@
 //    "buttons":[...]}                                                               motion (on one line)
 //   {"end":true,"ticks":4300,"state_hash":"fedcba9876543210"}                       last line
 //
-// The last line also has "missed":N if a live recording missed N periods of 1 ms: the performance then took
-// that much longer than its ticks, in which the replay has no part.
+// The last line also has "missed":N if a live recording missed N periods of 1 ms. The performance took longer
+// than its ticks by this time, which a replay skips.
 //
 // Version 1. Lines are in the order of their ticks. Within a tick the order is: state hash, commands, motion.
 // The state hash is that of the simulation after ticks 0 to tick - 1, before any command of this tick. A
@@ -55,7 +55,7 @@ struct RecordingHeader {
 };
 
 // A command and its tick. The command stays JSON, because the engine interprets commands of the simulation
-// and the program those of the view, and neither needs to know the other's.
+// and the program interprets commands of the view, and neither needs to know the other's commands.
 struct TimedCommand {
   std::uint64_t tick = 0;  // the command applies before this tick runs; commands of one tick keep their order
   Json command;            // {"command": "...", arguments...}
@@ -80,8 +80,8 @@ struct Recording {
 };
 
 // Reads a recording. A recording that is truncated anywhere after its first line is read up to the cut. Any
-// other deviation from the format above is an error that names line and field. So is a recording beyond the
-// limits: 10 million ticks, 1 GiB, positions within 10 m, unit quaternions.
+// other deviation from the format above is an error that names line and field. Exceeding a limit is also an
+// error: 10 million ticks, 1 GiB, positions within 10 m, unit quaternions.
 Result<Recording> read_recording(const std::filesystem::path& file);
 Result<Recording> read_recording(std::istream& in, const std::string& source);
 
@@ -101,12 +101,12 @@ Result<Recording> read_recording(std::istream& in, const std::string& source);
 class RecordingWriter {
  public:
   // Creates the file and writes the header. The recording grows as FILE.part, which can be replayed too, and
-  // becomes FILE at commit(). Errors: a path that cannot be written, another program that records to it
-  // (ErrorCode::unavailable), a document that could not be read back.
+  // becomes FILE at commit(). Errors: a path that cannot be written, another program that records to the same
+  // file (ErrorCode::unavailable), a document that could not be read back.
   static Result<RecordingWriter> create(const std::filesystem::path& file, const RecordingHeader& header,
                                         const OutputOptions& options = {});
 
-  // One line for the user about a FILE.part that a crash left and that has another name now; mostly empty.
+  // One line for the user if a crash left a FILE.part, which create() has renamed; empty in most cases.
   const std::string& notice() const;
 
   // The name under which the recording grows.
@@ -119,7 +119,7 @@ class RecordingWriter {
   // Returns the next tick, which is the number of readings so far.
   std::uint64_t tick() const;
 
-  // Returns whether checkpoint() must be called: at each multiple of 1,000 ticks, before the commands of the
+  // Returns true if checkpoint() must be called: at each multiple of 1,000 ticks, before the commands of the
   // tick.
   bool checkpoint_due() const;
   Status checkpoint(std::uint64_t state_hash);

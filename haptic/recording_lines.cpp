@@ -231,7 +231,7 @@ Json motion_to_json(std::uint64_t tick, const DeviceReading& before,
 
 void read_motion(FieldReader& reader, std::vector<DeviceReading>& readings) {
   const std::uint64_t count = reader.unsigned_integer("ticks", recording_line_ticks);
-  if (reader.status().ok() && count == 0) reader.refuse("ticks", "is 0, must be 1 to 100");
+  if (reader.status().ok() && count == 0) reader.refuse("ticks", "is 0, must be from 1 to 100");
   if (!reader.status().ok()) return;
   const DeviceReading before = readings.empty() ? DeviceReading{} : readings.back();
   readings.resize(readings.size() + count);

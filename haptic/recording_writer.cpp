@@ -46,7 +46,7 @@ struct RecordingWriter::State {
   }
 
   // Writes the pending readings and returns the line that says where they are. Called by the thread that ends
-  // the process; the owner may be in the midst of a write, which is given a moment.
+  // the process. If the owner is writing at the same time, waits a moment for it.
   std::string leave() {
     const std::unique_lock lock(mutex, std::chrono::milliseconds(200));
     if (lock.owns_lock() && failure.ok() && !finished) [[maybe_unused]]
@@ -73,8 +73,8 @@ Status check_header(const Json& header, const std::string& name) {
   return read_back.ok() ? Status() : Status(read_back.error());
 }
 
-// Checks that the line can be read back. Detects numbers that are not finite and nesting that no reader
-// accepts.
+// Checks that the line can be read back: numbers must be finite, and values must not be nested more deeply
+// than readers accept.
 Status check_line(const Json& line, const std::string& source) {
   const std::string text = json_to_line(line);
   if (text.size() + 1 >= recording_line_bytes_limit) {
@@ -112,7 +112,7 @@ RecordingWriter::RecordingWriter(std::unique_ptr<State> state) : state_(std::mov
 RecordingWriter::RecordingWriter(RecordingWriter&&) noexcept = default;
 RecordingWriter& RecordingWriter::operator=(RecordingWriter&&) noexcept = default;
 
-// A recording that is stopped holds every tick up to there.
+// A recording that is stopped holds every tick up to the stop.
 RecordingWriter::~RecordingWriter() {
   if (state_ == nullptr) return;
   const std::lock_guard lock(state_->mutex);
@@ -167,7 +167,7 @@ Status RecordingWriter::reading(const DeviceReading& reading) {
   if (!state.ready().ok()) return state.failure;
   if (state.ticks >= recording_tick_limit) {
     return state.fail(ErrorCode::too_many,
-                      "has " + std::to_string(recording_tick_limit) + " ticks, start another recording");
+                      "has " + std::to_string(recording_tick_limit) + " ticks; start another recording");
   }
   if (!reading.is_valid()) {
     return state.fail(ErrorCode::out_of_range, "the reading of tick " + std::to_string(state.ticks) +

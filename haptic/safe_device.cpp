@@ -13,18 +13,18 @@ namespace {
 
 constexpr int quiet_ticks_needed = 10;
 
-// Number of dropped ticks that counts as a stall. In that time a hand can move by its own breadth, so an old
-// force is no longer valid. The limit on the change covers shorter gaps.
+// Number of dropped ticks that counts as a stall. In this time a hand can move by its own breadth, so an old
+// force is no longer valid. Shorter gaps are covered by the limit on the change of the force.
 constexpr std::uint64_t stall_ticks = 25;
 
-// Multiples of the workspace radius and of the maximum speed at which the force has faded to zero.
+// The force has faded to zero at these multiples of the workspace radius and of the maximum speed.
 constexpr double workspace_end = 1.1;
 constexpr double speed_end = 2.0;
 
 // Weight of the low pass at 20 Hz, which a hand can follow: 1 - exp(-2 pi 20 Hz tick_s).
 constexpr double slow_weight = 0.118;
-// Decay of the swing count in a tick. Swings are forgotten within 100 ticks, so a steady buzz of f Hz counts
-// to 0.2 f. The fastest tremor of a hand, at 12 Hz, reaches 2.4.
+// Decay of the swing count per tick. Swings are forgotten within 100 ticks, so the count of a steady buzz of
+// f Hz reaches 0.2 f. The fastest tremor of a hand, at 12 Hz, reaches 2.4.
 constexpr double swing_memory = 0.99;
 constexpr double maximum_swings = 5.0;
 
@@ -106,8 +106,8 @@ Vector3 limit_change(const Vector3& from_n, const Vector3& to_n, const DeviceSpe
   return clamp_norm(from_n + clamp_norm(step_n, maximum_n), specification.maximum_force_n);
 }
 
-// Returns whether the force oscillates too often. A swing counts if it exceeds the quiet force and its
-// direction is opposed to the previous swing.
+// Returns true if the force oscillates too often. A swing counts if it exceeds the quiet force and its
+// direction is opposite to the previous swing.
 bool is_buzzing(SafetyState& state, const DeviceSpecification& specification, const Vector3& force_n) {
   state.slow_force_n += slow_weight * (force_n - state.slow_force_n);
   state.swings *= swing_memory;

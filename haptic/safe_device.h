@@ -1,5 +1,5 @@
-// The safety chain between the force that the coupling requests and the hand, which no fault of the program
-// may injure.
+// The safety chain between the force that the coupling requests and the hand. It keeps faults of the program
+// from injuring the hand.
 //
 // SafeDevice is the only code that sets the force of a device, both live and in lock-step, so no force
 // reaches a hand unchecked. make_safe() applies these steps in every tick:
@@ -97,9 +97,9 @@ std::string safety_text(std::uint32_t flags);
 // One owner, the owner of the device. Does not allocate, lock or read a clock.
 class SafeDevice {
  public:
-  // The device must outlive this object, and its specification must pass check_specification(): all limits
-  // come from there. The workspace has the radius of the specification and is centred on the first valid
-  // reading. `last` is returned while the device has never answered; it must be valid.
+  // The device must outlive this object, and its specification, from which all limits come, must pass
+  // check_specification(). The workspace has the radius of the specification and is centred on the first
+  // valid reading. read() returns `last` as long as the device has never answered; it must be valid.
   explicit SafeDevice(Device& device, const DeviceReading& last = {});
 
   // Moves or resizes the workspace, in scene coordinates.
@@ -109,9 +109,9 @@ class SafeDevice {
   // Returns a valid reading for this tick: that of the device, or a replacement as described above.
   DeviceReading read();
 
-  // Returns whether the proxy must be moved to the device before this tick advances, and clears the request.
+  // Returns true if the proxy must be moved to the device before this tick advances, and clears the request.
   bool consume_proxy_reset();
-  // Requests a reset of the proxy, for a simulation that has missed the last motion of the hand.
+  // Requests a reset of the proxy, for use after the simulation has missed motions of the hand.
   void request_proxy_reset() { proxy_is_stale_ = true; }
 
   // Sends the safe part of the requested force to the hand and returns it. `dropped_ticks` is the number of

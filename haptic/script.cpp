@@ -88,7 +88,7 @@ class StepCompiler {
   void wait_until(FieldReader& reader) {
     const std::uint64_t tick = read_ticks(reader, "at_s", time_range_s);
     if (tick < script_.tick_count()) {
-      reader.refuse("at_s", "is before the end of the steps before it, at " +
+      reader.refuse("at_s", "is earlier than the end of the previous step, which is at " +
                                 number_text(static_cast<double>(script_.tick_count()) / 1000.0) + " s");
     } else if (tick > script_.tick_count()) {
       extend(reader, tick - script_.tick_count(), current_);

@@ -58,8 +58,7 @@ struct Script {
   HandTarget target_at(std::uint64_t tick) const;
 };
 
-// Parses a script. Commands of the simulation are checked here, those of the view by the program that knows
-// them.
+// Parses a script. Commands of the simulation are checked here; the caller checks commands of the view.
 Result<Script> script_from_json(const Json& json, const std::string& source,
                                 const std::filesystem::path& folder);
 

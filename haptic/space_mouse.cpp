@@ -29,8 +29,8 @@ void update_button(const spnav_event_button& event, std::uint32_t& buttons) {
   buttons = event.press != 0 ? buttons | bit : buttons & ~bit;
 }
 
-// Returns whether the daemon has closed the connection. libspnav reports "no event" in that case too, and the
-// cap would seem to stay displaced.
+// Returns true if the daemon has closed the connection. libspnav reports "no event" in this case too, so that
+// the cap would seem to stay displaced.
 bool daemon_has_gone() {
   char byte = 0;
   const ssize_t count = recv(spnav_fd(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);

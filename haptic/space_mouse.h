@@ -27,22 +27,22 @@ SpaceMouseMotion motion_from_counts(const int (&counts)[6], std::uint32_t button
 // never the haptic thread, because polling allocates and makes system calls.
 class SpaceMouse : public InputSource {
  public:
-  // Opens the connection. Errors: no daemon, or a SpaceMouse that is already open. Waits up to 0.3 s for an
-  // old daemon's answer.
+  // Opens the connection. Errors: no daemon, or a SpaceMouse that is already open. Waits up to 0.3 s for the
+  // answer of an old daemon.
   static Result<SpaceMouse> open();
 
   SpaceMouse(SpaceMouse&& other) noexcept;
   SpaceMouse& operator=(SpaceMouse&& other) noexcept;
   ~SpaceMouse() override;
 
-  // Returns the current displacement of the cap. Empty, permanently, once the daemon has gone.
+  // Returns the current displacement of the cap. Always returns nullopt once the daemon has gone.
   std::optional<SpaceMouseMotion> poll();
 
-  // Polls and returns whether the cap is displaced beyond the dead zone of Steering, or the main button was
-  // pressed or released.
+  // Polls the device. Returns true if the cap is displaced beyond the dead zone of Steering, or if the main
+  // button was pressed or released.
   bool is_used() override;
 
-  // Steers with the motion that is_used() polled and with the main button alone.
+  // Steers with the motion that is_used() polled. Of the buttons, only the main button counts.
   HandTarget next_target(const HandTarget& current, double elapsed_s) override;
 
  private:
@@ -63,7 +63,7 @@ struct Steering {
 
 // Returns the target `elapsed_s` later. Beyond the dead zone the speed grows with the square of the
 // displacement, for fine work near rest. Rotations are about the world axes. The buttons replace those of the
-// target. The time is clamped to 0 to 0.1 s, in case the program paused.
+// target. The time is clamped to the range from 0 to 0.1 s, because the program may have paused.
 HandTarget steer(const HandTarget& target, const SpaceMouseMotion& motion, double elapsed_s,
                  const Steering& steering = {});
 

@@ -21,8 +21,8 @@ constexpr double damping_reserve = 2.0;
 // Force scale below which no force reaches the hand, and the hand moves the tool rigidly.
 constexpr double minimum_force_scale = 1e-9;
 
-// Returns the force of the damped spring along the displacement to the proxy. The force never pushes away
-// from the proxy, so that nothing sticks.
+// Returns the force of the damped spring along the displacement to the proxy. The force never points away
+// from the proxy, because damping would then make the tool stick.
 Vector3 damped_spring(const DeviceSpecification& specification, const Vector3& displacement_m,
                       const Vector3& velocity_m_per_s) {
   const double length_m = displacement_m.norm();

@@ -12,13 +12,14 @@
 namespace spoonbill {
 
 // State of the virtual coupling: a critically damped spring, as stiff as the device permits, between the
-// device and the proxy. The proxy is the tool as the material lets it move (after Ruspini et al. 1997). The
-// force of the spring goes to the hand, damped, filtered and limited. Its opposite, divided by the force
-// scale, presses the tool on the material.
+// device and the proxy. The proxy is the position of the tool that the material permits (after Ruspini et al.
+// 1997). The force of the spring goes to the hand, damped, filtered and limited. The opposite of the spring's
+// force, divided by the force scale, presses the tool on the material.
 //
 // The force is late, because it is filtered and constant for a tick. With a delay t, a spring of stiffness K
 // returns more energy than it received, as if its damping were -K t (Colgate and Brown 1994, for t of half a
-// tick). So the hand is damped along the spring by 2 K t, at most the maximum damping of the device.
+// tick). The hand is therefore damped along the spring by 2 K t, at most by the maximum damping of the
+// device.
 //
 // Plain data, owned with the simulation by the ticking thread.
 struct CouplingState {

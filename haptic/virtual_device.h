@@ -40,8 +40,8 @@ struct HandTarget {
 
 bool is_finite(const HandTarget& target);
 
-// A handle of known mass, pulled toward a target by a simulated hand and pushed by the force. The force
-// therefore moves the handle, which makes passivity testable, and recordings contain the resulting motion.
+// A handle of known mass, pulled toward a target by a simulated hand and pushed by the force. Because the
+// force moves the handle, passivity can be tested, and recordings contain the resulting motion.
 //
 // Uses basic arithmetic only, no functions of the mathematics library, so that the same targets and forces
 // give the same bits on every machine. The orientation follows the target at once: forces exert no torque.
@@ -87,8 +87,8 @@ class PlaybackDevice : public Device {
 
   const DeviceSpecification& specification() const override { return specification_; }
 
-  // Returns the next reading; once all have been returned, the last reading again; if there are no readings,
-  // the default reading.
+  // Returns the next reading. Once all readings have been returned, repeats the last one. Without any
+  // readings, returns the default reading.
   std::optional<DeviceReading> read() override;
   void set_force(const Vector3& force_n) override;
 
@@ -168,11 +168,11 @@ class InputSource {
  public:
   virtual ~InputSource() = default;
 
-  // Returns whether the person uses the source in this frame. Called once a frame, before next_target().
+  // Returns true if the person uses the source in this frame. Called once per frame, before next_target().
   virtual bool is_used() = 0;
 
-  // Returns the new target of the handle, given the target `elapsed_s` seconds ago. Called only while the
-  // source leads.
+  // Returns the new target of the handle. `current` is the target `elapsed_s` seconds ago. Called only while
+  // this source leads.
   virtual HandTarget next_target(const HandTarget& current, double elapsed_s) = 0;
 };
 
@@ -183,7 +183,7 @@ class HandInputs {
   HandInputs(std::shared_ptr<TargetMailbox> mailbox, const HandTarget& start, const InputSource& leader)
       : mailbox_(std::move(mailbox)), target_(start), leader_(&leader) {}
 
-  // Makes the source the leader if it is used, and sends its target to the device if it leads.
+  // Makes the source the leader if it is in use. Sends the source's target to the device if the source leads.
   void update(InputSource& source, double elapsed_s) {
     if (source.is_used()) leader_ = &source;
     if (leader_ != &source) return;

@@ -142,7 +142,7 @@ CommandEntry add_change(OptionSet root) {
       parser, "--continuity", "C0..C8", parse_continuity,
       [options](int order) { options->continuity = order; },
       "Continuity of the seam that close makes; default: C2. C0 keeps an edge");
-  // The order of CHANGE and --continuity is free, so this is checked after both.
+  // CHANGE and --continuity may be in any order, so this is checked after both.
   parser.set_final_check([options]() -> Status {
     if (options->continuity && options->change.kind != ChangeKind::close) {
       return Error{ErrorCode::inconsistent,

@@ -51,7 +51,7 @@ CadModel make_model(const std::vector<Body>& bodies) {
   return model;
 }
 
-// Joins the solids that several bodies bound.
+// Joins the faces of each solid that consists of several bodies.
 Result<CadSolids> join_solids(const CheckOptions& options, const std::vector<Body>& all,
                               const InterruptWatch& interrupt) {
   if (std::all_of(all.begin(), all.end(), [](const Body& body) { return body.solid.empty(); })) {
@@ -63,7 +63,7 @@ Result<CadSolids> join_solids(const CheckOptions& options, const std::vector<Bod
   const double chord_m =
       std::clamp(solid_chord_fraction * size_of(all), solid_chord_range_m.low, solid_chord_range_m.high);
   auto solids = make_cad_solids(model, {chord_m, solid_triangle_limit}, options.model, child);
-  // A model with too many triangles is measured less exactly.
+  // If the model has too many triangles, it is measured less exactly.
   if (solids || interrupt.requested() || chord_m == solid_chord_range_m.high) return solids;
   return make_cad_solids(model, {solid_chord_range_m.high, solid_triangle_limit}, options.model, child);
 }
@@ -194,18 +194,18 @@ CommandEntry add_check(OptionSet root) {
   const OptionSet parser = root.add_command(
       "check", "Check whether a model's bodies are sound, and measure thickness and curvature");
   parser.set_footer(
-      "For each body: whether its surface is closed, passes through itself, folds or has no area; volume,\n"
-      "area, mass and centre of mass; principal curvatures, positive where convex; the smallest convex and\n"
-      "concave radii; the smallest thickness, measured straight inwards from samples a third of a knot span\n"
-      "apart, to where the line leaves within 50 degrees of the normal, so that blunter edges are not thin;\n"
-      "the positions of all these; and the bending, the integral of both curvatures squared, which is small\n"
-      "for a fair surface. Trimmed areas do not count, and regions have the mass of their material.\n"
-      "Bodies that are faces of one solid, as parts from CAD are, are joined to that solid if they close. "
-      "It\n"
-      "has the volume, area, mass, centre and smallest thickness; that is measured on a mesh, and the error\n"
-      "is reported. Solid bodies that overlap are listed with their depth; an overlap alone is not a fault.\n"
-      "A body is sound if it encloses its material, or is a face of a solid that does, and does not\n"
-      "intersect itself. The exit code is 0 for any result; see \"sound\" in the JSON.\n"
+      "Reports for each body whether its surface is closed, intersects itself, folds or has no area;\n"
+      "volume, area, mass and centre of mass; principal curvatures, positive where convex; the smallest\n"
+      "convex and concave radii; the smallest thickness; the positions of all these; and the bending, the\n"
+      "integral of both curvatures squared, which is small for a fair surface. The thickness is measured\n"
+      "straight inwards from samples a third of a knot span apart. A line counts only if it leaves within\n"
+      "50 degrees of the normal, so that blunt edges are not thin. Trimmed areas do not count, and regions\n"
+      "have the mass of their material. Bodies that are faces of one solid, as in parts from CAD, are\n"
+      "joined to that solid if they close; the solid has the volume, area, mass, centre and smallest\n"
+      "thickness. Its thickness is measured on a mesh, and the error is reported. Solid bodies that\n"
+      "overlap are listed with their depth; an overlap alone is not a fault. A body is sound if it does\n"
+      "not intersect itself and either encloses its material or is a face of a solid that does. The exit\n"
+      "code is 0 for any result; see \"sound\" in the JSON.\n"
       "Example: spoonbill check assets/models/spoon-handle.json");
   parser.add_option("MODEL", options->model, "Document (.json)").require();
   add_json_option(parser, options->json);

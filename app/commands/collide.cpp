@@ -54,13 +54,13 @@ struct BodyBoxes {
   std::vector<std::string> names;  // one per body, or none for a single body
 };
 
-// Returns the boxes enlarged so that bodies which touch within the tolerance overlap.
+// Returns enlarged boxes. The boxes of bodies that touch within the tolerance overlap.
 std::vector<Box> enlarge_boxes(std::vector<Box> boxes) {
   for (Box& box : boxes) box = {box.low.array() - touch_tolerance_m, box.high.array() + touch_tolerance_m};
   return boxes;
 }
 
-// Returns the axis-aligned box around a box in the pose.
+// Returns the axis-aligned box around a box that is moved to the pose.
 Box pose_box(const Box& box, const Pose& pose) {
   const Eigen::Matrix3d rotation = pose.orientation.normalized().toRotationMatrix();
   const Vector3 centre = rotation * (0.5 * (box.low + box.high)) + pose.position_m;
@@ -149,7 +149,8 @@ ContactSide surface_side(const SurfaceContact& contact) {
   return {contact.point_m, SurfaceParameters{contact.u, contact.v, {}}, {}};
 }
 
-// Returns a contact of a mesh with a body. The two separate along the surface's normal.
+// Returns a contact of a mesh with a body. The normal of the surface is the direction in which the two
+// separate.
 ModelContact make_contact(const ToolShape& tool, const SurfaceContact& at, bool mesh_is_a) {
   ModelContact contact{surface_side(at), mesh_side(tool, at.point_m), -at.normal, at.depth_m, at.tangent_u,
                        at.tangent_v};
@@ -159,8 +160,9 @@ ModelContact make_contact(const ToolShape& tool, const SurfaceContact& at, bool 
   return contact;
 }
 
-// Collides a mesh in its pose with the closed surface of a body. `mesh_is_a` selects the mesh's side of the
-// answer. Depths are those of the surface in the mesh, or of a mesh that is inside the body.
+// Collides a mesh in its pose with the closed surface of a body. `mesh_is_a` tells which side of the answer
+// is the mesh's. A depth is that of the surface inside the mesh or, for a mesh inside the body, that of the
+// mesh.
 Result<CollisionAnswer> collide_mesh(const SignedDistance& mesh, const Pose& mesh_pose,
                                      const Surface& surface, bool mesh_is_a) {
   const auto grid = make_nested_grid(surface.u, surface.v, collision_levels);
@@ -201,7 +203,7 @@ Result<Surface> extract_closed_surface(Body& body, const std::string& context) {
     return Error{ErrorCode::unsupported,
                  context +
                      ": the body is a shell, and collide needs solid bodies; export a mesh of it "
-                     "with `spoonbill convert` and collide that"};
+                     "with `spoonbill convert` and collide the mesh instead"};
   }
   if (!body.trims.empty()) {
     return Error{ErrorCode::unsupported,
@@ -227,7 +229,7 @@ Result<CollisionModel> read_bodies(const std::filesystem::path& file) {
   return model;
 }
 
-// The JSON member of a mesh and the suffix of its labels.
+// The mesh's member in the JSON and the suffix of its labels.
 struct MeshLabel {
   const char* field;
   const char* suffix;
@@ -385,11 +387,11 @@ CommandEntry add_collide(OptionSet root) {
   const OptionSet parser =
       root.add_command("collide", "Find contacts between two models, or of one with itself");
   parser.set_footer(
-      "Computed on the B-spline surfaces, accurate to a micrometre. Models that touch: position, depth,\n"
-      "direction in which A separates, and the parameters on both. Others: distance and nearest points.\n"
-      "A mesh is cleaned first; its closed parts are solid, its open parts plates 1 mm thick. The depth of\n"
-      "two meshes is that of their deepest corner or edge. All bodies of a document count; a document alone\n"
-      "is also tested between its bodies.\n"
+      "Uses the B-spline surfaces themselves, accurate to a micrometre. If the models touch, reports the\n"
+      "position, the depth, the direction in which A separates, and the parameters on both; otherwise the\n"
+      "distance and the nearest points. A mesh is cleaned first; its closed parts are solid, its open\n"
+      "parts are plates 1 mm thick. The depth of two meshes is that of their deepest corner or edge. All\n"
+      "bodies of a document count; a document alone is also tested between its bodies.\n"
       "Example: spoonbill collide assets/models/spoon-handle.json assets/models/spoon-handle.json "
       "--pose 0,5mm,0,1,0,0,0");
   parser.add_option("A", options->first, "Document (.json) or mesh (.obj, .stl, .ply)").require();

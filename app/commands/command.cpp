@@ -15,11 +15,12 @@ CommandOption add_document_output(OptionSet parser, std::filesystem::path& out, 
   const auto parse = [&out](const std::string& text) -> Status {
     out = text;
     if (format_from_name(out) == FileFormat::document) return {};
-    return Error{ErrorCode::unsupported,
-                 "'" + excerpt(text) +
-                     "' does not end in .json, as a document must; `spoonbill convert` writes CAD files and "
-                     "meshes",
-                 "--out"};
+    return Error{
+        ErrorCode::unsupported,
+        "'" + excerpt(text) +
+            "' does not end in .json, as documents must; use `spoonbill convert` to write CAD files and "
+            "meshes",
+        "--out"};
   };
   return parser.add_parsed("--out", parse, help).show_as("FILE");
 }

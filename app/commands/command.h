@@ -41,16 +41,16 @@ CommandEntry add_read_points(OptionSet root);
 // --json: prints one JSON object and nothing else on standard output.
 void add_json_option(OptionSet parser, bool& json);
 
-// --out: the document to write. An ending other than .json is wrong use; this protects files of other
-// formats.
+// --out: the document to write. Any other ending than .json is wrong use, because the file could be one of
+// another format.
 CommandOption add_document_output(OptionSet parser, std::filesystem::path& out,
                                   const std::string& help = "Document to write (.json)");
 
 // --force: also replaces a file that is read-only.
 void add_force_option(OptionSet parser, OutputOptions& how);
 
-// Returns an error if the output is read-only and may not be replaced. Called before long work; the writing
-// checks it again.
+// Returns an error if the output is read-only and may not be replaced. Called before long work; writing the
+// file checks it again.
 Status check_output(const std::filesystem::path& out, const OutputOptions& how);
 
 // --instruction-set: one of the sets that this processor supports; any other is wrong use.

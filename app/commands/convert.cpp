@@ -70,7 +70,8 @@ Status convert_model(const ConvertOptions& options, Console& console) {
 Result<StepSchema> parse_schema(const std::string& text) {
   if (text == "ap214") return StepSchema::ap214;
   if (text == "ap242") return StepSchema::ap242;
-  return Error{ErrorCode::unknown, "'" + excerpt(text) + "' is not a schema of STEP: ap214 or ap242"};
+  return Error{ErrorCode::unknown,
+               "'" + excerpt(text) + "' is not a supported STEP schema; choose ap214 or ap242"};
 }
 
 }  // namespace
@@ -79,10 +80,10 @@ CommandEntry add_convert(OptionSet root) {
   auto options = std::make_shared<ConvertOptions>();
   const OptionSet parser = root.add_command("convert", "Convert a model from or to CAD, or to a mesh");
   parser.set_footer(
-      "Reads documents (.json), STEP (.step, .stp) and IGES (.iges, .igs); writes those and meshes (.stl,\n"
-      ".obj, .ply, .3mf). Closed bodies become solids in STEP and IGES, and watertight meshes. Each face of\n"
-      "a CAD file becomes a body. Faces of one solid that close are written as that solid, in CAD files and\n"
-      "in meshes; gaps that are bridged are reported. OUT appears complete or not at all.\n"
+      "Reads documents (.json), STEP (.step, .stp) and IGES (.iges, .igs); writes the same formats and\n"
+      "meshes (.stl, .obj, .ply, .3mf). Closed bodies become solids in STEP and IGES, and watertight\n"
+      "meshes. Each face of a CAD file becomes a body. Faces of one solid that close are written as that\n"
+      "solid, in CAD files and in meshes; bridged gaps are reported. OUT appears complete or not at all.\n"
       "Example: spoonbill convert assets/models/spoon-handle.json handle.step --schema ap242");
   parser.add_option("IN", options->request.in, "Document or CAD file to read").require();
   parser.add_option("OUT", options->request.out, "File to write; its ending selects the format").require();
@@ -92,8 +93,8 @@ CommandEntry add_convert(OptionSet root) {
   };
   add_parsed_option(
       parser, "--unit", "UNIT", parse_unit, [&request](const LengthUnit& unit) { request.unit = unit; },
-      "Unit of the CAD or mesh file's numbers: mm, cm, m or in. Default when writing: mm, for .ply m; when "
-      "reading: the unit that the file declares, or mm");
+      "Unit of the CAD or mesh file's numbers: mm, cm, m or in. Default when writing: mm, or m for .ply; "
+      "default when reading: the unit that the file declares, or mm");
   add_parsed_option(
       parser, "--chord", "LENGTH", length_in(chord_range_m),
       [&request](double chord_m) { request.chord_m = chord_m; },

@@ -31,7 +31,7 @@ Status edit_model(const EditSettings& settings, Console& console) {
 
 CommandEntry add_edit(OptionSet root) {
   auto settings = std::make_shared<EditSettings>();
-  // Tests that operate the window from another process set this variable.
+  // Tests that control the window from another process set this variable.
   if (const char* log = std::getenv("SPOONBILL_FRAME_LOG")) settings->log = log;
   const OptionSet parser = root.add_command("edit", "Sculpt a model by touch in a window");
   parser.set_footer(

@@ -56,7 +56,7 @@ Result<ScanFit> fit_with_progress(const FitOptions& options, Scan scan, Console&
   return fit;
 }
 
-// Returns the scan's name, short enough to be followed by the number of a body.
+// Returns the scan's name, shortened so that the number of a body can be appended.
 std::string document_name(const std::filesystem::path& scan) {
   return clean_cad_name(scan.stem().string(), "scan", cad_name_bytes_limit - 2);
 }
@@ -122,7 +122,7 @@ Result<IslandChoice> parse_islands(const std::string& text) {
 Result<std::filesystem::path> parse_cloud_name(const std::string& text) {
   if (format_from_name(text) == FileFormat::ply) return std::filesystem::path(text);
   return Error{ErrorCode::unsupported,
-               "'" + excerpt(text) + "' does not end in .ply, as a coloured cloud must"};
+               "'" + excerpt(text) + "' does not end in .ply; the coloured cloud is a PLY file"};
 }
 
 void add_options(OptionSet parser, const std::shared_ptr<FitOptions>& options) {
@@ -171,10 +171,9 @@ CommandEntry add_fit(OptionSet root) {
   const OptionSet parser = root.add_command("fit", "Fit B-spline surfaces to a scan");
   parser.set_footer(
       "Outliers and specks are ignored, and the kind of shape is detected: a sheet (open in both\n"
-      "directions), a tube (closed in u) or a closed shape (closed in u, a pole at both ends of v). Knots "
-      "are\n"
-      "added where errors are large. The report gives the distances from scan to surface and back, and\n"
-      "whether the surface folds. Closed shapes become solids of clay, others shells.\n"
+      "directions), a tube (closed in u) or a closed shape (closed in u, a pole at both ends of v). Knots\n"
+      "are added where errors are large. The report gives the distances from scan to surface and back, and\n"
+      "whether the surface folds. Closed shapes become solids of clay, others become shells.\n"
       "Example: spoonbill fit assets/models/egg.stl --out egg.json --errors egg-errors.ply");
   add_options(parser, options);
   return {parser, [options](Console& console) { return fit(*options, console); }};

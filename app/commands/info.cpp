@@ -52,9 +52,9 @@ Result<Simulation> make_simulation(const Document& document, const std::string& 
   return simulation;
 }
 
-// Adds the document and its simulation. Without a lattice, or with more bodies than can be sculpted together,
-// a document can still be viewed, merged and exported, so its facts say why there is no lattice. Any other
-// failure is an error.
+// Adds the document and its simulation. A document without a lattice, or with more bodies than can be
+// sculpted together, can still be viewed, merged and exported; its facts then say why there is no lattice.
+// Any other failure is an error.
 Status add_document_and_simulation(FactSheet& facts, const Document& document, const std::string& source,
                                    Console& console) {
   add_document_facts(facts, document);

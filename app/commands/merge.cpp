@@ -61,7 +61,7 @@ struct MergeParts {
 
 struct MergeOutcome {
   Merged merged;
-  // corner k joins patch k + 1 to the result of the patches before it
+  // corner k is between patch k + 1 and the result of merging the patches before it
   std::vector<Joint> corners;
   std::vector<std::string> tight_fillets;     // notes
   std::vector<std::size_t> reversed_patches;  // patches whose normals pointed inwards
@@ -79,8 +79,9 @@ Result<double> parse_twist(const std::string& text) {
 Result<PatchEdge> parse_edge(const std::string& text) {
   const std::size_t dot = text.find('.');
   if (dot == 0 || dot == std::string::npos || dot > 3 || text.find_first_not_of("0123456789") != dot) {
-    return Error{ErrorCode::malformed,
-                 "'" + excerpt(text) + "' is not an edge like 2.v_start, of the second patch"};
+    return Error{
+        ErrorCode::malformed,
+        "'" + excerpt(text) + "' is not an edge; name one like 2.v_start, which belongs to the second patch"};
   }
   const auto side = parse_side(text.substr(dot + 1));
   if (!side) return side.error();
@@ -92,7 +93,7 @@ Result<ChosenEdges> parse_edges(const std::string& text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string::npos) {
     return Error{ErrorCode::malformed,
-                 "'" + excerpt(text) + "' is not a pair of edges like 1.v_end:2.v_start"};
+                 "'" + excerpt(text) + "' is not a pair of edges; name one like 1.v_end:2.v_start"};
   }
   std::string second = text.substr(colon + 1);
   ChosenEdges edges;
@@ -172,7 +173,7 @@ std::string corner_text(const Joint& corner, bool is_last) {
          (is_last ? " from v = " + start + " to " + end : "");
 }
 
-// Adds the corners between crossing bodies. Only the last one is at constant v in the result, so only its
+// Adds the corners between crossing bodies. Only the last corner is at constant v in the result, so only its
 // position is reported.
 void add_corners(FactSheet& facts, const std::vector<Joint>& corners) {
   Json list = Json::array();
@@ -188,7 +189,7 @@ void add_corners(FactSheet& facts, const std::vector<Joint>& corners) {
   facts.add("", "", "joints", list);
 }
 
-// Notes the joints that did not use the requested blend.
+// Adds a note for each joint that did not use the requested blend.
 void add_unused_blends(const std::vector<MergedJoint>& joints, std::vector<std::string>& notes) {
   for (const MergedJoint& merged : joints) {
     if (merged.joint.cut_back_m > 0.0) continue;
@@ -199,7 +200,8 @@ void add_unused_blends(const std::vector<MergedJoint>& joints, std::vector<std::
   }
 }
 
-// Returns four parameters in every span that overlaps the range, at the centres of its quarters.
+// Returns four parameters in every span that overlaps the range. They are at the centres of the span's
+// quarters.
 std::vector<double> sample_spans(const KnotVector& knots, double start, double end) {
   constexpr int parts = 4;
   const std::vector<double> ends = knots.breakpoints();
@@ -226,7 +228,8 @@ double tightest_radius_m(const Surface& merged, const Joint& corner) {
   return least;
 }
 
-// Notes a fillet that is tighter than requested. `which` distinguishes it from others, like " with patch 3".
+// Adds a note if the fillet is tighter than requested. `which` distinguishes it from others, like " with
+// patch 3".
 void add_tight_fillet(const Surface& merged, const Joint& corner, const std::string& which, double fillet_m,
                       int continuity, std::vector<std::string>& notes) {
   const double least_m = tightest_radius_m(merged, corner);
@@ -241,7 +244,7 @@ void add_merge_notes(const MergeOptions& options, const MergeOutcome& outcome,
                      std::vector<std::string>& notes) {
   if (options.request.join.blend_m > 0.0) add_unused_blends(outcome.merged.joints, notes);
   for (const auto& [a, b, reason] : outcome.merged.left_open) {
-    notes.push_back(edges_text(a, b) + " touch too and stay open: " + reason);
+    notes.push_back(edges_text(a, b) + " touch as well but are not joined: " + reason);
   }
   const Surface& surface = outcome.merged.surface;
   if (find_closing(surface).closedness == Closedness::solid &&
@@ -250,7 +253,7 @@ void add_merge_notes(const MergeOptions& options, const MergeOutcome& outcome,
   }
   for (const std::size_t patch : outcome.reversed_patches) {
     notes.push_back("the normals of patch " + std::to_string(patch + 1) +
-                    " pointed inwards; it was reversed first");
+                    " pointed inwards; the patch was reversed before merging");
   }
   notes.insert(notes.end(), outcome.tight_fillets.begin(), outcome.tight_fillets.end());
 }
@@ -340,7 +343,7 @@ Result<MergeOutcome> merge_crossing_patches(const MergeParts& parts, const Merge
     merged.deviation_m += next->deviation_m;
     outcome.corners.push_back(next->corner);
     if (options.fillet_m > 0.0) {
-      // The fillet is measured before the next merge, while it is at constant v.
+      // The fillet is measured before the next merge, because it is at constant v only until then.
       const std::string which = patches.size() > 2 ? " with patch " + std::to_string(p + 1) : "";
       add_tight_fillet(merged.surface, next->corner, which, options.fillet_m, request.join.continuity,
                        outcome.tight_fillets);
@@ -392,8 +395,8 @@ void add_joint_options(OptionSet parser, const std::shared_ptr<MergeOptions>& op
   add_parsed_option(
       parser, "--continuity", "C0..C8", parse_continuity,
       [options](int order) { options->continuity = order; },
-      "Continuity of joints and of a ring's seam; default: C2, of a fillet C1. A C2 fillet is tighter than "
-      "its radius");
+      "Continuity of joints and of a ring's seam; default: C2, or C1 for a fillet, because a C2 fillet is "
+      "tighter than its radius");
   add_parsed_option(
       parser, "--tolerance", "LENGTH", length_in(merge_tolerance_range_m),
       [options](double length_m) { options->request.join.tolerance_m = length_m; },
@@ -403,7 +406,7 @@ void add_joint_options(OptionSet parser, const std::shared_ptr<MergeOptions>& op
   add_parsed_option(
       parser, "--blend", "LENGTH", length_in(blend_range_m),
       [options](double length_m) { options->request.join.blend_m = length_m; },
-      "Length of blends, up to 1 m; patches that have a gap or a kink between them are cut back for one. "
+      "Length of blends, up to 1 m; patches with a gap or a kink between them are cut back to make room. "
       "Default: none; a kink is rounded within the tolerance, a small gap is bridged between two knots over "
       "10 to 40 times its width");
   parser
@@ -417,8 +420,8 @@ void add_joint_options(OptionSet parser, const std::shared_ptr<MergeOptions>& op
             }
             return {};
           },
-          "Edges to join instead of those found, once per joint: 1.v_end:2.v_start, with -2.v_start if the "
-          "second runs against the first, +2.v_start if along it")
+          "Edges to join instead of those found, once per joint: 1.v_end:2.v_start; -2.v_start if the second "
+          "edge runs against the first, +2.v_start if it runs along the first")
       .show_as("EDGE:EDGE");
 }
 
@@ -432,8 +435,9 @@ CommandEntry add_merge(OptionSet root) {
       "edges that are near each other are joined. If the last patch meets the first, the result is closed.\n"
       "Closed bodies that do not touch are opened at their nearest ends and bridged. A joint that already\n"
       "has the requested continuity is exact; elsewhere control points are added beside the joint until\n"
-      "the tolerance holds. Trimmed bodies are resampled up to their trims, discs and rings about their\n"
-      "centre. Material and tool are those of the first model; regions, loads and supports are dropped.\n"
+      "the error is within the tolerance. Trimmed bodies are resampled up to their trims; discs and rings\n"
+      "are resampled about their centre. Material and tool are those of the first model; regions, loads\n"
+      "and supports are dropped.\n"
       "Example: spoonbill merge assets/models/spoon-handle.json assets/models/spoon-bowl.json --out "
       "spoon.json");
   parser.add_option("MODEL", options->models, "Documents (.json), 1 to 64").require();
@@ -454,7 +458,7 @@ CommandEntry add_merge(OptionSet root) {
       [options](double length_m) { options->fillet_m = length_m; },
       "Radius of the fillet where patches cross, up to 1 m; default: none, a sharp edge")
       .need(crossing);
-  // The order of these options is free, so this is checked after all of them.
+  // The options may be in any order, so this is checked after all of them.
   parser.set_final_check([options]() -> Status {
     if (options->crossing && options->fillet_m == 0.0 && options->continuity.value_or(0) > 0) {
       return Error{ErrorCode::inconsistent,

@@ -34,7 +34,7 @@ namespace {
 
 constexpr Range<int> new_control_range{4, control_point_count_range.high};
 constexpr Range<double> new_tolerance_range_m{1e-8, 1e-2};
-// Wider than the range of any size: each shape checks its own sizes.
+// Range of all sizes as the parser checks them. Each shape checks its own, narrower ranges.
 constexpr Range<double> size_range_m{-1e3, 1e3};
 constexpr double default_shell_thickness_m = 0.002;
 // Fraction of the work that is fitting; the rest is the search for self-intersections.
@@ -307,7 +307,7 @@ NewKind add_loft(OptionSet root) {
 }
 
 // Watches for Ctrl+C while a shape is made. The progress bar appears only after half a second, because most
-// shapes are made at once.
+// shapes take less time.
 class ShapeJob {
  public:
   explicit ShapeJob(Console& console) : bar_(console, "Making", false) {}
@@ -331,7 +331,7 @@ class ShapeJob {
   bool stopped_ = false;
 };
 
-// Returns an error if the surface passes through itself, as lines and profiles may cause.
+// Returns an error if the surface intersects itself, as it may do for unsuitable lines and profiles.
 Status check_self_intersection(const Surface& surface, bool closed, ShapeJob& job) {
   const auto grid = make_nested_grid(surface.u, surface.v, 0);
   if (!grid) return grid.error();
@@ -363,8 +363,8 @@ void add_shape_facts(FactSheet& facts, const ExactShape& shape, const FittedShap
   if (closed) facts.add("Volume", volume_text(mass.volume_m3), "volume_m3", mass.volume_m3);
 }
 
-// States the smallest radius of curvature beside the one that the sizes ask for, which a fit within a
-// tolerance of position may miss.
+// Adds the smallest radius of curvature and the radius that the sizes request. A fit whose tolerance applies
+// to positions may miss the radius.
 void add_radius_facts(FactSheet& facts, const Surface& surface, double asked_m) {
   const CurvatureRange range = find_curvature_range(surface);
   const double sharpest = range.exists ? std::max(std::abs(range.smallest.curvature_per_m),

@@ -11,7 +11,7 @@
 namespace spoonbill {
 namespace {
 
-// Returns CLI11's message in the program's own words.
+// Returns the message of CLI11's error, reworded in the style of the program.
 std::string wrong_use_text(const CLI::App& parser, const CLI::ParseError& error) {
   const std::string text = one_line(error.what());
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && parser.get_require_subcommand_min() > 0) {

@@ -29,7 +29,8 @@ class Option;
 
 namespace spoonbill {
 
-// A handle to one option or positional argument, which its CommandLine owns. Copies refer to the same option.
+// A handle to one option or positional argument. The CommandLine owns the option; copies of the handle refer
+// to the same option.
 class CommandOption {
  public:
   explicit CommandOption(CLI::Option* option) : option_(option) {}
@@ -42,9 +43,9 @@ class CommandOption {
   CommandOption limit(Range<int> range) const;
   CommandOption limit(Range<double> range) const;
   CommandOption limit(Range<std::uint64_t> range) const;
-  // Requires the other option: this one without it is wrong use.
+  // Requires another option: this option without the other is wrong use.
   CommandOption need(CommandOption other) const;
-  // Forbids the other option: both together are wrong use.
+  // Forbids another option: both together are wrong use.
   CommandOption exclude(CommandOption other) const;
 
  private:

@@ -151,8 +151,8 @@ class TableReader {
   Status add_row(std::vector<std::string_view> parts) {
     const std::size_t wanted = columns_.size() + (with_section_ ? 1 : 0);
     if (parts.size() != wanted) {
-      return error_at_line(ErrorCode::malformed, "has " + std::to_string(parts.size()) + " values, must be " +
-                                                     std::to_string(wanted));
+      return error_at_line(ErrorCode::malformed, "has " + std::to_string(parts.size()) +
+                                                     " values, must have " + std::to_string(wanted));
     }
     if (table_.rows_m.size() >= table_row_limit) {
       return error_at_line(ErrorCode::too_many, "is beyond the limit of " + std::to_string(table_row_limit) +
@@ -211,7 +211,7 @@ Result<double> parse_length(std::string_view text, Range<double> range_m) {
                  "'" + excerpt(text) + "' is not a length with a unit, like 5mm (mm, cm, m or in)"};
   }
   if (!range_m.contains(*length)) {
-    return Error{ErrorCode::out_of_range, "'" + excerpt(text) + "' must be " + length_text(range_m.low) +
+    return Error{ErrorCode::out_of_range, "'" + excerpt(text) + "' must be from " + length_text(range_m.low) +
                                               " to " + length_text(range_m.high)};
   }
   return *length;
@@ -308,7 +308,8 @@ Result<Side> parse_side(std::string_view text) {
 
 Result<LengthUnit> parse_unit(std::string_view text) {
   if (const auto unit = find_length_unit(text)) return *unit;
-  return Error{ErrorCode::unknown, "'" + excerpt(text) + "' is not a unit of length: mm, cm, m or in"};
+  return Error{ErrorCode::unknown,
+               "'" + excerpt(text) + "' is not a supported unit of length; choose mm, cm, m or in"};
 }
 
 Result<std::vector<Vector3>> parse_points(const std::string& text) {

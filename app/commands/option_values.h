@@ -32,17 +32,17 @@ Result<Pose> parse_pose(std::string_view text);
 // Parses a length within the range, with a unit unless it is 0: "5mm", "0.2in", "2inch".
 Result<double> parse_length(std::string_view text, Range<double> range_m);
 
-// Parses `count` lengths within the range: "60x40x20mm", "6cmx40mmx20mm". The last length must have a unit; a
-// length without a unit has the unit of the next length that has one.
+// Parses `count` lengths within the range: "60x40x20mm", "6cmx40mmx20mm". The last length must have a unit.
+// Any other length without a unit gets the unit of the next length that has one.
 Result<std::vector<double>> parse_lengths(std::string_view text, std::size_t count, Range<double> range_m);
 
-// Parses an order of continuity, "C0" to "C8", the order that the highest degree allows.
+// Parses an order of continuity, from "C0" to "C8"; the highest degree allows no higher order.
 Result<int> parse_continuity(const std::string& text);
 
 // Parses "1,3-5": at most 1000 numbers from 1, in the given order, duplicates removed.
 Result<std::vector<int>> parse_number_list(std::string_view text);
 
-// Returns the value of the choice whose word equals the text.
+// Returns the value of the choice whose word is the text.
 template <class Value>
 Result<Value> parse_choice(std::string_view text,
                            std::initializer_list<std::pair<const char*, Value>> choices) {
@@ -69,14 +69,14 @@ struct PointTable {
   std::vector<std::vector<double>> rows_m;  // one length per column
 };
 
-// Reads a CSV file of at most 16 MiB and 100,000 rows. The first line names the columns in the given order,
-// each with mm, cm, m or in: "x_mm,y_mm,z_mm". Empty lines, lines that begin with # and a byte order mark are
-// ignored. An error names the line: unexpected columns, a wrong number of values, text that is not a number,
-// a length beyond 100 m.
+// Reads a CSV file of at most 16 MiB and 100,000 rows. The first line has the names of the columns in the
+// given order, each with mm, cm, m or in: "x_mm,y_mm,z_mm". Empty lines, lines that begin with # and a byte
+// order mark are ignored. An error names the line: unexpected columns, a wrong number of values, text that is
+// not a number, a length beyond 100 m.
 Result<PointTable> read_point_table(const std::filesystem::path& file,
                                     const std::vector<std::string>& columns, bool with_section);
 
-// Parses the content of such a file; `source` names it in messages.
+// Parses the content of a table as read_point_table() does; `source` names the file in messages.
 Result<PointTable> point_table(const std::string& text, const std::string& source,
                                const std::vector<std::string>& columns, bool with_section);
 

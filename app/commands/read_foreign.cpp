@@ -65,7 +65,8 @@ Status send_cloud(const std::filesystem::path& file, Console& console) {
   return {};
 }
 
-// Removes "FILE: " from the start: the parent adds it, and a long name would crowd out the message.
+// Removes "FILE: " from the start of the message. The parent adds it, and a long name would leave no room for
+// the message.
 std::string without_name(const std::string& message, const std::filesystem::path& file) {
   const std::string name = file.string() + ": ";
   return message.starts_with(name) ? message.substr(name.size()) : message;

@@ -212,9 +212,8 @@ CommandEntry add_record(OptionSet root) {
       root.add_command("record", "Perform a script of tool motions on its model and record it");
   parser.set_footer(
       "A simulated hand of known mass and stiffness follows the script and reacts to the material's force;\n"
-      "its path is recorded tick by tick, with the model. A recording as SOURCE keeps its path and gets "
-      "this\n"
-      "version's states: do that if `replay` reports that another version made it.\n"
+      "its path is recorded tick by tick, with the model. If SOURCE is a recording, its path is kept and\n"
+      "its states are computed by this version: do this if `replay` reports that another version made it.\n"
       "Tool actions, the \"action\" of a script's `set_tool`:\n" +
       list_tool_actions() +
       "Example: spoonbill record assets/recordings/spoon-handle-bend.script.json --out bend.recording.jsonl");

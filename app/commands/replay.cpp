@@ -112,8 +112,8 @@ Status write_oldest_frame(PaintingCrew& crew, const PictureRequest& request, Rep
   return pictures.add(painted->frame, painted->time_s, std::move(painted->picture));
 }
 
-// Runs to the tick. Writes the documents saved on the way at once, which bounds the memory for them, and adds
-// the names of the screenshots.
+// Runs until the tick. Writes each requested document as soon as it is made, which limits the memory in use,
+// and adds the names of the requested screenshots to `names`.
 Status run_and_save(const Replay& replay, const PictureRequest& request, std::uint64_t tick,
                     const InterruptWatch& interrupt, std::vector<std::string>& names) {
   while (!interrupt.requested()) {
@@ -141,7 +141,8 @@ Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPi
     PaintingJob job = make_painting_job(frame, replay.session, framed, request);
     job.extra_names = std::exchange(names, {});
     job.is_frame = is_frame;
-    // A picture between frames must not take a flag from the next frame.
+    // The flags are cleared only at frames: a picture between two frames must not take a flag from the next
+    // frame.
     if (is_frame) replay.session.flags = tick_flag_none;
     if (crew.is_full()) {
       if (Status written = write_oldest_frame(crew, request, pictures); !written) return written;
@@ -151,7 +152,7 @@ Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPi
   };
   for (std::uint64_t frame = 0; frame < request.frame_count && !interrupt.requested(); ++frame) {
     if (Status ran = run_and_save(replay, request, frame_tick(frame), interrupt, names); !ran) return ran;
-    if (interrupt.requested()) break;  // in the midst of the ticks before the frame
+    if (interrupt.requested()) break;  // before the tick of the frame was reached
     const bool is_frame = frame % request.every == 0;
     if (!is_frame && names.empty()) continue;
     if (Status painted = paint(frame, is_frame); !painted) return painted;
@@ -288,10 +289,9 @@ CommandEntry add_replay(OptionSet root) {
   const OptionSet parser =
       root.add_command("replay", "Replay a recording, verify its states and draw frames");
   parser.set_footer(
-      "Frame k shows the state after floor(k * 1000 / 60) ticks of 1 ms, on any machine and load. States "
-      "are\n"
-      "compared with those in the recording; a difference is an error that names the tick. A truncated\n"
-      "recording replays up to its end. Frames of an earlier replay in DIR are replaced.\n"
+      "Frame k shows the state after floor(k * 1000 / 60) ticks of 1 ms, on any machine and load. States\n"
+      "are compared with those in the recording; a difference is an error that names the tick. A truncated\n"
+      "recording replays up to its end. Frames of an earlier replay in the same folder are replaced.\n"
       "Example: spoonbill replay assets/recordings/spoon-handle-bend.recording.jsonl --out output/bend");
   parser.add_option("RECORDING", options->recording, "Recording (.recording.jsonl)").require();
   add_picture_options(parser, options);

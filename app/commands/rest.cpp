@@ -70,7 +70,8 @@ void add_rest_body(FactSheet& facts, const Body& body, const RestShape& shape, J
                   {"newton_steps", shape.result.newton_steps}});
 }
 
-// Removes gravity, loads and support motions: bodies stored in their bent shape would bend twice.
+// Removes gravity, loads and support motions, because bodies stored in their bent shape would bend a second
+// time.
 void remove_loads(Scene& scene) {
   scene.sculpting.gravity_m_per_s2.setZero();
   for (Body& body : scene.bodies) {
@@ -117,10 +118,10 @@ CommandEntry add_rest(OptionSet root) {
   auto options = std::make_shared<RestOptions>();
   const OptionSet parser = root.add_command("rest", "Compute how bodies bend under gravity and their loads");
   parser.set_footer(
-      "Each body alone, with the stiffness of its material, in equilibrium under the document's gravity, "
-      "its\n"
-      "loads and its supports: displacement, reactions of the supports, strain. The ground and other bodies\n"
-      "have no effect, and materials that flow or creep are treated as elastic.\n"
+      "Computes the equilibrium of each body alone under the document's gravity, its loads and its\n"
+      "supports, with the stiffness of its material. Reports displacement, reactions of the supports and\n"
+      "strain. The ground and other bodies have no effect. Materials that flow or creep are treated as\n"
+      "elastic.\n"
       "Example: spoonbill rest assets/models/loaded-handle.json");
   parser.add_option("MODEL", options->model, "Document (.json)").require();
   add_force_option(parser, options->how);

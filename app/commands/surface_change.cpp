@@ -20,13 +20,13 @@ namespace {
 constexpr int control_points_limit = 200;
 constexpr Range<double> cap_height_range_m{0.0, 1.0};
 
-// The tolerance of a change that is not exact, and the progress that can stop it.
+// Tolerance for a change that is not exact, and the progress that can stop the change.
 struct Allowed {
   double tolerance_m;
   Progress progress;
 };
 
-// Range that is wider than the range of any size: each shape checks its own sizes.
+// One parser for each word of a change, in order.
 using WordParsers = std::vector<Status (*)(const std::string& word, ChangeRequest& request)>;
 
 struct Change {
@@ -107,7 +107,7 @@ Result<ChangedSurfaces> approximate_change(Result<Approximation> result) {
 Result<ChangedSurfaces> split_surface(const Surface& surface, const ChangeRequest& request, const Allowed&) {
   const KnotVector& knots = knots_along(surface, request.direction);
   if (knots.is_periodic()) {
-    // A closed direction opens at a single cut.
+    // A closed direction has no ends, so a single cut opens it and leaves one part.
     return exact_change(part_of(surface, request.direction, request.parameter,
                                 request.parameter + knots.domain_end() - knots.domain_start()),
                         false);

@@ -51,8 +51,8 @@ std::string list_changes();
 // Adds a note if the body had any.
 void drop_surface_features(Body& body, std::vector<std::string>& notes);
 
-// Adapts the shell thickness to a new surface: a body that became closed loses it. Adds a note if the surface
-// closed or opened.
+// Adapts the shell thickness to a new surface: a body that has become closed loses its thickness. Adds a note
+// if the surface closed or opened.
 void adapt_thickness(Body& body, const Surface& before, std::vector<std::string>& notes);
 
 }  // namespace spoonbill

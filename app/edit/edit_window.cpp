@@ -12,7 +12,7 @@
 namespace spoonbill {
 namespace {
 
-// Rounds to whole and half steps, at which letters are sharp.
+// Rounds the scale to whole and half steps, because letters are sharp at these scales.
 double round_scale(double scale) {
   return std::clamp(std::round(2.0 * scale) / 2.0, 1.0, 4.0);
 }

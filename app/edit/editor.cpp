@@ -248,7 +248,7 @@ void Editor::receive_updates(const LiveFrame& frame, double seconds) {
   }
   if (const auto saved = live_->consume_saved_document()) {
     document_.note_saved(*saved, *live_);
-    // The result of an earlier save does not count.
+    // A save that was made before the last edit does not allow the next step.
     if (continues_after_save_ && frame.edit_count <= saved->edit_count) start_next_step(next_step_);
   }
 }
@@ -385,7 +385,7 @@ void Editor::handle_keys(const LiveFrame& frame) {
   const std::vector<GlfwWindow::KeyPress> presses = window_.window().consume_key_presses();
   if (unsaved_.is_open() || recovery_.is_open()) return;
   for (const GlfwWindow::KeyPress& press : presses) {
-    // Esc is the only command while text is typed.
+    // While text is typed, Esc is the only key that acts as a command.
     if (ImGui::GetIO().WantTextInput && press.key != GLFW_KEY_ESCAPE) continue;
     for (const KeyBinding& binding : key_bindings()) {
       const bool matches =
@@ -676,7 +676,7 @@ void Editor::save_as(const std::filesystem::path& file) {
   send(MarkFile{FileMarkKind::document, make_mark_name(document_stem(file))});
 }
 
-// Returns a STEP file beside the document; another extension may be typed.
+// Returns a STEP file beside the document as the suggested name; the user may type another extension.
 std::filesystem::path Editor::default_export_file() const {
   return parent_folder(document_.file()) / (document_stem(document_.file()) + ".step");
 }

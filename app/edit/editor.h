@@ -38,7 +38,7 @@ struct EditSettings {
 // The window with its session and document. One owner: the program's main thread.
 class Editor {
  public:
-  // Opens the window. Returns an error without a display and for a model that cannot be read or simulated.
+  // Opens the window. Returns an error if there is no display, or if the model cannot be read or simulated.
   static Result<std::unique_ptr<Editor>> make(const EditSettings& settings);
 
   // Runs until the user quits. An error closes the window, but keeps the recording and the autosaved work.
@@ -137,7 +137,7 @@ class Editor {
   bool is_finished_ = false;
   bool shows_keys_ = false;
   bool screenshot_due_ = false;
-  std::vector<std::optional<PendingOpen>> pending_jobs_;  // in order; empty for the start of a recording
+  std::vector<std::optional<PendingOpen>> pending_jobs_;  // in order; nullopt: the start of a recording
   std::uint64_t completed_jobs_ = 0;
 };
 

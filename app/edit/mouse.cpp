@@ -75,8 +75,8 @@ namespace {
 constexpr double picking_px_per_m = 1000.0;
 constexpr SamplingTarget target{1.0, 0.1};
 
-// Returns the first t > 0 with |origin + t direction - point| = reach; nothing if the ray misses the sphere
-// around `point` or starts beyond it.
+// Returns the first t > 0 with |origin + t direction - point| = reach. Returns nullopt if the ray misses the
+// sphere of radius `reach` around `point` or starts beyond it.
 std::optional<double> first_crossing(const Ray& ray, const Vector3& point, double reach) {
   const Vector3 to_point = point - ray.origin_m;
   const double along = to_point.dot(ray.direction);
@@ -91,7 +91,8 @@ Vector3 position(const GridSamples<float>& samples, std::size_t i) {
   return {samples.x[i], samples.y[i], samples.z[i]};
 }
 
-// Returns half the longest edge of the triangles: half a cell's diagonal, because cells are nearly square.
+// Returns half of the longest edge of the triangles, which is half of a cell's diagonal, because cells are
+// nearly square.
 double ball_radius(const TessellatedSurface& surface) {
   double longest_squared = 0.0;
   const auto& corners = surface.indices();
@@ -106,7 +107,7 @@ double ball_radius(const TessellatedSurface& surface) {
 
 }  // namespace
 
-// Collects the vertices that triangles use; the others are trimmed away and must not be picked.
+// Collects the vertices that triangles use. All other vertices are trimmed away and must not be picked.
 void SurfacePick::update_vertices(Sampled& sampled) {
   if (sampled.topology == sampled.surface.topology_version()) return;
   sampled.topology = sampled.surface.topology_version();
@@ -151,7 +152,7 @@ std::optional<PickedPoint> SurfacePick::first_touch(const Ray& ray, double radiu
 
 namespace {
 
-// Gap of the hovering tool to the surface, which keeps it from touching.
+// Gap between the hovering tool and the surface.
 constexpr double hover_gap_m = 0.001;
 
 // Frames until a press reaches its depth: a quarter of a second.

@@ -54,8 +54,8 @@ struct PickedPoint {
   Vector3 outward;   // unit vector from the body to the tool's centre
 };
 
-// Finds where a tool that moves along a ray first touches a body. The result is the depth that the mouse
-// lacks. One owner: the thread that draws.
+// Finds where a tool that moves along a ray first touches a body, which is the depth that a mouse cannot
+// give. One owner: the thread that draws.
 class SurfacePick {
  public:
   // Samples the current surfaces. Grids are reused until the knots of a surface change. Surfaces that cannot
@@ -95,10 +95,10 @@ struct MouseFrame {
   MouseStroke stroke;
 };
 
-// The mouse as the hand that holds the virtual handle. While hovering, the tool follows the pointer: 1 mm
-// above the surface, or, beside the body, in the screen plane of its last position at the surface. A press
-// pushes the tool in by the strength within a quarter of a second. A drag then moves it parallel to the
-// screen, and the wheel moves it in depth. One owner: the thread that draws.
+// The mouse as the hand that holds the virtual handle. While hovering, the tool follows the pointer 1 mm
+// above the surface. Beside the body, it follows the pointer in the screen plane of its last position at the
+// surface. A press pushes the tool in by the strength within a quarter of a second. A drag then moves it
+// parallel to the screen, and the wheel moves it in depth. One owner: the thread that draws.
 class MouseHand : public InputSource {
  public:
   // Starts at rest at `start_m`, which also defines the first screen plane for hovering.

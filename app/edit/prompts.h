@@ -1,5 +1,5 @@
-// Modal prompts: a question, a file, a stock shape. Each draws a window until it is answered. One owner: the
-// thread that draws.
+// Modal prompts: a question, a file, a stock shape. Each prompt draws a window until the user answers. One
+// owner: the thread that draws.
 #pragma once
 
 #include <array>

@@ -23,7 +23,7 @@ namespace spoonbill {
 namespace {
 
 constexpr std::size_t cad_file_bytes_limit = std::size_t{512} << 20;
-// Remedies for files that exceed the child's limits.
+// Advice in messages about files that exceed the child's limits.
 const char* const simpler_export = "export fewer or simpler faces";
 const char* const fewer_bodies = "write fewer or simpler bodies (--bodies)";
 constexpr std::size_t note_bytes_limit = 400;
@@ -51,8 +51,8 @@ ForeignTask cad_task(const std::filesystem::path& file, ForeignTask::Work work) 
   return task;
 }
 
-// Reads frames until the last one and returns its content. handle() gets each of the other frames; an error
-// of handle() ends the conversation.
+// Reads frames until the last one and returns its content. Passes each of the other frames to handle(), whose
+// error ends the conversation.
 template <class Handle>
 Result<std::string> read_frames(ForeignChild& child, const Handle& handle) {
   for (;;) {

@@ -45,7 +45,7 @@ Status check_formats(const ConversionJob& job) {
   const std::string known = ".json, .step, .stp, .iges, .igs";
   if (!is_model(in) && !is_written_mesh(in)) {
     return file_error(ErrorCode::unsupported, request.in,
-                      "does not have the ending of a model that is read: " + known);
+                      "does not have the ending of a model that can be read: " + known);
   }
   if (is_written_mesh(in)) {
     return file_error(ErrorCode::unsupported, request.in,
@@ -54,7 +54,7 @@ Status check_formats(const ConversionJob& job) {
   if (!is_model(out) && !is_written_mesh(out)) {
     return file_error(
         ErrorCode::unsupported, request.out,
-        "does not have the ending of a format that is written: " + known + ", .stl, .obj, .ply, .3mf");
+        "does not have the ending of a format that can be written: " + known + ", .stl, .obj, .ply, .3mf");
   }
   if (in == FileFormat::document && out == FileFormat::document && request.bodies.empty()) {
     return file_error(ErrorCode::inconsistent, request.out,
@@ -85,7 +85,7 @@ Status check_options(const ConversionJob& job) {
   }
   if (request.schema && out != FileFormat::step) {
     return file_error(ErrorCode::inconsistent, request.out,
-                      "is not a STEP file, and only those have a schema; remove --schema", "--schema");
+                      "is not a STEP file, and only STEP files have a schema; remove --schema", "--schema");
   }
   if (request.unit && out == FileFormat::three_mf) {
     return file_error(ErrorCode::inconsistent, request.out, "3MF is written in millimetres; remove --unit",
@@ -134,7 +134,7 @@ Result<CadModel> read_model(const ConversionJob& job, const CadChild& child) {
   return model;
 }
 
-// Replaces the items by those that request.bodies selects, in its order.
+// Replaces the items by the selection in request.bodies, in the order of the selection.
 template <class Item>
 Status select_bodies(const ConversionRequest& request, std::vector<Item>& items) {
   if (request.bodies.empty()) return {};
@@ -234,8 +234,8 @@ class Mesher {
   }
 
  private:
-  // Returns the fraction of the work that is done after this number of surfaces; the last part is the writing
-  // of the file.
+  // Returns the fraction of the work that is done after this number of surfaces. Writing the file counts as
+  // one more surface.
   double fraction_after(std::size_t surfaces) const {
     return static_cast<double>(surfaces) / static_cast<double>(model_.surfaces.size() + 1);
   }
@@ -266,7 +266,8 @@ class Mesher {
   Status add_single_surface(std::size_t k) {
     const CadSurface& part = model_.surfaces[k];
     const std::size_t left = exported_triangle_limit - std::min(triangles_, exported_triangle_limit);
-    // The mesh of a shell contains its surface twice, and walls, so each part gets a third of the limit.
+    // The mesh of a shell contains its surface twice and the walls between, so each of these three parts gets
+    // a third of the limit.
     const std::size_t limit = part.shell_thickness_m > 0.0 ? left / 3 : left;
     const double before = fraction_after(k);
     auto alone =
@@ -402,7 +403,7 @@ Result<ConversionReport> export_bodies(std::vector<Body> bodies, const std::file
   ConversionRequest request;
   request.out = out;
   if (!is_exported_to(out)) {
-    return file_error(ErrorCode::unsupported, out, "has an ending that names no export format");
+    return file_error(ErrorCode::unsupported, out, "does not have the ending of an export format");
   }
   return write_and_report(model_from_bodies(std::move(bodies)), {request}, progress);
 }

@@ -18,7 +18,8 @@ namespace spoonbill {
 
 struct ConversionRequest {
   std::filesystem::path in, out;
-  // Unit of the numbers in the CAD file that is read, whatever it declares, or in the file that is written.
+  // Unit of the numbers in a CAD file that is read, whatever unit it declares, or in the file that is
+  // written.
   std::optional<LengthUnit> unit;
   std::optional<double> chord_m;      // chord error of meshes; default: 0.05 mm
   std::optional<double> tolerance_m;  // of CAD geometry that is not a B-spline; default: 0.01 mm
@@ -41,10 +42,10 @@ struct ConversionReport {
 // Converts a file to another format. The ending selects the format: .json; .step, .stp, .iges, .igs; .stl,
 // .obj, .ply, .3mf.
 //
-// Faces of one solid are joined to that solid in CAD files and meshes if they close; otherwise a note says
-// so. `out` appears complete or not at all; on an error an existing file stays as it is. Errors: a mesh as
-// input; two documents without a choice of bodies; options that have no effect on these formats; those of the
-// readers and writers.
+// Faces of one solid are joined to this solid in CAD files and meshes if they close; otherwise a note reports
+// that they do not. `out` appears complete or not at all; on an error an existing file stays as it is.
+// Errors: a mesh as input; two documents without a choice of bodies; options that have no effect on these
+// formats; errors of the readers and writers.
 Result<ConversionReport> convert_file(const ConversionRequest& request, const Progress& progress);
 
 // Returns true if the ending is that of a CAD file or a mesh.

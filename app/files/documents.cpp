@@ -22,10 +22,10 @@
 namespace spoonbill {
 namespace {
 
-// Radius of the tool as a fraction of the body's median extent, like a thumb on a piece of clay.
+// Radius of the tool as a fraction of the body's median extent, like a thumb on a piece of clay of this size.
 constexpr double tool_fraction = 0.15;
-// Force that the hand should feel when it presses the ball in by half its radius. Without a force scale this
-// is about E r^2 / 2 (Hertz 1881).
+// Force that the hand should feel when it presses the ball in by half of the ball's radius r. With a force
+// scale of 1 the force is about E r^2 / 2 (Hertz 1881).
 constexpr double target_force_n = 1.5;
 // Fraction of the body's extent that the plane fixes.
 constexpr double fixed_fraction = 0.1;
@@ -103,8 +103,8 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-// Returns the largest shell thickness for which the body has a lattice, or the smallest thickness tried if
-// the body has none at any.
+// Returns the largest shell thickness for which the body has a lattice. If the body has a lattice at no
+// thickness, returns the smallest one tried.
 double find_shell_thickness(Body body, double size_m) {
   double thickness = shell_thickness_range_m.low;
   for (int halving = 0; halving <= thickness_halvings; ++halving) {
@@ -122,7 +122,7 @@ bool has_lattice_along(const Body& body) {
                                 : tube_lattice(body.surface, body.lattice).ok();
 }
 
-// Sets the largest node budget with which a lattice can follow the body: cells of the default size may fold
+// Sets the largest node budget with which a lattice can follow the body. Cells of the default size may fold
 // in details of a scan. Keeps the default if no budget works, because a box of cells is better than a lattice
 // of few nodes.
 void choose_node_budget(Body& body) {
@@ -198,7 +198,7 @@ Document starting_document(const std::string& name, Surface surface, const Mater
                            std::optional<double> shell_thickness_m) {
   const Box box = bounding_box(surface.net);
   const Vector3 size = box.extent();
-  // The median is neither the length of a rod nor the thickness of a plate.
+  // The median extent is neither the length of a rod nor the thickness of a plate.
   const double median_m = size.sum() - size.maxCoeff() - size.minCoeff();
   Document document;
   document.name = name;
@@ -253,7 +253,7 @@ Result<Document> make_cad_document(const CadModel& model, const std::string& nam
   const auto most = static_cast<std::size_t>(body_count_range.high);
   if (model.surfaces.size() > most) {
     return Error{ErrorCode::too_many,
-                 "has " + std::to_string(model.surfaces.size()) + " faces, and a document holds " +
+                 "has " + std::to_string(model.surfaces.size()) + " faces, and a document holds at most " +
                      std::to_string(most) + " bodies; choose some with --bodies 1,3-5",
                  "--bodies"};
   }

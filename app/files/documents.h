@@ -1,5 +1,5 @@
-// Documents as the program reads and makes them: with a hint for files of other formats, and new ones around
-// a surface, a stock shape, a CAD model or a fitted scan.
+// Documents that the program reads or makes. Reading gives a hint for files of other formats. New documents
+// are made around a surface, a stock shape, a CAD model or a fitted scan.
 #pragma once
 
 #include <cstddef>
@@ -27,13 +27,13 @@ Result<Document> read_document_file(const std::filesystem::path& file);
 // Returns the names of the materials that come with the program, sorted.
 std::vector<std::string> shipped_material_names();
 
-// Reads a material that comes with the program, by its name or a part of it that no other name contains:
-// "clay" for modelling-clay. The error lists all names.
+// Reads a material that comes with the program, by its name or by a part that occurs in no other name, such
+// as "clay" for modelling-clay. The error lists all names.
 Result<Material> shipped_material(const std::string& name);
 
 // Returns a document with one body around the surface. A plane fixes a tenth of the body: at its foot, or at
-// the left end of a flat one. The radius of the ball tool follows from the body's size, and the force scale
-// makes its forces perceptible. `shell_thickness_m`: see Body.
+// its left end if it is flat. The radius of the ball tool follows from the body's size, and the force scale
+// makes the forces perceptible. `shell_thickness_m`: see Body.
 Document starting_document(const std::string& name, Surface surface, const Material& material,
                            std::optional<double> shell_thickness_m = {});
 
@@ -59,8 +59,8 @@ struct StockShapeChoice {
 
 StockShapeChoice default_stock_shape(std::size_t kind);
 
-// Returns a document around the stock shape, fitted within 0.1 mm: few enough control points for ticks of one
-// millisecond. The error names a size that is out of range.
+// Returns a document around the stock shape. The shape is fitted within 0.1 mm by a surface of few enough
+// control points for ticks of one millisecond. The error names a size that is out of range.
 Result<Document> make_stock_shape_document(const StockShapeChoice& choice, const Material& material);
 
 // Returns a document with one body of modelling clay per surface. All other settings are those that

@@ -83,7 +83,7 @@ Error ForeignChild::missing_answer() {
   if (end.signal != 0) {
     const std::string signal = "(signal " + std::to_string(end.signal) + "); ";
     return error(ErrorCode::process_failed,
-                 reads ? "the reader crashed on it " + signal + "the file is damaged, export it again"
+                 reads ? "the reader crashed on it " + signal + "the file is damaged; export it again"
                        : "the writer crashed " + signal + task_.remedy);
   }
   return error(ErrorCode::process_failed,

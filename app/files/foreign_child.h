@@ -29,7 +29,8 @@ struct ForeignTask {
   std::string too_much = "reading it needs more than ";
   // Message after "FILE: " for an answer that is not a valid frame.
   std::string invalid_answer = "the reader gave an invalid answer; rebuild the program";
-  // Returns the message after "FILE: " for the child's own reason, which may be any bytes.
+  // Turns the child's own reason, which may be any bytes, into the text that follows "FILE: " in the error
+  // message.
   std::function<std::string(const std::string& reason)> refusal = printable;
 
   // Returns the text with every byte that is not printable ASCII replaced by a blank.
@@ -47,22 +48,23 @@ class ForeignChild {
   // Forwards the child's progress several times a second, and ends the child when `progress` asks to stop.
   void watch(Progress progress);
 
-  // Returns the head of the next frame that is neither progress nor a failure; the caller reads its content.
-  // Errors: the child fails, ends, exceeds its time or sends an invalid frame; the user stops the work.
+  // Returns the head of the next frame that is neither progress nor a failure. The caller must then read the
+  // frame's content. Errors: the child fails, ends, exceeds its time or sends an invalid frame; the user
+  // stops the work.
   Result<FrameHead> next();
 
-  // Returns the whole content of the frame whose head came last. Errors: those of next(), more than
-  // frame_bytes_limit.
+  // Returns the whole content of the frame whose head next() returned last. Errors: those of next(), and more
+  // than frame_bytes_limit.
   Result<std::string> content(const FrameHead& head);
 
-  // Reads the next bytes of the content of the frame whose head came last.
+  // Reads the next bytes of the content of the frame whose head next() returned last.
   Status read(void* to, std::size_t bytes);
   template <class T>
   Status read(std::vector<T>& items) {
     return read(items.data(), items.size() * sizeof(T));
   }
 
-  // The error of a child whose answer is not what the protocol demands.
+  // The error of a child whose answer violates the protocol.
   Error invalid_answer() const { return error(ErrorCode::process_failed, task_.invalid_answer); }
 
  private:

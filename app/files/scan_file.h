@@ -38,9 +38,9 @@ struct MeshFile {
 // 4 GiB; too many triangles, or more than three vertices per triangle of the limit.
 Result<MeshFile> read_mesh_file(const std::filesystem::path& file, const MeshReading& reading = {});
 
-// Reads a point cloud of at most 1 GiB in the file's own unit, or nothing if a PLY or OBJ file has faces and
-// so is a mesh. The formats are those of engine/exchange/scans/point_cloud.h. Errors are those of
-// read_mesh_file().
+// Reads a point cloud of at most 1 GiB in the file's own unit. Returns nullopt if a PLY or OBJ file has
+// faces, which make it a mesh. The formats are those of engine/exchange/scans/point_cloud.h. Errors are those
+// of read_mesh_file().
 Result<std::optional<PointCloud>> read_cloud_file(const std::filesystem::path& file,
                                                   const MeshReading& reading = {});
 
@@ -51,8 +51,8 @@ struct ScanFile {
   std::size_t points_skipped = 0;  // points with a coordinate that is not a number
 };
 
-// Reads a scan: a cloud, or a mesh (PLY in the same pass) of at most scan_triangle_limit triangles. Errors
-// are those of the functions above, and points at infinity or farther than 100 m.
+// Reads a scan: a cloud, or a mesh of at most scan_triangle_limit triangles; PLY files are read only once.
+// Errors are those of the functions above, and points at infinity or farther than 100 m.
 Result<ScanFile> read_scan_file(const std::filesystem::path& file, const MeshReading& reading = {});
 
 }  // namespace spoonbill

@@ -36,7 +36,7 @@ Result<std::filesystem::path> state_folder() {
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
   if (problem) {
-    return Error{ErrorCode::unwritable, folder.string() + ": cannot be created, " + problem.message()};
+    return Error{ErrorCode::unwritable, folder.string() + ": cannot be created: " + problem.message()};
   }
   return folder;
 }

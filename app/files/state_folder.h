@@ -12,8 +12,8 @@ namespace spoonbill {
 // creates it if it is missing.
 Result<std::filesystem::path> state_folder();
 
-// An exclusive lock between processes on a lock file, which is deleted with the lock. The system releases it
-// when the process ends, however it ends. One owner; any thread.
+// An exclusive lock between processes, held through a lock file that is deleted when the lock is released.
+// The system releases the lock when the process ends, however it ends. One owner; any thread.
 class FileLock {
  public:
   // Returns nothing if this or another process holds the lock, or if the file cannot be created.

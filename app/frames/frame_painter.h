@@ -30,9 +30,9 @@ ViewSettings frame_view(const ViewChoice& choice, const Box& framed, int width_p
 // Paints snapshots into images. One owner; used on the thread that made it.
 class FramePainter {
  public:
-  // Makes a painter with its own GL context. Dear ImGui has one current context per process: painters on
-  // several threads share `interface_turn`, which each locks while it lays out its interface. Null for a
-  // single painter.
+  // Makes a painter with its own GL context. Dear ImGui has one current context per process, so painters on
+  // several threads share the mutex `interface_turn`, which each painter locks while it lays out its
+  // interface. Null for a single painter.
   static Result<FramePainter> make(int width_px, int height_px, std::mutex* interface_turn = nullptr);
 
   FramePainter(FramePainter&&) noexcept = default;

@@ -179,13 +179,13 @@ std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& file, con
 
 namespace {
 
-// The file that ffmpeg writes, and the one that it becomes: the same for a pipe or device.
+// The file that ffmpeg writes, and the file that it becomes. Both are the same for a pipe or a device.
 struct VideoPlace {
   std::filesystem::path unfinished, target;
 };
 
-// Makes the empty file that ffmpeg will fill, exclusively, so that no link of that name is followed. It has
-// the permissions of the file that it will replace.
+// Makes the empty file that ffmpeg will fill. It is created exclusively, so that no link of this name is
+// followed, and with the permissions of the file that it will replace.
 Result<VideoPlace> prepare_video(const std::filesystem::path& file) {
   VideoPlace place{file, file};
   std::error_code ignored;

@@ -23,8 +23,8 @@
 
 namespace spoonbill {
 
-// Consumes the session's marks: writes the requested documents into the folder and returns the names of the
-// requested screenshots of the next frame. Without a folder, writes nothing and returns no name.
+// Consumes the session's marks. Writes the requested documents into the folder and returns the names of the
+// requested screenshots of the next frame. If there is no folder, writes nothing and returns no names.
 Result<std::vector<std::string>> consume_marks(Session& session,
                                                const std::optional<std::filesystem::path>& folder);
 
@@ -35,9 +35,9 @@ Status write_marked_picture(const Image& picture, const std::string& name,
 // Returns "frame-0042.png" for 42.
 std::string frame_file_name(int number);
 
-// Makes the folder, or removes the frames and the contact sheet of an earlier run from it; other files stay.
-// Returns an error with the folder's name if it cannot be made or written.
-// Refuses to remove a read-only file unless `replaces_read_only`.
+// Makes the folder, or removes the frames and the contact sheet of an earlier run from it. Other files are
+// not changed. Returns an error with the folder's name if the folder cannot be made or written. Removes
+// read-only files only if `replaces_read_only` is set; otherwise they are an error.
 Status prepare_frame_folder(const std::filesystem::path& folder, bool replaces_read_only = false);
 
 // Writes numbered frames as PNG files on its own thread, so that encoding does not delay drawing. One thread
@@ -51,7 +51,7 @@ class FrameWriter {
 
   // add() and finish() return the first failure of any frame so far. After a failure nothing more is written.
   Status add(int number, Image frame);
-  Status finish();  // waits until all frames are on the disk; ends adding
+  Status finish();  // waits until all frames are on the disk; no frame may be added afterwards
 
  private:
   void write_frames();

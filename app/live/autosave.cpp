@@ -12,7 +12,7 @@ namespace spoonbill {
 namespace {
 
 constexpr std::size_t bytes_limit = std::size_t{65}
-                                    << 20;  // largest document plus the fields of the autosave
+                                    << 20;  // of the largest document and the fields of the autosave
 constexpr int autosave_version = 1;
 constexpr int windows_limit = 99;  // largest number of windows that show the same document
 
@@ -31,8 +31,9 @@ std::filesystem::path canonical_path(const std::filesystem::path& path) {
   return problem ? path : canonical;
 }
 
-// Returns true if the file holds the same document. Times tell nothing: a copy, a checkout or a
-// synchronisation gives a file a newer time without the user's work. The view alone is not work.
+// Returns true if the file holds the same document. Times do not matter: a copy, a checkout or a
+// synchronisation gives a file a newer time without any work of the user. A different view does not count as
+// work.
 bool holds_same(const std::filesystem::path& file, Document recovered) {
   auto saved = read_document(file);
   if (!saved) return false;

@@ -25,9 +25,9 @@ class Autosave {
   // Replaces the file as a whole; after an error the previous one remains.
   Status write(const Document& document) const;
 
-  // Returns the document that an interrupted session left. Returns nothing if no session was interrupted, or
-  // if the document's file holds the same, whichever is newer. A file that cannot be read is an error and
-  // remains.
+  // Returns the document that an interrupted session left. Returns nullopt if no session was interrupted, or
+  // if the document's file holds the same document, whichever of the two files is newer. A file that cannot
+  // be read is an error and is not removed.
   Result<std::optional<Document>> recovered_document() const;
 
   // Removes the file if it exists.

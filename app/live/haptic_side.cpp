@@ -121,7 +121,7 @@ void HapticSide::close() {
   safe_device_.give_none(0);
   if (lent_.session == nullptr) return;
   if (recording_) end_recording();
-  // Passes on the newest state, for the autosave of a session that ends in a fault.
+  // Publishes the newest state, so that a session that ends in a fault has it in its autosave.
   if (published_change_ != change_) publish_scene();
 }
 
@@ -233,7 +233,7 @@ void HapticSide::record_state_when_due() {
 
 void HapticSide::push(JournalEntry&& entry) {
   if (journal_->push(std::move(entry)) || !recording_) return;
-  // A recording with a gap cannot be replayed, so it ends at the last entry that fitted.
+  // A recording with a gap cannot be replayed, so it ends at the last entry that was queued.
   recording_ = false;
   exchange_->recordings_lost.fetch_add(1, std::memory_order_relaxed);
 }

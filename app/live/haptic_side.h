@@ -90,8 +90,8 @@ class SessionWorker {
   explicit SessionWorker(Notices& notices);
   ~SessionWorker();  // finishes the current job first
 
-  // Both are called by the haptic thread and neither wait nor allocate. reclaim() returns true once per loan,
-  // after the job has ended; lend() must not be called again before that. `job` is the command, `is_done` is
+  // The haptic thread calls both; neither waits nor allocates. reclaim() returns true once per loan, after
+  // the job has ended; lend() must not be called again before that. `job` is the command, and `is_done` is
   // true if it succeeded.
   void lend(LentSession lent, LiveCommand job);
   bool reclaim(LentSession& lent, LiveCommand& job, bool& is_done);
@@ -140,7 +140,7 @@ class HapticSide {
   void tick(const LoopTick& tick) noexcept;
 
   // Leaves the device without force, ends a recording as LiveSession::stop_recording() does, and passes the
-  // last changes to the journal. Must be called after the thread has stopped.
+  // last changes to the journal. Must be called only after the thread has stopped.
   void close();
 
   const Session* session() const { return lent_.session.get(); }
@@ -178,7 +178,7 @@ class HapticSide {
   bool recording_ = false;
   std::uint64_t recorded_ticks_ = 0;
   std::uint64_t recorded_missed_ = 0;  // periods without a tick since the recording's first
-  bool state_recorded_ = false;        // at recorded_ticks_
+  bool state_recorded_ = false;        // the state hash at recorded_ticks_ is recorded
 
   std::uint64_t session_count_ = 0;
   std::uint64_t document_count_ = 0;

@@ -197,7 +197,7 @@ void Journal::autosave(const LiveScene& scene) {
   const Status written = target->write(make_document(scene));
   if (was_superseded(count)) return target->remove();  // replaced during the write
   if (written) autosaved_change_ = scene.change;
-  // One notice is enough, because every later autosave fails in the same way.
+  // Only the first failure of a series is reported, because later autosaves fail in the same way.
   if (!written && !autosave_failed_) {
     notices_->add(Notice::Kind::problem, "not autosaved: " + written.error().message);
   }

@@ -71,8 +71,8 @@ class Exporter {
   std::thread thread_;
 };
 
-// Entries of a recording, in order. Commands are passed on even if they are not recorded, so that their
-// memory is freed outside the haptic thread.
+// Entries of a recording, in order. Commands pass through the journal even if they are not recorded, so that
+// their memory is freed outside the haptic thread.
 struct RecordingStart {
   std::unique_ptr<RecordingWriter> recording;
 };
@@ -104,7 +104,7 @@ struct LiveScene {
   std::string title;
   Scene scene;
   std::uint64_t document = 0;    // as in LiveFrame
-  std::uint64_t change = 0;      // counts all changes of the scene, including motion after a touch
+  std::uint64_t change = 0;      // number of changes of the scene so far, including motion after a touch
   std::uint64_t edit_count = 0;  // as in LiveFrame
   std::uint64_t request = 0;     // number of the last save request before this scene was written
 };
@@ -158,9 +158,9 @@ class Journal {
   // Sets the autosave, or disables it if empty. The previous file is removed.
   void set_autosave(std::optional<Autosave> autosave);
   // Saves the scene that answers this request, or a newer one of the same document. A file with the extension
-  // of an export format is exported, which does not count as saving.
+  // of an export format is exported; an export does not count as saving.
   void save(SaveRequest save);
-  // Returns the last document that was saved since the last call.
+  // Returns the last document that was saved since the previous call, or nullopt.
   std::optional<SavedDocument> consume_saved_document();
 
  private:

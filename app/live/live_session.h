@@ -17,23 +17,23 @@ struct LiveSettings {
   bool real_time = true;
 };
 
-// Starts, controls and stops the threads of a session. One owner: the main thread, which makes all calls.
-// None of them waits for the haptic thread except stop().
+// Starts, controls and stops the threads of a session. One owner: the main thread, which makes all calls. No
+// function except stop() waits for the haptic thread.
 class LiveSession {
  public:
   // Starts a session. `source` names the document's file in messages. The device must not be null and is
-  // closed with the session. Returns an error for a scene that cannot be simulated, a device that does not
-  // respond or whose specification is out of range, and if threads cannot be started.
+  // closed with the session. Returns an error if the scene cannot be simulated, if the device does not
+  // respond or its specification is out of range, or if a thread cannot be started.
   static Result<std::unique_ptr<LiveSession>> start(const Document& document, const std::string& source,
                                                     const LiveSettings& settings,
                                                     std::unique_ptr<Device> device);
   ~LiveSession();  // stops the threads after all pending writes
 
-  // Queues a request, which is applied before the next tick, in order. Returns false if the queue is full
+  // Queues a request. Requests are applied in order before the next tick. Returns false if the queue is full
   // because the haptic thread is far behind.
   bool ask(Request request);
 
-  // Queues the replacement of the document. A recording ends first.
+  // Queues the replacement of the document. A recording ends before the replacement.
   bool open(Document document, std::string source);
 
   // Restarts the session from the current shape, at rest, and records from there, so that the recording is
@@ -44,8 +44,8 @@ class LiveSession {
   // Lets the recording end as FILE.part instead of replacing FILE. Called before stop_recording().
   void leave_recording_unpublished() { journal_.leave_recordings_unpublished(); }
 
-  // Saves the document of the last frame in the state of the next tick. consume_saved_document() and the
-  // notices report the result. Fails if another document was opened in the meantime.
+  // Saves the document that frame() returned last, in the state of the next tick. consume_saved_document()
+  // and the notices report the result. Fails if another document was opened in the meantime.
   bool save(std::filesystem::path file);
   std::optional<SavedDocument> consume_saved_document() { return journal_.consume_saved_document(); }
 

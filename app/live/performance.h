@@ -28,9 +28,9 @@ struct PerformanceReport {
   std::vector<Notice> notices;
 };
 
-// Performs the script on the main thread; returns at its end or when `interrupted` returns true. Returns an
-// error for a model that cannot be simulated or a recording that cannot be written. An
-// interrupted recording stays as FILE.part.
+// Performs the script on the main thread. Returns at the end of the script or once `interrupted` returns
+// true. Returns an error if the model cannot be simulated or the recording cannot be written. An interrupted
+// recording stays as FILE.part.
 Result<PerformanceReport> perform(const Script& script, const Document& document, const std::string& source,
                                   const PerformanceSettings& settings,
                                   const std::function<bool()>& interrupted);

@@ -204,7 +204,7 @@ std::string residual_text(double residual_m) {
   return rounded_text(1e3 * residual_m, 3, " mm error");
 }
 
-// Says what becomes of bodies that nothing fixes, and offers to let them go.
+// States what happens to bodies that nothing fixes, and offers to let them move freely.
 void draw_unheld(const PanelModel& model, PanelAnswer& answer) {
   if (model.unheld_count == 0) return;
   Sculpting sculpting = model.sculpting;

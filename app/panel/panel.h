@@ -56,18 +56,18 @@ struct PanelModel {
 // Makes the panel's contents. `snapshot` must be of the same session and tick; `view` draws it.
 PanelModel make_panel_model(const SessionFacts& facts, const Snapshot& snapshot, const ViewSettings& view);
 
-// Returns the area of the panel in a frame of this size and scale: at the left edge, below `top_px`. Empty
-// where the frame is too small for a legible panel.
+// Returns the area of the panel in a frame of this size and scale: at the left edge, below `top_px`. The area
+// is empty if the frame is too small for a legible panel.
 Rectangle panel_rectangle(int width_px, int height_px, double scale, double top_px = 0.0);
 
-// Returns the area of the panel in a picture of this size. Empty where the panel does not fit as a whole,
+// Returns the area of the panel in a picture of this size. The area is empty if the whole panel does not fit,
 // because a picture cannot be scrolled.
 Rectangle picture_panel_rectangle(int width_px, int height_px);
 
 // Returns the interface's scale for a frame of this height: 1 at 720 pixels, in steps of a half.
 double panel_scale(int height_px);
 
-// The user's requests of one frame, and the reason why a value was rejected; empty if none was.
+// The user's requests of one frame, and the reason why a value was rejected, which is empty if no value was.
 struct PanelAnswer {
   std::vector<Request> requests;
   std::string refusal;

@@ -125,7 +125,7 @@ Result<double> read_quantity(const FieldForm& form, const std::string& typed, co
   const double value = reading.number * unit->size;
   if (!form.range.contains(value)) {
     return Error{ErrorCode::out_of_range,
-                 field + " is " + text_in_unit(value, *unit) + ", must be " +
+                 field + " is " + text_in_unit(value, *unit) + ", must be from " +
                      text_in_unit(form.range.low, *unit) + " to " + text_in_unit(form.range.high, *unit),
                  std::string(form.name)};
   }

@@ -1,6 +1,6 @@
 // Rows of the panel: a label in the left column, a value or widget in the right one. The functions must be
-// called between InterfaceContext::begin_frame() and end_frame(). Those of widgets return true if the user
-// changed the value.
+// called between InterfaceContext::begin_frame() and end_frame(). Functions of widgets return true if the
+// user changed the value.
 #pragma once
 
 #include <span>
@@ -19,9 +19,9 @@ std::string rounded_text(double number, int decimals, const char* unit);
 // Returns a number with its unit, as a slider shows it: "1.20 MPa", "0.45", "4.0 /s".
 std::string quantity_text(const FieldForm& form, double value);
 
-// Reads a typed number with an optional unit and returns it in SI units. The default unit is the unit of
-// `shown`, the text that is replaced. An unknown unit, text that is not a number, and a value out of range
-// are errors that name the units or the range.
+// Parses a typed number with an optional unit and returns it in SI units. The default unit is the one in
+// `shown`, the text that the user replaces. An unknown unit, text that is not a number, and a value out of
+// range are errors that name the units or the range.
 Result<double> read_quantity(const FieldForm& form, const std::string& typed, const std::string& shown);
 
 // A group of rows under a heading, open for the lifetime of the object.

@@ -29,8 +29,8 @@ Json curvature_json(const CurvatureExtreme& place) {
           {"point_m", position_json(place.position_m)}};
 }
 
-// Returns the radius of curvature in metres; null if the surface has no curvature of that sign, except by
-// rounding.
+// Returns the radius of curvature in metres; null if the curvature has the other sign or is only rounding
+// error.
 Json radius_json(double curvature_per_m) {
   return curvature_per_m > least_curvature_per_m ? Json(1.0 / curvature_per_m) : Json(nullptr);
 }
@@ -55,7 +55,7 @@ void add_thickness(FactSheet& facts, const SurfaceCheck& check, Json& json) {
     return;
   }
   const Thickness& thin = *check.thinnest;
-  // A smaller distance is rounding error: the sides meet.
+  // The sides meet if their distance is only rounding error.
   const double thickness_m = thin.thickness_m > 1e-12 ? thin.thickness_m : 0.0;
   facts.add("  Thinnest", short_length_text(thickness_m) + " at " + position_text(thin.position_m), "",
             nullptr);
@@ -74,8 +74,8 @@ std::string names_text(const std::vector<std::string>& names) {
   return text;
 }
 
-// Adds the mass of a body with its material regions. If its regions cannot be evaluated, the body's own
-// material counts everywhere and the line says why.
+// Adds the mass of a body with its material regions. If the regions cannot be evaluated, the body's own
+// material is assumed everywhere and the line says why.
 void add_mass(FactSheet& facts, const Body& body, double volume_m3, const Vector3& centre_m, Json& json) {
   const BodyMass mass = mass_of_volume(body, volume_m3, centre_m);
   facts.add("  Volume", volume_text(volume_m3), "", nullptr);
@@ -144,8 +144,8 @@ std::string faces_text(std::size_t count) {
   return "solid of " + count_text(count, "face", "faces");
 }
 
-// Adds the mass of a solid whose faces all have the same material. With several materials it is unknown which
-// part is made of which.
+// Adds the mass of a solid whose faces all have the same material. If the faces have several materials, it is
+// unknown which part of the solid consists of which material.
 void add_solid_mass(FactSheet& facts, const CadSolid& solid, const std::vector<Body>& bodies, Json& json) {
   const Material& material = bodies[solid.surface_indices.front()].material;
   const bool is_same =
@@ -207,7 +207,7 @@ void add_solid_thickness(FactSheet& facts, const CadSolid& solid, const SolidChe
                       {"opposite_m", position_json(thin.opposite_m)}};
 }
 
-// Returns what makes the body unsound, one line each; none if it is sound.
+// Returns one line for each reason why the body is not sound; none if the body is sound.
 std::vector<std::string> find_problems(const Body& body, CheckedAs as, const SurfaceCheck& check) {
   std::vector<std::string> problems =
       as == CheckedAs::face ? std::vector<std::string>() : closing_problems(body, check);

@@ -30,7 +30,7 @@ struct ContactSide {
 
 struct ModelContact {
   ContactSide a, b;                   // deepest points
-  Vector3 normal = Vector3::UnitY();  // unit direction in which A separates from B
+  Vector3 normal = Vector3::UnitY();  // unit direction in which A moves away from B
   double depth_m = 0.0;
   Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();  // unit, perpendicular to the normal
 };

@@ -16,8 +16,8 @@
 namespace spoonbill {
 namespace {
 
-// Samples per direction. Cutting cells along trim loops is slow; fewer samples suffice because the vertices
-// of the loops count too.
+// Samples per direction. A trimmed surface gets fewer, because cutting cells along trim loops is slow and the
+// vertices of the loops count as samples too.
 constexpr int extent_samples = 201, trimmed_extent_samples = 61;
 
 Box extent_within(const Surface& surface, const Grid& grid, const TrimmedArea& area) {
@@ -149,7 +149,7 @@ void add_single_body(FactSheet& facts, const Json& body) {
   for (const auto& [field, value] : body.items()) facts.add("", "", field == "name" ? "body" : field, value);
 }
 
-// A worst Jacobian of 1 means boxes, 0 a cell about to fold over.
+// The worst Jacobian is 1 for boxes and 0 for a cell that is about to fold over.
 std::string quality_text(const CellQuality& quality) {
   std::array<char, 80> text{};
   std::snprintf(text.data(), text.size(), "worst Jacobian %.2f, volumes vary by %.0f %%",
@@ -256,7 +256,7 @@ void add_material_facts(FactSheet& facts, const Material& material) {
   facts.add("Material", material_text(material), "material", material_to_json(material));
 }
 
-// Smaller distances from the edges of a CAD file are the rounding of the file.
+// Distances from the edges of a CAD file up to this one are rounding errors of the file.
 constexpr double shown_trim_deviation_m = 1e-9;
 
 void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces) {

@@ -51,7 +51,7 @@ void add_cell_facts(FactSheet& facts, const Simulation& simulation,
                     const std::vector<FeatureMapReport>& maps);
 
 // A progress bar for the feature maps of a document's lattices, which collects their reports. The console
-// must outlive it, and it must outlive the watch().
+// must outlive the bar, and the bar must outlive the result of watch().
 class MapProgress {
  public:
   explicit MapProgress(Console& console, bool is_forced = false);

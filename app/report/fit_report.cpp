@@ -46,15 +46,15 @@ std::size_t count_strays(const ScanFit& fit) {
   return strays;
 }
 
-// Returns the number of points that were given to the fit: all that were read, less those that are not a
-// number or were joined to another.
+// Returns the number of points that were given to the fit: all points of the file except those that are not a
+// number and those that were joined to another.
 std::size_t count_given(const ScanFit& fit) {
   std::size_t count = fit.outliers + fit.dust + fit.other_islands;
   for (const FittedBody& body : fit.bodies) count += body.points_m.size();
   return count;
 }
 
-// Returns the fraction of the given points that belong to no body.
+// Returns the fraction of the given points that do not belong to any body.
 double left_out_share(const ScanFit& fit) {
   const double given = static_cast<double>(std::max<std::size_t>(1, count_given(fit)));
   return static_cast<double>(fit.outliers + fit.dust + fit.other_islands) / given;
@@ -223,14 +223,15 @@ std::optional<std::string> find_detail_note(const ScanFit& fit) {
 
 namespace {
 
-// Returns the fraction of the whole scan that is within the tolerance. Points that were left out are not.
+// Returns the fraction of the whole scan that is within the tolerance. Points that were left out count as
+// outside.
 double share_within(const ScanFit& fit, double tolerance_m) {
   double within = 0.0;
   for (const FittedBody& body : fit.bodies) {
     const std::vector<double>& distances = body.errors.distance_m;
     const auto near = std::count_if(distances.begin(), distances.end(),
                                     [&](double distance) { return distance <= tolerance_m; });
-    // The distances of a coarse mesh are those of points all over it.
+    // The distances of a coarse mesh are measured at points all over the mesh.
     if (!distances.empty()) {
       within += static_cast<double>(body.points_m.size()) * static_cast<double>(near) /
                 static_cast<double>(distances.size());
@@ -243,8 +244,8 @@ bool is_body_within(const FittedBody& body, double tolerance_m) {
   return body.errors.data_to_surface.p95_m <= tolerance_m;
 }
 
-// Returns true if 95 % of the whole scan is within the tolerance, and 95 % of each body's points except
-// strays; nothing for a tolerance of 0.
+// Returns true if 95 % of the whole scan is within the tolerance, and also 95 % of each body's points except
+// strays. Returns nullopt for a tolerance of 0.
 std::optional<bool> is_within_tolerance(const ScanFit& fit, double tolerance_m) {
   if (tolerance_m <= 0.0) return std::nullopt;
   const bool are_bodies = std::all_of(fit.bodies.begin(), fit.bodies.end(),
@@ -288,13 +289,13 @@ std::vector<std::string> find_fit_shortcomings(const ScanFit& fit, double tolera
   }
   if (fit.flipped_normals > 0) {
     notes.push_back("the normals of " + count_text(fit.flipped_normals, "point", "points") +
-                    " were opposite to those beside them and were flipped");
+                    " were opposite to those of their neighbours and were flipped");
   }
   for (const UnfittedIsland& island : fit.unfitted) notes.push_back(unfitted_island_text(island));
   if (fit.open_bridged > 0) {
     notes.push_back(
         count_text(fit.open_bridged, "island was", "islands were") +
-        " open at places other than the gaps; those were capped, because a bridged body is closed; "
+        " open at places other than the gaps; these openings were capped, because a bridged body is closed; "
         "--islands all leaves sheets and tubes open");
   }
   return notes;

@@ -28,12 +28,13 @@ std::optional<std::string> find_detail_note(const ScanFit& fit);
 // components of the scan that were skipped or capped. A tolerance of 0 means that there is no tolerance.
 std::vector<std::string> find_fit_shortcomings(const ScanFit& fit, double tolerance_m);
 
-// Adds what the bodies leave out of the scan: outliers, specks and other islands, as a share of its distinct
-// points. It goes before all other facts, because they are about the rest.
+// Adds the parts of the scan that the bodies leave out: outliers, specks and other islands, as a fraction of
+// the distinct points. Must be called before all other facts are added, because those describe the remaining
+// points.
 void add_left_out_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit);
 
-// Adds the unit and size of the scan, how near its vertices were joined, and how many of its points were
-// used.
+// Adds the unit and size of the scan, the distance within which vertices were joined, and the number of
+// points used.
 void add_scan_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit);
 
 // Adds each body with its errors, whether 95 % of the whole scan is within the tolerance, and in the JSON the

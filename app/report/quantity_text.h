@@ -28,10 +28,10 @@ std::string newtons_text(double newtons);           // "1.23 N"
 std::string percent_text(double fraction);          // "12 %", "0.081 %"
 // "1 body", "3 bodies"
 std::string count_text(std::size_t count, const char* one, const char* many);
-// "at most 0.0123 mm", or "none" up to a picometre, which is rounding error.
+// Returns "at most 0.0123 mm", or "none" for a deviation of up to a picometre, which is rounding error.
 std::string deviation_text(double deviation_m);
 
-// Returns a text for each TickFlag that is set: what it means and what to do about it.
+// Returns a text for each TickFlag that is set, with its meaning and a remedy.
 std::vector<std::string> flag_texts(std::uint32_t flags);
 
 const char* name_of(Closedness closedness);        // "solid", "tube", "sheet"

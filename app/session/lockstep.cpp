@@ -81,7 +81,7 @@ Status Lockstep::apply_due_commands() {
   return {};
 }
 
-// Resets the proxy and records that, so that the recording replays without the device.
+// Resets the proxy and records the reset, so that the recording replays without the device.
 Status Lockstep::reset_proxy() {
   const Command command = ResetProxy{};
   if (Status applied = session_->simulation.apply(command); !applied) return applied;
@@ -94,7 +94,7 @@ Status Lockstep::run_tick() {
     if (Status reset = reset_proxy(); !reset) return reset;
   }
   const TickResult result = advance(*session_, reading);
-  // Written after the tick, so that a recording that a signal ends holds whole ticks only.
+  // The tick is recorded after it has run, so that a recording that a signal ends holds whole ticks only.
   if (writer_ != nullptr) {
     if (Status written = writer_->reading(reading); !written) return written;
   }

@@ -19,7 +19,7 @@ constexpr std::uint64_t frame_tick(std::uint64_t frame) {
   return frame * 1000 / frames_per_second;
 }
 
-// Returns the number of frames whose state is reached within `tick_count` ticks.
+// Returns the number of frames whose state can be drawn after `tick_count` ticks.
 std::uint64_t frame_count(std::uint64_t tick_count);
 
 // Input of a lock-step run.
@@ -40,12 +40,13 @@ class Lockstep {
   // The session, the input's device and the writer must outlive the loop. The writer may be null.
   Lockstep(Session& session, LockstepInput input, RecordingWriter* writer);
 
-  // Runs until `tick` ticks are done and the commands due at that tick are applied. An error names tick and
-  // source: a command that cannot be applied, a state that differs from the expected one, a recording that
-  // cannot be written.
+  // Runs until `tick` ticks are done and the commands due at that tick are applied. An error names the tick
+  // and the source. Errors: a command that cannot be applied, a state that differs from the expected one, a
+  // recording that cannot be written.
   Status run_to(std::uint64_t tick);
 
-  // Runs the remaining ticks, compares the last state and finishes the recording that is written.
+  // Runs the remaining ticks, compares the last state with the expected one, and finishes the recording that
+  // is being written.
   Status finish();
 
   std::uint64_t tick() const { return tick_; }

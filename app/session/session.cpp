@@ -138,7 +138,7 @@ struct RequestApplier {
       if (Status saved = save_document(); !saved) return saved;
       made.document = session.saved;
     }
-    // A later file of the same name would replace the earlier.
+    // A replay would write a later file of the same name over the earlier one.
     std::erase_if(session.marks, [&](const FileMark& other) {
       return other.mark.kind == mark.kind && other.mark.name == mark.name;
     });
@@ -146,7 +146,7 @@ struct RequestApplier {
     return {};
   }
 
-  // Makes the document of this moment, unless the last one is still true.
+  // Makes the document of the current state, unless the last one that was made is still current.
   Status save_document() const {
     if (session.saved != nullptr) return {};
     if (session.saves_at_tick == saves_at_tick_limit) {
@@ -160,7 +160,7 @@ struct RequestApplier {
   }
 };
 
-// Only a face of a solid has no mass of its own.
+// A face of a solid is the only body that has no mass of its own.
 BodyMass mass_of_session(const Body& body) {
   return compute_body_mass(body).value_or(BodyMass());
 }

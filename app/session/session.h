@@ -70,7 +70,7 @@ struct Session {
   CouplingState coupling;
   StrokeHistory history;
   ViewChoice view;
-  std::vector<BodyMass> masses = {};  // by body, of the document: sculpting moves material and keeps its mass
+  std::vector<BodyMass> masses = {};  // of each body in the document; sculpting does not change a mass
 
   DeviceSpecification device;
   DeviceReading reading;                 // from the last tick
@@ -80,8 +80,8 @@ struct Session {
   std::shared_ptr<const Document> saved = {};  // the last mark's document while nothing has changed since
   std::size_t saves_at_tick = 0;               // number of different documents saved at this tick
 
-  // Makes a session of the document. `source` names its file in messages; `watch` receives the progress of
-  // feature maps.
+  // Makes a session of the document. `source` names the document's file in messages; `watch` receives the
+  // progress of feature maps.
   static Result<Session> make(const Document& document, const std::string& source, DeviceSpecification device,
                               InstructionSet set, const FeatureMapWatch& watch = {});
 };
@@ -89,7 +89,7 @@ struct Session {
 // Runs one tick of touch and updates the undo history.
 TickResult advance(Session& session, const DeviceReading& reading);
 
-// Writes the data that drawing needs of the last tick, or of the start before the first tick.
+// Writes the data of the last tick that drawing needs. Before the first tick, writes the data of the start.
 void write_snapshot(const Session& session, Snapshot& snapshot);
 
 // Returns the FNV-1a hash of every bit that the next tick depends on.

@@ -16,8 +16,7 @@ class StrokeHistory {
   // Shortest release that ends a stroke, in ticks; a shorter one is a bounce within the stroke.
   static constexpr int release_ticks = 50;
 
-  // Largest number of stored shapes. Bodies whose shapes would exceed the memory limit have fewer, at least
-  // 3.
+  // Largest number of stored shapes. The memory limit allows fewer shapes of large bodies, but at least 3.
   static constexpr std::size_t shape_limit = 64;
   static constexpr std::size_t memory_limit_bytes = std::size_t{64} << 20;
 
@@ -34,8 +33,8 @@ class StrokeHistory {
   // Restores the shape before the current stroke and discards the stroke. Does nothing outside a stroke.
   Status cancel(Simulation& simulation);
 
-  // Forgets all strokes. Must be called when a command changes what a shape means, such as fixing planes or
-  // the rest shape.
+  // Forgets all strokes. Must be called when a command changes fixing planes, the rest shape or anything else
+  // on which the meaning of stored shapes depends.
   void clear(const Simulation& simulation);
 
   bool can_undo() const { return open_stroke_ || current_ > 0; }

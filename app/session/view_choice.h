@@ -1,4 +1,4 @@
-// The view with which a document or a recording shows its scene, its JSON form, and the contact debug views:
+// The view of a document or a recording, its JSON form, and the contact debug views:
 //  "view": {"camera": {...}, "overlays": {"lattice": true, ...}, "see_through_body": false,
 //           "ground_mm": -40}
 //  {"command": "set_camera", ...}   {"command": "set_overlays", "lattice": true, ...}
@@ -47,8 +47,8 @@ bool is_view_command(const Json& command);
 // Applies a view command to the choice. An error leaves the choice unchanged.
 Status apply_view_command(const Json& command, const std::string& source, ViewChoice& choice);
 
-// Returns the settings that draw a frame of this size beside a panel. `body` encloses the model at the start,
-// so that neither camera nor ground moves as the model deforms.
+// Returns the settings for a frame of this size in which the model is beside a panel. `body` encloses the
+// model at the start, so that neither camera nor ground moves as the model deforms.
 ViewSettings make_view_settings(const ViewChoice& choice, const Box& body, int width_px, int height_px,
                                 const Rectangle& panel_px, double interface_scale);
 
@@ -84,7 +84,7 @@ inline constexpr std::array<StageChoice, 8> stage_choices = {{
 // draws.
 class StageFinder {
  public:
-  // Sets settings.stages, to null where no stage is shown.
+  // Sets settings.stages; null if no stage is shown.
   void fill(const Snapshot& snapshot, ViewSettings& settings) {
     settings.stages = nullptr;
     if (settings.overlays.contact_stage == ContactStage::none) return;

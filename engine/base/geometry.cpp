@@ -10,7 +10,7 @@ namespace spoonbill {
 Status check_range(std::string_view field, double value, Range<double> range) {
   if (range.contains(value)) return {};
   return Error{ErrorCode::out_of_range,
-               std::string(field) + " is " + number_text(value) + ", must be " + number_text(range.low) +
+               std::string(field) + " is " + number_text(value) + ", must be from " + number_text(range.low) +
                    " to " + number_text(range.high),
                std::string(field)};
 }
@@ -18,7 +18,7 @@ Status check_range(std::string_view field, double value, Range<double> range) {
 Status check_range(std::string_view field, int value, Range<int> range) {
   if (range.contains(value)) return {};
   return Error{ErrorCode::out_of_range,
-               std::string(field) + " is " + std::to_string(value) + ", must be " +
+               std::string(field) + " is " + std::to_string(value) + ", must be from " +
                    std::to_string(range.low) + " to " + std::to_string(range.high),
                std::string(field)};
 }

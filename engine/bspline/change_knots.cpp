@@ -68,14 +68,17 @@ Status check_contains_all(const KnotVector& from, const KnotVector& to) {
   const double length = from.domain_length(), nearness = same_knot_fraction * length;
   const double start = to.domain_start(), end = to.domain_end();
   if (to.degree() < from.degree())
-    return Error{ErrorCode::unsupported, "the degree to change to is lower; use a fit instead"};
+    return Error{ErrorCode::unsupported,
+                 "the new degree is lower than that of the surface; use a fit instead"};
   const bool same_domain =
       std::abs(start - from.domain_start()) <= nearness && std::abs(end - from.domain_end()) <= nearness;
   const bool within = from.is_periodic()
                           ? end - start <= length + nearness
                           : start >= from.domain_start() - nearness && end <= from.domain_end() + nearness;
   if (to.is_periodic() ? !(from.is_periodic() && same_domain) : !within) {
-    return Error{ErrorCode::mismatch, "the new knots have another domain; use a part of the surface's own"};
+    return Error{ErrorCode::mismatch,
+                 "the new knots have a different domain from the old ones; use the domain of the surface or "
+                 "a part of it"};
   }
   const std::vector<KnotMultiplicity> there = knot_multiplicities(to);
   for (const auto& [knot, multiplicity] : knot_multiplicities(from)) {
@@ -87,7 +90,7 @@ Status check_contains_all(const KnotVector& from, const KnotVector& to) {
         continue;
       }
       return Error{ErrorCode::mismatch,
-                   "the knots to change to lack the surface's knot " + number_text(knot) + "; insert it"};
+                   "the new knots lack the surface's knot " + number_text(knot) + "; insert it"};
     }
   }
   return {};
@@ -169,7 +172,8 @@ Result<Fitted> fitted(const Surface& surface, Direction direction, const KnotVec
   const double nearness = same_knot_fraction * from.domain_length();
   if (std::abs(knots.domain_start() - from.domain_start()) > nearness ||
       std::abs(knots.domain_end() - from.domain_end()) > nearness) {
-    return Error{ErrorCode::mismatch, "the new knots have another domain"}.in(direction_name(direction));
+    return Error{ErrorCode::mismatch, "the new knots have a different domain from the old ones"}.in(
+        direction_name(direction));
   }
   std::vector<double> parameters = distinguishing_parameters(from, knots);
   if (knots.is_periodic()) parameters.pop_back();

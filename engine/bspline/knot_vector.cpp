@@ -273,7 +273,7 @@ std::vector<KnotMultiplicity> knot_multiplicities(const KnotVector& knots) {
 
 Result<KnotVector> elevate_degree(const KnotVector& knots, int degree) {
   if (degree < knots.degree() || degree > max_degree) {
-    return degree_error(degree, knots, "1 to 9 and at least");
+    return degree_error(degree, knots, "from 1 to 9 and at least");
   }
   return change_degree(knots, degree);
 }

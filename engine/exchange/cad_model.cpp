@@ -10,7 +10,7 @@
 namespace spoonbill {
 namespace {
 
-// Length limit of names that may get a number, in bytes.
+// Length limit, in bytes, of names to which a number may be appended.
 constexpr std::size_t shared_name_bytes_limit = cad_name_bytes_limit - 10;
 
 // Returns the length of the UTF-8 character at `start` in bytes; 0 if no character starts there.

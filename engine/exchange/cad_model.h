@@ -23,8 +23,8 @@ struct CadSurface {
   std::vector<TrimLoop> trims;  // loops around the visible part; empty if the whole surface is visible
   // Reason why there are no trims although the file shows only a part; empty otherwise.
   std::string trim_problem;
-  // Thickness of the material behind the surface; 0: none. Exported meshes include the walls of this shell,
-  // CAD files do not.
+  // Thickness of the material behind the surface, 0 for a surface without a shell. Exported meshes include
+  // the walls of the shell, CAD files do not.
   double shell_thickness_m = 0.0;
   // Largest distance of the trims, or of an untrimmed surface's sides, from the edges in the file.
   double trim_deviation_m = 0.0;
@@ -62,7 +62,7 @@ struct CadFileContent {
 // Solid joined from several faces: its mesh and its measures.
 struct CadSolid {
   std::string name;
-  // Indices into CadModel::surfaces of its faces, ascending, including the faces of its cavities.
+  // Indices, into CadModel::surfaces, of the faces of this solid and of its cavities; ascending.
   std::vector<std::size_t> surface_indices;
   TriangleMesh mesh;           // watertight; normals out of the material
   double chord_error_m = 0.0;  // largest distance of samples of faces and edges from their triangles

@@ -118,7 +118,8 @@ std::string cad_solid_to_bytes(const CadSolid& solid) {
 Result<CadSolid> cad_solid_from_bytes(std::string_view bytes, std::size_t surfaces,
                                       const std::string& source) {
   const std::size_t line = bytes.find('\n');
-  if (line == std::string_view::npos) return Error{ErrorCode::malformed, source + ": the solid has no head"};
+  if (line == std::string_view::npos)
+    return Error{ErrorCode::malformed, source + ": the header line of a solid is missing or cut off"};
   const auto json = parse_json(bytes.substr(0, line), source);
   if (!json) return json.error();
   FieldReader reader(json.value(), source);
@@ -127,7 +128,8 @@ Result<CadSolid> cad_solid_from_bytes(std::string_view bytes, std::size_t surfac
   read_head(reader, surfaces, solid, counts);
   if (!reader.status().ok()) return reader.status().error();
   if (!read_mesh(bytes.substr(line + 1), counts, solid.mesh)) {
-    return Error{ErrorCode::malformed, source + ": '" + solid.name + "': the mesh does not match its head"};
+    return Error{ErrorCode::malformed,
+                 source + ": '" + solid.name + "': the mesh does not match the header line"};
   }
   return solid;
 }

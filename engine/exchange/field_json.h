@@ -18,7 +18,7 @@ namespace spoonbill {
 // Returns true if the field is to be read: it is required, or it is optional and present.
 bool is_field_expected(const FieldReader& reader, const FieldForm& form);
 
-// Each function reads one value; a problem is stored in the reader.
+// Each function reads one value and stores a problem in the reader.
 void read_value(FieldReader& reader, const FieldForm& form, Range<double> range, std::string& value);
 void read_value(FieldReader& reader, const FieldForm& form, Range<double> range, bool& value);
 void read_value(FieldReader& reader, const FieldForm& form, Range<double> range, double& value);

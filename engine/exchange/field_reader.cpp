@@ -108,9 +108,9 @@ std::string FieldReader::text(std::string_view field) {
   const bool has_control =
       std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
   if (text.size() > text_limit) {
-    refuse(field, "is longer than " + std::to_string(text_limit) + " bytes, shorten it", ErrorCode::too_many);
+    refuse(field, "is longer than " + std::to_string(text_limit) + " bytes; shorten it", ErrorCode::too_many);
   }
-  if (has_control) refuse(field, "contains control characters, remove them", ErrorCode::malformed);
+  if (has_control) refuse(field, "contains control characters; remove them", ErrorCode::malformed);
   return text;
 }
 
@@ -135,7 +135,7 @@ double FieldReader::read_component(std::string_view field, const Json& value, Ra
   }
   if (range.contains(*read)) return *read;
   const double scale = is_length ? 1000.0 : 1.0;
-  refuse(field, "is " + json_excerpt(value) + ", must be " + number_text(range.low * scale) + " to " +
+  refuse(field, "is " + json_excerpt(value) + ", must be from " + number_text(range.low * scale) + " to " +
                     number_text(range.high * scale));
   return range.low;
 }

@@ -148,7 +148,7 @@ class StrictBuilder : public nlohmann::json_sax<Json> {
 
   Json root_;
   std::vector<Json*> open_;  // containers around the next value, outermost first
-  Json* slot_ = nullptr;     // destination of the next value, for the field named last
+  Json* slot_ = nullptr;     // destination of the next value, which is the value of the field named last
   std::size_t values_ = 0;
   ErrorCode code_ = ErrorCode::malformed;
   std::string complaint_;

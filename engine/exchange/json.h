@@ -31,12 +31,11 @@ Json number_to_json(double number);
 
 // Converts a length from metres to the shortest number of millimetres that, divided by 1000, gives `metres`
 // to the last bit. About one length in fifty has no such double, because doubles of millimetres can be up to
-// 2.4 % sparser than those of metres; it becomes a decimal in quotes. Lengths that a person would write in
-// millimetres are always plain numbers.
+// 2.4 % sparser than those of metres; such a length becomes a decimal in quotes. Lengths that a person would
+// write in millimetres are always plain numbers.
 Json length_to_json(double metres);
 
-// Returns the length in metres of a number of millimetres or a decimal in quotes; nullopt for any other
-// value.
+// Converts millimetres, given as a number or as a decimal in quotes, to metres; nullopt for any other value.
 std::optional<double> length_from_json(const Json& millimetres);
 
 // Returns a value as messages show it: on one line and at most 40 characters, longer text cut with "...".

@@ -87,8 +87,8 @@ bool has_three_words(std::istream& words) {
   return static_cast<bool>(words >> word >> word >> word);
 }
 
-// File system that contains only one file: a material that the file names could be a device, a pipe or a
-// secret.
+// File system that contains only one file. Other files that this one names, such as its materials, could be
+// devices, pipes or secrets.
 class SingleFileIo final : public Assimp::DefaultIOSystem {
  public:
   explicit SingleFileIo(std::string file) : file_(std::move(file)) {}
@@ -134,7 +134,7 @@ Status append(const aiMesh& from, const aiMatrix4x4& transform, TriangleMesh& to
     TriangleCorners corners{};
     for (int k = 0; k < 3; ++k) {
       if (face.mIndices[k] >= from.mNumVertices) {
-        return Error{ErrorCode::malformed, "a triangle names a vertex that does not exist"};
+        return Error{ErrorCode::malformed, "a triangle refers to a vertex that does not exist"};
       }
       corners[k] = static_cast<std::uint32_t>(first + face.mIndices[k]);
     }

@@ -1,4 +1,4 @@
-// Import of triangle meshes from foreign files: PLY by parse_ply() of points/ply_file.h, STL and OBJ through
+// Import of triangle meshes from foreign files: PLY by parse_ply() of scans/ply_file.h, STL and OBJ through
 // Assimp after checks that the file is complete. A hostile file can take over the process, so call these
 // functions in a child process with limits. Each Error says what is wrong, without the file's name.
 #pragma once
@@ -11,8 +11,8 @@
 namespace spoonbill {
 
 // Reads the triangles of an STL, OBJ or PLY file; polygons are triangulated, points and lines are ignored.
-// Coordinates are in the file's own unit (not yet metres), those of STL and OBJ in single precision. Other
-// files that this one names are not opened.
+// Coordinates are in the file's own unit (not yet metres); coordinates from STL and OBJ have single
+// precision. Other files that this one names are not opened.
 Result<TriangleMesh> import_mesh(const std::filesystem::path& file);
 
 // Checks that an STL file in text form ends with `endsolid`, with or without a name and a line feed. Binary

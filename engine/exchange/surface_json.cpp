@@ -37,7 +37,7 @@ void check_knot_steps(const KnotVector& direction, FieldReader& reader) {
     const double step = knots[i] - knots[i - 1];
     if (step == 0.0 || step >= smallest) continue;
     reader.refuse("knots[" + std::to_string(i) + "]",
-                  "is nearly equal to the knot before it, make the two equal", ErrorCode::degenerate);
+                  "is nearly equal to the knot before it; make the two equal", ErrorCode::degenerate);
   }
 }
 

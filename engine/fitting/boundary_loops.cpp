@@ -65,8 +65,8 @@ void append_simple_loops(const std::vector<std::uint32_t>& path, const PointGrap
   append_ring(std::move(open), graph, boundary_loops);
 }
 
-// Returns the widest angle, in radians, in which a node has no neighbours within two steps, measured in the
-// neighbours' plane; 0 with fewer than three neighbours.
+// Returns the widest empty angle around a node, in radians: an angle without neighbours within two steps,
+// measured in the plane of the neighbours. Returns 0 with fewer than three neighbours.
 double widest_gap(const PointGraph& graph, std::uint32_t node) {
   std::set<std::uint32_t> near;
   for (const std::uint32_t other : graph.adjacent(node)) {
@@ -121,8 +121,9 @@ PointGraph connect_within(const PointGraph& graph, const std::vector<std::uint32
   return make_point_graph(std::move(points), pairs);
 }
 
-// Returns the ring through a connected strip of nodes: from one end to the farthest node, and back on the
-// other side. Empty if there is no second path.
+// Returns a closed ring through a connected strip of nodes: along a first path from one end of the strip to
+// the farthest node, and back along a second path beside it. Returns an empty ring if there is no second
+// path.
 std::vector<std::uint32_t> find_ring(const PointGraph& part) {
   const auto farthest = [&](const ShortestPaths& paths) {
     return static_cast<std::uint32_t>(std::max_element(paths.length.begin(), paths.length.end()) -
@@ -134,7 +135,7 @@ std::vector<std::uint32_t> find_ring(const PointGraph& part) {
   const std::uint32_t b = farthest(paths);
   std::vector<std::uint32_t> there{b};
   for (std::uint32_t n = b; n != a;) there.push_back(n = paths.predecessor[n]);
-  // Nodes beside the first path are closed to the second path, except near its ends.
+  // The second path must not use the nodes of the first path and their neighbours, except near both ends.
   std::vector<bool> is_taken(part.size(), false);
   const double end_reach = 3.0 * mean_edge_length(part);
   for (const std::uint32_t n : there) {
@@ -203,7 +204,8 @@ std::vector<TriangleCorners> least_area_triangles(const std::vector<Vector3>& pa
   return triangles;
 }
 
-// Inserts a node between two consecutive ring nodes that share it as a neighbour but have no edge.
+// Inserts a node between two consecutive nodes of the ring that have no edge: the neighbour of both on the
+// shortest path, if there is one.
 std::vector<std::uint32_t> fill_steps(const PointGraph& graph, const std::vector<std::uint32_t>& ring) {
   std::vector<std::uint32_t> steps;
   std::set<std::uint32_t> is_taken(ring.begin(), ring.end());
@@ -232,7 +234,7 @@ std::vector<BoundaryLoop> find_mesh_boundaries(const std::vector<TriangleCorners
                                                const PointGraph& graph) {
   SPOONBILL_ASSERT_DEBUG(std::all_of(node_index.begin(), node_index.end(),
                                      [&](std::uint32_t node) { return node < graph.size(); }));
-  std::map<NodePair, int> sides;  // directed edge -> uses minus uses of the opposite direction
+  std::map<NodePair, int> sides;  // for each directed edge: its uses minus those of the opposite direction
   for (const TriangleCorners& t : triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = node_index[t[k]], b = node_index[t[(k + 1) % 3]];
@@ -252,7 +254,7 @@ std::vector<BoundaryLoop> find_mesh_boundaries(const std::vector<TriangleCorners
       path.push_back(step->second);
       next.erase(step);
     }
-    // The cap's triangles use the edges in the opposite direction.
+    // The cap's triangles are on the other side of the edges and use them in the opposite direction.
     std::reverse(path.begin(), path.end());
     append_simple_loops(path, graph, boundary_loops);
   }
@@ -265,8 +267,8 @@ std::vector<BoundaryLoop> find_cloud_boundaries(const PointGraph& graph) {
   for (std::uint32_t node = 0; node < graph.size(); ++node) {
     if (widest_gap(graph, node) > open_angle) open.push_back(node);
   }
-  // Numbers of steps to try. Noise can hide single boundary nodes; wider steps close rings that narrow ones
-  // cannot.
+  // Numbers of graph steps within which boundary nodes are linked, tried in this order. Noise can hide single
+  // boundary nodes; more steps bridge the gaps that this leaves in a ring.
   constexpr std::array steps{2, 4};
   std::vector<BoundaryLoop> boundary_loops;
   if (open.empty()) return boundary_loops;

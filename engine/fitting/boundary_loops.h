@@ -8,16 +8,16 @@
 
 namespace spoonbill {
 
-// Closed path along the nodes of a boundary. The loop of a mesh runs so that a cap over the hole has the
-// normals of the mesh.
+// Closed path along the nodes of a boundary. The loop of a mesh runs in the direction in which the normals of
+// a cap over the hole agree with those of the mesh.
 struct BoundaryLoop {
   std::vector<std::uint32_t> nodes;
   double length_m = 0.0;
   Vector3 centre_m = Vector3::Zero();
 };
 
-// Finds the loops along mesh edges with a single triangle, longest first. `node_index` maps each vertex to
-// its node of the graph.
+// Finds the loops along the mesh edges that belong to a single triangle, longest first. `node_index` maps
+// each vertex to its node of the graph.
 std::vector<BoundaryLoop> find_mesh_boundaries(const std::vector<TriangleCorners>& triangles,
                                                const std::vector<std::uint32_t>& node_index,
                                                const PointGraph& graph);

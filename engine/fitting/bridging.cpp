@@ -32,8 +32,8 @@ struct Opening {
 constexpr double opening_fraction = 0.12;
 constexpr std::size_t least_hole_nodes = 5;
 
-// Returns each node's position on the tangent plane of the paths' source node, onto which the surface is
-// unrolled along the shortest paths.
+// Unrolls the surface along the shortest paths onto the tangent plane of their source node. Returns the
+// position of each node on this plane.
 std::vector<Vector2> unroll(const FitPoints& points, const ShortestPaths& paths, const Vector3& facing) {
   const PointGraph& graph = points.graph;
   std::vector<std::uint32_t> order(graph.size());
@@ -72,7 +72,8 @@ std::vector<std::uint32_t> sample_evenly(const PointGraph& graph, const std::vec
   return chosen;
 }
 
-// Step lengths along a ring, with a penalty on turning normals that makes steps across a thin wall long.
+// Step lengths along a ring. A step counts as longer where the normals turn, so that no ring steps across a
+// thin wall.
 class RingSteps {
  public:
   RingSteps(const FitPoints& points, double reach) : points_(&points), reach_(reach) {}
@@ -109,7 +110,7 @@ class RingSteps {
   double reach_;
 };
 
-// Sorts the ring by direction from its centroid on a plane.
+// Sorts the nodes of the ring by their directions from the ring's centroid on a plane.
 std::vector<std::uint32_t> sort_by_angle(const std::vector<std::uint32_t>& ring,
                                          const std::vector<Vector2>& flat) {
   Vector2 centre = Vector2::Zero();
@@ -122,7 +123,8 @@ std::vector<std::uint32_t> sort_by_angle(const std::vector<std::uint32_t>& ring,
   return ordered;
 }
 
-// Orders the ring on the plane that gives the shortest closed path, which crosses itself least.
+// Sorts the nodes of the ring by angle on each of several planes and returns the shortest of the closed
+// paths, which crosses itself least.
 std::vector<std::uint32_t> order_ring(const FitPoints& points, const std::vector<std::uint32_t>& ring,
                                       const ShortestPaths& paths, double reach, const Vector3& facing,
                                       const Vector3& towards) {
@@ -161,11 +163,12 @@ bool runs_counterclockwise(const FitPoints& points, const std::vector<std::uint3
   return votes != 0.0 ? votes > 0.0 : area.dot(towards) > 0.0;
 }
 
-// Cuts out the nodes within a path length of `node`; their points go to the nearest remaining node. The loop
-// is the shortest closed path through the boundary nodes, with steps longer the more the normals turn. A
-// boundary that runs over the edge of a thin wall is folded onto itself in all views. The search therefore
-// starts from the order in a view, or from the order in the plane that is unrolled along shortest paths
-// (Schmidt, Grimm and Wyvill 2006). `towards` replaces the normal of a component without normals.
+// Cuts out the nodes within a path length of `node` and assigns their points to the nearest remaining nodes.
+// The loop is the shortest closed path found through the boundary nodes; steps count as longer where the
+// normals turn. The search starts from the order of the nodes in several planes: two views, and the plane
+// onto which the surface is unrolled along shortest paths (Schmidt, Grimm and Wyvill 2006), because a
+// boundary that runs over the edge of a thin wall is folded onto itself in every view. `towards` replaces the
+// normal of a component without normals.
 Opening cut_opening(const FitPoints& whole, std::uint32_t node, const Vector3& towards) {
   SPOONBILL_ASSERT(node < whole.graph.size());
   const double reach = opening_fraction * bounding_diagonal_m(whole.graph.points_m);
@@ -313,8 +316,8 @@ void span_gap(FitPoints& points, const std::vector<std::uint32_t>& a, const std:
   add_spanning_nodes(points, positions, normals, pairs);
 }
 
-// Joins two components by a tube between openings at their nearest pair of nodes. Openings that face each
-// other run in opposite directions, so one ring is reversed.
+// Joins two components by a tube between openings at their nearest pair of nodes. The loops of openings that
+// face each other run in opposite directions, so one of the two is reversed.
 Result<FitPoints> join_at(const FitPoints& a, const FitPoints& b, const NearestPair& pair) {
   const Vector3 between = (b.graph.points_m[pair.b] - a.graph.points_m[pair.a]).normalized();
   const Opening open_a = cut_opening(a, pair.a, between), open_b = cut_opening(b, pair.b, -between);
@@ -332,8 +335,8 @@ Result<FitPoints> join_at(const FitPoints& a, const FitPoints& b, const NearestP
   return both;
 }
 
-// Returns true if more than a third of a loop's nodes are farther from all other components than the facing
-// ends of one body would be.
+// Returns true if more than a third of a loop's nodes are far from all other components: farther than the two
+// facing ends of a body with a gap would be.
 bool is_free_end(const FitPoints& island, const BoundaryLoop& loop, const NearestPoints& others) {
   constexpr double most_distance_ratio = 0.25, most_node_fraction = 1.0 / 3.0;
   const double far = most_distance_ratio * loop.length_m / M_PI;

@@ -9,8 +9,9 @@
 namespace spoonbill {
 
 // Joins all components into one. Holes are spanned, each component is opened where it is nearest to the
-// others, and straight tubes of nodes span the gaps. The first component must be the largest; each of the
-// others joins whichever is nearest. Other open ends are capped. Fails if a component is too small to open.
+// others, and straight tubes of nodes span the gaps. The first component must be the largest. Each of the
+// others is joined to the nearest component. Other open ends are capped. Fails if a component is too small to
+// open.
 Result<FitPoints> bridge_islands(std::vector<FitPoints> islands);
 
 // Returns the number of sheets and open tubes that have an open end away from the gaps. bridge_islands() caps

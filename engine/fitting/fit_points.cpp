@@ -19,8 +19,8 @@ namespace {
 constexpr std::size_t least_scan_points = 30;
 constexpr std::size_t neighbours_per_node = 9;
 
-// Vertices nearer than this fraction of the median edge are one. It is above the rounding of files with few
-// digits, and below any edge that a scanner resolves.
+// Vertices that are closer together than this fraction of the median edge are merged. The fraction is above
+// the rounding errors of files with few digits, and below any edge that a scanner resolves.
 constexpr double joining_edge_fraction = 1e-3;
 
 // Returns the distance within which the vertices of a mesh are joined.
@@ -97,8 +97,8 @@ std::vector<double> compute_vertex_normals(Scan& scan) {
   return weights;
 }
 
-// Thins the scan to the limit by voxels and sums the weights; the weights of a cloud are numbers of points.
-// Triangles between two or three groups remain as edges between nodes.
+// Reduces the number of points to the limit by voxels and sums the weights; the weights of a cloud are
+// numbers of points. A triangle whose corners are in two or three voxels leaves edges between their nodes.
 void thin(Scan& scan, std::vector<double>& weights, std::vector<std::uint32_t>& representative) {
   if (scan.points_m.size() <= fitted_point_limit + fitted_point_limit / 4) return;
   const VoxelGroups groups = group_by_voxels(scan, voxel_side_for(scan, fitted_point_limit));
@@ -167,8 +167,8 @@ std::vector<NodePair> cloud_pairs(const Scan& nodes) {
   return pairs;
 }
 
-// Groups the points for the nodes. Nodes of a cloud average at least three points each, which spreads them
-// more evenly than the points.
+// Groups the points into nodes. In a cloud there are at least three points per node on average, which spreads
+// the nodes more evenly than the points.
 VoxelGroups groups_for_nodes(const Scan& scan) {
   const std::size_t count = scan.points_m.size();
   const std::size_t target = scan.triangles.empty() ? std::min(node_target, count / 3) : 4 * node_target;

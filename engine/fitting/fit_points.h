@@ -1,4 +1,5 @@
-// Scan prepared for fitting: the thinned points that take part, and a graph of fewer nodes over them.
+// Scan prepared for fitting: the thinned points to which the surface is fitted, and a graph of fewer nodes
+// over them.
 #pragma once
 
 #include <vector>
@@ -23,7 +24,7 @@ struct FitPoints {
   std::vector<Vector3> given_m;
   std::vector<std::uint32_t> representative;
   std::vector<double> weights;               // of each scan point: its area in a mesh, 1 in a cloud
-  PointGraph graph;                          // nodes among and between the points
+  PointGraph graph;                          // of the nodes, each of which represents nearby points
   std::vector<Vector3> node_normals;         // unit, or zero where unknown
   std::vector<std::uint32_t> node_index;     // node of each scan point
   std::vector<BoundaryLoop> boundary_loops;  // longest first
@@ -42,12 +43,12 @@ struct FitPoints {
 Result<FitPoints> make_fit_points(Scan scan);
 
 // Replaces the nodes by a subset of the points, without edges, and returns the nodes' parameters. `uv` holds
-// the known parameters of all points. Used for clouds in which neighbours in space mislead, such as clouds of
-// thin walls.
+// the known parameters of all points. Needed for clouds of thin walls, where a point's nearest neighbours in
+// space may be on the opposite face.
 std::vector<Vector2> use_points_as_nodes(FitPoints& points, const std::vector<Vector2>& uv);
 
-// Adds nodes that span a hole or a gap. `pairs` connects them to other nodes; the added ones are numbered
-// from graph.size() on.
+// Adds nodes that span a hole or a gap. `pairs` connects them to other nodes. The added nodes get the numbers
+// that follow those of the existing nodes.
 void add_spanning_nodes(FitPoints& points, const std::vector<Vector3>& positions_m,
                         const std::vector<Vector3>& normals, const std::vector<NodePair>& pairs);
 

@@ -71,7 +71,7 @@ ClosestPoint ClosestParameters::project_from(const Vector3& point, const Vector2
     const Vector3 away = at.position_m - point;
     const double a = at.du.squaredNorm(), b = at.du.dot(at.dv), c = at.dv.squaredNorm();
     const double p = at.du.dot(away), q = at.dv.dot(away);
-    // The matrix is Newton's where that is positive definite, otherwise that of Gauss-Newton.
+    // Uses Newton's matrix where it is positive definite, otherwise that of the Gauss-Newton method.
     double m = a + at.duu.dot(away), n = b + at.duv.dot(away), o = c + at.dvv.dot(away);
     if (!(m > 0.1 * a && o > 0.1 * c && m * o - n * n > 0.1 * (a * c - b * b))) m = a, n = b, o = c;
     const double ridge = 1e-9 * (m + o) + 1e-300;
@@ -109,7 +109,7 @@ namespace {
 constexpr int samples_per_span = 4, cusp_samples_per_span = 12;
 constexpr double cusp_cosine = -0.5;
 
-// Unit normals at cell centres; cell centres avoid poles and seams.
+// Unit normals at cell centres, which are never at a pole or a seam.
 struct NormalGrid {
   std::size_t rows = 0, columns = 0;
   std::vector<Vector2> uv;
@@ -148,7 +148,8 @@ bool turns_at(const NormalGrid& grid, bool u_closes, double cosine, std::size_t 
   return in_u || (j + 1 < grid.columns && normal.dot(grid.normals[i * grid.columns + j + 1]) < cosine);
 }
 
-// Data normals by position in (u, v), measured in spans; normals near a periodic seam are repeated beyond it.
+// Search structure for the normals of the data by position in (u, v), measured in spans. Normals near a
+// periodic seam are stored on both sides of it.
 class DataNormals {
  public:
   DataNormals(const Surface& surface, const NormalsAtParameters& data)
@@ -230,12 +231,12 @@ namespace {
 constexpr int distance_steps = 4;
 constexpr int error_samples_per_span = 4;
 constexpr std::size_t plane_points = 10;
-// A sample counts as seen if data are within this many mean spacings; beyond a boundary, if they are within
-// one.
+// A sample of the surface counts as seen if a data point is within this many mean spacings. At a boundary,
+// the limit is a single mean spacing.
 constexpr double seen_spacings = 3.0;
 
-// Returns true where errors are measured at the fitted points: the given vertices of a refined mesh may be
-// only a few corners of large triangles.
+// Returns true if errors are measured at the fitted points instead of the given ones: the given vertices of a
+// refined mesh may be just a few corners of large triangles.
 bool measures_fitted_points(const FitPoints& points) {
   return points.is_mesh && points.scan.points_m.size() > points.given_m.size();
 }

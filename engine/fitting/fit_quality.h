@@ -19,7 +19,8 @@ struct ClosestPoint {
   Vector3 point_m = Vector3::Zero();
 };
 
-// Closest-point search on one surface, which must outlive it unchanged. Thread-safe for reading.
+// Closest-point search on one surface, which must stay unchanged and outlive this object. Thread-safe for
+// reading.
 class ClosestParameters {
  public:
   explicit ClosestParameters(const Surface& surface);
@@ -81,12 +82,12 @@ struct Deviation {
 Deviation compute_deviation(std::vector<double> distances_m);
 
 struct FitErrors {
-  // Distances from the data to their closest surface points, without strays (data_to_surface) and with them
-  // (all_to_surface). The data are the given points, or points all over a mesh.
+  // Distances from the data to their closest surface points: data_to_surface excludes strays, all_to_surface
+  // includes them. The data are the given points or, for a coarse mesh, points all over it.
   Deviation data_to_surface, all_to_surface;
   std::size_t strays = 0;  // given points of zero trust: off the surface, unlike the points around them
-  // Distances from surface samples (4 x 4 a span) to the plane of the nearest data points, or to the nearest
-  // point where that is closer.
+  // Distances from surface samples, 4 x 4 per span, to the plane of the nearest data points, or to the
+  // nearest point if that is closer.
   Deviation surface_to_data;
   double unseen_fraction = 0.0;  // fraction of samples without data nearby, which surface_to_data ignores
   // Values for each data point, for pictures: position, surface parameters, distance, and the stray flag.

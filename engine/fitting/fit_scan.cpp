@@ -13,7 +13,7 @@
 namespace spoonbill {
 namespace {
 
-// Smallest number of points: a component needs 30 nodes, and each node of a cloud three points.
+// Smallest number of points of a cloud: a component needs 30 nodes, and each node needs three points.
 constexpr std::size_t least_cloud_points = 90;
 
 IslandChoice island_choice(const FitRequest& request) {
@@ -35,8 +35,8 @@ Result<FittedBody> fit_body(FitPoints island, const Parameterisation& start, Fit
   return body;
 }
 
-// Returns true if the points are a real wall: its two faces fit much closer than a single surface between
-// them.
+// Returns true if the points belong to a real wall: the two faces of a wall fit them much more closely than a
+// single surface between the faces does.
 bool is_closer_as_wall(const FittedBody& wall, const FittedBody& face) {
   constexpr double fraction = 0.8;
   return wall.errors.data_to_surface.p95_m < fraction * face.errors.data_to_surface.p95_m;
@@ -139,8 +139,8 @@ Status check_points_used(const ScanFit& fit) {
   if (2 * used >= fit.distinct) return {};
   return Error(ErrorCode::too_few,
                "only " + std::to_string(used) + " of its " + std::to_string(fit.distinct) +
-                   " distinct points take part in the fit, which found " + std::to_string(fit.islands) +
-                   " islands; choose which with --islands, or repair the scan and join its vertices",
+                   " distinct points are used by the fit, which found " + std::to_string(fit.islands) +
+                   " islands; choose among them with --islands, or repair the scan and join its vertices",
                "--islands");
 }
 

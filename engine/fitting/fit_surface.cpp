@@ -22,7 +22,7 @@ namespace spoonbill {
 namespace {
 
 inline constexpr int projection_steps = 3;
-// Lower bound of the fairness; it lets surfaces follow data without noise closely.
+// Lower bound of the fairness, low enough for a surface to follow data without noise closely.
 inline constexpr double least_fairness = 3e-4;
 
 // Data of one fitting stage: the nodes first, then all points.
@@ -45,7 +45,8 @@ inline double wrapped(double difference) {
   return difference - std::round(difference);
 }
 
-// Ranks fits: fits without folds come first, then by error, with a surcharge for each fold and cusp.
+// Rank of a fit: fits without folds come first; otherwise the error decides, with a surcharge for each fold
+// and cusp.
 struct FitQuality {
   std::size_t folds, cusps;
   double error_m;
@@ -67,7 +68,7 @@ class SurfaceFitter {
   Result<FittedSurface> run();
 
  private:
-  // State that unfolding changes, stored to restart from it.
+  // Copy of the state that unfolding changes, from which unfolding can restart.
   struct Folding {
     Surface surface;
     FoldCheck folds;
@@ -253,8 +254,8 @@ void SurfaceFitter::smooth_shifts(const std::vector<Vector2>& before, std::vecto
   }
 }
 
-// Returns true if the surface normal at `uv` agrees with the point's own. Spanning nodes may always move,
-// since their normals are guesses.
+// Returns true if the point may get the parameters `uv`: the surface normal there agrees with the point's own
+// normal. Spanning nodes may always move, because their normals are guesses.
 bool SurfaceFitter::can_move_to(const FittedData& data, std::size_t point, const Vector2& uv) const {
   if (least_agreement_ <= -1.0 || point + points_->spanning_nodes >= data.normals.size()) return true;
   const SurfacePoint at = evaluate(surface_, uv.x(), uv.y());
@@ -287,7 +288,8 @@ bool SurfaceFitter::within_tolerance(const FittedData& data) const {
   return true;
 }
 
-// Inserts knots. Returns false if the counts or the tolerance are reached.
+// Inserts knots. Returns false without a change if both directions have their full number of control points,
+// or if the fit is within the tolerance.
 bool SurfaceFitter::add_control_points() {
   const int u = structure_.u.control_point_count(), v = structure_.v.control_point_count();
   if (u >= settings_->control_u && v >= settings_->control_v) return false;
@@ -304,8 +306,9 @@ bool SurfaceFitter::add_control_points() {
   return true;
 }
 
-// Returns true if the surface normals oppose the scan's, spanning nodes excluded. Without normals, the
-// enclosed volume of a closed shape decides, or the orientation rule for open ones.
+// Returns true if the surface normals oppose those of the scan at most nodes; spanning nodes do not count.
+// Without normals, the sign of the enclosed volume decides for a closed shape, and is_inside_out() for an
+// open one.
 bool SurfaceFitter::has_inward_normals() const {
   double along = 0.0;
   for (std::size_t n = 0; n + points_->spanning_nodes < nodes_.uv.size(); ++n) {
@@ -387,10 +390,10 @@ Status SurfaceFitter::point_rounds() {
   return {};
 }
 
-// Returns the fit. For each point it takes the nearer of two closest points, searched from the point's
-// parameters and from the nearest sample, since points may have been held back or caught in a local minimum.
-// Normals that are estimated for clouds serve only to count folds; on thin walls some of them belong to the
-// other face, so they do not steer the fit.
+// Returns the fit. For each point, the closest point is searched from the point's parameters and from the
+// nearest sample, because a point may have been held back or caught in a local minimum; the nearer result
+// counts. Normals that are estimated for clouds are used only to count folds: on thin walls some of them
+// belong to the other face, so they must not steer the fit.
 FittedSurface SurfaceFitter::result() {
   const std::size_t count = points_->scan.points_m.size();
   all_.uv.resize(count);
@@ -428,7 +431,8 @@ constexpr double least_pole_size = 0.02;
 constexpr std::array fairness_factors{1.0, 3.0, 10.0, 30.0, 100.0, 300.0};
 // About every fourth point is held out of the fit for cross-validation.
 constexpr std::size_t held_out_stride = 4;
-// A larger fairness is chosen if its held-out error is at most the least one times this ratio.
+// Largest ratio of the chosen fairness's held-out error to the smallest one. The largest fairness within this
+// ratio is chosen.
 constexpr double most_error_ratio = 1.03;
 
 // Sets the fairness of all spans; spans with few data get up to `unseen_fairness` times more.
@@ -501,15 +505,16 @@ Status SurfaceFitter::choose_fairness(const FittedData& data) {
 constexpr double huber_deviations = 3.0;
 constexpr double stray_deviations = 5.0, most_strays = 0.15;
 constexpr std::size_t stray_neighbours = 15;
-// Smallest distance at which a point may count as a stray, as a fraction of the size, however exact the other
-// points are.
+// Smallest distance at which a point may count as a stray, as a fraction of the size, even if all other
+// points are exactly on the surface.
 constexpr double least_stray_fraction = 3e-4;
 
 // Distance beyond an open edge within which points still pull the edge outwards, as a fraction of the size.
 constexpr double edge_fraction = 0.02;
 
-// Reduces the weight of points that are farther off than nearly all others, but of no more than one point in
-// twenty: in early rounds the surface is wrong, not the points.
+// Reduces the weights of points that are farther from the surface than nearly all others. At most one point
+// in twenty is affected, because in early rounds large distances mean that the surface is wrong, not the
+// points.
 void SurfaceFitter::update_trust(FittedData& data) const {
   std::vector<double> sorted(data.distance_m.begin(),
                              data.distance_m.end() - static_cast<std::ptrdiff_t>(points_->spanning_nodes));
@@ -527,8 +532,8 @@ void SurfaceFitter::update_trust(FittedData& data) const {
   }
 }
 
-// Returns the distance from the tangent plane for points slightly beyond an open edge, which must extend
-// towards them; otherwise the full distance.
+// Returns the distance of a point from the surface. For a point slightly beyond an open edge, returns the
+// distance from the tangent plane instead, because the edge must be extended towards such points.
 double SurfaceFitter::off_surface_distance(const FittedData& data, std::size_t point) const {
   const Vector2& uv = data.uv[point];
   const auto is_end = [](double parameter) { return parameter <= 0.0 || parameter >= 1.0; };
@@ -540,8 +545,8 @@ double SurfaceFitter::off_surface_distance(const FittedData& data, std::size_t p
   return std::abs(at.du.cross(at.dv).normalized().dot(data.points_m[point] - at.position_m));
 }
 
-// Sets the trust of strays in a cloud to 0: points whose height differs from that of their neighbours in (u,
-// v). A wrong surface would be off by the same height for all of them.
+// Sets the trust of a cloud's strays to 0. A stray is a point whose height above the surface differs from
+// those of its neighbours in (u, v). Where the surface is wrong, neighbours have similar heights.
 void SurfaceFitter::distrust_strays() {
   if (points_->is_mesh) return;
   const Vector2 scale(static_cast<double>(span_count(structure_.u)),
@@ -584,11 +589,11 @@ constexpr int fold_rounds = 30, cusp_rounds = 60;
 // do not cross.
 constexpr std::array relaxation_rounds{10, 0};
 constexpr double most_fairness = 10.0;
-// Largest allowed error growth from removing cusps, relative to the surface without folds.
+// Largest factor by which removing cusps may increase the error of the surface without folds.
 constexpr double most_smoothing_ratio = 1.2;
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-// Returns the spans with folds, or if there are none, the spans with cusps, which are the smaller fault.
+// Returns the spans with folds or, if there are none, the spans with cusps. Cusps are the lesser fault.
 const std::vector<bool>& SurfaceFitter::faulty_spans() const {
   return folds_.folds > 0 ? folds_.span_folds : folds_.span_cusps;
 }
@@ -611,8 +616,8 @@ void SurfaceFitter::stiffen_faulty_spans() {
   }
 }
 
-// Moves the parameters of nodes in faulty spans towards the mean of their neighbours: in a harmonic map,
-// whose nodes are such means, no parameters cross.
+// Moves the parameters of nodes in faulty spans towards the mean of their neighbours' parameters. In a
+// harmonic map, where every node is at this mean, no parameters cross.
 void SurfaceFitter::relax_faulty_spans(int rounds) {
   const PointGraph& graph = points_->graph;
   const std::size_t count = points_->scan.points_m.size(), spanning = points_->spanning_nodes;
@@ -737,16 +742,16 @@ Status SurfaceFitter::unfold(int relaxation) {
 
 }  // namespace
 
-// Tries several bounds on the agreement of normals, since the best one differs from scan to scan. A strict
-// one keeps points in folds of the initial parameters; a loose one lets them slip to the other face. If all
-// results fold or are far off, a larger fairness is tried.
+// Tries several bounds on the agreement of normals, since the best bound differs from scan to scan. A strict
+// bound keeps points in the folds of the initial parameters; a loose bound lets points slip to the other
+// face. If all results fold or have large errors, a larger fairness is tried.
 Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
                                   const FitSettings& settings) {
   SPOONBILL_ASSERT(start.uv.size() == points.graph.size());
   SPOONBILL_ASSERT(settings.tolerance_m >= 0.0);
   struct Trial {
     double agreement, fairness_factor;
-    std::size_t cusps;      // largest number of cusps, without folds, with which the result is accepted
+    std::size_t cusps;      // largest number of cusps with which a result without folds is accepted
     double error_fraction;  // error below which the result is accepted, as a fraction of the size
   };
   constexpr std::size_t any = std::numeric_limits<std::size_t>::max();

@@ -14,8 +14,8 @@ namespace spoonbill {
 
 struct FitSettings {
   int control_u = 24, control_v = 24;  // largest numbers of control points
-  // The fit stops adding control points once all points except outliers are within this distance; 0: it uses
-  // all control points.
+  // The fit stops adding control points once all points except outliers are within this distance. 0: it
+  // always uses the full number.
   double tolerance_m = 0.0;
   Progress progress = {};  // a stop request makes the fit fail
 };
@@ -29,12 +29,13 @@ struct FittedSurface {
   FoldCheck folds;
 };
 
-// Fits a cubic surface. `start` holds the initial parameters of the nodes. Alternates least squares with
-// closest-point parameters, from few control points to many; knots are added where errors are large, and
-// outliers have less weight (Huber 1964). The fairness is the largest that cross-validation permits, raised
+// Fits a cubic surface. `start` holds the initial parameters of the nodes. Alternates between least squares
+// and closest-point parameters, from few control points to many. Knots are added where errors are large, and
+// outliers get less weight (Huber 1964). The fairness is the largest that cross-validation permits, raised
 // further where the surface folds. On thin walls several rules for keeping points on their face are tried,
-// and the best result is returned. Normals point out of closed shapes. Open shapes follow the scan's normals;
-// without such normals they point away from a tube's axis, from a sheet's hollow side, or to +z.
+// and the best result is returned. Normals point out of closed shapes. On open shapes they agree with the
+// scan's normals; without such normals they point away from a tube's axis, from a sheet's hollow side, or to
+// +z.
 Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
                                   const FitSettings& settings);
 

@@ -139,7 +139,8 @@ Vector3 estimate_local_normal(const PointGraph& graph, std::uint32_t node) {
 
 enum class SquareSide : unsigned char { none, left, right };
 
-// Cut along the shortest path between the ends, and the side of the path on which each node near it is.
+// Cut along the shortest path between the ends. For each node near the path, `side` is the side of the path
+// on which the node is.
 struct Cut {
   std::vector<SquareSide> side;
   std::vector<bool> near_pole;

@@ -22,8 +22,8 @@ struct ShapeEnds {
 // determines u. Fails if the ends touch or u does not close.
 Result<std::vector<Vector2>> harmonic_tube_map(const PointGraph& graph, const ShapeEnds& ends);
 
-// Maps a disc onto the unit square by Tutte's embedding. The ordered `loop` maps to the sides by arc
-// length; corners[0] maps to (0, 0), the others follow around.
+// Maps a disc onto the unit square by Tutte's embedding. The ordered `loop` maps to the sides by arc length;
+// corners[0] maps to (0, 0), the other corners to the other vertices in the order of the loop.
 Result<std::vector<Vector2>> harmonic_square_map(const PointGraph& graph,
                                                  const std::vector<std::uint32_t>& loop,
                                                  const std::array<std::size_t, 4>& corners);

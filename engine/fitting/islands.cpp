@@ -18,7 +18,7 @@ constexpr double doubtful_length = 1.5;
 // Least ratio of a gap to the widest step between the points of a node; within one surface, random points
 // leave no gap as wide as this.
 constexpr double gap_steps = 3.0;
-// Least cosine between the gap and the normals on both sides (45 degrees).
+// Smallest cosine of the angle between the gap and the normals on both sides (45 degrees).
 constexpr double facing_fraction = 0.7;
 constexpr std::size_t least_around = 5;
 // Smallest number of points of a component; fewer do not determine their spacing.

@@ -20,11 +20,11 @@ namespace {
 constexpr std::size_t normal_neighbours = 12;
 constexpr double longest_pair = 3.0;  // relative to the median
 constexpr double opposite_cosine = -0.5;
-// Largest height of a neighbour on the same face, relative to its distance; a larger height is a wall's
-// thickness.
+// Largest height of a neighbour on the same face, relative to its distance. A greater height is the thickness
+// of a wall.
 constexpr double most_height_fraction = 0.25;
-// Smallest fraction of pairs that must be flipped, and smallest fraction of the flipped pairs on either side;
-// at a wall, all of them are on one side.
+// Smallest fraction of all pairs in which normals must be opposite, and smallest fraction of these pairs
+// above and below the node's face. At a wall, all opposite pairs are on one side.
 constexpr double least_flipped_fraction = 0.003, least_side_fraction = 0.2;
 constexpr double clear_majority = 0.75;
 
@@ -151,8 +151,8 @@ std::vector<bool> find_inconsistent_normals(const Scan& nodes) {
 
 namespace {
 
-// Largest spread across a node's plane, relative to the spread along it; a larger spread indicates an edge,
-// or two faces in one.
+// Largest spread across a node's plane, relative to the spread along it. A greater spread means that the
+// points are at an edge or on two faces.
 constexpr double most_thickness = 0.15;
 constexpr double most_opposed = 0.2;
 
@@ -236,8 +236,8 @@ std::vector<Vector3> estimate_normals(const FitPoints& points, const Surface& su
 namespace {
 
 constexpr int orientation_samples = 32;
-// Sheets with less net outward area than this fraction count as flat: a cap's height below a sixtieth of its
-// width.
+// Sheets whose net outward area is below this fraction of their area count as flat, such as a cap whose
+// height is below a sixtieth of its width.
 constexpr double flat_cap_fraction = 0.05;
 // Components of the mean normal below this fraction of its length count as zero.
 constexpr double upright_fraction = 0.1;

@@ -17,8 +17,9 @@ namespace spoonbill {
 namespace {
 
 constexpr double sheet_fraction = 0.12;
-// Smallest ratio of the loop's area to the total area at which a surface that faces outwards counts as a
-// sheet. It is larger than sheet_fraction, since a closed body may not have been scanned at its foot.
+// A surface that faces outwards counts as a sheet if the ratio of the loop's area to the total area is at
+// least this. The ratio is larger than sheet_fraction, because the underside of a closed body may not have
+// been scanned.
 constexpr double outward_sheet_fraction = 0.3;
 constexpr double tube_fraction = 0.75;
 constexpr double roundness = 0.12;
@@ -159,7 +160,7 @@ Result<Parameterisation> start_tube(FitPoints& island) {
   if (island.boundary_loops.size() < 2) {
     return Error(ErrorCode::mismatch,
                  "a tube needs two open ends, " + std::to_string(island.boundary_loops.size()) +
-                     " found; try --kind closed",
+                     " were found; try --kind closed",
                  "kind");
   }
   const ShapeEnds ends{island.boundary_loops[0].nodes, island.boundary_loops[1].nodes};
@@ -169,8 +170,8 @@ Result<Parameterisation> start_tube(FitPoints& island) {
   return Parameterisation{ShapeKind::tube, std::move(uv).value()};
 }
 
-// Returns the loop positions for the square's corners: the nodes farthest out on the diagonals of the
-// principal plane.
+// Returns the positions in the loop of the square's corners: the nodes that are farthest out along the
+// diagonals of the principal plane.
 std::array<std::size_t, 4> find_corners(const PointGraph& graph, const BoundaryLoop& loop) {
   const Axes axes = principal_axes(graph);
   std::array<std::size_t, 4> corners{};
@@ -211,7 +212,7 @@ Result<Parameterisation> start_sheet(FitPoints& island) {
   if (island.boundary_loops.empty()) return start_sheet_on_plane(island);
   span_holes(island, 1);
   std::array<std::size_t, 4> corners = find_corners(island.graph, island.boundary_loops[0]);
-  // Brings the corners into the order of the loop.
+  // Sorts the corners into the order of the loop.
   BoundaryLoop loop = island.boundary_loops[0];
   const std::size_t count = loop.nodes.size();
   const auto ahead = [&](std::size_t c) { return (corners[c] + count - corners[0]) % count; };
@@ -270,10 +271,11 @@ constexpr double axis_roundness = 0.1;
 // can be separated, in raster cells.
 constexpr double thin_fraction = 0.1;
 constexpr double separable_cells = 3.0;
-// Mean number of points per raster cell if all points were on a path three times as long as the size.
+// Number of points per raster cell, on average, if all points were on a path three times as long as the size.
 constexpr double points_per_cell = 12.0;
 constexpr double face_fraction = 0.2;  // relative to the wall's thickness
-// If half the points are deeper than this fraction of the thickness, they may be one noisy face.
+// If half of the points are deeper than this fraction of the thickness, all points may belong to one noisy
+// face.
 constexpr double between_fraction = 0.25;
 constexpr double covered_fraction = 0.85;
 constexpr int least_cell_points = 2;         // for a cell to count

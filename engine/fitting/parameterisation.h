@@ -25,16 +25,16 @@ struct Parameterisation {
   std::vector<Vector2> uv;  // parameters of each point, in [0, 1]; NaN where unknown
 };
 
-// Detects the kind of shape from its boundary loops. A loop around much of the area makes a sheet, two loops
-// as long as the girth make a tube, smaller loops are holes of a closed shape.
+// Detects the kind of shape from its boundary loops. A shape with a loop around much of its area is a sheet.
+// A shape with two loops as long as its girth is a tube. Smaller loops are holes of a closed shape.
 ShapeKind classify_shape(const FitPoints& island);
 
 // Adds nodes over all holes and open ends, and clears the boundary loops.
 void span_all_holes(FitPoints& island);
 
-// Spans the holes with added nodes and computes (u, v) for all nodes. Poles of a closed shape are on its axis
-// if it is round about one, otherwise as far apart as possible. Fails if the shape cannot be parameterised as
-// `kind`.
+// Spans the holes with added nodes and computes (u, v) for all nodes. The poles of a closed shape are on its
+// axis if the shape is round about an axis, otherwise as far apart as possible. Fails if the shape cannot be
+// parameterised as `kind`.
 Result<Parameterisation> initial_parameterisation(FitPoints& island, ShapeKind kind);
 
 // Parameterisation of a thin wall about an axis, such as a bowl, cup or plate. Its two faces may be closer

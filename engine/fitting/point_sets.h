@@ -14,7 +14,7 @@
 
 namespace spoonbill {
 
-// Returns the value below which the fraction (0 to 1) of the values are; 0 for an empty list.
+// Returns the quantile below which the given fraction (0 to 1) of the values are; 0 for an empty list.
 inline double quantile(std::vector<double> values, double fraction) {
   SPOONBILL_ASSERT(fraction >= 0.0 && fraction <= 1.0);
   if (values.empty()) return 0.0;
@@ -28,7 +28,8 @@ inline double median(std::vector<double> values) {
   return quantile(std::move(values), 0.5);
 }
 
-// k-d tree over points that it does not own; they must outlive it unchanged. Thread-safe for reading.
+// k-d tree over points that the caller owns. The points must stay unchanged and outlive the tree. Thread-safe
+// for reading.
 class NearestPoints {
  public:
   // `points` must be finite and not empty.

@@ -221,8 +221,8 @@ constexpr double long_ring_edge_ratio = 1.5;
 // Smallest height of a spike relative to the radius of its ring. Tips in an even mesh are lower, since the
 // ring around them is wider.
 constexpr double least_spike_height = 4.0;
-// Smallest distance from the centre of the ring behind the tip's ring, and largest height of that ring above
-// the plane, in radii of the tip's ring.
+// Limits for the ring of vertices behind the tip's ring, in radii of the tip's ring: its smallest distance
+// from the centre of the tip's ring and its largest height above the plane of the tip's ring.
 constexpr double least_outer_radius = 1.2, most_height = 0.6;
 constexpr std::size_t most_measured = 1'000'000;
 
@@ -378,7 +378,7 @@ class EdgeSplitter {
       for (std::size_t k = 0; k < 3; ++k) pieces.push_back({t[k], midpoint[k], midpoint[(k + 2) % 3]});
     }
     if (split_count != 1 && split_count != 2) return;
-    // Starts at the only edge that is split, or after the only edge that is not.
+    // Starts at the edge that is split if there is only one, otherwise behind the one edge that is not split.
     std::size_t k = 0;
     while (split_count == 1 ? !is_split[k] : is_split[(k + 2) % 3]) ++k;
     const std::uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3], m = midpoint[k];

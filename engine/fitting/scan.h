@@ -26,8 +26,8 @@ struct VoxelGroups {
   std::size_t count = 0;
 };
 
-// Groups the points of each cubic cell. Normals that point along different half axes make separate groups, so
-// the two faces of a thin wall stay separate.
+// Groups the points of each cubic cell. Points whose normals are nearest to different half axes form separate
+// groups, so that the two faces of a thin wall stay separate.
 VoxelGroups group_by_voxels(const Scan& scan, double side_m);
 
 // Returns a cell side that gives about `groups` groups: within 10 % of this number where possible, never more
@@ -45,9 +45,9 @@ Scan average_groups(const Scan& scan, const VoxelGroups& groups);
 std::vector<bool> find_outliers(const std::vector<Vector3>& points_m, const std::vector<double>& counts);
 
 // Moves the tip of each spike into the centre of its ring of vertices and returns the tips; the connectivity
-// stays. A spike's edges are all much longer than usual, its height is at least four ring radii, and the
-// surface continues flat around its ring. The tip of a cone counts as a spike only if the cone is as slender,
-// a single fan of triangles, and stands on a plate.
+// does not change. All edges of a spike are much longer than usual, its height is at least four ring radii,
+// and the surface around its ring is flat. The tip of a cone counts as a spike only if the cone is as
+// slender, consists of a single fan of triangles, and rises from a plate.
 std::vector<std::uint32_t> level_spikes(Scan& mesh);
 
 // Halves edges until none is longer than `longest_m` or the triangle limit is reached. Both triangles of an

@@ -25,8 +25,9 @@ constexpr double smooth_pole_fraction = 0.1;
 constexpr double round_pole_fraction = 0.003;
 constexpr int round_pole_spans = 3;
 
-// Products of each control point's basis function with those of its neighbours up to `degree` away, so that
-// adding to a sum needs no search; the indices of an entry are (control, du + degree, dv + degree).
+// Normal equations of the fit: for each control point, the products of its basis function with those of its
+// neighbours up to `degree` away, so that adding needs no search. The indices of an entry are (control, du +
+// degree, dv + degree).
 class NormalEquations {
  public:
   NormalEquations(const SurfaceStructure& structure)
@@ -39,7 +40,8 @@ class NormalEquations {
         products_(static_cast<std::size_t>(rows_) * columns_ * block_),
         right_(static_cast<std::size_t>(rows_) * columns_, Vector3::Zero()) {}
 
-  // Adds the weighted equation sum a_k b_l over the net = value; a null pointer stands for zeros.
+  // Adds the weighted equation: sum over k and l of a_k b_l times the control point (rows[k], columns[l]) =
+  // value. A null `value` stands for zeros.
   void add(const double* a, const int* rows, const double* b, const int* columns, double weight,
            const Vector3* value) {
     for (int k = 0; k <= pu_; ++k) {
@@ -58,7 +60,7 @@ class NormalEquations {
   }
 
   void set_pole_weight(double weight) { pole_weight_ = weight; }
-  // Adds another system's matrix, scaled, without its right side.
+  // Adds the matrix of another system, multiplied by the factor, without its right-hand side.
   void add(const NormalEquations& other, double factor) {
     for (std::size_t k = 0; k < products_.size(); ++k) products_[k] += factor * other.products_[k];
   }
@@ -148,7 +150,7 @@ Result<Surface> NormalEquations::solve(const SurfaceStructure& structure) const 
   matrix.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
   const Error indefinite{ErrorCode::degenerate,
-                         "the points do not determine the surface; ask for fewer control points"};
+                         "the points do not determine the surface; use fewer control points"};
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0.0)) return indefinite;
   const Eigen::MatrixXd solution = factor.solve(right);
   if (!solution.allFinite()) return indefinite;
@@ -167,7 +169,8 @@ double span_weight(const ScatteredData& data, std::size_t spans) {
   return sum / static_cast<double>(spans);
 }
 
-// Basis derivatives at the two Gauss points of a span, scaled by the span length to their order.
+// Derivatives of the basis functions at the two Gauss points of a span. A derivative of order n is multiplied
+// by the n-th power of the span's length.
 struct SpanBasis {
   std::array<PieceBasis::Values, 2> at;
 };

@@ -1,5 +1,6 @@
 // Sparse least-squares fit of a surface to scattered points with known parameters. The blending matrix has
-// one row per point (Eq. 4 of Pungotra et al. 2013); a fairness term decides where there are no points.
+// one row per point (Eq. 4 of Pungotra et al. 2013); a fairness term determines the surface where there are
+// no points.
 #pragma once
 
 #include <span>

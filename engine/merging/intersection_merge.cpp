@@ -483,7 +483,7 @@ Error not_reached(bool with_fillet) {
                with_fillet
                    ? "a line of constant u does not reach the other patch, or the fillet's ball does not fit "
                      "there; choose a smaller fillet"
-                   : "a line of constant u does not cross the other patch, or touches it alone, as where one "
+                   : "a line of constant u does not cross the other patch, or only touches it, as where one "
                      "body is in the side of another that is as wide; make one wider, or move it",
                with_fillet ? "fillet" : "");
 }

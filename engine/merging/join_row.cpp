@@ -20,7 +20,7 @@ namespace {
 Result<Surface> cut_back(const Surface& patch, bool at_end, double parameter) {
   const double start = patch.v.domain_start(), end = patch.v.domain_end();
   if (!(parameter < 0.5 * (end - start))) {
-    return Error(ErrorCode::out_of_range, "the blend takes more than half of a patch; ask for a shorter one",
+    return Error(ErrorCode::out_of_range, "the blend takes more than half of a patch; choose a shorter one",
                  "blend");
   }
   return at_end ? part_of(patch, Direction::v, start, end - parameter)
@@ -98,7 +98,7 @@ Result<double> blend_cut_m(const std::vector<PreparedRow>& rows, std::size_t joi
   if (state.any_touching) {
     return Error(
         ErrorCode::mismatch,
-        "patches of the grid touch in one row of a joint and are apart in another; ask for a blend, or allow "
+        "patches of the grid touch in one row of a joint and are apart in another; choose a blend, or allow "
         "a larger tolerance");
   }
   if (state.all_continue_ahead || request.bridges_may_fold) return 0.0;

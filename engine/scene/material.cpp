@@ -55,7 +55,7 @@ Status check_region(const BodyRegion& region) {
   if (region.depth_m.low >= 0.0 && region.depth_m.low <= region.depth_m.high) return {};
   return Error{ErrorCode::inconsistent,
                "depth_mm is [" + number_text(region.depth_m.low * 1e3) + ", " +
-                   number_text(region.depth_m.high * 1e3) + "], must run from at least 0 to more",
+                   number_text(region.depth_m.high * 1e3) + "], must run from 0 or more to a larger depth",
                "depth_mm"};
 }
 

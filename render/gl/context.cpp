@@ -41,7 +41,7 @@ struct OsmesaContext::Functions {
 Result<std::unique_ptr<OsmesaContext>> OsmesaContext::make(int width_px, int height_px) {
   if (width_px < 1 || height_px < 1 || width_px > maximum_side_px || height_px > maximum_side_px) {
     return Error{ErrorCode::out_of_range, "picture size " + std::to_string(width_px) + "x" +
-                                              std::to_string(height_px) + ": each side must be 1 to " +
+                                              std::to_string(height_px) + ": each side must be from 1 to " +
                                               std::to_string(maximum_side_px) + " pixels"};
   }
   const auto library = SharedLibrary::open("libOSMesa.so.8", "libosmesa6");

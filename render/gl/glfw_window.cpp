@@ -127,7 +127,7 @@ void request_core_profile() {
 Result<std::unique_ptr<GlfwWindow>> GlfwWindow::make(int width, int height, const std::string& title) {
   if (width < 1 || height < 1 || width > maximum_side || height > maximum_side) {
     return Error{ErrorCode::out_of_range, "window size " + std::to_string(width) + "x" +
-                                              std::to_string(height) + ": each side must be 1 to " +
+                                              std::to_string(height) + ": each side must be from 1 to " +
                                               std::to_string(maximum_side)};
   }
   if (const Status opened = open_glfw(); !opened) return make_window_error(opened.error().message);

@@ -45,7 +45,7 @@ TEST(AutosaveClaim, WindowsOnOneDocumentDoNotShareAnAutosave) {
   const auto other = AutosaveClaim::acquire(place.path("."), "/a/spoon.json");
   EXPECT_NE(one->autosave().file(), other.autosave().file());
   // The first window crashes, and the next window that opens recovers its work. The second window keeps its
-  // own.
+  // own autosave.
   ASSERT_TRUE(one->autosave().write(handle("first")));
   ASSERT_TRUE(other.autosave().write(handle("second")));
   one.reset();
@@ -71,7 +71,7 @@ TEST(AutosaveClaim, LeavesNoLockBehind) {
   EXPECT_EQ(count(), before);
 }
 
-// A checkout or a synchronisation gives the document a newer time after the crash.
+// After the crash, a checkout or a synchronisation gives the document a newer time.
 TEST(Autosave, IsOfferedBesideANewerFileOfOtherContent) {
   using namespace std::chrono_literals;
   const Workplace place;
@@ -114,7 +114,7 @@ TEST(Autosave, ABrokenOneIsAnErrorAndStays) {
   }
 }
 
-// A mounted disk of 64 KiB.
+// A disk of 64 KiB, mounted for the test.
 class SmallDisk {
  public:
   explicit SmallDisk(const std::filesystem::path& folder) : folder_(folder) {

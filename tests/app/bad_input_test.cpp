@@ -1,4 +1,4 @@
-// Damaged, hostile and missing input: the program reports every fault in one line and does not crash.
+// Tests damaged, hostile and missing input: the program reports every fault in one line and does not crash.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -62,7 +62,7 @@ TEST(BadInput, DamagedModels) {
   }
 }
 
-// Writes the model with all its control points moved.
+// Writes the model after `move` has been applied to all its control points.
 template <class Move>
 std::string moved_model(const Workplace& place, const std::string& name, const Move& move) {
   auto document = read_document(place.path("model.json"));

@@ -1,4 +1,4 @@
-// CAD files read and written by the child process, and faults of the files and of the child.
+// Tests CAD files that the child process reads and writes, and faults of the files and of the child.
 #include "app/files/cad_file.h"
 
 #include <gtest/gtest.h>
@@ -140,7 +140,7 @@ TEST_F(CadFileTest, OtherContentIsRefused) {
   expect_refusal(write("nothing.step", nothing), "contains no");
 }
 
-// Truncated and changed files give a model or a one-line error, in bounded time.
+// Truncated and changed files give a model or an error of one line within a limited time.
 TEST_F(CadFileTest, DamagedFilesGiveAModelOrOneLine) {
   Random random(11);
   int refused = 0, read_all_the_same = 0;
@@ -183,7 +183,7 @@ TEST_F(CadFileTest, NumbersBeyondAllBoundsAreRefused) {
     const std::string file = write("beyond.step", text);
     const auto model = read(file);
     if (model) {
-      // OpenCASCADE may parse the text as another number, which must be in range.
+      // OpenCASCADE may read the changed text as another number, which must be in range.
       for (const double x : model->surfaces[0].surface.net.x) EXPECT_LE(std::abs(x), 100.0);
     } else {
       expect_one_line(file, model.error().message);

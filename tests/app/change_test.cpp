@@ -1,4 +1,4 @@
-// The change command.
+// Tests the change command.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -73,7 +73,7 @@ TEST(ChangeCommand, OpenedAndCappedAndClosed) {
   const Outcome outcome =
       run({"change", opened, "cap", "v_end", "2mm", "--out", capped, "--tolerance", "0.05mm"});
   ASSERT_EQ(outcome.code, exit_done) << outcome.err;
-  // The slit is closed again.
+  // The capped body is closed and can be simulated.
   EXPECT_FALSE(json_of(run({"info", capped, "--json"}).out)["lattice"].is_null());
   const std::string slit = place.text("slit.json"), closed = place.text("closed.json");
   ASSERT_EQ(run({"change", handle, "split", "u=0.5", "--out", slit}).code, exit_done);
@@ -87,7 +87,7 @@ TEST(ChangeCommand, OpenedAndCappedAndClosed) {
   EXPECT_EQ(knots_at_seam(), 3);
 }
 
-// A closed body with a shell thickness could not be sculpted.
+// A closed body that still had a shell thickness could not be sculpted.
 TEST(ChangeCommand, AShellThatIsCappedIsASolid) {
   const Workplace place;
   const std::string opened = place.text("opened.json"), capped = place.text("capped.json");
@@ -159,8 +159,8 @@ TEST(ChangeCommand, SaysWhatADegreeTakes) {
   const Workplace place;
   const std::string ball = place.text("ball.json");
   ASSERT_EQ(run({"new", "sphere", "--control", "40x48", "--out", ball}).code, exit_done);
-  // The control points follow from 43 spans of degree 5 in v: 42 inner knots of multiplicity five, and ten at
-  // an end.
+  // The 48 control points in v make 43 spans of degree 5. At degree 9 they have 42 inner knots of
+  // multiplicity five and ten knots at each end, so 42 x 5 + 10 control points.
   const Outcome outcome = run({"change", ball, "degree", "v", "9", "--out", place.text("out.json")});
   EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
   EXPECT_NE(outcome.err.find("needs 220 control points, and a document holds 200"), std::string::npos)

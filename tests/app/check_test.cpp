@@ -1,4 +1,4 @@
-// The check command.
+// Tests the check command.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -62,7 +62,7 @@ TEST(Check, AStraightTubeHasNoHollowRadius) {
   EXPECT_TRUE(body["smallest_concave_radius_m"].is_null()) << body["smallest_concave_radius_m"];
 }
 
-// Single precision leaves the points of a pole some 10 nm apart.
+// In single precision the points of a pole are some 10 nm apart.
 TEST(Check, AnEdgeOfAMillionthIsAPoint) {
   const Workplace place;
   Document ball = made(place, {"new", "sphere", "--radius", "20mm"});
@@ -81,8 +81,8 @@ TEST(Check, AnEdgeOfAMillionthIsAPoint) {
   }
 }
 
-// A bent handle whose poles were fitted in single precision, so that their points lie some 10 nm apart. The
-// thickness is that of its bent part, found from a fine triangulation.
+// The poles of this bent handle were fitted in single precision, so that their points are some 10 nm apart.
+// The expected thickness is that of the bent part, measured on a fine triangulation.
 TEST(Check, ABentHandleIsNotThinAtItsPoles) {
   const Outcome outcome = run({"check", SPOONBILL_TEST_INPUTS "/bent-handle.json", "--json"});
   ASSERT_EQ(outcome.code, exit_done) << outcome.err;
@@ -97,7 +97,7 @@ bool has_null(const Json& json) {
   return std::any_of(json.begin(), json.end(), [](const Json& part) { return has_null(part); });
 }
 
-// To a point and to a line.
+// The body is collapsed to a point, and then to a line.
 TEST(Check, ACollapsedBodyHasNoCurvature) {
   const Workplace place;
   const Document ball = made(place, {"new", "sphere", "--radius", "20mm"});
@@ -193,7 +193,8 @@ TEST(Check, WeighsRegionsByWhatTheyAreMadeOf) {
   save(place, "grip.json", document);
   const Json plain = check_of(place, "plain.json")["bodies"][0],
              grip = check_of(place, "grip.json")["bodies"][0];
-  // A cell has one material, which shifts the boundary by at most half of one of ten or more layers.
+  // A cell has a single material. This shifts the boundary between the materials by at most half of a layer
+  // of cells, of which there are ten or more.
   EXPECT_NEAR(grip["mass_kg"].get<double>() / plain["mass_kg"].get<double>(), 0.75, 0.03);
   EXPECT_EQ(grip["materials"], Json::array({"modelling-clay", "light"}));
   EXPECT_GT(grip["centre_of_mass_m"][1], 0.003);
@@ -236,7 +237,7 @@ TEST(Check, TellsWhichBodiesAreInEachOther) {
   bodies.resize(3, bodies[0]);
   for (int b = 0; b < 3; ++b) {
     bodies[static_cast<std::size_t>(b)].name = std::string(1, static_cast<char>('a' + b));
-    // The second ball overlaps the first by a tenth; the third is a tenth away from the second.
+    // The second ball overlaps the first by a tenth. The third ball is a tenth away from the second.
     for (double& x : bodies[static_cast<std::size_t>(b)].surface.net.x)
       x += std::array{0.0, 0.9, 2.0}[b] * size;
   }

@@ -80,7 +80,7 @@ TEST(CommandLine, SaysWhatIsWrongAndWhereHelpIs) {
       {{"new", "sphere", "--radius", "7", "--out", out},
        "'7' is not a length with a unit, like 5mm (mm, cm, m or in); see"},
       {{"change", model, "reverse", "v", "--tolerance", "0", "--out", out},
-       "must be 1e-06 mm to 100 mm; see"},
+       "must be from 1e-06 mm to 100 mm; see"},
       {{"change", model, "reverse", "v", "--body", "none", "--out", out}, "not in range 1 to 1000"}};
   for (const auto& [arguments, told] : wrong) {
     const Outcome outcome = run(arguments);
@@ -90,7 +90,7 @@ TEST(CommandLine, SaysWhatIsWrongAndWhereHelpIs) {
   }
 }
 
-// A document written under another ending could replace a scan or a CAD file.
+// A document written under another ending could overwrite a scan or a CAD file.
 TEST(CommandLine, DocumentsAreWrittenAsJsonAlone) {
   const Workplace place;
   const std::string model = place.text("model.json");

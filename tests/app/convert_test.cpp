@@ -1,4 +1,4 @@
-// The convert command, run as a process.
+// Tests the convert command as a process.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -210,7 +210,7 @@ TEST_F(ConvertTest, InfoTellsWhatACadFileHolds) {
 }
 
 TEST_F(ConvertTest, WhatMakesNoSenseIsRefused) {
-  expect_failure({handle_, place_.text("a.txt")}, "does not have the ending of a format that is written");
+  expect_failure({handle_, place_.text("a.txt")}, "does not have the ending of a format that can be written");
   expect_failure({place_.text("script.json.txt"), place_.text("a.step")},
                  "does not have the ending of a model");
   expect_failure({place_.text("a.stl"), place_.text("a.step")}, "is a mesh");
@@ -223,11 +223,12 @@ TEST_F(ConvertTest, WhatMakesNoSenseIsRefused) {
   expect_failure({handle_, place_.text("a.step"), "--tolerance", "1mm"}, "is converted exactly");
   expect_failure({handle_, place_.text("a.3mf"), "--unit", "in"}, "is written in millimetres");
   expect_failure({handle_, place_.text("a.stl"), "--chord", "5"}, "is not a length", exit_wrong_use);
-  expect_failure({handle_, place_.text("a.stl"), "--chord", "0mm"}, "must be 0.0001 mm to 100 mm",
+  expect_failure({handle_, place_.text("a.stl"), "--chord", "0mm"}, "must be from 0.0001 mm to 100 mm",
                  exit_wrong_use);
   expect_failure({handle_, place_.text("a.stl"), "--chord", "nanmm"}, "is not a length", exit_wrong_use);
   expect_failure({handle_, place_.text("a.stl"), "--unit", "ell"}, "is not a unit", exit_wrong_use);
-  expect_failure({handle_, place_.text("a.step"), "--schema", "ap1"}, "is not a schema", exit_wrong_use);
+  expect_failure({handle_, place_.text("a.step"), "--schema", "ap1"}, "is not a supported STEP schema",
+                 exit_wrong_use);
   expect_failure({handle_}, "OUT", exit_wrong_use);
 }
 
@@ -243,7 +244,7 @@ TEST_F(ConvertTest, AnOlderFileStaysWhenAConversionFails) {
     EXPECT_EQ(failed.code, exit_failed);
     EXPECT_EQ(content_of(place_.path(name)), "precious");
   }
-  // No temporary files remain.
+  // No temporary files are left.
   for (const auto& entry : std::filesystem::directory_iterator(place_.path(""))) {
     EXPECT_EQ(entry.path().string().find("unfinished"), std::string::npos) << entry.path();
   }
@@ -279,8 +280,8 @@ TEST_F(ConvertTest, WhatDoesNotGoOutIsSaid) {
   }
 }
 
-// A shell has both faces and walls along all edges, including holes; one that is too thick has only its
-// surface.
+// The mesh of a shell has both faces and walls along all edges, including those of holes. A shell that is too
+// thick has only its surface.
 TEST_F(ConvertTest, AShellGoesOutAsAMeshOfItsThickness) {
   const std::string plate = std::string(SPOONBILL_ASSETS) + "/models/trimmed-plate.json";
   Json document = json_of(content_of(plate));
@@ -327,7 +328,7 @@ TEST_F(ConvertTest, NoMessageCommandsTheTerminal) {
       << outcome.err;
 }
 
-// The child process presses Ctrl+C before the work begins; it takes effect at the first check.
+// The child process sends itself Ctrl+C before the work begins; the signal takes effect at the first check.
 int exit_code_when_interrupted(const std::string& in, const std::string& out) {
   const pid_t process = fork();
   if (process == 0) {

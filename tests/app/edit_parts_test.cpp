@@ -72,7 +72,8 @@ TEST(SurfacePick, FindsWhereASphereFirstTouches) {
   const Ray down{Vector3(0.03, 0.1, 0.0), -Vector3::UnitY()};
   const auto touch = pick.first_touch(down, 0.006);
   ASSERT_TRUE(touch);
-  // The control points are 2.5 mm high. The section bulges a little, and the balls add half a cell of 1 mm.
+  // The control points are 2.5 mm high. The section bulges a little beyond them, and the balls of the samples
+  // add half a cell of 1 mm.
   EXPECT_NEAR(touch->centre_m.y(), 0.0025 + 0.006, 1e-3);
   EXPECT_GT(touch->outward.y(), 0.99);
   EXPECT_FALSE(pick.first_touch({Vector3(0.03, 0.1, 0.05), -Vector3::UnitY()}, 0.006));
@@ -101,7 +102,7 @@ TEST(MouseHand, HoversPressesAndLetsGo) {
   HandTarget pressed;
   for (int frame = 0; frame < 30; ++frame) pressed = follow(true);
   EXPECT_NEAR((hover.pose.position_m - pressed.pose.position_m).norm(), 0.005,
-              1e-4);  // hover gap plus strength
+              1e-4);  // the hover gap plus the strength
   pointer.wheel = 2.0;
   const HandTarget deeper = follow(true);
   EXPECT_NEAR((deeper.pose.position_m - pressed.pose.position_m).norm(), 0.002, 1e-9);

@@ -24,8 +24,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// The editor in a window, driven by X events from xdotool. Software drawing on a loaded machine takes up to a
-// second per frame, so every wait ends at a state of the frame log.
+// The editor in a window, controlled by X events from xdotool. Software drawing on a loaded machine takes up
+// to a second per frame, so every test waits until the frame log shows a state, not for a fixed time.
 class EditWindow : public testing::Test {
  protected:
   void SetUp() override {
@@ -71,14 +71,14 @@ class EditWindow : public testing::Test {
     });
   }
 
-  // Waits until `count` further frames were started and shown, which include all earlier events.
+  // Waits until `count` further frames were started and shown. These frames include all earlier events.
   bool wait_frames(int count) const {
     const Json before = shown();
     const int from = before.empty() ? 0 : before["frame"].get<int>();
     return wait_shown([&](const Json& frame) { return frame["frame"].get<int>() > from + count; });
   }
 
-  // Waits until `count` further ticks were computed, which take longer on a loaded machine.
+  // Waits until `count` further ticks were computed, which takes longer on a loaded machine.
   bool wait_ticks(int count) const {
     const int from = shown()["tick"].get<int>();
     return wait_shown([&](const Json& frame) { return frame["tick"].get<int>() >= from + count; });
@@ -278,7 +278,7 @@ TEST_F(EditWindow, KilledInAStrokeItLosesASecondAtMost) {
   ASSERT_TRUE(wait_shown([](const Json& frame) { return frame["pressing"].get<bool>(); }));
   ASSERT_TRUE(hands("mousemove 900 330"));
   const Autosave autosave(place_.path("state") / "spoonbill", place_.path("handle.json"));
-  // An autosave lags behind the shape by at most a second, so a bent shape is soon saved.
+  // An autosave is at most a second older than the shape, so the bent shape is saved soon.
   EXPECT_TRUE(wait_for([&] {
     const auto saved = autosave.recovered_document();
     return saved && saved.value() && largest_difference(*saved.value(), held_model()) > 1e-4;

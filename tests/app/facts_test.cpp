@@ -41,7 +41,8 @@ TEST(Info, TellsOfAModel) {
   EXPECT_NE(run({"info", place.text("model.json")}).out.find("Size"), std::string::npos);
 }
 
-// One number everywhere, from the exact volume; the lattice's own mass has its own name.
+// The mass is the same in all reports and computed from the exact volume. The mass of the lattice has another
+// name.
 TEST(Info, AMassIsOneNumber) {
   const Workplace place;
   const Document document = read_document(place.path("model.json")).value();
@@ -67,8 +68,8 @@ TEST(Info, AMassIsOneNumber) {
   EXPECT_NEAR(shown.mass_kg, 2.0 * mass_kg, 1e-9 * mass_kg);
 }
 
-// Neither drives the terminal nor reorders its line, and JSON holds the same name. Documents with the
-// controls of ASCII are refused.
+// A name must neither control the terminal nor change the order of the letters in its line; the JSON has the
+// name unchanged. Documents with ASCII control characters in names are refused.
 TEST(Info, EscapesControlsInNames) {
   const Workplace place;
   Document document = read_document(place.path("model.json")).value();
@@ -99,7 +100,7 @@ TEST(Info, EscapesWhatIsNotText) {
   EXPECT_EQ(without_controls("\n\xe2\x80\xa8"), "??");
 }
 
-// Every body is listed with the domain of its parameters, which `change` and `--bodies` need.
+// Every body is listed with the domain of its parameters, because `change` and `--bodies` need these.
 TEST(Info, TellsOfEveryBody) {
   const Workplace place;
   Document two = read_document(place.path("model.json")).value();
@@ -127,7 +128,7 @@ TEST(Info, TellsOfEveryBody) {
   EXPECT_NE(lines.find("periodic, from 0 to "), std::string::npos) << lines;
 }
 
-// A trim loop keeps part of the handle; the reported size is that of the kept part.
+// The trim loop keeps a part of the handle, and the reported size is that of this part.
 TEST(Info, TheSizeOfATrimmedBodyIsOfWhatIsKept) {
   const Workplace place;
   Document model = read_document(place.path("model.json")).value();

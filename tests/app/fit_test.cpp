@@ -1,4 +1,4 @@
-// The fit command, from the file of a scan to a document that the program opens.
+// Tests the fit command, from the file of a scan to a document that the program can open.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -111,7 +111,7 @@ TEST_F(FitTest, SaysWhetherTheToleranceIsHeld) {
   EXPECT_EQ(coarse.at("within_tolerance"), false);
   EXPECT_TRUE(says(coarse, missed)) << coarse.at("remarks");
   EXPECT_TRUE(says(coarse, "not 0.001 mm")) << coarse.at("remarks");
-  // The fit with this many control points misses the scan by less than the tolerance.
+  // With this number of control points, the fit is closer to the scan than the tolerance.
   const Json held = json_of_fit(scan, {"--control", "24x24", "--tolerance", "0.2mm"});
   EXPECT_EQ(held.at("within_tolerance"), true);
   EXPECT_FALSE(says(held, missed)) << held.at("remarks");
@@ -153,7 +153,7 @@ TEST(FitFacts, SaysOfFoldsWhichBodyHasThem) {
   EXPECT_TRUE(remarks[0].starts_with("the surface of body 2 folds at 3 of 640 samples")) << remarks[0];
 }
 
-// Two halves of a pipe need caps at their open ends; two caps of a ball close each other.
+// Bridging two halves of a pipe requires caps at their outer ends. Two halves of a ball close each other.
 TEST_F(FitTest, SaysWhichIslandsBridgingCaps) {
   const auto bridged = [&](const Scan& scan) {
     return json_of_fit(write("islands.xyz", xyz_of(scan, 1e3)),
@@ -272,7 +272,7 @@ std::string sample_scan(const std::string& name) {
   return std::string(SPOONBILL_SCAN_SAMPLES) + "/" + name;
 }
 
-// The vertices of its triangles differ by up to 0.2 micrometres.
+// In this file, the copies of a vertex in different triangles differ by up to 0.2 micrometres.
 TEST_F(FitTest, VerticesThatDifferByRoundingAreOne) {
   const Json json = json_of_fit(sample_scan("unwelded-hemisphere.stl"));
   EXPECT_EQ(json.at("islands"), 1);
@@ -281,7 +281,7 @@ TEST_F(FitTest, VerticesThatDifferByRoundingAreOne) {
   EXPECT_NEAR(json.at("size_mm")[0].get<double>(), 40.0, 0.1);
   EXPECT_NEAR(json.at("size_mm")[2].get<double>(), 20.0, 0.1);
   EXPECT_EQ(json.at("points_used"), json.at("points_distinct"));
-  // The median edge is 3.9 mm.
+  // The joining distance is a thousandth of the median edge, which is 3.9 mm long.
   EXPECT_NEAR(json.at("joined_within_m").get<double>(), 3.9e-6, 1e-7);
 }
 
@@ -299,7 +299,7 @@ TEST_F(FitTest, AnUnknownElementBeforeTheVerticesIsSkipped) {
   }
 }
 
-// Vertices that are farther apart than the joining distance leave a heap of triangles.
+// These vertices are farther apart than the joining distance, so the triangles do not form a surface.
 TEST_F(FitTest, LessThanHalfOfTheScanIsNoFitUnlessIslandsAreChosen) {
   TriangleMesh loose = ball_mesh(12, 24, 20.0);
   const TriangleMesh ball = loose;
@@ -317,7 +317,7 @@ TEST_F(FitTest, LessThanHalfOfTheScanIsNoFitUnlessIslandsAreChosen) {
   EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
   EXPECT_FALSE(std::filesystem::exists(out()));
 
-  // The largest ball has 900 of 2,300 points.
+  // The largest ball has 900 of 2,300 points, which is less than half.
   Scan balls = ellipsoid_cloud(900, {0.02, 0.02, 0.02});
   append(balls, ellipsoid_cloud(700, {0.01, 0.01, 0.01}), {0.1, 0.0, 0.0});
   append(balls, ellipsoid_cloud(700, {0.01, 0.01, 0.01}), {0.2, 0.0, 0.0});
@@ -397,7 +397,7 @@ TEST_F(FitTest, WrongUseIsExitTwo) {
   }
 }
 
-// Real scans, in the folder that an environment variable names; see README.
+// Tests real scans in the folder that an environment variable names; see README.
 class RealScans : public FitTest {
  protected:
   void SetUp() override {
@@ -405,7 +405,8 @@ class RealScans : public FitTest {
     if (folder == nullptr) GTEST_SKIP() << "SPOONBILL_SCANS names no folder with scans";
     scans_ = folder;
   }
-  // Expects every body to be within a millimetre and a hundredth of the object's size, without folds.
+  // Expects the error of every body to be at most a millimetre and a hundredth of the object's size, without
+  // folds.
   void expect_good(const std::string& name, const std::vector<std::string>& options, double size_m,
                    std::size_t bodies) {
     const Json json = json_of_fit((scans_ / name).string(), options);
@@ -437,7 +438,7 @@ TEST_F(RealScans, SpoonAsTwoBodiesWithinAMillimetre) {
   expect_good("ycb_031_spoon.ply", {"--islands", "all"}, 0.184, 2);
 }
 
-// The scan lacks the neck of the spoon: handle and bowl are bridged into one closed body.
+// The neck of the spoon is missing in the scan, so handle and bowl are bridged into one closed body.
 TEST_F(RealScans, SpoonsHandleAndBowlAreMerged) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   json_of_fit((scans_ / "ycb_031_spoon.ply").string(), {"--islands", "all"});
@@ -459,7 +460,7 @@ TEST_F(RealScans, SpoonBridgedIsOneBodyWithinAMillimetre) {
   expect_good("ycb_031_spoon.ply", {"--islands", "bridge"}, 0.184, 1);
 }
 
-// Every fitted scan can be sculpted; bowls with a wall get a box of cells.
+// Every fitted scan can be sculpted; bowls with a thin wall get a box of cells.
 TEST_F(RealScans, AllHoldALattice) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const auto& [scan, in_box] : {std::pair("ycb_024_bowl.ply", true), {"ycb_016_pear.ply", false}}) {

@@ -16,7 +16,7 @@ HandTarget at_height(double y_m, std::uint32_t buttons = 0) {
   return {{Vector3(0.05, y_m, 0.0), Quaternion::Identity()}, buttons};
 }
 
-// The haptic thread's part of a live session, called on the test's thread, whose allocations are counted.
+// The haptic thread's part of a live session. It runs on the test's thread, whose allocations are counted.
 class Side {
  public:
   Side() {
@@ -57,7 +57,7 @@ class Side {
     ASSERT_TRUE(frame().recording);
   }
 
-  // Runs ticks. Returns their number of heap allocations.
+  // Runs ticks and returns the number of heap allocations that they made.
   std::size_t tick(int count, std::uint64_t dropped = 0) {
     const std::size_t before = allocation_count();
     for (int i = 0; i < count; ++i) side_->tick({index_++, dropped});

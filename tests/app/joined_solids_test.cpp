@@ -1,4 +1,5 @@
-// Documents whose bodies are faces of one solid, as parts from CAD are, converted and checked as that solid.
+// Tests documents whose bodies are the faces of one solid, as in parts from CAD: they are converted and
+// checked as this solid.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -68,7 +69,8 @@ class JoinedSolids : public testing::Test {
   Workplace place_;
 };
 
-// Returns the volume in the file's unit, or -1 unless every edge is in two triangles of opposite direction.
+// Returns the enclosed volume in the file's unit. Returns -1 unless every edge is used by two triangles in
+// opposite directions.
 double volume_of_watertight_obj(const std::string& text) {
   std::istringstream lines(text);
   std::vector<Vector3> points;
@@ -106,7 +108,7 @@ TEST_F(JoinedSolids, LeaveAsOneWatertightMesh) {
       EXPECT_EQ(facts["meshes"], 1);
       EXPECT_EQ(facts["closed_meshes"], 1);
       EXPECT_EQ(facts["triangles"], 12);
-      // The note is about the import.
+      // Only the STEP file gives a note, which is about its import.
       EXPECT_EQ(facts["notes"].size(), std::string(in) == "box.step" ? 1u : 0u) << facts["notes"];
     }
     EXPECT_NEAR(volume_of_watertight_obj(content_of(place_.path("box.obj"))), 6000.0, 1e-6);
@@ -136,15 +138,15 @@ TEST_F(JoinedSolids, FacesThatDoNotCloseAreMeshesEachWithANote) {
                                          "faces that are not part of a solid: 5, each a separate mesh"}));
 }
 
-// The gap is larger than the error of two approximated faces.
+// The gap is wider than the error of two approximated faces explains.
 TEST_F(JoinedSolids, AGapThatIsBridgedIsSaid) {
   save("gap.json", box_of_faces(0.05));
   for (const char* out : {"gap.step", "gap.igs", "gap.stl"}) {
     SCOPED_TRACE(out);
     EXPECT_EQ(
         convert("gap.json", out)["notes"],
-        Json::array({"the faces of 'bracket' miss each other by up to 0.05 mm; they are joined over that "
-                     "as if they met"}));
+        Json::array({"the faces of 'bracket' have gaps of up to 0.05 mm; they are joined as if there were "
+                     "none"}));
   }
   EXPECT_EQ(convert("gap.json", "gap.step")["solids"], 1);
   save("near.json", box_of_faces(0.015));

@@ -80,7 +80,7 @@ TEST(LiveSession, AStrokeIsUndoneAndRedone) {
 }
 
 TEST(LiveSession, ACancelledStrokeLeavesNothingAndTheToolActsAgainOnceItHasLeft) {
-  // Rubber keeps contact; clay yields at the first contact, which ends the stroke.
+  // Rubber stays in contact with the tool. Clay yields at the first contact, which would end the stroke.
   Document rubber = held_handle();
   rubber.scene.bodies[0].material.plastic = false;
   Live live(rubber);
@@ -174,7 +174,7 @@ TEST(LiveSession, ExportsAMeshWhichSavesNothing) {
   EXPECT_EQ(next_notice(*live, Notice::Kind::problem).substr(0, 14), "not exported: ");
 }
 
-// The live session must not write a late save of one document to the file of another.
+// A save that is late must not write one document to the file of another.
 TEST(LiveSession, ASaveDoesNotPassToADocumentThatWasOpenedMeanwhile) {
   const Workplace place;
   Live live(held_handle());
@@ -188,7 +188,7 @@ TEST(LiveSession, ASaveDoesNotPassToADocumentThatWasOpenedMeanwhile) {
   EXPECT_EQ(read_document(place.path("model.json"))->name, "small handle");
 }
 
-// A fault in the program unwinds the session without discarding its autosave.
+// A fault in the program destroys the session, which must leave its newest work autosaved.
 TEST(LiveSession, LeavesItsNewestWorkAutosavedWhenItEndsInAFault) {
   const Workplace place;
   const Autosave autosave(place.path("."), place.path("model.json"));
@@ -258,8 +258,8 @@ TEST(LiveSession, OpensAnotherDocument) {
   ASSERT_TRUE(live->open(other, "other"));
   EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.facts.title == "another"; }));
   EXPECT_TRUE(live->frame().snapshot.planes.empty());
-  // Without the plane the surface has fewer knots, but the buffers still hold the surface of the first
-  // document.
+  // Without the plane the surface has fewer knots than before, while the buffers still hold the surface of
+  // the first document.
   for (int frame = 0; frame < 6; ++frame) {
     ASSERT_TRUE(check_net(live->frame().snapshot.bodies[0].surface));
     wait_ticks(*live, 5);
@@ -289,8 +289,8 @@ TEST(LiveSession, CancellingWithoutAStrokeChangesNothing) {
   EXPECT_EQ(live->frame().edit_count, edits);
 }
 
-// A recording of a live session replays to the same states. The replay compares every thousandth tick and the
-// last.
+// A recording of a live session must replay to the same states. The replay compares the states at every
+// thousandth tick and at the last.
 class LiveRecording : public testing::Test {
  protected:
   static const char* script() {

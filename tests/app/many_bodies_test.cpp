@@ -1,4 +1,4 @@
-// Documents with more bodies than can be sculpted together, such as CAD parts with many faces.
+// Tests documents with more bodies than can be sculpted together, such as CAD parts with many faces.
 #include <gtest/gtest.h>
 
 #include "app/program.h"

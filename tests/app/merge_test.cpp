@@ -1,4 +1,4 @@
-// The merge command.
+// Tests the merge command.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -32,7 +32,7 @@ TEST(MergeCommand, BowlAndHandleBecomeASpoon) {
   EXPECT_TRUE(joint["bridged"]);
 
   const Surface spoon = surface_of(place.path("spoon.json"));
-  // C2 allows inner knots of multiplicity one only.
+  // Continuity C2 requires inner knots of multiplicity one here.
   for (const auto& [knot, multiplicity] : knot_multiplicities(spoon.v)) {
     EXPECT_TRUE(knot == spoon.v.domain_start() || multiplicity == 1) << knot;
   }
@@ -119,7 +119,7 @@ TEST(MergeCommand, NormalsThatPointInwardsAreToldOf) {
   }
 }
 
-// A closed body is not a face of a solid.
+// A closed body cannot be a face of a solid.
 TEST(MergeCommand, FacesOfOneSolidStayAFaceOfItWhileOpen) {
   const Workplace place;
   const auto solid_of_merged = [&](const std::string& whole, const std::string& other) {
@@ -185,9 +185,10 @@ TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
   const Outcome turned =
       run({"merge", rod, inward, "--intersect", "--out", place.text("turned.json"), "--json"});
   ASSERT_EQ(turned.code, exit_done) << turned.err;
-  EXPECT_NE(turned.out.find("the normals of patch 2 pointed inwards; it was reversed"), std::string::npos)
+  EXPECT_NE(turned.out.find("the normals of patch 2 pointed inwards; the patch was reversed"),
+            std::string::npos)
       << turned.out;
-  // There is a note on the first fillet of three bodies as well as on the last.
+  // The first fillet gets a note as well as the last, not only the last.
   Document third = read_document(rod).value();
   third.scene.bodies[0].surface =
       placed(third.scene.bodies[0].surface,
@@ -203,8 +204,8 @@ TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
   const Json curved = json_of(run({"check", knob, "--json"}).out)["bodies"][0];
   EXPECT_NEAR(curved["smallest_concave_radius_m"].get<double>(), 0.003, 2e-4);
   const Json body = json_of(run({"check", knob, "--json"}).out)["bodies"][0];
-  // The volume is that of the ball and of the rod above their plane of intersection, minus the ball's cap
-  // there; the rounding of the rod's end and the fillet are negligible.
+  // The volume is that of the ball and of the rod above the plane in which they intersect, minus the ball's
+  // cap beyond this plane. The rounding of the rod's end and the fillet are negligible.
   const double ball_m3 = 4.0 / 3.0 * M_PI * 8e-6, plane_m = std::sqrt(4e-4 - 36e-6), cap_m = 0.02 - plane_m;
   const double rod_m3 = M_PI * 36e-6 * (0.06 - plane_m), cap_m3 = M_PI * cap_m * cap_m * (0.02 - cap_m / 3.0);
   EXPECT_NEAR(body["volume_m3"].get<double>(), ball_m3 + rod_m3 - cap_m3, 0.01 * rod_m3);
@@ -261,7 +262,7 @@ TEST(MergeCommand, RefusesInOneLine) {
   }
 }
 
-// Stands in for a terminal whose user presses Ctrl+C as soon as the progress bar moves.
+// A terminal whose user presses Ctrl+C as soon as the progress bar moves.
 class ImpatientTerminal : public std::stringbuf {
  public:
   int shown_percent() const { return shown_percent_; }

@@ -1,5 +1,5 @@
-// The collide command with a document and a mesh, and with two meshes. Run as a process, because reading a
-// mesh starts the program a second time.
+// Tests the collide command for a document and a mesh, and for two meshes. The command runs as a process,
+// because reading a mesh starts the program a second time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ std::string above(double millimetres) {
   return "30mm," + std::to_string(millimetres) + "mm,0,1,0,0,0";
 }
 
-// A ball of 8 mm radius with its vertices on the sphere; its edges are inside by up to 8 mm (1 -
+// The vertices of the ball of 8 mm radius are on the sphere; its edges are inside by up to 8 mm (1 -
 // cos(pi/100)).
 constexpr double flatter_m = 8e-3 * 5e-4;
 const TriangleMesh ball = ball_mesh(100, 200, 8.0);
@@ -140,7 +140,7 @@ TEST(MeshCollide, TwoMeshesAreAsFarApartAsTheyAre) {
   EXPECT_EQ(apart["mesh_a"]["cleaning"]["vertices_joined"], 28);
   EXPECT_EQ(apart["mesh_b"]["cleaning"]["vertices_joined"], 28);
 
-  // The cube is read in centimetres: it is ten times as large, and as deep inside as before.
+  // In centimetres the cube is ten times as large; the pose makes it overlap as deeply as before.
   const Json deep = facts_of({box, cube, "--unit", "cm", "--pose", "14cm,20mm,0,1,0,0,0"});
   EXPECT_EQ(deep["touching"], true);
   EXPECT_EQ(deep["contained"], false);
@@ -184,7 +184,8 @@ TEST(MeshCollide, AllBodiesOfADocumentCount) {
   const Workplace place;
   const std::string model = place.text("model.json"), two = two_bodies(place);
   const std::string mesh = place.write("ball.stl", binary_stl(ball)).string();
-  // The mesh is above the upper body, which is 20 mm higher than the model's single body.
+  // The mesh is as high above the upper body as it was above the only body of the model. The upper body is 20
+  // mm higher.
   const Json one = facts_of({model, mesh, "--pose", above(25)}),
              upper = facts_of({two, mesh, "--pose", above(45)});
   EXPECT_EQ(upper["touching"], false);

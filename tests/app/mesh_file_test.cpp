@@ -1,4 +1,4 @@
-// Mesh files and clouds read by the child process, and faults of the files and of the child.
+// Tests mesh files and clouds that the child process reads, and faults of the files and of the child.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -63,7 +63,8 @@ void expect_refusal(const std::string& file, ErrorCode code, const MeshReading& 
   EXPECT_EQ(mesh.error().code, code) << mesh.error().message;
 }
 
-// Two triangles with two list types: a file truncated anywhere is reported and does not crash the reader.
+// The file has two triangles and two types of lists. Truncated anywhere, it is reported and does not crash
+// the reader.
 TEST_F(MeshFileTest, ACutBinaryPlyIsToldOfItsCut) {
   for (const bool big : {false, true}) {
     const std::string header = std::string("ply\nformat binary_") + (big ? "big" : "little") +
@@ -98,7 +99,7 @@ TEST_F(MeshFileTest, ACutBinaryPlyIsToldOfItsCut) {
   }
 }
 
-// Assimp accepts a truncated text as complete, wherever it ends.
+// Assimp would accept a truncated text as complete, wherever it ends.
 TEST_F(MeshFileTest, ACutTextStlIsToldOfItsCut) {
   TriangleMesh one;
   one.vertices_m = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
@@ -143,7 +144,7 @@ void expect_box(const std::string& file, const Vector3& size_m, const MeshReadin
   EXPECT_EQ(clean->mesh.triangles.size(), 12u);
   EXPECT_EQ(clean->mesh.vertices_m.size(), 8u);
   EXPECT_EQ(clean->report.closed_parts, 1u);
-  // Files have single precision, and one test changes the lowest byte.
+  // Mesh files have single precision, and one test changes the lowest byte of a number.
   EXPECT_LT((clean->report.size_m - size_m).norm(), 2e-5 * size_m.norm());
 }
 
@@ -160,7 +161,7 @@ TEST_F(MeshFileTest, EveryFormatGivesTheBoxInItsUnit) {
   expect_box(write("box.ply", ply_text(small)), in_mm);
   expect_box(write("binary.ply", binary_ply(small)), in_mm);
 
-  // The first byte of the numbers may have any value.
+  // The first byte of a number may look like a line end, blank or letter.
   for (const int first : {'\n', '\r', ' ', '\0', 'e'}) {
     TriangleMesh mesh = small;
     auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(mesh.vertices_m[0].x()));
@@ -270,7 +271,7 @@ TEST_F(MeshFileTest, DamagedContentNeverBecomesAWildMesh) {
 
 TEST_F(MeshFileTest, AnyByteMayBeWrong) {
   MeshReading reading = by_program();
-  reading.patience = 1s;  // some bytes send Assimp round for ever
+  reading.patience = 1s;  // some changed bytes make Assimp loop forever
   Random random(77);
   const int trials = random_cases(12, 150);
   const std::vector<std::pair<std::string, std::string>> files = {{"a.stl", binary_stl(box)},
@@ -323,7 +324,7 @@ TEST_F(MeshFileTest, AReaderThatFailsIsOneLine) {
   expect_refusal(file, ErrorCode::unavailable, missing);
 }
 
-// Clouds are read by a child process too; every failure of it gives a one-line error.
+// A child process reads clouds too. Every failure of it gives an error of one line.
 TEST_F(MeshFileTest, AReaderOfPointsThatFailsIsOneLine) {
   const std::string file = write("cloud.xyz", "1 2 3\n4 5 6\n");
   const auto expect_no_cloud = [&](const std::string& reason, const MeshReading& reading) {
@@ -356,12 +357,13 @@ TEST_F(MeshFileTest, AReaderOfPointsThatFailsIsOneLine) {
 
 TEST_F(MeshFileTest, TheReaderHasFourGibibytes) {
   if (sanitized) GTEST_SKIP() << "a sanitizer's memory knows no limit";
-  // The delay lets the parent set the limit first. The answer has seven characters: 4194304 kibibytes.
+  // The delay lets the parent set the limit first. The limit in the answer has seven digits: 4194304
+  // kibibytes.
   expect_refusal(write("box.stl", binary_stl(box)), "(4194304)",
                  instead("sleep 0.3; printf 'spnlfail\\007\\0\\0\\0\\0\\0\\0\\0'; ulimit -v"));
 }
 
-// A ball of many triangles: five million in the full run, with the real limit.
+// The mesh is a ball of many triangles. The full run uses five million and the real limit.
 TEST_F(MeshFileTest, ManyTrianglesAreReadUpToTheLimit) {
   const bool full = is_long_run();
   MeshReading reading = by_program();

@@ -1,4 +1,4 @@
-// Shapes made from points in files: tube, lathe, loft.
+// Tests the new command for shapes made from points in files: tube, lathe and loft.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -54,7 +54,7 @@ TEST(NewTube, RefusesOneThatPassesThroughItself) {
   EXPECT_NE(outcome.err.find("through itself"), std::string::npos) << outcome.err;
 }
 
-// A radius that follows the advice of the error works.
+// A radius that follows the advice in the error is accepted.
 TEST(NewTube, SaysHowWideItMayBe) {
   const Workplace place;
   const auto made = [&](const std::string& radius) {

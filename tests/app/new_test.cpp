@@ -1,4 +1,4 @@
-// The new command.
+// Tests the new command.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,8 @@ TEST(New, ReportsWhatItMade) {
   EXPECT_EQ(facts["control_points"][1], body.surface.net.columns);
 }
 
-// Shapes that are round as a whole keep their radii; others state what they reach of the radius asked for.
+// Shapes that are round as a whole have the requested radii. For other shapes, the report states how closely
+// they reach the requested radius.
 TEST(New, RoundShapesKeepTheirRadii) {
   const Workplace place;
   const auto made = [&](std::vector<std::string> arguments) {
@@ -103,8 +104,8 @@ TEST_P(Lumps, CanBePressed) {
   EXPECT_EQ(json_of(replayed.out)["state_hash"], json_of(recorded.out)["state_hash"]);
 }
 
-// The ball is pressed in by a tenth of its radius: the reaction is perceptible, and the surface yields by a
-// plausible fraction of that depth.
+// The tool presses the ball in by a tenth of its radius. The reaction must be perceptible, and the surface
+// must yield by a plausible fraction of the depth.
 TEST_P(Lumps, GiveWayToTheirTool) {
   const Workplace place;
   ASSERT_EQ(run(with(GetParam(), {"--out", place.text("lump.json")})).code, exit_done);
@@ -208,7 +209,7 @@ TEST(New, RefusesWhatMakesNoShape) {
   EXPECT_EQ(content_of(place.path("old.json")), "precious");
 }
 
-// Both names of the inch are accepted, also when a list gives the unit only after its last length.
+// Both names of the inch are accepted, also in a list with a unit only after its last length.
 TEST(New, TakesInchesByBothNames) {
   const Workplace place;
   for (const char* size : {"2inchx40x20mm", "2inx40x20mm", "50.8x40x20mm", "50.8mmx40x20mm"}) {
@@ -233,7 +234,8 @@ TEST(New, StopsWhenAskedTo) {
   EXPECT_EQ(content_of(place.path("old.json")), "precious");
 }
 
-// Stock shapes cannot intersect themselves; searching thin and wide ones for it would take minutes.
+// Stock shapes cannot intersect themselves. A search for intersections would take minutes for thin and wide
+// shapes.
 TEST(New, MakesWideThinLumpsAtOnce) {
   const Workplace place;
   for (const std::vector<std::string>& lump :

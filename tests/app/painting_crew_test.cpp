@@ -12,7 +12,7 @@ namespace {
 
 constexpr int width_px = 800, height_px = 704;  // large enough for the panel
 
-// A session with a control point that rises from frame to frame, and an advancing clock.
+// A session in which a control point rises from frame to frame and the time advances.
 class Crew : public ::testing::Test {
  protected:
   static Session make_session() {
@@ -31,7 +31,7 @@ class Crew : public ::testing::Test {
     write_facts(session_, facts);
     job.panel = make_panel_model(facts, job.snapshot, job.view);
     SurfaceSnapshot& surface = job.snapshot.bodies[0].surface;
-    // A control point away from the ends, which stay closed.
+    // The control point is away from the ends, so that they stay closed.
     const int raised = surface.v.control_point_count() / 2;
     surface.y[static_cast<std::size_t>(raised)] += 0.002F * static_cast<float>(frame);
     job.panel.time_s = 0.1 * static_cast<double>(frame);

@@ -156,7 +156,7 @@ TEST(Panel, LetsBodiesSettleAndSwingAgain) {
   }
 }
 
-// Returns the answer to a text typed over the slider at this height, after Ctrl and a click.
+// Returns the answer after Ctrl+click on the slider at this height and typing of `text`.
 PanelAnswer type_over_slider(float y, const char* text) {
   Frame frame(1280, 720);
   const PanelModel model = full_model();
@@ -203,18 +203,19 @@ TEST(Panel, RefusesWrongMaterialsWithTheRange) {
     EXPECT_TRUE(answer.requests.empty()) << text;
     return answer.refusal;
   };
-  EXPECT_EQ(refusal(modulus_y, "-5 kPa"), "E is -5 kPa, must be 0.001 kPa to 1e+09 kPa");
-  EXPECT_EQ(refusal(modulus_y, "nan"), "E is nan kPa, must be 0.001 kPa to 1e+09 kPa");
+  EXPECT_EQ(refusal(modulus_y, "-5 kPa"), "E is -5 kPa, must be from 0.001 kPa to 1e+09 kPa");
+  EXPECT_EQ(refusal(modulus_y, "nan"), "E is nan kPa, must be from 0.001 kPa to 1e+09 kPa");
   EXPECT_EQ(refusal(modulus_y, "5 psi"), "E: unit psi is unknown; units: Pa, kPa, MPa, GPa");
-  EXPECT_EQ(refusal(poisson_y, "0.5"), "Poisson is 0.5, must be 0 to 0.49");
-  EXPECT_EQ(refusal(density_y, "0"), "Density is 0 g/cm\u00b3, must be 0.001 g/cm\u00b3 to 30 g/cm\u00b3");
+  EXPECT_EQ(refusal(poisson_y, "0.5"), "Poisson is 0.5, must be from 0 to 0.49");
+  EXPECT_EQ(refusal(density_y, "0"),
+            "Density is 0 g/cm\u00b3, must be from 0.001 g/cm\u00b3 to 30 g/cm\u00b3");
   EXPECT_EQ(refusal(density_y, "wet"), "Density: \"wet\" is not a number");
   EXPECT_EQ(refusal(poisson_y, "0.1"),
             "material modelling-clay: poissons_ratio is 0.1, must be 0.2 or more for a material that is "
             "plastic, creeps or stiffens");
 }
 
-// Clicks down the right edge until the button is hit; other widgets make other requests.
+// Clicks ever farther down along the right edge until the button is hit. Other widgets make other requests.
 TEST(Panel, AddsKnotsToTheBodyThatLagsMost) {
   Snapshot snapshot;
   snapshot.bodies.resize(3);

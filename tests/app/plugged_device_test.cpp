@@ -1,5 +1,5 @@
-// Tests a device that only this file defines, live and in lock-step. It presses by itself, stops responding
-// and returns invalid readings.
+// Tests a device that only this file defines, live and in lock-step. The device presses by itself, stops
+// responding at times, and returns invalid readings.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -45,7 +45,7 @@ DeviceSpecification plugged_specification() {
   return specification;
 }
 
-// A device that moves down onto the handle and up once a second, whatever the force.
+// A device that moves down onto the handle and up again once a second, whatever the force.
 class PluggedDevice : public Device {
  public:
   explicit PluggedDevice(std::shared_ptr<Hardware> hardware,
@@ -85,8 +85,8 @@ class PluggedDevice : public Device {
   bool faulty_ = false;
 };
 
-// A rubber handle, so that each press meets the same resistance. The force is scaled beyond the limit of the
-// device.
+// Returns a document with a rubber handle, so that each press meets the same resistance. The force scale
+// makes the forces exceed the limit of the device.
 Document rubber_handle() {
   Document document{"small handle", small_handle(), Json::object()};
   document.scene.bodies[0].material.plastic = false;

@@ -21,7 +21,7 @@ TEST(PointTable, ReadsUnitsOfItsColumns) {
   EXPECT_DOUBLE_EQ(table->rows_m[1][0], 0.01);
 }
 
-// Spreadsheets write both byte order marks and plus signs.
+// Some spreadsheets write a byte order mark, and some write plus signs.
 TEST(PointTable, ReadsAByteOrderMarkAndPluses) {
   const auto table = read("\xEF\xBB\xBFx_mm,y_mm,z_inch\r\n+1,-2,+1\r\n");
   ASSERT_TRUE(table.ok()) << table.error().message;
@@ -66,7 +66,7 @@ TEST(PointTable, SaysWhereAFileIsWrong) {
   EXPECT_EQ(message(std::string(1000, ',') + "\n\n").find('\n'), std::string::npos);
 }
 
-// Any bytes give a table or a one-line error.
+// For any bytes the result is a table or an error of one line.
 TEST(PointTable, NothingThatIsReadDoesHarm) {
   std::mt19937 random(3);
   const std::string whole = "section,x_mm,y_mm,z_mm\n1,0,0.5,1e1\n1,-3,4,5\n2,1,1,1\n";

@@ -7,7 +7,8 @@
 
 namespace spoonbill {
 
-// `settings` precede the program in the shell command, such as "LP_NUM_THREADS=1"; arguments are quoted.
+// `settings` are environment variables for the program, such as "LP_NUM_THREADS=1". Arguments are quoted for
+// the shell.
 Outcome run_process(const std::string& program, const std::vector<std::string>& arguments,
                     const std::string& settings = "");
 

@@ -1,5 +1,5 @@
-// Properties of the built program: the same state in every build and with any number of drawing threads,
-// a recording that survives a kill, a standard output that is full.
+// Tests the built program: the state is the same in every build and with any number of drawing threads, a
+// recording survives a kill, and a full standard output is a failure.
 #include "app/program.h"
 
 #include <gtest/gtest.h>
@@ -92,8 +92,8 @@ TEST(Program, AKilledRecordingReplaysUpToTheCut) {
   EXPECT_EQ(facts["ticks"].get<int>() % 100, 0);
 }
 
-// The limit on file size is 12 KiB: more than the recording's header, and less than the whole recording even
-// if half of the ticks are missed.
+// The limit on file size is 12 KiB. The recording's header is shorter than that, and the whole recording is
+// longer even if half of the ticks are missed.
 TEST(Program, ALiveRecordingThatIsCutIsAFailure) {
   const Workplace place;
   place.write("live.json", R"({"spoonbill_script": 1, "model": "model.json",
@@ -105,7 +105,7 @@ TEST(Program, ALiveRecordingThatIsCutIsAFailure) {
   EXPECT_NE(outcome.err.find("the recording has ended: "), std::string::npos) << outcome.err;
 }
 
-// A file that reaches the size limit is a one-line error, and an existing file stays unchanged.
+// A file that reaches the size limit gives an error of one line, and an existing file is not changed.
 TEST(Program, AFileThatMayNotGrowIsAFailureThatLeavesNothing) {
   const Workplace place;
   place.write("kept.json", "old");

@@ -56,7 +56,8 @@ bool is_confined(pid_t process) {
          status.find("Seccomp:\t2\n") != std::string::npos;
 }
 
-// Starts a reader that waits, because nothing comes through one pipe and nobody reads the other.
+// Starts a reader that waits forever, because nothing comes through one pipe and nobody reads the other.
+// Expects its process to be confined.
 void expect_confined(const std::vector<std::string>& arguments) {
   int in[2], out[2];
   ASSERT_EQ(pipe2(in, O_CLOEXEC) | pipe2(out, O_CLOEXEC), 0);
@@ -85,7 +86,7 @@ TEST(ReaderConfinement, EveryReaderShowsIt) {
   expect_confined({SPOONBILL_PROGRAM, "read-mesh", "--", folder.write("a.obj", mesh).string()});
 }
 
-// Returns a bit for each attempt of a confined process that has another result than it should.
+// Returns a bit for each attempt of a confined process whose result is not the expected one.
 int wrong_results() {
   int wrong = 0, bit = 1;
   const auto expect = [&](bool right) {

@@ -140,7 +140,7 @@ TEST(Session, SavesAtOneTickShareADocument) {
   }
   ASSERT_EQ(session->marks.size(), 450u);
   for (const FileMark& mark : session->marks) EXPECT_EQ(mark.document, session->marks[0].document);
-  // Saves with a change before each are different documents.
+  // The document changes before each save, so that all saved documents differ.
   Status saved;
   int count = 0;
   for (; saved && count < 900; ++count) {

@@ -1,4 +1,4 @@
-// The rest command.
+// Tests the rest command.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,8 @@ Outcome rest_of(const Workplace& place, const Document& document, std::vector<st
   return run(arguments);
 }
 
-// Half the force gives half the displacement, the reactions balance the load, and weight counts too.
+// Half of the force gives half of the displacement, the reactions balance the load, and the weight counts as
+// a load.
 TEST(Rest, TellsWhatALoadDoes) {
   const Workplace place;
   Document document = elastic_document(place);
@@ -105,7 +106,7 @@ TEST(Rest, RefusesBodiesThatNothingHolds) {
   EXPECT_EQ(run({"rest"}).code, exit_wrong_use);
 }
 
-// Held by a support or behind a plane, at every node.
+// Every node is fixed, either by a support or behind a plane.
 TEST(Rest, SaysWhereEverythingIsFixed) {
   const Workplace place;
   Document document = elastic_document(place);

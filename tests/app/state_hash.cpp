@@ -1,5 +1,5 @@
-// state_hash RECORDING...: replays each recording without drawing and prints its state hash on a line. Built
-// in Debug too, without the rest of the program.
+// state_hash RECORDING...: replays each recording without drawing and prints its state hash on one line. Also
+// built in Debug, where the rest of the program is not.
 #include <cstdio>
 #include <optional>
 #include <utility>

@@ -1,4 +1,5 @@
-// The built program when a signal ends it: nothing temporary stays, and what was recorded does.
+// Tests the built program when a signal ends it: no temporary file stays, and the recording up to the signal
+// does.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
@@ -19,7 +20,7 @@ namespace {
 const std::string stopped_program = SPOONBILL_PROGRAM;
 using StopClock = std::chrono::steady_clock;
 
-// The program as a child of the test.
+// The program as a child process of the test.
 class RunningProgram {
  public:
   RunningProgram(const std::vector<std::string>& arguments, const std::filesystem::path& err) : err_(err) {
@@ -82,7 +83,8 @@ class RunningProgram {
   int state_ = 0;
 };
 
-// The issue is a second; the machine of the tests may be busy.
+// The program promises an end within a second. The limit is higher, because the machine of the tests may be
+// busy.
 constexpr double stop_limit_s = 1.5;
 
 std::string long_script(const Workplace& place) {
@@ -131,7 +133,7 @@ TEST(StoppedProgram, LeavesALiveRecordingUnpublished) {
   expect_replayable(place, recording, "l.jsonl");
 }
 
-// A stroke through a ball that felt nothing until now: some of its ticks have been endless.
+// The stroke goes through a ball with almost endless ticks.
 TEST(StoppedProgram, EndsInTheMidstOfALongTick) {
   const Workplace place;
   for (const char* name : {"endless-tick.script.json", "endless-tick-model.json"}) {
@@ -151,7 +153,7 @@ TEST(StoppedProgram, EndsInTheMidstOfALongTick) {
   }
 }
 
-// Long work that reaches no point where it asks.
+// Both commands spend long in work that never checks for a signal.
 TEST(StoppedProgram, LeavesNoTemporaryFile) {
   const Workplace place;
   place.record("bend.jsonl");
@@ -169,7 +171,7 @@ TEST(StoppedProgram, LeavesNoTemporaryFile) {
       place.path("err2"));
   std::this_thread::sleep_for(std::chrono::milliseconds(150));
   EXPECT_LT(sampling.stop(SIGHUP), stop_limit_s);
-  // The folder of frames and the two texts of standard error.
+  // The three new entries are the folder of frames and the two files with standard error.
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(place.path("")), {}), before + 3);
 }
 

@@ -32,7 +32,7 @@ struct Touched {
     return touched;
   }
 
-  // Lowers the tool until it touches and presses a little further. Returns the shape before the contact.
+  // Lowers the tool until it touches, then presses a little further. Returns the shape before the contact.
   ShapeState press() {
     ShapeState before = simulation.shape();
     double height_m = 0.011;

@@ -8,7 +8,7 @@
 
 namespace spoonbill {
 
-// Time limit, long enough for a loaded machine or a sanitizer; no test measures it.
+// Time limit, long enough for a loaded machine or a sanitizer. No test depends on its value.
 inline constexpr std::chrono::seconds patience{300};
 
 // Returns true if a frame satisfied the condition within the time limit.

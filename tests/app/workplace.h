@@ -21,8 +21,8 @@ struct Outcome {
 // Runs the program in this process.
 Outcome run(const std::vector<std::string>& arguments);
 
-// Returns true for exit code 1 or 2 and exactly one line of error that begins with the program's
-// name.
+// Returns true if the exit code is 1 or 2 and the output is exactly one line of error that begins with the
+// program's name.
 bool is_clean_failure(const Outcome& outcome);
 
 Json json_of(const std::string& text);

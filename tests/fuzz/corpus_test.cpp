@@ -1,5 +1,5 @@
-// Runs every fuzz target on the inputs that fuzzing has found and on its seeds, both complete and truncated,
-// and on the inputs that together reach all code the fuzzer has covered.
+// Runs every fuzz target on three sets of inputs: those that fuzzing has found, its seeds, both complete and
+// truncated, and those that together reach all code the fuzzer has covered.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace spoonbill {
 
-// Google Test calls this function, by this name, to print a parameter.
+// Google Test prints a parameter by a function of this name.
 void PrintTo(const FuzzTarget& target, std::ostream* out) {
   *out << target.name;
 }

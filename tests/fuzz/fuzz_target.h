@@ -1,5 +1,5 @@
-// Declares the targets of the coverage-guided fuzzer: each calls one of our readers and checks the properties
-// of whatever the reader accepts. The ordinary tests run the same functions on the stored inputs.
+// The targets of the coverage-guided fuzzer: each calls one of our readers and checks properties of
+// everything that the reader accepts. The ordinary tests run the same functions on the stored inputs.
 #pragma once
 
 #include <span>

@@ -37,7 +37,7 @@ TEST(BoundedQueue, ARefusedValueStaysAsItWas) {
   auto refused = std::make_unique<int>(2);
   const int* const address = refused.get();
   EXPECT_FALSE(queue.push(std::move(refused)));
-  EXPECT_EQ(refused.get(), address);  // NOLINT(bugprone-use-after-move): that it was not moved is the point
+  EXPECT_EQ(refused.get(), address);  // NOLINT(bugprone-use-after-move): a refused value is not moved
 }
 
 TEST(BoundedQueue, MemoryGoesRoundInsteadOfBeingFreed) {

@@ -1,4 +1,5 @@
-// Damaged recordings must be read, or refused with a message of one line; they must never end the program.
+// Tests damaged recordings: each must be read, or be refused with a message of one line, and never end the
+// program.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -69,7 +70,7 @@ TEST(DamagedRecording, AnyBytesChanged) {
   const std::size_t header = text.find('\n');
   std::mt19937_64 random(9);
   for (int i = random_cases(20'000, 60'000); i > 0; --i) {
-    // Most damage is behind the header, because the document's tests already damage headers.
+    // Most damage is after the header, because the document's tests already damage headers.
     expect_recording_or_line(damaged(text, i % 8 == 0 ? 0 : header, random));
   }
 }

@@ -1,5 +1,5 @@
-// Tests the two ways of passing values between threads, with two threads. It checks only what holds for any
-// scheduling.
+// Tests both classes that pass values between threads, with two threads. The tests check only properties that
+// hold for any scheduling.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -52,8 +52,8 @@ TEST(HapticLoop, CountsItsTicks) {
   EXPECT_EQ(calls, at_stop);
 }
 
-// A function that takes three and a half periods makes the loop drop at least two ticks each time; the loop
-// reports them to the function.
+// The function takes three and a half periods, so that the loop drops at least two ticks each time. The loop
+// reports their number to the function.
 TEST(HapticLoop, DropsWhatItMissesAndSaysSo) {
   std::atomic<std::uint64_t> calls = 0, dropped = 0, told_too_few = 0;
   LoopSettings settings;
@@ -87,7 +87,7 @@ TEST(HapticLoop, MovesAndStopsWithItsOwner) {
     std::atomic<std::uint64_t> others = 0;
     auto second = HapticLoop::start({}, [&](const LoopTick&) { ++others; });
     ASSERT_TRUE(second.ok());
-    loop = std::move(second).value();  // assigning ends the first loop
+    loop = std::move(second).value();  // the assignment ends the first loop
     at_end = calls;
     wait_for(others, 3);
     loop.stop();
@@ -128,8 +128,8 @@ TEST(HapticLoop, RefusesWhatItCannotRun) {
   EXPECT_EQ(Refusal(loop), Refusal(ErrorCode::out_of_range, "period_s"));
 }
 
-// Runs in a process that gave up root's rights. Exits with 0 if the loop runs, reports the missing right and
-// names the remedy.
+// Runs in a process that has given up root's rights. Exits with 0 if the loop runs and reports both the
+// missing right and the remedy.
 void run_without_rights() {
   const rlimit none{0, 0};
   setrlimit(RLIMIT_RTPRIO, &none);

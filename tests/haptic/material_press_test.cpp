@@ -1,5 +1,5 @@
-// Tests a sphere of 10 mm that the bundled scripts press into blocks of materials: clay keeps the dent,
-// silicone springs back, gelatin creeps.
+// Tests presses of a 10 mm sphere into blocks of different materials by the bundled scripts: clay keeps the
+// dent, silicone springs back, gelatin creeps.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -122,8 +122,8 @@ TEST(MaterialPress, GelatinCreepsAsItsRelaxationTimeSays) {
   ScriptedPress press("gelatin-press");
   const double relaxation_time_s = press.material().relaxation_time_s;
   const double retardation_time_s = relaxation_time_s / (1.0 - press.material().relaxing_fraction);
-  // The means over half a second are 4.5 s apart: the relaxing part of the force falls by the same factor
-  // between each pair.
+  // The means over half a second are 4.5 s apart, so that the relaxing part of the force falls by the same
+  // factor from each mean to the next.
   const double first_n = press.mean_force_n(2.0, 2.5), second_n = press.mean_force_n(6.5, 7.0),
                third_n = press.mean_force_n(11.0, 11.5);
   EXPECT_GT(press.dent_m(), 0.0045);

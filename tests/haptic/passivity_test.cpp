@@ -1,5 +1,5 @@
-// Tests that a wall never gives a hand more energy than it took, which would kick the hand. Random hands
-// press walls of the device's highest stiffness, and the work of the force on the hand is summed tick by tick
+// Tests that a wall never gives a hand more energy than it received, which would kick the hand. Random hands
+// press walls of the device's highest stiffness. The work of the force on the hand is summed tick by tick
 // (the passivity observer of Hannaford & Ryu 2002).
 #include <gtest/gtest.h>
 
@@ -17,8 +17,8 @@
 namespace spoonbill {
 namespace {
 
-// Bound for the energy that rounding of positions to nanometres may seem to give, in joules: at the highest
-// force and for the 2,000 ticks of a press (3.3 N * 0.5 nm * 2000), with all errors of one sign.
+// Largest energy, in joules, that the rounding of positions to nanometres may seem to give: at the highest
+// force, over the 2,000 ticks of a press, with all errors of one sign (3.3 N * 0.5 nm * 2000).
 constexpr double rounding_j = 3.3e-6;
 
 struct WallPress {
@@ -35,7 +35,7 @@ double scaled(std::mt19937_64& random, double low, double high) {
   return std::exp(evenly(random, std::log(low), std::log(high)));
 }
 
-// Returns a random press from the ranges of virtual_device.h, restricted to stable hands, with damping
+// Returns a random press within the ranges of virtual_device.h. The hand is stable, and its damping is
 // between none and critical.
 WallPress random_press(std::mt19937_64& random) {
   WallPress press;
@@ -56,8 +56,8 @@ struct Energy {
   double taken_j = 0.0;       // total energy that the wall took, for comparison
 };
 
-// Moves a hand above the wall, whose surface is at `surface_m`, into it and out again; `wall` gives the force
-// for a reading.
+// Moves a hand from above into the wall, whose surface is at `surface_m`, and out again. `wall` returns the
+// force for a reading.
 template <class Wall>
 Energy press_wall(const WallPress& press, const Vector3& surface_m, Wall wall) {
   constexpr double clearance_m = 0.005;

@@ -1,4 +1,4 @@
-// Tests the device fields of a recording's header, also for recordings that are older than the safety chain.
+// Tests the device fields of a recording's header, including recordings that are older than the safety chain.
 #include <gtest/gtest.h>
 
 #include "haptic/recording_lines.h"

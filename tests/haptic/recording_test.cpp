@@ -106,7 +106,7 @@ TEST(RecordingWriter, ReportsAFullDisk) {
   EXPECT_EQ(full.error().message, "/dev/full: cannot be written: No space left on device");
 }
 
-// A limit on the file's size acts like a disk that fills up while the recording runs.
+// A limit on the file's size has the effect of a disk that becomes full during a recording.
 TEST(RecordingWriter, ReportsADiskThatFillsUp) {
   const TemporaryFolder folder;
   const pid_t child = fork();

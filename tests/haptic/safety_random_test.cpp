@@ -1,4 +1,4 @@
-// Tests the safety chain at random with everything that may go wrong.
+// Tests the safety chain with random inputs that include every kind of fault.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -109,7 +109,8 @@ struct WatchedForces {
                                     (safety_flag_cut | safety_flag_buzzing);
     const bool cut = (safe.flags & safety_flag_cut) != 0;
     beyond_limit += !(safe.force_n.norm() <= specification.maximum_force_n * (1.0 + rounding));
-    // The difference from the previous force, which is at most the limit, has a relative error of `rounding`.
+    // The difference from the previous force is at most the limit, with a relative rounding error of
+    // `rounding`.
     const double allowed_n = most_n + rounding * (most_n + specification.maximum_force_n);
     jumps += !cut && !((safe.force_n - last_n).norm() <= allowed_n);
     not_cut += (fault || cut) && !safe.force_n.isZero(0.0);
@@ -172,7 +173,7 @@ Scene random_safety_scene(Random& random) {
   return scene;
 }
 
-// Makes a hand wander over and into the handle; sometimes the thread is late or the simulation stale.
+// Moves a hand at random over and into the handle. At times the thread is late or the simulation stale.
 WatchedForces sculpt(Random& random, int ticks) {
   auto made = Simulation::make(random_safety_scene(random), best_instruction_set());
   EXPECT_TRUE(made.ok()) << made.error().message;

@@ -42,7 +42,7 @@ SafetyState pressing_state(double x_n) {
 TEST(Safety, ForcesAreOffUntilTheWantedForceHasBeenSmallForAWhile) {
   SafetyState state;
   for (int tick = 0; tick < 5000; ++tick) {
-    // The force is small every seventh tick, but never for long.
+    // The force is small every seventh tick, but never for several ticks in a row.
     const SafeForce safe = make_safe(state, device, wanting(tick % 7 == 0 ? 3.0 : 0.1));
     ASSERT_EQ(safe.force_n, Vector3::Zero());
     ASSERT_EQ(safe.flags, safety_flag_waiting);
@@ -69,7 +69,7 @@ TEST(Safety, ForceRampsInOverTheDevicesTime) {
 TEST(Safety, PassesOnWhatNeedsNoLimit) {
   SafetyState state = pressing_state(1.5);
   for (int tick = 0; tick < 2000; ++tick) {
-    // As fast as a hand can move.
+    // The force oscillates at 10 Hz, which is as fast as a hand can move.
     const double wanted = 1.5 + std::sin(2.0 * std::numbers::pi * 10.0 * tick * tick_s);
     const SafeForce safe = make_safe(state, device, wanting(wanted));
     ASSERT_EQ(safe.force_n.x(), wanted);

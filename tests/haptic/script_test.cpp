@@ -106,7 +106,7 @@ TEST(Script, NamesWhatIsWrong) {
   EXPECT_EQ(script_refusal(begin + "{\"move_to_mm\": [0,0,0]}"),
             Refusal(ErrorCode::missing, "steps[1].over_s"));
   EXPECT_EQ(script_refusal(begin + "{\"move_to_mm\": [0,0,0], \"over_s\": 0}").message,
-            "bend.json: steps[1].over_s is 0, must be 0.001 to 600");
+            "bend.json: steps[1].over_s is 0, must be from 0.001 to 600");
   EXPECT_EQ(script_refusal(begin + "{\"hold_s\": 0.0005}"),
             Refusal(ErrorCode::out_of_range, "steps[1].hold_s"));
   EXPECT_EQ(script_refusal(begin + "{\"hold_s\": 599.999},{\"hold_s\": 0.002}"),

@@ -1,4 +1,4 @@
-// Tests two soft bodies on each other: the bundled script presses the bundled fingertip into the bundled
+// Tests contact of two soft bodies: the bundled script presses the bundled fingertip into the bundled
 // cushion.
 #include <gtest/gtest.h>
 

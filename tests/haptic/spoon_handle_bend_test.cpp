@@ -1,4 +1,4 @@
-// Tests that the bundled script bends the bundled handle as in the founding paper: the settled shape is bent
+// Tests that the bundled script bends the bundled handle as in the original paper: the settled shape is bent
 // near the fixed part and nearly straight elsewhere.
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ Vector3 ring_centre(const Surface& surface, double v) {
   return sum;
 }
 
-// Returns how many degrees the centre line between two stations points below the horizontal.
+// Returns the angle in degrees by which the centre line between two stations points below the horizontal.
 double turned(const Surface& surface, double from_v, double to_v) {
   const Vector3 way = ring_centre(surface, to_v) - ring_centre(surface, from_v);
   return std::atan2(-way.y(), way.x()) * 180.0 / std::numbers::pi;
@@ -58,7 +58,8 @@ Bend play() {
     if (script.target_at(t).pose.position_m.y() < -0.0205) pushed = simulation.surface();
   }
   EXPECT_TRUE(before && pushed);
-  // The sphere is above v = 88 of the straight handle, whose v is the distance along it in millimetres.
+  // The sphere is above v = 88 of the straight handle. The parameter v is the distance along the handle in
+  // millimetres.
   return {*before, *pushed, simulation.surface(), simulation.lattice(), 40.0, 88.0};
 }
 

@@ -67,7 +67,7 @@ TEST(HandInputs, TheSourceThatWasUsedLastLeads) {
   EXPECT_EQ(frame(), 1.0);
   EXPECT_EQ(cap.asked, 0);
   cap.used = true;
-  EXPECT_EQ(frame(), 2.01);  // the cap continues from where the mouse was
+  EXPECT_EQ(frame(), 2.01);  // the cap continues from the last target of the mouse
   cap.used = false;
   EXPECT_NEAR(frame(), 2.02, 1e-12);
   EXPECT_EQ(mouse.asked, 2);

@@ -35,8 +35,8 @@ TEST(Tick, NoContactNoForce) {
   }
 }
 
-// The haptic thread flushes denormal numbers, the thread of a lock-step replay does not. A fading force must
-// reach 0 in both, or a live recording would not replay to the same states.
+// The haptic thread flushes denormal numbers, but the thread of a lock-step replay does not. A fading force
+// must reach 0 in both threads; otherwise a live recording would not replay to the same states.
 TEST(Tick, AFadingForceIsTheSameWhetherTheThreadFlushesDenormalsOrNot) {
   CouplingState fading[2];
   for (const int which : {0, 1}) {
@@ -58,7 +58,7 @@ TEST(Tick, PushedMaterialPushesBackAndTheForceScalesIt) {
     Simulation simulation = held_handle(which == 0 ? 5.0 : 10.0);
     CouplingState coupling;
     TickResult result;
-    for (int k = 0; k < 600; ++k) {  // after 400 ticks the hand is at rest, so that nothing is damped
+    for (int k = 0; k < 600; ++k) {  // the hand is at rest after 400 ticks, so that no damping acts
       result = tick(simulation, coupling, VirtualDevice::default_specification(),
                     reading_at(0.05, 0.009 - 1e-5 * std::min(k, 400)));
     }
@@ -66,7 +66,7 @@ TEST(Tick, PushedMaterialPushesBackAndTheForceScalesIt) {
     force[which] = result.force_n.y();
   }
   EXPECT_GT(force[0], 1e-4);
-  EXPECT_NEAR(force[1] / force[0], 2.0, 0.3);  // the proxy is a little farther off the surface
+  EXPECT_NEAR(force[1] / force[0], 2.0, 0.3);  // not exact: the proxy is a little farther off the surface
 }
 
 TEST(Tick, HeldPartIsAWallOfTheDevicesStiffness) {

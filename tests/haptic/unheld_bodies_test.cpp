@@ -1,5 +1,5 @@
-// Bodies that nothing fixes, pressed by a hand: they keep their place, follow the tool, and move only where
-// they may.
+// Tests bodies that nothing fixes, under the press of a hand: they keep their position, follow the tool, and
+// move only as far as the setting permits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace spoonbill {
 namespace {
 
 struct PressedBody {
-  double away_m = 0.0;     // largest distance of the mean position from where it was
+  double away_m = 0.0;     // largest distance of the mean position from its initial value
   double follows_m = 0.0;  // largest movement of a node
   bool is_finite = true;
 };
@@ -23,7 +23,7 @@ Vector3 mean_position(const std::vector<Vector3>& nodes) {
   return mean;
 }
 
-// Presses the middle of the handle, sideways at the end, and leaves.
+// Lowers the tool into the middle of the handle, moves it sideways at the end, and raises it.
 PressedBody press(Scene scene) {
   PressedBody pressed;
   auto simulation = Simulation::make(std::move(scene), best_instruction_set());

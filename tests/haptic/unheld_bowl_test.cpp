@@ -1,5 +1,5 @@
-// The bundled bowl of clay, which nothing fixes, pressed by scripts: it stays in the scene and follows the
-// tool.
+// Tests the bundled bowl of clay, which nothing fixes, under strokes of scripts: it stays in the scene and
+// follows the tool.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,8 +19,8 @@ namespace {
 struct ScriptedStroke {
   double scene_size_m = 0.0;
   double farthest_m = 0.0;  // largest distance of a node from the centre of the scene
-  double travel_m = 0.0;    // distance of the hand from the first touch, in the last tick that touches
-  double followed_m = 0.0;  // largest displacement of a node near the tool along it, in the same tick
+  double travel_m = 0.0;    // the hand's distance from its first touch, in the last touching tick
+  double followed_m = 0.0;  // largest displacement of nearby nodes in the travel's direction, then
 };
 
 ScriptedStroke play(const std::string& name) {
@@ -75,8 +75,7 @@ TEST(UnheldBowl, StaysInTheScene) {
   }
 }
 
-// Until the clay has followed, the hand is ahead of the tool that it feels, for the coupling is soft at this
-// force scale.
+// The coupling is soft at this force scale, so the hand is ahead of the tool until the clay has followed.
 TEST(UnheldBowl, FollowsTheToolByHalfOfItsTravel) {
   const ScriptedStroke stroke = play("unheld-bowl-deep");
   EXPECT_GT(stroke.travel_m, 4e-3);

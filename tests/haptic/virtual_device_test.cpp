@@ -46,8 +46,8 @@ TEST(VirtualDevice, FollowsTheClosedForm) {
   }
 }
 
-// The hand lags behind an accelerating target, or leads it, by the force of its inertia divided by the
-// stiffness, m a / k. It does not ring.
+// The hand lags behind a target that accelerates, and is ahead of one that slows down, by the force of its
+// inertia divided by the stiffness, m a / k. It does not ring.
 TEST(VirtualDevice, FollowsItsTarget) {
   VirtualDevice device = device_at_origin();
   const double highest_acceleration = 0.02 * 6.0 / (0.5 * 0.5);
@@ -71,8 +71,8 @@ double conserved_energy(const VirtualDevice& device, const Hand& hand) {
          0.5 * 1e-3 * hand.stiffness_n_per_m * x.dot(v);
 }
 
-// Pushes the handle away, releases it and follows it for two seconds. Checks the highest and the last energy,
-// relative to that at release.
+// Pushes the handle away, releases it and follows its motion for two seconds. Checks the highest and the last
+// energy, relative to the energy at the release.
 void expect_no_energy_gained(const Hand& hand) {
   VirtualDevice device = device_at_origin(hand);
   device.set_force(Vector3(3.0, 0.0, 0.0));
@@ -85,7 +85,8 @@ void expect_no_energy_gained(const Hand& hand) {
     device.read();
     highest = std::max(highest, conserved_energy(device, hand));
   }
-  // A damper on a handle almost at rest makes a step that is off by the square of the step's length.
+  // A damper on a handle almost at rest changes the energy of a step by an amount of second order in the
+  // step's length.
   const double step = 1e-6 * hand.stiffness_n_per_m / hand.mass_kg;
   const double allowed = hand.damping_n_s_per_m == 0.0 ? 1e-9 : step;
   EXPECT_LE(highest, released * (1.0 + allowed))

@@ -1,7 +1,7 @@
-// Compares pictures with the approved ones in screenshots/ by their worst 16 x 16 block: the bend as a
-// designer sees it, the stages of a contact, and presses into materials. A differing picture is written to
-// picture-failures/ of the build folder, with the approved picture and their difference. tests/approve
-// approves the pictures that the program draws.
+// Compares pictures with the approved ones in screenshots/ by their worst block of 16 x 16 pixels. The
+// pictures show a bend in the default view, the stages of a contact, and presses into materials. A differing
+// picture is written to picture-failures/ of the build folder, with the approved picture and their
+// difference. tests/approve approves the pictures that the program draws.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -27,8 +27,8 @@ namespace spoonbill {
 namespace {
 
 // Largest allowed mean difference of a block's channels, in 8-bit steps. Rasterisers on other processors
-// differ by less than a third of it; the smallest change that must be detected differs by more than twice of
-// it.
+// differ by less than a third of this; the smallest change that must be detected differs by more than twice
+// this.
 constexpr double tolerance = 2.0;
 
 constexpr int width_px = 1280, height_px = 720;
@@ -40,7 +40,7 @@ const std::filesystem::path failure_folder = SPOONBILL_PICTURE_FAILURES;
 
 using Edit = std::function<void(ViewSettings&, PanelModel&)>;
 
-// Paints moments of replays, each of which can be painted with changed settings.
+// Paints moments of replays. Each moment can be painted several times with changed settings.
 class MomentPictures : public ::testing::Test {
  protected:
   struct Moment {
@@ -49,7 +49,7 @@ class MomentPictures : public ::testing::Test {
     const char* recording;
   };
 
-  // A moment of the replay that can be painted repeatedly.
+  // State of a replay that can be painted repeatedly.
   struct Stage {
     Session session;
     FramePainter painter;
@@ -255,7 +255,8 @@ TEST_F(MaterialPictures, GelatinComesBackSlowly) {
   compare_moment({"gelatin-let-go", 0.72, "gelatin-press"});
 }
 
-// The boundaries of hexahedra in a translucent body; those on its far side are seen through it.
+// Tests pictures of the boundaries of hexahedra in a translucent body, through which those on the far side
+// are visible.
 using LatticePictures = MomentPictures;
 
 TEST_F(LatticePictures, CellsOfJelly) {
@@ -263,7 +264,7 @@ TEST_F(LatticePictures, CellsOfJelly) {
   compare("jelly-cells", paint(stage, {}));
 }
 
-// Figure 9 of the paper: two patches with different counts and knots, and the merged patch.
+// Draws figure 9 of the paper: two patches with different counts and knots, and the merged patch.
 class MergePictures : public MomentPictures {
  protected:
   static Document parts() {

@@ -50,7 +50,7 @@ using Pieces = std::vector<int>;
 
 Pieces initial_pieces(const PatchDirection& direction, int degree) {
   const std::size_t count = direction.breaks.size() - 1;
-  // A period with fewer pieces than the degree is badly conditioned.
+  // Interpolation over a period with fewer pieces than the degree is badly conditioned.
   const int smallest =
       direction.closed ? (2 * degree + static_cast<int>(count)) / static_cast<int>(count) : 1;
   return Pieces(count, smallest);
@@ -155,7 +155,7 @@ std::vector<double> piece_errors(const Eigen::MatrixXd& distances, std::size_t p
   return errors;
 }
 
-// Divides smooth pieces whose error is too large into more parts. Returns true if there were any.
+// Divides each smooth piece whose error is too large into more parts. Returns true if any piece was divided.
 bool refine(const std::vector<double>& errors, double allowed_m, int degree, Pieces& pieces) {
   bool refined = false;
   std::size_t piece = 0;
@@ -305,7 +305,7 @@ PatchDirection make_direction(const ParameterLine& line, double scale) {
   for (std::size_t k = 1; k + 1 < ends.size(); ++k) {
     direction.breaks[k].continuity = std::max(0, continuity_across(line, ends[k], ends[k], scale));
   }
-  // A direction along which every line is a single point belongs to a pole and is not closed.
+  // A pole's direction, along which every line is a single point, is not closed.
   double largest_span = 0.0;
   for (int k = 0; k < lines_compared; ++k) {
     const Vector3 centre = line.at(0.5 * (line.start() + line.end()), k).position;

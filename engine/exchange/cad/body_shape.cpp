@@ -49,8 +49,8 @@ using SplineGeometry = opencascade::handle<Geom_BSplineSurface>;
 using Polygon = std::vector<Eigen::Vector2d>;
 
 constexpr double vertex_distance_mm = 1e-7;
-// Distance between an edge's curve in space and its curve over (u, v): the target, and the limit, which kinks
-// may reach.
+// Distance between an edge's curve in space and its curve over (u, v): the target, and the limit, which is
+// approached only at kinks.
 constexpr double curve_tolerance_mm = 1e-6, curve_error_limit_mm = 1e-2;
 constexpr double corner_sine = 1e-4;
 constexpr int degree_limit = 14, segment_limit = 1000;
@@ -109,7 +109,7 @@ Status move_seam(Direction direction, TrimmedSurface& part) {
   const auto seam = find_free_seam(knots, direction, part.trims);
   if (!seam) {
     return Error{ErrorCode::unsupported,
-                 "its trim loops cross its seam at every position of it; make one smaller"};
+                 "its trim loops cross the seam wherever the seam is placed; make a loop smaller"};
   }
   auto moved = with_seam_at(part.surface, direction, *seam);
   if (!moved) return moved.error();
@@ -136,7 +136,8 @@ bool has_only_holes(const TrimmedSurface& part) {
   });
 }
 
-// Divides a surface at the centre of the gap after the last loop that begins in the first half.
+// Divides a surface at the centre of a gap between its loops: the gap that follows all loops which begin in
+// the first half of the domain.
 Result<std::vector<TrimmedSurface>> divide(const TrimmedSurface& part, Direction direction) {
   const KnotVector& knots = direction == Direction::u ? part.surface.u : part.surface.v;
   const double start = knots.domain_start(), end = knots.domain_end();
@@ -150,7 +151,8 @@ Result<std::vector<TrimmedSurface>> divide(const TrimmedSurface& part, Direction
   for (const TrimLoop& loop : part.trims) {
     if (*reach(loop).first >= low) high = std::min(high, *reach(loop).first);
     if (*reach(loop).first<low&& * reach(loop).second> low) {
-      return Error{ErrorCode::unsupported, "its holes leave no position to cut it in two; make one smaller"};
+      return Error{ErrorCode::unsupported,
+                   "its holes leave no room for a cut into two parts; make a hole smaller"};
     }
   }
   const double cut = 0.5 * (low + high);
@@ -166,7 +168,7 @@ Result<std::vector<TrimmedSurface>> divide(const TrimmedSurface& part, Direction
   return halves;
 }
 
-// Converts a loop to a curve over (u, v), as the edge of a strip that is opened and clamped like a surface.
+// Converts a loop to an OpenCASCADE curve over (u, v). to_occt() clamps the curve as the edge of a strip.
 Result<Curve> to_curve(const TrimLoop& loop) {
   ControlNet net(loop.knots.control_point_count(), 2);
   for (int i = 0; i < net.rows; ++i) {
@@ -203,8 +205,8 @@ std::vector<double> find_corners(const Curve& curve) {
   return ends;
 }
 
-// Appends the vertex at a point. If a vertex already exists there, it is appended once more, since a loop may
-// return along a seam.
+// Appends the vertex at a point to the list. If a vertex already exists there, appends the same vertex once
+// more, because a loop may return along a seam.
 void add_vertex(const gp_Pnt& at, std::vector<TopoDS_Vertex>& vertices) {
   for (const TopoDS_Vertex& vertex : vertices) {
     if (BRep_Tool::Pnt(vertex).Distance(at) > vertex_distance_mm) continue;
@@ -350,7 +352,7 @@ Result<std::vector<TopoDS_Face>> make_faces(const SplineGeometry& geometry, cons
 
 constexpr double sewing_tolerance_mm = 1e-6;
 
-// Returns a compound of a shell for each face.
+// Returns a compound with one shell for each face.
 TopoDS_Shape make_compound(const std::vector<TopoDS_Face>& faces) {
   TopoDS_Compound compound;
   const BRep_Builder builder;
@@ -359,8 +361,8 @@ TopoDS_Shape make_compound(const std::vector<TopoDS_Face>& faces) {
   return compound;
 }
 
-// Sews the faces of a divided surface into one shell with shared edges. Returns a null shape if they do not
-// meet.
+// Sews the faces of a divided surface into one shell with shared edges. Returns a null shape if the faces do
+// not meet.
 TopoDS_Shape sew(const std::vector<TopoDS_Face>& faces) {
   BRepBuilderAPI_Sewing sewing(sewing_tolerance_mm);
   for (const TopoDS_Face& face : faces) sewing.Add(face);
@@ -390,7 +392,7 @@ Result<TopoDS_Shape> build_shape(const CadSurface& part) {
   return shell.IsNull() ? make_compound(faces) : shell;
 }
 
-// Returns true where the surface closes and its normals point inwards.
+// Returns true if the surface closes and its normals point inwards.
 bool is_inside_out(const Surface& surface) {
   if (!is_closed_surface(surface)) return false;
   const auto geometry = to_occt(surface);

@@ -32,11 +32,11 @@ TopoDS_Shell make_shell(const TopoDS_Face& face);
 // Builds a solid from a surface that closes, otherwise an open shell. A trimmed surface becomes one shell, or
 // a compound of a shell for each connected component.
 //
-// A side whose control points coincide is a pole of the body, two opposite sides that coincide are its seam;
-// the surface closes when every side is one or the other. Faces of a surface that closes, trimmed or not,
-// face outwards, whatever the direction of the surface's normals. A face of a solid becomes a shell and keeps
-// its orientation. Refused: a surface or trim loops from which OpenCASCADE cannot build a valid shape, and
-// loops that leave no position for a seam.
+// A side whose control points coincide is a pole of the body; two opposite sides that coincide are its seam.
+// The surface closes if every side is a pole or part of a seam. Faces of a surface that closes, trimmed or
+// not, face outwards, whatever the direction of the surface's normals. A face of a solid becomes a shell and
+// keeps its orientation. Refused: a surface or trim loops from which OpenCASCADE cannot build a valid shape,
+// and loops that leave no position for a seam.
 Result<BodyShape> build_body_shape(const CadSurface& part);
 
 }  // namespace spoonbill

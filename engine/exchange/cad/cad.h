@@ -1,7 +1,7 @@
 // Reader and writer of STEP and IGES files, and meshes of their solids, through OpenCASCADE. OpenCASCADE's
 // settings apply to the whole process, and a hostile file can take over the process. Therefore call these
-// functions in a child process with limits, prepare_occt() first. Each Error says what is wrong, without the
-// file's name.
+// functions only in a child process with limits, and call prepare_occt() before the others. Each Error says
+// what is wrong, without the file's name.
 #pragma once
 
 #include <filesystem>
@@ -26,19 +26,19 @@ using SurfaceSink = std::function<void(CadSurface)>;
 
 // Passes the surface of each face of the file to the sink, one after the other, where the file's assemblies
 // place it. Returns the unit and the notes of the whole file, without surfaces. Notes report an unknown unit,
-// faces that OpenCASCADE lost or that cannot be converted, faces that end beside their edges by more than the
-// tolerance, other files that this one names (they are not
-// opened), and solids that are separated into faces. Refused: a file that OpenCASCADE cannot read, without
-// faces that can be converted, or with more faces than the limit.
+// faces that OpenCASCADE lost or that cannot be converted, faces whose outline differs from their edges in
+// the file by more than the tolerance, other files that this one names (they are not opened), and solids that
+// are separated into faces. Refused: a file that OpenCASCADE cannot read, a file without faces that can be
+// converted, and a file with more faces than the limit.
 Result<CadModel> read_cad(const std::filesystem::path& file, const CadReading& reading,
                           const SurfaceSink& sink, const Progress& progress = {});
 
 // Returns the text of a file. In STEP each surface becomes a product with the surface's name: a
-// MANIFOLD_SOLID_BREP if it closes, an open shell otherwise. In IGES it becomes a named entity: type 186 if
-// it closes, 128 if it does not, 144 for each face if it is trimmed. Faces of one solid are joined under its
-// name where they close. A surface that find_closing() classifies as solid is written exactly closed. Notes
-// report by how much it was open, surfaces that would close but are not written as solids, and bridged gaps
-// between the faces of a solid.
+// MANIFOLD_SOLID_BREP if the surface closes, otherwise an open shell. In IGES it becomes a named entity: type
+// 186 if the surface closes, 128 if it does not, 144 for each face of a trimmed surface. Faces of one solid
+// are joined under its name where they close. A surface that find_closing() classifies as solid is written
+// exactly closed. Notes report by how much such a surface was open, surfaces that would close but are not
+// written as solids, and bridged gaps between the faces of a solid.
 Result<CadFileContent> write_cad(const CadModel& model, const CadWriting& writing,
                                  const Progress& progress = {});
 

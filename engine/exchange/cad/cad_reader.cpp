@@ -227,7 +227,8 @@ void add_unit(const FileUnit& unit, const CadReading& reading, CadModel& model) 
   if (!unit.declared && reading.unit_m == 0.0) {
     model.unit = "mm";
     model.notes.push_back(
-        "the file declares no unit of length that is known; millimetres are assumed (--unit sets another)");
+        "the file declares no unit of length that the program knows; millimetres are assumed (--unit sets "
+        "another)");
   }
 }
 
@@ -242,7 +243,7 @@ Error no_surface_error(const Content& content) {
   return Error{ErrorCode::missing, "contains no surface"};
 }
 
-// Adds notes about everything that is missing or ignored.
+// Adds notes about everything in the file that is lost, damaged or ignored.
 void add_loss_notes(const Content& content, CadModel& model) {
   const LossCount& losses = content.losses;
   const auto add_note = [&](int lost, int all, const char* what) {
@@ -254,7 +255,7 @@ void add_loss_notes(const Content& content, CadModel& model) {
   add_note(losses.lost_instances, losses.instances, "placed parts");
   if (losses.unread > 0) {
     model.notes.push_back("damaged entities of the file: " + std::to_string(losses.unread) +
-                          "; what they belong to is missing or wrong; export it again");
+                          "; the parts that they belong to are missing or wrong; export the file again");
   }
   if (content.unread_placements > 0) {
     model.notes.push_back(
@@ -263,7 +264,7 @@ void add_loss_notes(const Content& content, CadModel& model) {
         "without them");
   }
   if (content.model_scale != 1.0) {
-    model.notes.push_back("the file calls itself a model of scale " + number_text(content.model_scale) +
+    model.notes.push_back("the file states that it is a model of scale " + number_text(content.model_scale) +
                           ", which is not applied: sizes are those of the model (--unit changes them)");
   }
   if (content.external_files > 0) {
@@ -272,7 +273,7 @@ void add_loss_notes(const Content& content, CadModel& model) {
   }
 }
 
-// Adds a note about solids, each face of which becomes a body. Counts the faces that came in.
+// Adds a note about solids, whose faces become one body each. States how many of the faces were converted.
 void add_solid_notes(const std::vector<NamedFace>& faces, const std::vector<bool>& converted,
                      CadModel& model) {
   std::set<std::string> solids;
@@ -288,8 +289,8 @@ void add_solid_notes(const std::vector<NamedFace>& faces, const std::vector<bool
   const std::string counted = read < all ? std::to_string(read) + " of the " : "the ";
   model.notes.push_back(counted + std::to_string(all) + " faces of " +
                         (solids.size() == 1 ? "a solid" : std::to_string(solids.size()) + " solids") +
-                        (read == 1 ? " comes in as a body" : " come in as a body each") +
-                        "; they leave joined where they still close");
+                        (read == 1 ? " is imported as a body" : " are imported as a body each") +
+                        "; on export they are joined again where they still close");
 }
 
 // Returns the length in metres of one unit of OpenCASCADE's numbers, which are millimetres. A unit that the
@@ -299,7 +300,7 @@ double find_scale(const FileUnit& unit, const CadReading& reading) {
   return unit.declared ? 1e-3 : 1e-3 / unit.millimetres;
 }
 
-// Larger ones are of no use to a person and not passed on.
+// Larger deviations are reported as this one, because no reader of a message needs more.
 constexpr double trim_deviation_limit_m = 1e6;
 
 CadSurface make_cad_surface(const NamedFace& face, FaceSurface found) {
@@ -334,8 +335,8 @@ Result<FaceSurface> convert_near_face(const TopoDS_Face& face, double scale, dou
   return found;
 }
 
-// Passes the surfaces of all faces to the sink; notes report solids, and faces that cannot be converted.
-// Fails where that is all of them.
+// Passes the surfaces of all faces to the sink. Notes report solids and faces that cannot be converted. Fails
+// if no face can be converted.
 Status convert_faces(const std::vector<NamedFace>& faces, double scale, const CadReading& reading,
                      const SurfaceSink& sink, const Progress& progress, CadModel& model) {
   std::optional<Error> first;
@@ -344,12 +345,12 @@ Status convert_faces(const std::vector<NamedFace>& faces, double scale, const Ca
   for (std::size_t k = 0; k < faces.size(); ++k) {
     auto found = convert_near_face(faces[k].face, scale, reading.tolerance_m);
     if (found) {
-      // An approximated surface may be off the edge by the tolerance itself.
+      // The deviation of an approximated surface may add to that of its edges.
       if (found->trim_deviation_m > reading.tolerance_m + found->deviation_m) {
         const std::string place = face_place_text(faces[k].face, scale);
-        bent.push_back("'" + faces[k].name + "'" + (place.empty() ? "" : " at " + place) + " ends up to " +
+        bent.push_back("'" + faces[k].name + "'" + (place.empty() ? "" : " at " + place) + " is up to " +
                        short_length_text(found->trim_deviation_m) +
-                       " beside its edges in the file; check it there");
+                       " away from its edges in the file; check it there");
       }
       sink(make_cad_surface(faces[k], std::move(found).value()));
       converted[k] = true;
@@ -379,7 +380,7 @@ Result<CadModel> read(const std::filesystem::path& file, const CadReading& readi
   if (faces.size() > reading.face_limit) {
     return Error{ErrorCode::too_many, "has " + std::to_string(faces.size()) + " faces, more than the " +
                                           std::to_string(reading.face_limit) +
-                                          " that are read; export fewer"};
+                                          " that can be read; export fewer"};
   }
   CadModel model;
   add_unit(content->unit, reading, model);

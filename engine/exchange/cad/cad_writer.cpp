@@ -128,17 +128,18 @@ std::string describe_open_shell(const CadSurface& surface, const BodyShape& body
     return "' closes, but OpenCASCADE cannot make a solid of it; an open shell is written";
   }
   const int faces = face_count(body.shape);
-  return "' would close, but is trimmed; an open shell of what is left is written" +
-         (faces > 1 ? ", cut in " + std::to_string(faces) + " faces, which come back as a body each"
+  return "' would close but is trimmed; the remaining part is written as an open shell" +
+         (faces > 1 ? ", cut in " + std::to_string(faces) + " faces, which are imported as a body each"
                     : std::string());
 }
 
-// Counts a body. Adds a note if its surface was moved to close it, or if it would close but is not a solid.
+// Counts a body. Adds a note if its surface was moved to close it, or if its surface closes although the body
+// is not a solid.
 void add_body_notes(const CadSurface& surface, const BodyShape& body, double moved_m,
                     CadFileContent& content) {
   ++(body.solid ? content.solids : content.open_shells);
   if (body.solid && moved_m > smallest_move_m) {
-    content.notes.push_back("'" + surface.name + "' misses closing by " + short_length_text(moved_m) +
+    content.notes.push_back("'" + surface.name + "' is open by " + short_length_text(moved_m) +
                             "; it is written closed");
   }
   if (body.solid || !surface.solid.empty()) return;

@@ -40,7 +40,7 @@ constexpr int samples_per_edge = 16;
 // box's length. Files store curves less exactly than surfaces.
 constexpr double side_fraction = 1e-5;
 
-// Returns the projections of a point to the four sides of a box.
+// Returns the projections of a point onto the four sides of a box.
 std::array<gp_Pnt2d, 4> project_to_sides(const gp_Pnt2d& point, const ParameterBox& box) {
   return {gp_Pnt2d(box.u_start, point.Y()), gp_Pnt2d(box.u_end, point.Y()), gp_Pnt2d(point.X(), box.v_start),
           gp_Pnt2d(point.X(), box.v_end)};
@@ -51,8 +51,8 @@ gp_Pnt2d clamp_into(const gp_Pnt2d& point, const ParameterBox& box) {
   return {std::clamp(point.X(), box.u_start, box.u_end), std::clamp(point.Y(), box.v_start, box.v_end)};
 }
 
-// Returns true where all samples of the edge are on one side of the box. An edge that overshoots the box
-// counts as the side that it overshoots, to within the same distance.
+// Returns true if all samples of the edge are on the same side of the box. Samples outside the box count as
+// being on the side that they overshoot by at most `tolerance` or the edge's own tolerance.
 bool is_on_side(const TopoDS_Edge& edge, const TopoDS_Face& face, const ParameterBox& box, double tolerance) {
   double first = 0.0, last = 0.0;
   const auto curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
@@ -102,16 +102,17 @@ Geometry basis_surface(Geometry surface) {
   return surface;
 }
 
-// Returns the surface's own bound `full` if the given bound equals it within rounding, otherwise the given
-// bound.
+// Returns the surface's own bound `full` if the given bound equals it within rounding. Otherwise returns the
+// given bound.
 double snap_bound(double bound, double full, double length) {
   return std::abs(bound - full) < 1e-7 * length ? full : bound;
 }
 
 bool is_polynomial(const Geometry& surface);
 
-// Cuts off what lies beyond the end of a polynomial surface, where OpenCASCADE cannot cut it out. Edges
-// overshoot such an end by the rounding of their file, or by its tolerance. A periodic direction has no end.
+// Cuts off the part of the box beyond the end of a polynomial surface, where OpenCASCADE has no surface to
+// cut. Edges overshoot such an end by the rounding of their file, or by its tolerance. A periodic direction
+// has no end.
 void clip_to_surface(const Geometry& surface, const ParameterBox& full, ParameterBox& box) {
   if (!is_polynomial(surface)) return;
   if (!surface->IsUPeriodic()) {
@@ -179,8 +180,8 @@ bool is_whole(const Geometry& surface, const ParameterBox& box) {
          box.v_end == full.v_end;
 }
 
-// Returns the whole domain if the surface is a spline, because its loops trim it, unless the face crosses its
-// seam. Otherwise returns the box.
+// Returns the whole domain of a spline, because the face's loops trim it, unless the face crosses the
+// spline's seam. Returns the box for any other surface.
 ParameterBox widen_to_spline(const Geometry& surface, const ParameterBox& box) {
   ParameterBox full;
   surface->Bounds(full.u_start, full.u_end, full.v_start, full.v_end);
@@ -219,7 +220,7 @@ void scale_net(ControlNet& net, double factor) {
   }
 }
 
-// Gives the surface the parameters of the face, which the curves of its edges use.
+// Gives the surface the parameters of the face, because the curves of the face's edges refer to them.
 Status match_domain(const ParameterBox& box, Surface& surface) {
   const auto match = [&](Direction direction, const KnotVector& knots, double start, double end) -> Status {
     if (knots.domain_start() == start && knots.domain_end() == end) return {};

@@ -60,7 +60,7 @@ opencascade::handle<StepRepr_GlobalUnitAssignedContext> get_unit_context(
   return opencascade::handle<StepRepr_GlobalUnitAssignedContext>::DownCast(entity);
 }
 
-// Returns true where the context lists units and a damaged file has left none of them out.
+// Returns true if the context lists units and none of them is null, as units of a damaged file can be.
 bool has_all_units(const opencascade::handle<StepRepr_GlobalUnitAssignedContext>& context) {
   if (context.IsNull() || context->Units().IsNull()) return false;
   for (int k = 1; k <= context->NbUnits(); ++k) {
@@ -227,7 +227,7 @@ int count_unread_placements(const opencascade::handle<IGESData_IGESModel>& model
   for (int k = 1; k <= model->NbEntities(); ++k) {
     const auto entity = model->Entity(k);
     if (entity.IsNull() || !entity->HasTransf()) continue;
-    // Null where a damaged file names another entity as the matrix.
+    // The matrix is null if a damaged file names another entity in its place.
     const auto transformation = entity->Transf();
     if (transformation.IsNull() || !keeps_angles(transformation->Value().VectorialPart())) ++count;
   }

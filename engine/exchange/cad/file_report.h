@@ -26,15 +26,15 @@ FileUnit find_unit(const opencascade::handle<IGESData_IGESModel>& model, const s
 // Numbers of entities that OpenCASCADE omits although it reports success.
 struct LossCount {
   int faces = 0, lost_faces = 0;          // faces of the file, and faces that did not become a shape
-  int instances = 0, lost_instances = 0;  // placed copies of parts of an IGES file
+  int instances = 0, lost_instances = 0;  // the same for placed copies of parts of an IGES file
   int unread = 0;                         // IGES entities that could not be parsed or have no type
 };
 
 // Counts losses after the transfer.
 LossCount count_losses(const opencascade::handle<XSControl_WorkSession>& session, FileFormat format);
 
-// Count placements that OpenCASCADE ignores because they do more than translate and rotate: in STEP
-// placements that scale or mirror, in IGES placements that change angles.
+// Count placements that OpenCASCADE ignores because they do more than translate and rotate: placements that
+// scale or mirror in STEP, placements that change angles in IGES.
 int count_unread_placements(const opencascade::handle<StepData_StepModel>& model);
 int count_unread_placements(const opencascade::handle<IGESData_IGESModel>& model);
 

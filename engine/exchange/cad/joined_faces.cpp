@@ -34,7 +34,7 @@ namespace {
 // approximated faces.
 constexpr double tolerances_mm[] = {1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1};
 
-// Largest gap between two faces that is not reported; if the faces deviate more from the originals, this
+// Gaps between two faces up to this width are not reported. If the faces deviate more from the originals, the
 // limit is raised.
 constexpr double expected_gap_m = 2e-5;
 constexpr int gap_samples = 16;
@@ -230,8 +230,8 @@ std::vector<std::string> describe_joining(const JoinedFaces& joined, const std::
   double gap_m = 0.0;
   for (const JoinedSolid& solid : joined.solids) gap_m = std::max(gap_m, solid.gap_m);
   if (gap_m > explained_gap_m(parts)) {
-    notes.push_back("the faces of '" + name + "' miss each other by up to " + short_length_text(gap_m) +
-                    "; they are joined over that as if they met");
+    notes.push_back("the faces of '" + name + "' have gaps of up to " + short_length_text(gap_m) +
+                    "; they are joined as if there were none");
   }
   if (!joined.loose.empty()) {
     notes.push_back(std::to_string(joined.loose.size()) + " of the " + std::to_string(parts.size()) +

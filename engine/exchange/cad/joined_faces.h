@@ -22,10 +22,10 @@ struct JoinedFaces {
   std::vector<std::size_t> loose;  // indices of the parts that belong to no solid
 };
 
-// Sews the parts' edges where they are at most 0.1 mm apart, which approximated faces may be. The normals of
-// most of a shell's faces decide which side is outside: a shell that is inside out is a cavity of the solid
-// around it, or loose if no solid is around it. Refused: a surface or trim loops from which OpenCASCADE
-// cannot build a face.
+// Sews the parts' edges where they are at most 0.1 mm apart, since approximated faces may have such gaps. The
+// normals of most of a shell's faces decide which side is outside. A shell that is inside out is a cavity of
+// the solid around it, or loose if no solid is around it. Refused: a surface or trim loops from which
+// OpenCASCADE cannot build a face.
 Result<JoinedFaces> join_faces(const std::vector<const CadSurface*>& parts);
 
 // Returns notes about the joined faces of the solid `name`, one line each: bridged gaps that are wider than

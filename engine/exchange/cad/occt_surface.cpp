@@ -177,7 +177,7 @@ Result<opencascade::handle<Geom_BSplineSurface>> to_occt(const Surface& surface)
     }
     return result;
   } catch (const Standard_Failure& failure) {
-    return Error{ErrorCode::degenerate, std::string("its knots are too near each other for a CAD file (") +
+    return Error{ErrorCode::degenerate, std::string("its knots are too close together for a CAD file (") +
                                             failure.DynamicType()->Name() + "); make near ones equal"};
   }
 }

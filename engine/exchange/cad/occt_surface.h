@@ -23,8 +23,9 @@ Result<opencascade::handle<Geom_BSplineSurface>> to_occt(const Surface& surface)
 Result<Surface> from_occt(const Geom_BSplineSurface& surface);
 
 // Makes the surface periodic in `direction`, in which it must be clamped, if its two edges coincide to
-// `tolerance_m`. Otherwise, and if an edge is a single point, it is returned unchanged. As many of the seam's
-// knots are removed as possible without moving a control point of the open form by more than the tolerance.
+// `tolerance_m`. Returns the surface unchanged if they do not, or if an edge is a single point. As many of
+// the seam's knots are removed as possible without moving a control point of the open form by more than the
+// tolerance.
 Surface close_seam(const Surface& surface, Direction direction, double tolerance_m);
 
 // Makes all control points of an edge equal if they coincide to `tolerance_m`; treats the edges of both
@@ -41,7 +42,7 @@ struct ClosedSurface {
 ClosedSurface close_exactly(const Surface& surface);
 
 // Returns the Greville parameters, at which a spline with as many control points is interpolated well. Each
-// is the mean of the inner knots that a basis function spans (Greville 1964), brought into the domain.
+// is the mean of the inner knots that a basis function spans (Greville 1964), shifted into the domain.
 std::vector<double> greville_parameters(const KnotVector& knots);
 
 }  // namespace spoonbill

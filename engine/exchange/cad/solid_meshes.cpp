@@ -45,7 +45,7 @@ struct ShapeMesh {
 
 // Largest angle between neighbouring triangles of a face, in radians.
 constexpr double angle_limit = 0.5;
-// Deflection of the first try as a fraction of the chord error (the mesher may exceed its deflection), and
+// Deflection of the first try as a fraction of the chord error, since meshes may exceed the deflection, and
 // smallest ratio of a deflection to the previous one.
 constexpr double initial_fraction = 0.7, smallest_step = 0.2;
 constexpr int try_limit = 6;

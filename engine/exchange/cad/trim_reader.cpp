@@ -29,7 +29,7 @@ struct CubicPiece : std::array<Point, 4> {
 };
 
 // Largest distance between loops and the file's curves, as a fraction of the domain: the default, and the
-// smallest that a tight tolerance leads to.
+// smallest value that a tight tolerance may require.
 constexpr double curve_fraction = 1e-6, smallest_curve_fraction = 1e-9;
 // Largest gap between edges that is closed by moving their ends, as a fraction of the domain.
 constexpr double meeting_fraction = 1e-3;
@@ -278,7 +278,7 @@ Result<TrimLoop> make_loop(const std::vector<CubicPiece>& chain, const KnotVecto
 }
 
 constexpr int samples_per_piece = 8, nearest_steps = 8;
-// Samples nearer to the end of an edge are its end.
+// Samples nearer to an end of an edge than this fraction of its length count as that end.
 constexpr double end_fraction = 1e-9;
 
 // Returns the distance of a point from an edge's curve near a parameter, by Gauss-Newton steps; all in the

@@ -178,7 +178,7 @@ class StopCheck {
     if (status_.ok()) status_ = sink_({});
     return status_.ok();
   }
-  // Asks the sink whether to continue, but only at every 16384th element.
+  // Returns true if the writer may continue. Asks the sink only at every 16384th element.
   bool may_continue_at(std::size_t number) {
     constexpr std::size_t interval = 1 << 14;
     return number % interval == 0 ? may_continue() : status_.ok();
@@ -264,12 +264,12 @@ class Archive {
     zip_register_cancel_callback_with_state(archive_, stops, nullptr, &stop_check);
     if (zip_close(archive_) != 0) return false;
     archive_ = nullptr;
-    // zip_close() ignores a stop request if the last call of the callback returns it, so the stop is checked
-    // here.
+    // The stop is checked here, because zip_close() ignores a stop request from the last call of its
+    // callback.
     return stop_check.status().ok();
   }
 
-  // Passes the bytes of the packed archive on.
+  // Passes the bytes of the packed archive to the sink.
   Status send_to(const ByteSink& sink) {
     if (zip_source_open(source_) != 0) return Error{ErrorCode::unwritable, "the ZIP archive cannot be read"};
     std::string part(std::size_t{1} << 20, '\0');
@@ -313,7 +313,7 @@ Status write_meshes(const std::vector<NamedMesh>& meshes, FileFormat format, dou
   constexpr std::size_t index_limit = std::numeric_limits<std::int32_t>::max();
   if (counts.vertices > index_limit || counts.triangles > index_limit) {
     return Error{ErrorCode::too_many,
-                 "has more triangles than the format counts; choose a larger chord error"};
+                 "has more triangles than the format can count; choose a larger chord error"};
   }
   SPOONBILL_ASSERT(is_written_mesh(format));
   switch (format) {

@@ -302,7 +302,7 @@ void refine(const Eigen::MatrixXd& errors, double chord_m, Cells& cells) {
   }
 }
 
-// Map from the corners of a sheet to vertices: the corners at a seam or a pole become one.
+// Map from the corners of a sheet to vertices: corners that coincide at a seam or a pole become one vertex.
 class Welding {
  public:
   Welding(const Sheet& sheet, const Surface& surface)
@@ -329,7 +329,8 @@ class Welding {
     return i * columns_ + j;
   }
 
-  // Returns the largest distance of a corner from its vertex; 0 if the rounding of a file would hide it.
+  // Returns the largest distance of a corner from its vertex; 0 if the distance is within the rounding of a
+  // file.
   double largest_move_m() const {
     double largest_m = 0.0;
     for (std::size_t i = 0; i < rows_; ++i) {
@@ -430,7 +431,7 @@ TriangleMesh make_trimmed_mesh(const Sheet& sheet, const Welding& welding, const
   return make_mesh(sheet, more, triangles);
 }
 
-// Returns the bound of the distance between loops and the polygons that replace them.
+// Returns a bound of the distance between the loops and the polygons that replace them.
 double trim_edge_error_m(const Surface& surface, const std::vector<TrimLoop>& trims) {
   double fraction = 0.0;
   for (const TrimLoop& loop : trims) {

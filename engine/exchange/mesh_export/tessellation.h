@@ -20,8 +20,9 @@ struct Tessellation {
   TriangleMesh mesh;
   bool closed = false;  // every side is a seam or a pole, and no trim loop cuts the surface
   // Largest distance of a point of the surface from the point of its triangle at the same parameters, and of
-  // a trim loop from the edges that replace it. Welding adds at most closing_tolerance_m to the requested
-  // error; the error of the loops' edges adds to it if it is more than half of the requested error.
+  // a trim loop from the edges that replace it. Exceeds the requested error by at most closing_tolerance_m
+  // because of welding, and by the error of the loops' edges if that is more than half of the requested
+  // error.
   double chord_error_m = 0.0;
 };
 

@@ -73,10 +73,12 @@ bool is_product(std::uint64_t product, std::uint64_t a, std::uint64_t b) {
 Result<PcdHeader> make_header(const HeaderLines& lines, std::string_view data, std::string_view body) {
   PcdHeader header{{}, 0, data, body};
   const std::size_t count = lines.fields.size();
-  if (count == 0 || count > pcd_field_limit) return Error{ErrorCode::missing, "its header names no FIELDS"};
+  if (count == 0 || count > pcd_field_limit)
+    return Error{ErrorCode::missing, "its header has no FIELDS line"};
   if (lines.sizes.size() != count || lines.types.size() != count ||
       (!lines.counts.empty() && lines.counts.size() != count)) {
-    return Error{ErrorCode::inconsistent, "its header must have as many SIZE, TYPE and COUNT as FIELDS"};
+    return Error{ErrorCode::inconsistent,
+                 "its header must list as many values for SIZE, TYPE and COUNT as for FIELDS"};
   }
   for (std::size_t k = 0; k < count; ++k) {
     const auto size = parse_count(lines.sizes[k]);
@@ -96,12 +98,12 @@ Result<PcdHeader> make_header(const HeaderLines& lines, std::string_view data, s
   if (lines.points) {
     header.points = *lines.points;
     if (lines.width && lines.height && !is_product(*lines.points, *lines.width, *lines.height)) {
-      return Error{ErrorCode::inconsistent, "its POINTS are not WIDTH times HEIGHT; it is damaged"};
+      return Error{ErrorCode::inconsistent, "its POINTS are not WIDTH times HEIGHT; the file is damaged"};
     }
   } else if (lines.width && lines.height && *lines.width <= point_limit && *lines.height <= point_limit) {
     header.points = *lines.width * *lines.height;
   } else {
-    return Error{ErrorCode::missing, "its header names no count of POINTS"};
+    return Error{ErrorCode::missing, "its header does not state the number of POINTS"};
   }
   return header;
 }
@@ -146,12 +148,12 @@ Error truncated_error(std::uint64_t point, std::uint64_t points) {
                                          " of " + std::to_string(points) + "; it is cut or damaged"};
 }
 
-// Returns an error if more than blanks or zeros, as padding has, follow the last point.
+// Returns an error if anything but padding (blanks or zeros) follows the last point.
 Status check_rest(std::string_view rest, std::uint64_t points) {
   constexpr std::string_view padding("\0 \t\r\v\f\n", 7);
   if (rest.find_first_not_of(padding) == std::string_view::npos) return {};
   return Error{ErrorCode::inconsistent, "holds more than the " + std::to_string(points) +
-                                            " points that its header names; it is damaged"};
+                                            " points that its header states; the file is damaged"};
 }
 
 // Collects all points. `number(point, field)` returns a coordinate, or nullopt where the file ends early.
@@ -249,12 +251,13 @@ Result<PointCloud> read_compressed_body(PcdHeader header) {
     size += header.points * field.count * byte_count(field.type);
   }
   if (size != lengths[1] || size == 0 || size > point_file_bytes_limit || lengths[0] > header.body.size()) {
-    return Error{ErrorCode::malformed,
-                 "its compressed data do not have the length that its header promises; it is cut or damaged"};
+    return Error{
+        ErrorCode::malformed,
+        "its compressed data do not have the length that its header states; the file is cut or damaged"};
   }
   std::string bytes(size, '\0');
   if (lzf_decompress(header.body.data(), lengths[0], bytes.data(), lengths[1]) != size) {
-    return Error{ErrorCode::malformed, "its compressed data cannot be decompressed; it is damaged"};
+    return Error{ErrorCode::malformed, "its compressed data cannot be decompressed; the file is damaged"};
   }
   return collect_points(header, [&](std::uint64_t point, std::size_t field) -> std::optional<double> {
     const PcdField& values = header.fields[field];
@@ -273,7 +276,7 @@ Result<PointCloud> parse_pcd_points(std::string_view bytes) {
   if (data == "binary") return read_binary_body(std::move(header).value());
   if (data == "binary_compressed") return read_compressed_body(std::move(header).value());
   return Error{ErrorCode::unsupported, "its DATA are '" + std::string(data.substr(0, 40)) +
-                                           "'; ascii, binary and binary_compressed are read"};
+                                           "'; only ascii, binary and binary_compressed can be read"};
 }
 
 }  // namespace spoonbill

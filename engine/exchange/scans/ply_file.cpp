@@ -15,7 +15,8 @@
 namespace spoonbill {
 namespace {
 
-// Reader of a body's numbers, one by one. Its functions return false at the end or where there is no number.
+// Reads the numbers after the header of a PLY file, one by one. Its functions return false at the end or
+// where there is no number.
 class PlyNumbers {
  public:
   explicit PlyNumbers(const PlyHeader& header)
@@ -56,14 +57,14 @@ class PlyNumbers {
     return true;
   }
 
-  // Skips rows of known size; false if the file holds fewer.
+  // Skips rows of known size. Returns false if the file holds fewer rows.
   bool skip_bytes(std::uint64_t rows, std::size_t row_bytes) {
     if (row_bytes > 0 && rows > rest_.size() / row_bytes) return false;
     rest_.remove_prefix(rows * row_bytes);
     return true;
   }
 
-  // Returns true if nothing but blanks or zeros follows, as padding does.
+  // Returns true if only padding (blanks or zeros) follows.
   bool is_at_end() const {
     return std::all_of(rest_.begin(), rest_.end(), [](char letter) {
       return letter == '\0' || letter == ' ' || (letter >= '\t' && letter <= '\r');
@@ -72,7 +73,7 @@ class PlyNumbers {
 
   std::size_t remaining_bytes() const { return rest_.size(); }
   bool is_text() const { return is_text_; }
-  // The last word that was read from text.
+  // Returns the word that was read last from a text file.
   std::string_view word() const { return word_; }
 
  private:
@@ -110,7 +111,7 @@ Status check_row_count(const PlyNumbers& numbers, const PlyElement& element) {
 }
 
 Status skip_element(PlyNumbers& numbers, const PlyElement& element) {
-  // Rows without properties need no bytes, however many are promised.
+  // A row without properties needs no bytes, so any number of such rows is allowed.
   if (element.properties.empty()) return {};
   if (Status held = check_row_count(numbers, element); !held) return held;
   if (!numbers.is_text() && !element.has_lists()) {
@@ -125,7 +126,7 @@ Status skip_element(PlyNumbers& numbers, const PlyElement& element) {
   return {};
 }
 
-// Returns an error for vertices without coordinates, or for more of them than the file has bytes for.
+// Returns an error if vertices have no coordinates, or if the file has too few bytes for them.
 Status check_vertices(const PlyNumbers& numbers, const PlyElement& element) {
   for (const std::string_view name : {"x", "y", "z"}) {
     if (element.find(name, false) < 0) return Error{ErrorCode::missing, "its vertices have no x, y and z"};
@@ -137,7 +138,7 @@ Status check_vertices(const PlyNumbers& numbers, const PlyElement& element) {
 template <class Receive>
 Status read_vertices(PlyNumbers& numbers, const PlyElement& element, const Receive& receive) {
   static constexpr std::array<std::string_view, 6> names{"x", "y", "z", "nx", "ny", "nz"};
-  // For each property, which of the six coordinates it is; -1 for others.
+  // Index of the coordinate that each property holds: x, y and z, then the normal's; -1 for other properties.
   std::vector<int> coordinate(element.properties.size(), -1);
   for (int k = 0; k < 6; ++k) {
     const int column = element.find(names[k], false);
@@ -209,7 +210,8 @@ class PlyMeshBuilder {
           return std::any_of(corners.begin(), corners.end(), is_beyond);
         });
     if (is_wrong) {
-      return Error{ErrorCode::inconsistent, "a face names a vertex that does not exist; it is damaged"};
+      return Error{ErrorCode::inconsistent,
+                   "a face refers to a vertex that does not exist; the file is damaged"};
     }
     std::span<const std::uint32_t> rest = polygon_corners_;
     for (const std::size_t corners : polygon_sizes_) {
@@ -238,15 +240,15 @@ class PlyMeshBuilder {
   }
 
   static Error index_error(double number) {
-    return Error{ErrorCode::malformed,
-                 "a face names the vertex " + number_text(number) + ", which is not an index; it is damaged"};
+    return Error{ErrorCode::malformed, "a face refers to vertex " + number_text(number) +
+                                           ", which is not an index; the file is damaged"};
   }
 
   Status add_face() {
     if (row_.size() > face_corner_limit) {
-      return Error{ErrorCode::too_many, "a face has " + std::to_string(row_.size()) + " corners, at most " +
-                                            std::to_string(face_corner_limit) +
-                                            " are read; export triangles"};
+      return Error{ErrorCode::too_many, "a face has " + std::to_string(row_.size()) +
+                                            " corners, but at most " + std::to_string(face_corner_limit) +
+                                            " can be read; export triangles"};
     }
     corners_.clear();
     for (const double number : row_) {
@@ -262,8 +264,8 @@ class PlyMeshBuilder {
     return {};
   }
 
-  // Adds the triangles of a row of strips. Every second one runs the other way round; those with a repeated
-  // corner only join others.
+  // Adds the triangles of a row of strips. Every second triangle of a strip runs in the opposite direction.
+  // Triangles with a repeated corner only connect parts of a strip and are skipped.
   Status add_strip() {
     corners_.clear();
     for (const double number : row_) {
@@ -294,7 +296,7 @@ class PlyMeshBuilder {
 Status check_end(const PlyNumbers& numbers) {
   if (numbers.is_at_end()) return {};
   return Error{ErrorCode::inconsistent,
-               "has numbers after the last row that its header promises; it is damaged"};
+               "has numbers after the last row that its header states; the file is damaged"};
 }
 
 Result<PlyMesh> read_ply_mesh(const PlyHeader& header) {
@@ -338,7 +340,7 @@ Result<std::variant<PlyMesh, PointCloud>> parse_ply(std::string_view bytes) {
   if (!header) return header.error();
   const std::vector<PlyElement>& elements = header->elements;
   if (std::none_of(elements.begin(), elements.end(), [](const auto& e) { return e.name == "vertex"; })) {
-    return Error{ErrorCode::missing, "its header names no vertices"};
+    return Error{ErrorCode::missing, "its header declares no vertices"};
   }
   const bool has_faces = std::any_of(elements.begin(), elements.end(), [](const PlyElement& element) {
     return is_face(element) && element.rows > 0;

@@ -72,7 +72,7 @@ Status read_element(std::string_view rest, std::string_view line, std::vector<Pl
   if (!rows) return line_error(line);
   const auto is_same = [&](const PlyElement& element) { return element.name == name; };
   if (name == "vertex" && std::any_of(elements.begin(), elements.end(), is_same)) {
-    return Error{ErrorCode::duplicate, "its header names vertices twice"};
+    return Error{ErrorCode::duplicate, "its header declares vertices twice"};
   }
   elements.push_back({name, *rows});
   return {};
@@ -85,8 +85,8 @@ std::optional<PlyFormat> find_format(std::string_view name) {
   return {};
 }
 
-// Removes the next line. A file whose first line ends with a carriage return alone has such lines only, and
-// the byte after its header may be a line feed of its numbers.
+// Removes and returns the next line. If the first line ends with a lone carriage return, all lines of the
+// header do; a line feed right after the header is then the first byte of the data.
 std::string_view extract_header_line(std::string_view& rest, bool ends_with_return) {
   if (!ends_with_return) return extract_line(rest);
   const std::size_t end = std::min(rest.find('\r'), rest.size());
@@ -134,7 +134,7 @@ Result<PlyHeader> read_ply_header(std::string_view bytes) {
     } else if (keyword == "property") {
       read = read_property(words, line, header.elements);
     } else if (keyword == "end_header") {
-      if (!format) return Error{ErrorCode::unsupported, "its header names no known format"};
+      if (!format) return Error{ErrorCode::unsupported, "its header states no known format"};
       header.format = *format;
       header.body = rest;
       return header;

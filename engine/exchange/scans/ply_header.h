@@ -23,7 +23,7 @@ struct PlyElement {
   std::uint64_t rows = 0;
   std::vector<PlyProperty> properties = {};
 
-  // Returns the index of the property, scalar or list; -1 without it.
+  // Returns the index of the property, scalar or list; -1 if there is none.
   int find(std::string_view property, bool is_list) const;
   bool has_lists() const;
 };
@@ -37,8 +37,9 @@ struct PlyHeader {
   std::string_view body;
 };
 
-// Reads a header whose lines end with a line feed, a carriage return or both. Refused: no header that ends
-// within 64 KiB, an unknown format or type, a count of rows that is no number, two elements of vertices.
+// Reads a header whose lines end with a line feed, a carriage return or both. Refused: a header that does not
+// end within 64 KiB, an unknown format or type, a number of rows that is not a number, two elements of
+// vertices.
 Result<PlyHeader> read_ply_header(std::string_view bytes);
 
 }  // namespace spoonbill

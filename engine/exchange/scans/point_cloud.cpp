@@ -18,7 +18,7 @@ namespace {
 
 Error too_many(std::uint64_t count) {
   return Error{ErrorCode::too_many, "has " + std::to_string(count) + " points, more than the " +
-                                        std::to_string(point_limit) + " that are read; thin it out"};
+                                        std::to_string(point_limit) + " that can be read; thin it out"};
 }
 
 constexpr std::size_t column_limit = 32;
@@ -72,7 +72,7 @@ std::string_view trim_separators(std::string_view line) {
                                          : line.substr(begin, line.find_last_not_of(ignored) - begin + 1);
 }
 
-// Returns true if a comma has neighbours on both sides that are neither blank nor separator.
+// Returns true if a comma has characters on both sides that are neither blanks nor separators.
 bool has_inner_comma(std::string_view line) {
   constexpr std::string_view separators = " \t\r\v\f;,";
   for (std::size_t at = line.find(',', 1); at < line.size(); at = line.find(',', at + 1)) {
@@ -118,7 +118,7 @@ Error ambiguity_error(std::size_t line, std::string_view text) {
 }
 
 Error count_error(double promised, std::size_t points) {
-  return Error{ErrorCode::inconsistent, "names " + number_text(promised) + " points and holds " +
+  return Error{ErrorCode::inconsistent, "states " + number_text(promised) + " points but holds " +
                                             std::to_string(points) + "; it is cut or damaged"};
 }
 
@@ -165,7 +165,7 @@ Result<PointCloud> parse_text_points(std::string_view bytes) {
   PointCollector collector;
   std::size_t columns = 0, line_number = 0, points = 0;
   bool has_heading = false;
-  std::optional<double> promised;  // count of points before the first one
+  std::optional<double> promised;  // number of points that the line before the first point states
   bytes = without_byte_order_mark(bytes);
   bool are_unit_normals = true;  // columns 4 to 6 of all points so far have length 1
   while (!bytes.empty()) {
@@ -177,7 +177,7 @@ Result<PointCloud> parse_text_points(std::string_view bytes) {
     const bool is_first = columns == 0;
     if (is_first && (!row.all_numbers || row.count == 1)) {
       if (has_heading) return no_point_error(line_number, line);
-      has_heading = true;  // names of the columns, or the count of points
+      has_heading = true;  // the line names the columns or states the number of points
       if (row.all_numbers) promised = row.numbers[0];
       continue;
     }
@@ -188,7 +188,8 @@ Result<PointCloud> parse_text_points(std::string_view bytes) {
     }
     if (row.count != columns) {
       return Error{ErrorCode::inconsistent, "line " + std::to_string(line_number) + " has " +
-                                                std::to_string(row.count) + " numbers, the first point has " +
+                                                std::to_string(row.count) +
+                                                " numbers, but the first point has " +
                                                 std::to_string(columns) + "; it is cut or damaged"};
     }
     const Vector3 normal(row.numbers[3], row.numbers[4], row.numbers[5]);

@@ -51,11 +51,11 @@ class PointCollector {
 // more points than the header names.
 Result<PointCloud> parse_pcd_points(std::string_view bytes);
 
-// Reads one point from each line: x, y, z separated by blanks, commas or semicolons, followed by a normal
-// where three further columns have length 1 in all lines. Between semicolons "12,5" is a number with a
-// decimal comma. Ignored: other columns, comments (#, //), a byte order mark, and before the first point one
-// line of words or of one number, the count. Refused: a count that is not that of the points; a comma within
-// a word where blanks separate the words, since it may separate numbers or be decimal.
+// Reads one point from each line: x, y, z separated by blanks, commas or semicolons, followed by a normal if
+// three further columns have length 1 in all lines. Between semicolons "12,5" is a number with a decimal
+// comma. Ignored: other columns, comments (#, //), a byte order mark, and before the first point one line of
+// words or of the number of points. Refused: a stated number that differs from the number of points; a comma
+// within a word where blanks separate the words, because it may be a separator or a decimal comma.
 Result<PointCloud> parse_text_points(std::string_view bytes);
 
 // Reads the `v` lines of an OBJ file; its `vn` lines are their normals if there are as many of them.

@@ -7,7 +7,7 @@
 namespace spoonbill {
 namespace {
 
-// Ears that are tested for each corner before the rest is cut as a fan.
+// Number of ears tested per corner; when all tests are used up, the rest of the polygon is cut without tests.
 constexpr std::size_t tests_per_corner = 64;
 
 // Returns twice the area vector of the polygon (Newell 1972).
@@ -25,7 +25,8 @@ double cross(const Vector2& a, const Vector2& b, const Vector2& c) {
   return ab.x() * ac.y() - ab.y() * ac.x();
 }
 
-// A corner that remains to be cut: its index and its place in the polygon's plane, counter-clockwise.
+// A corner that remains to be cut: its index, and its position in the polygon's plane, where the polygon runs
+// counter-clockwise.
 struct PlaneCorner {
   std::uint32_t index = 0;
   Vector2 at = Vector2::Zero();
@@ -37,7 +38,7 @@ bool is_ear(const std::vector<PlaneCorner>& corners, std::size_t k) {
   if (!(cross(a, b, c) > 0.0)) return false;
   for (std::size_t other = 0; other < count; ++other) {
     const Vector2& at = corners[other].at;
-    // Corners at the same place bound a bridge to a hole and are no obstacle.
+    // Corners at the same position are the two ends of a bridge to a hole and do not block an ear.
     if (other == before || other == k || other == after || at == a || at == b || at == c) continue;
     if (cross(a, b, at) >= 0.0 && cross(b, c, at) >= 0.0 && cross(c, a, at) >= 0.0) return false;
   }

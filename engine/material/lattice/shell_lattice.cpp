@@ -91,7 +91,7 @@ Result<ShellSurface> ShellSurface::make(const Surface& surface) {
   const bool around_u = surface.u.is_periodic(), around_v = surface.v.is_periodic();
   if (around_u && around_v) {
     return Error{ErrorCode::unsupported,
-                 "surface: periodic in u and v; a shell can close in one direction only, open the other",
+                 "surface: periodic in u and v; a shell can close in one direction only; open the other",
                  "surface"};
   }
   ShellSurface face(surface);

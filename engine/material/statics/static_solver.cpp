@@ -147,7 +147,8 @@ Error too_large(int nodes, double work, double limit) {
   const int enough = static_cast<int>(reserve * nodes * std::pow(limit / work, exponent)) / 100 * 100;
   return Error{ErrorCode::too_many,
                "lattice: " + std::to_string(nodes) + " nodes in this shape take too long to bend; about " +
-                   std::to_string(std::max(enough, 100)) + " would do, as node_budget or counts",
+                   std::to_string(std::max(enough, 100)) +
+                   " nodes are few enough; reduce node_budget or nodes",
                "lattice"};
 }
 

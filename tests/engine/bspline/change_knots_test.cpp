@@ -94,8 +94,7 @@ TEST(ChangeKnots, NamesAKnotThatIsMissing) {
   const auto lacking = KnotVector::open(3, {0, 0, 0, 0, 0.5, 1, 1, 1, 1}).value();
   const auto changed = convert_to_finer_knots(surface, Direction::u, lacking);
   ASSERT_FALSE(changed.ok());
-  EXPECT_EQ(changed.error().message,
-            "direction u: the knots to change to lack the surface's knot 0.25; insert it");
+  EXPECT_EQ(changed.error().message, "direction u: the new knots lack the surface's knot 0.25; insert it");
 }
 
 TEST(ChangeKnots, CoarserKnotsGiveBackWhatWasRefined) {

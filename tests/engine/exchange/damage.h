@@ -1,4 +1,4 @@
-// Damages the bytes of a file as careless editing or a failing disk does.
+// Damages the bytes of a file in the same ways as careless editing or a failing disk.
 #pragma once
 
 #include <cstddef>

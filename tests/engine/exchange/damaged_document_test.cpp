@@ -1,4 +1,5 @@
-// Damaged documents must be read, or refused with a message of one line; they must never crash the program.
+// Tests damaged documents: each must be read, or be refused with a message of one line, and never crash the
+// program.
 #include <gtest/gtest.h>
 
 #include <random>

@@ -70,8 +70,8 @@ inline void require(const FieldForm& form, Json& object) {
   }
 }
 
-// Returns the schema of an object: first the properties of `first`, then the table's fields that apply to
-// `object`. All properties of `first` are required.
+// Returns the schema of an object. Its properties are those of `first`, which are all required, then the
+// table's fields that apply to `object`.
 template <class Object>
 Json object_schema(const Object& object, const Json& first = Json::object()) {
   Json json{{"type", "object"}, {"required", Json::array()}};

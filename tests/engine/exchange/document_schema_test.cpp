@@ -28,8 +28,8 @@ std::string actions_text() {
   return text;
 }
 
-// Returns the tool's schema from the table of fields, plus the properties of the old schema that no table
-// describes.
+// Returns the schema of the tool made from the table of fields. Properties that no table describes are copied
+// from the old schema.
 Json tool_schema(const Json& old) {
   Json tool = object_schema(Tool{});
   Json& properties = tool["properties"];
@@ -58,7 +58,7 @@ Json with_description_of(const Json& old) {
   return json;
 }
 
-// Returns the schema with every part rewritten that a table describes.
+// Returns the schema after rewriting every part that a table of fields describes.
 Json rewritten_schema(Json schema) {
   Json& all = schema["$defs"];
   all["material"] = with_description_of<Material>(all["material"]);

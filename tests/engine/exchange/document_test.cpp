@@ -18,7 +18,7 @@ Document through_text(const Document& document) {
   return read.value();
 }
 
-// Returns the error of reading a sample document after `change`.
+// Returns the error of reading a sample document to which `change` was applied.
 Refusal refusal(const std::function<void(Json&)>& change) {
   Json json = document_to_json(sample_document());
   change(json);
@@ -133,7 +133,8 @@ TEST(Document, NamesEveryMissingField) {
     ASSERT_FALSE(read.ok()) << item.key();
     const std::string& message = read.error().message;
     EXPECT_EQ(read.error().code, ErrorCode::missing) << item.key() << ": " << message;
-    // Either of nodes and node_budget will do, so their object lacks it.
+    // The lattice needs either of nodes and node_budget. Without node_budget, the error is that of the
+    // lattice.
     EXPECT_TRUE(read.error().field.ends_with(field == "node_budget" ? "lattice" : field))
         << item.key() << ": " << message;
     EXPECT_EQ(message.find('\n'), std::string::npos);
@@ -143,7 +144,7 @@ TEST(Document, NamesEveryMissingField) {
 TEST(Document, NamesWrongTypes) {
   EXPECT_EQ(refusal([](Json& j) { j["name"] = 5; }), Refusal(ErrorCode::wrong_type, "name"));
   EXPECT_EQ(refusal([](Json& j) { j["name"] = "two\nlines"; }).message,
-            "sample.json: name contains control characters, remove them");
+            "sample.json: name contains control characters; remove them");
   EXPECT_EQ(refusal([](Json& j) { j["body"]["material"]["plastic"] = 1; }),
             Refusal(ErrorCode::wrong_type, "body.material.plastic"));
   EXPECT_EQ(refusal([](Json& j) { j["tool"] = "sphere"; }), Refusal(ErrorCode::wrong_type, "tool"));
@@ -157,7 +158,7 @@ TEST(Document, NamesWrongTypes) {
 
 TEST(Document, StatesRangesInTheUnitOfTheFile) {
   EXPECT_EQ(refusal([](Json& j) { j["tool"]["radius_mm"] = 900; }).message,
-            "sample.json: tool.radius_mm is 900, must be 0 to 500");
+            "sample.json: tool.radius_mm is 900, must be from 0 to 500");
   EXPECT_EQ(refusal([](Json& j) { j["body"]["material"]["poissons_ratio"] = 0.5; }),
             Refusal(ErrorCode::out_of_range, "body.material.poissons_ratio"));
   EXPECT_EQ(refusal([](Json& j) {

@@ -40,7 +40,7 @@ TEST(File, CannotReadWithoutPermission) {
   std::filesystem::permissions(folder.path(), std::filesystem::perms(0755));
   std::filesystem::permissions(file, std::filesystem::perms::none);
   const uid_t user = geteuid();
-  const bool is_root = user == 0;  // root could read every file
+  const bool is_root = user == 0;  // root can read every file, whatever its permissions
   ASSERT_EQ(is_root ? seteuid(65534) : 0, 0);
   const std::string message = reading_refusal(file);
   ASSERT_EQ(is_root ? seteuid(user) : 0, 0);
@@ -71,7 +71,7 @@ TEST(File, FollowsLinksAndKeepsPermissions) {
   EXPECT_EQ(std::filesystem::status(file).permissions(), std::filesystem::perms(0640));
 }
 
-// Permissions of the group are preserved whatever the umask, and nothing is written through a symbolic link.
+// A file keeps its group permissions whatever the umask, and nothing is written through a symbolic link.
 TEST(File, KeepsPermissionsThatTheMaskTakesAway) {
   const TemporaryFolder folder;
   const auto file = folder.write("shared.json", "one"), other = folder.write("other", "untouched");

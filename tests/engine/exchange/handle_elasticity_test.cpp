@@ -38,7 +38,7 @@ double slice_x_m(const LatticeMesh& mesh, int k) {
   return mesh.nodes[static_cast<std::size_t>(mesh.index(0, 0, k))].x();
 }
 
-// Fixes both ends along x, one of them stretched; the ends are free to slip across x.
+// Holds both ends along x, the last one displaced so that the bar is stretched. The ends may slide across x.
 std::vector<FixedAxis> drawn_ends(const LatticeMesh& mesh) {
   std::vector<FixedAxis> held;
   const int last = mesh.count[2] - 1;
@@ -60,8 +60,8 @@ struct Measured {
 };
 
 // Measures a bar whose cross section changes along it. The force F strains each layer of length l and area A
-// by F / (E A), so that F / E = stretch / sum (l / A). Each layer's volume grows by the fraction (1 - 2 nu) F
-// / (E A).
+// by F / (E A). The sum over all layers gives F / E = stretch / sum (l / A). The volume of each layer grows
+// by the fraction (1 - 2 nu) F / (E A).
 Measured tension_test(const LatticeMesh& mesh, const StaticBody& body) {
   const Result<StaticResult> found = rest_under_load(body, {}, drawn_ends(mesh));
   EXPECT_TRUE(found.ok()) << found.error().message;

@@ -27,7 +27,7 @@ TEST(Ranges, NameFieldValueAndRange) {
   material.relaxing_fraction = 0.5;
   EXPECT_EQ(Refusal(check_material(material)), Refusal(ErrorCode::inconsistent, "plastic"));
   EXPECT_EQ(check_tool({.radius_m = std::nan("")}).error().message,
-            "tool: radius_m is nan, must be 0 to 0.5");
+            "tool: radius_m is nan, must be from 0 to 0.5");
   EXPECT_EQ(Refusal(check_tool({.iterations = 9})), Refusal(ErrorCode::out_of_range, "iterations"));
   EXPECT_EQ(Refusal(check_sculpting({.damping_per_s = -1.0})),
             Refusal(ErrorCode::out_of_range, "damping_per_s"));

@@ -1,4 +1,4 @@
-// Provides a small document made in code, so that tests need no file: a closed tube with poles at both ends.
+// A small document that is made in code, so that tests need no file: a closed tube with poles at both ends.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +17,7 @@ Document deformed_document(unsigned seed);
 // Returns true if every bit of the two scenes is equal; -0 differs from 0.
 bool same_bits(const Document& a, const Document& b);
 
-// A temporary folder, which is removed with all its contents at the end.
+// A temporary folder. The destructor removes it with all its contents.
 class TemporaryFolder {
  public:
   TemporaryFolder();

@@ -22,7 +22,7 @@ TEST(ShippedAssets, MaterialsAreNamedLikeTheirFilesAndSaySources) {
   EXPECT_GE(count, 8);
 }
 
-// The handle can be simulated in every bundled material with springs that are stable in a tick.
+// In every bundled material, the handle can be simulated by springs that are stable for the length of a tick.
 TEST(ShippedAssets, TheHandleCanBeSculptedInEveryMaterial) {
   Result<Document> document = read_document(assets / "models" / "spoon-handle.json");
   ASSERT_TRUE(document.ok()) << document.error().message;

@@ -1,4 +1,4 @@
-// Fits to exactly known shapes.
+// Tests fits to exactly known shapes.
 #include "engine/fitting/fit_scan.h"
 
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@ TEST(FitScan, SphereIsClosedAndFacesOutward) {
   const FittedBody& body = fitted.bodies[0];
   EXPECT_EQ(body.kind, ShapeKind::closed);
   EXPECT_EQ(body.folds.folds, 0U);
-  // Cubic pieces of a sixteenth of a turn have an error below 1e-4 of the radius. The rest is fairness,
-  // mostly about the poles, where few points determine a control point.
+  // Cubic pieces of a sixteenth of a turn have an error below 1e-4 of the radius. The rest of the error is
+  // due to the fairness, mostly near the poles, where few points determine a control point.
   EXPECT_LT(body.errors.data_to_surface.p95_m, 2e-5);
   EXPECT_LT(farthest_off(body.surface, from_sphere(0.02)), 6e-4);
   EXPECT_NEAR(volume_of(body.surface), 4.0 / 3.0 * M_PI * 8e-6, 1e-7);
@@ -84,12 +84,12 @@ TEST(FitScan, ExactGridIsFittedToItsEdges) {
   ASSERT_EQ(fitted.bodies.size(), 1U);
   EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::sheet);
   EXPECT_EQ(fitted.bodies[0].errors.strays, 0U);
-  // A fifth of the grid's spacing of 3.4 mm, at the rounded corners.
+  // The limit is a fifth of the grid's spacing of 3.4 mm; the rounded corners have the largest error.
   EXPECT_LT(fitted.bodies[0].errors.data_to_surface.max_m, 7e-4);
   EXPECT_LT(fitted.bodies[0].errors.data_to_surface.p95_m, 2e-5);
 }
 
-// Square and low, so that it is as round about its centre as a bowl.
+// The sheet is square and low, so that it is as round about its centre as a bowl.
 TEST(FitScan, LowWavesAreNoThinWall) {
   const Scan scan = random_cloud(5000, 3, [](double s, double t) { return on_waves(s, t, 0.1, 0.004); });
   const ScanFit fitted = fit(scan, 12);
@@ -143,7 +143,7 @@ TEST(FitScan, IslandsAreFittedAsAsked) {
   EXPECT_EQ(largest.other_islands, 3000U);
 }
 
-// A gap of about 5 mm: less than three node spacings, five times the point spacing.
+// The gap between the balls is about 5 mm wide: less than three node spacings, but five point spacings.
 TEST(FitScan, IslandsNearEachOtherAreTwo) {
   Scan scan = ellipsoid_cloud(10000, {0.03, 0.03, 0.03});
   append(scan, ellipsoid_cloud(9000, {0.03, 0.03, 0.03}), {0.045, 0.045, 0.016});
@@ -158,7 +158,7 @@ TEST(FitScan, IslandsNearEachOtherAreTwo) {
   EXPECT_LT(farthest_off(all.bodies[0].surface, from_sphere(0.03)), 3e-4);
 }
 
-// The same distance along the surface: a stripe that was not scanned.
+// A stripe of 6 mm across a single sheet was not scanned; it is as wide as the gap between two bodies above.
 TEST(FitScan, AStripeWithoutPointsPartsNoSheet) {
   Scan scan = random_cloud(20000, 31, [](double s, double t) { return on_waves(s, t, 0.2, 0.01); });
   leave_out(scan, [](const Vector3& p) { return std::abs(p.x() - 0.09) < 0.003; });
@@ -177,12 +177,13 @@ TEST(FitScan, IslandsAreBridgedToOneBody) {
   EXPECT_EQ(body.kind, ShapeKind::closed);
   EXPECT_EQ(body.folds.folds, 0U);
   EXPECT_NEAR(body.size_m.z(), 0.09, 1e-3);
-  // The centroids of both are inside one body, whose rings run around them.
+  // One body encloses the centroids of both islands, so its volume is at least nearly that of the two.
   EXPECT_GT(volume_of(body.surface), 2.0 * 4.0 / 3.0 * M_PI * 2e-6 * 0.9);
   EXPECT_LT(body.errors.data_to_surface.p95_m, 1e-3);
 }
 
-// A ball pressed into a bowl with a wall of 2 mm, open at the top.
+// Returns a ball whose upper half is pushed down, so that it becomes a bowl with a wall of 2 mm, open at the
+// top.
 TriangleMesh bowl_mesh() {
   constexpr double outer = 0.025, wall = 0.002;
   TriangleMesh mesh = ball_mesh(40, 60, outer);
@@ -194,8 +195,8 @@ TriangleMesh bowl_mesh() {
   return mesh;
 }
 
-// Handles of all slopes start beside the bowl's rim. The hole opened there is not planar, and its loop must
-// run the right way round.
+// Handles of several slopes start beside the bowl's rim. The hole that is opened there is not planar, and its
+// loop must run in the right direction.
 TEST(FitScan, HandleAtAThinRimIsBridgedTheRightWayRound) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const TriangleMesh bowl = bowl_mesh();
@@ -216,7 +217,7 @@ TEST(FitScan, HandleAtAThinRimIsBridgedTheRightWayRound) {
     const ScanFit fitted = fit(scan, 24, IslandChoice::bridge);
     ASSERT_EQ(fitted.bodies.size(), 1U);
     EXPECT_EQ(fitted.islands, 2U);
-    // With the wrong sense of rotation, a quarter of it folds.
+    // If the loop ran in the wrong direction, a quarter of the samples would fold.
     EXPECT_LT(fitted.bodies[0].folds.folds, fitted.bodies[0].folds.samples / 500) << slope;
     EXPECT_LT(fitted.bodies[0].errors.data_to_surface.p95_m, 1e-3) << slope;
   }
@@ -233,7 +234,8 @@ TEST(FitScan, TriangleSoupOfABallIsClosed) {
   EXPECT_LT(farthest_off(fitted.bodies[0].surface, from_sphere(0.02)), 2e-4);
 }
 
-// The eight corners, which the surface rounds, have the largest errors. All of the mesh counts.
+// The surface rounds the eight corners, which therefore have the largest errors. The errors are measured all
+// over the mesh, not only at its eight vertices.
 TEST(FitScan, ErrorsOfAMeshAreThoseOfAllItsTriangles) {
   Scan box;
   for (int k = 0; k < 8; ++k) box.points_m.emplace_back(0.03 * (k & 1), 0.02 * (k >> 1 & 1), 0.05 * (k >> 2));

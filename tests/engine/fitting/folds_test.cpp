@@ -12,7 +12,7 @@ namespace {
 
 constexpr int controls = 10;
 
-// Sheet over the unit square with even control points.
+// Returns a sheet over the unit square with even control points.
 Surface sheet() {
   ControlNet net(controls, controls);
   for (int i = 0; i < controls; ++i) {
@@ -22,7 +22,7 @@ Surface sheet() {
   return make_surface(knots, knots, std::move(net)).value();
 }
 
-// Two rows of control points are swapped, so that x runs backwards between them.
+// Returns the sheet with two rows of control points swapped, so that x decreases between them.
 Surface turned_back() {
   Surface surface = sheet();
   for (int j = 0; j < controls; ++j) {
@@ -67,13 +67,14 @@ TEST(Folds, WhereItGoesBackItFoldsAndHasCusps) {
     const FoldCheck check = check_folds(turned_back(), data.view());
     EXPECT_GT(check.folds, 0U);
     EXPECT_LT(check.folds, check.samples / 2);
-    EXPECT_GE(check.cusps, 2U * 7U * 12U);  // twice on every line across
+    EXPECT_GE(check.cusps, 2U * 7U * 12U);  // two on every line across the swapped rows
     EXPECT_TRUE(check.span_folds[3 * 7 + 3]);
     EXPECT_FALSE(check.span_cusps[0]);
   }
 }
 
-// Runs along x, back below itself and forward, without a large turn of the normal between samples.
+// Returns a sheet that runs along x, back below itself and forward again, without a large turn of the normal
+// between samples.
 Surface doubled_back() {
   constexpr int rows = 28;
   ControlNet net(rows, controls);

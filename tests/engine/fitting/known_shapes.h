@@ -1,4 +1,4 @@
-// Fits of clouds of known shape, and their distances from it.
+// Fits of clouds on known shapes, and the distances of fitted surfaces from these shapes.
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// PLY files as Stanford's, MeshLab's and VTK's programs write them, and generated ones of every form.
+// Tests PLY files like those of Stanford, MeshLab and VTK, and generated files of every form.
 #include "engine/exchange/scans/ply_file.h"
 
 #include <gtest/gtest.h>
@@ -58,7 +58,8 @@ TEST(PlyFile, StripsTurnEverySecondTriangleAndBeginAnew) {
   const std::string strips = "element tristrips 1\nproperty list int int vertex_indices\n";
   const PlyMesh mesh = ply_mesh(text_ply(four_vertices + strips, corner_rows + "8 0 1 3 2 -1 1 2 0\n"));
   EXPECT_EQ(mesh.triangles, std::vector<PlyTriangle>({{0, 1, 3}, {3, 1, 2}, {1, 2, 0}}));
-  // A repeated corner joins two strips and takes its turn.
+  // A triangle with a repeated corner is skipped, but counts for the alternating direction of the strip's
+  // triangles.
   const PlyMesh joined = ply_mesh(text_ply(four_vertices + strips, corner_rows + "5 0 1 1 3 2\n"));
   EXPECT_EQ(joined.triangles, std::vector<PlyTriangle>({{1, 3, 2}}));
 }
@@ -82,14 +83,14 @@ double area_of(const PlyMesh& mesh) {
   return area;
 }
 
-// The triangles of a concave polygon would cover more than its area if they were a fan.
+// As a fan, the triangles of a concave polygon would cover more than its area.
 TEST(PlyFile, ConcavePolygonsAreCoveredOnce) {
   const std::string arrow = text_ply(four_vertices + "element face 1\nproperty list uchar int vertex_index\n",
                                      "0 0 0\n2 -1 0\n0 3 0\n-2 -1 0\n4 3 0 1 2\n");
   EXPECT_NEAR(area_of(ply_mesh(arrow)), 6.0, 1e-12);
   Random random(5);
   for (int trial = 0; trial < effort(40); ++trial) {
-    // A star-shaped polygon in a tilted plane.
+    // The polygon is star-shaped and in a tilted plane.
     const int count = random.integer(4, 40);
     PlyMesh mesh;
     std::vector<std::uint32_t> corners;
@@ -199,7 +200,8 @@ class PlySample {
                                                  {"float64", NumberType::float64},
                                                  {"char", NumberType::int8},
                                                  {"int8", NumberType::int8},
-                                                 // All above hold coordinates, which may be negative.
+                                                 // The types above can hold negative numbers, which
+                                                 // coordinates need.
                                                  {"uchar", NumberType::uint8},
                                                  {"uint8", NumberType::uint8},
                                                  {"ushort", NumberType::uint16},
@@ -221,7 +223,7 @@ class PlySample {
   void put(Type type, double value) {
     if (is_text()) {
       const auto whole = static_cast<long>(value);
-      // Rows may share a line or run over several.
+      // Numbers of one row may be on several lines, and several rows on one line.
       body_ += std::to_string(whole) + (random_->integer(0, 3) == 0 ? line_end_ : std::string(" "));
       return;
     }
@@ -263,7 +265,7 @@ class PlySample {
   void add_faces() {
     const Type count = pick(true), index = pick(!are_strips_), flag = pick(true);
     const std::size_t rows = are_strips_ ? 1 : mesh.triangles.size();
-    // A strip of a whole mesh has more numbers than a byte counts.
+    // A strip of the whole mesh can have more corners than a length of one byte can state.
     const Type length = are_strips_ ? Type{"uint", NumberType::uint32} : count;
     add_line((are_strips_ ? "element tristrips " : "element face ") + std::to_string(rows));
     add_line(std::string("property list ") + length.name + " " + index.name + " vertex_indices");
@@ -318,7 +320,7 @@ TEST(PlyFile, GeneratedFilesAreReadAsTheyWereMade) {
     if (sample.is_text()) {
       EXPECT_FALSE(parse_ply(sample.bytes + " 1"));
     } else {
-      // Cut anywhere, or with more than its rows.
+      // The file is truncated at a random byte or has bytes after its last row.
       const int kept =
           random.integer(static_cast<int>(sample.header_bytes), static_cast<int>(sample.bytes.size()) - 1);
       EXPECT_FALSE(parse_ply(std::string_view(sample.bytes).substr(0, static_cast<std::size_t>(kept))));

@@ -1,4 +1,4 @@
-// Point files in all supported formats, including malformed ones.
+// Tests point files in all supported formats, valid and malformed.
 #include "engine/exchange/scans/point_cloud.h"
 
 #include <gtest/gtest.h>
@@ -129,7 +129,8 @@ TEST(PcdPoints, TextBinaryAndCompressed) {
   for (const double value : {1.5, 2.5}) put(columns, value);
   for (const float value : {-2.25F, -2.25F, 3.0F, 3.0F}) put(columns, value);
   for (int k = 0; k < 2; ++k) put(columns, std::uint32_t{9});
-  // LZF by hand: literal runs of up to 32 bytes, each after its length minus one.
+  // The data are LZF without compression: literal runs of up to 32 bytes, each preceded by its length minus
+  // one.
   std::string packed;
   for (std::size_t at = 0; at < columns.size(); at += 32) {
     const std::string run = columns.substr(at, 32);
@@ -142,7 +143,7 @@ TEST(PcdPoints, TextBinaryAndCompressed) {
   expect_two_points(parse_pcd_points(file + packed), false);
   expect_refusal(parse_pcd_points(file + packed.substr(0, 20)), "length");
   std::string broken = packed;
-  broken[0] = static_cast<char>(0xff);  // a reference to before the beginning
+  broken[0] = static_cast<char>(0xff);  // a reference to bytes before the beginning of the output
   expect_refusal(parse_pcd_points(file + broken), "decompressed");
 }
 
@@ -202,7 +203,7 @@ TEST(TextPoints, CommasThatPartNumbersStay) {
   }
 }
 
-// Each can be read in at least two ways.
+// Each line has at least two possible meanings.
 TEST(TextPoints, RefusesCommasThatMayPartNumbersOrNot) {
   for (const char* line : {"12,345 67,890 1,234", "12,345\t67,890\t1,234", "12,345, 67,890, 1,234",
                            "1,234.5;2.5;3.5", "1,2,3;4,5,6;7,8,9", "0,5;1.5;2"}) {
@@ -228,7 +229,7 @@ TEST(TextPoints, RefusesEachDamageWithItsReason) {
   expect_refusal(parse_text_points("1 2 1e999\n"), "infinity");
 }
 
-// A count that a file declares is that of its points, whatever the format.
+// A declared count must equal the number of points in every format.
 TEST(PointFiles, DeclaredCountsAreChecked) {
   const auto expect_code = [](const Result<PointCloud>& cloud, ErrorCode code) {
     ASSERT_FALSE(cloud);
@@ -240,7 +241,7 @@ TEST(PointFiles, DeclaredCountsAreChecked) {
     expect_code(parse_text_points(std::string(count) + "\n" + points), ErrorCode::inconsistent);
   }
   ASSERT_TRUE(parse_text_points("399\n" + points));
-  // Points without numbers count.
+  // Points with a coordinate that is not a number count as points here.
   const auto gaps = parse_text_points("3\n1 2 3\nnan nan nan\n4 5 6\n");
   ASSERT_TRUE(gaps) << gaps.error().message;
   EXPECT_EQ(gaps->skipped, 1U);
@@ -272,7 +273,7 @@ TEST(ObjPoints, TakesVerticesAndKnowsFaces) {
   expect_refusal(parse_obj_points("v 1 2\n"), "line 1");
 }
 
-// Arbitrary bytes give a result or an Error of one line.
+// For arbitrary bytes the result is a cloud or an Error of one line.
 TEST(PointFiles, AnyBytesGiveAnAnswer) {
   std::mt19937_64 random(7);
   const std::string text = ply_header("ascii", "2") + "2 7 8\n200 1.5 -2.25 3 0 0 1\n200 2.5 -2.25 3 0 0 1\n";

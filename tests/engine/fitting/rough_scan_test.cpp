@@ -1,4 +1,4 @@
-// Fits to realistic scans: with noise, outliers, and inconsistent or missing normals.
+// Tests fits to realistic scans: with noise, outliers, and inconsistent or missing normals.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ double share_facing(const Surface& surface, const std::function<Vector3(const Ve
   return facing / static_cast<double>(grid * grid);
 }
 
-// Scans see surfaces from outside, and the clay is behind the normals.
+// Scanners see surfaces from outside, and the clay is on the side opposite to the normals.
 TEST(RoughScan, OpenShapesWithoutNormalsFaceOutwards) {
   for (unsigned seed = 1; seed <= 6; ++seed) {
     Scan tube = random_cloud(4000, seed, [](double s, double t) { return on_cylinder(s, t, 0.01, 0.06); });
@@ -59,12 +59,13 @@ TEST(RoughScan, NoiseIsAveragedAndOutliersLeftOut) {
   ASSERT_EQ(fitted.bodies.size(), 1U);
   EXPECT_GT(fitted.outliers, 200U);
   EXPECT_EQ(fitted.bodies[0].folds.folds, 0U);
-  // About 150 points for each control point average the noise of 0.3 mm; the few at a pole do not.
+  // About 150 points for each control point average out the noise of 0.3 mm. Control points near a pole have
+  // fewer points.
   EXPECT_LT(farthest_off(fitted.bodies[0].surface, from_sphere(0.03)), 4.5e-4);
   EXPECT_LT(fitted.bodies[0].errors.surface_to_data.mean_m, 1.5e-4);
 }
 
-// Mesh over a grid of (s, t), closed along s.
+// Returns a mesh over a grid of (s, t), closed along s.
 Scan mesh_over(int along_s, int along_t, const std::function<Vector3(double, double)>& place) {
   Scan scan;
   for (int i = 0; i <= along_s; ++i) {
@@ -87,7 +88,7 @@ Vector3 on_ball(double s, double t) {
   return 0.03 * Vector3(std::sin(b) * std::cos(a), std::sin(b) * std::sin(a), -std::cos(b));
 }
 
-// Displaces every so many vertices far off the surface, except at the seam and the poles.
+// Displaces every `every`-th vertex far off the surface, except at the seam and the poles.
 std::size_t add_spikes(Scan& mesh, int along_s, int along_t, int every, double height_m) {
   std::size_t count = 0;
   for (int p = every; p < along_s * (along_t + 1); p += every) {
@@ -120,14 +121,14 @@ std::size_t spikes_in(Scan mesh) {
 }
 
 TEST(RoughScan, TipsOfMeshesAreNoSpikes) {
-  // A slender cone of even rings.
+  // The cone is slender and has even rings.
   const auto on_cone = [](double s, double t) {
     const double r = 0.008 * (1.0 - t), a = 2.0 * pi * s;
     return Vector3(r * std::cos(a), r * std::sin(a), 0.08 * t);
   };
   EXPECT_EQ(spikes_in(mesh_over(40, 64, on_cone)), 0U);
-  // A pencil as exported by CAD systems: rings 2 mm apart, and a tip of 50 mm as a single fan on the last
-  // one.
+  // The mesh is a pencil as CAD systems export it: rings 2 mm apart, and a tip of 50 mm that is a single fan
+  // of triangles on the last ring.
   constexpr int rings = 21;
   const auto on_pencil = [](double s, double t) {
     const double ring = std::round((rings + 1) * t), a = 2.0 * pi * s;
@@ -137,20 +138,22 @@ TEST(RoughScan, TipsOfMeshesAreNoSpikes) {
   EXPECT_EQ(spikes_in(mesh_over(64, rings + 1, on_pencil)), 0U);
 }
 
-// More points than the limit: each outlier has its own voxel, surface points share theirs.
+// The cloud has more points than the limit. Each outlier is alone in its voxel, while surface points share
+// voxels.
 TEST(RoughScan, OutliersOfLargeCloudsAreLeftOut) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   Scan scan = ellipsoid_cloud(600'000, {0.03, 0.03, 0.03});
   add_outliers(scan, 5, 0.05);
   const ScanFit fitted = fit(scan, 12);
   ASSERT_EQ(fitted.bodies.size(), 1U);
-  // Out of 30,000 in a box of 0.06 m, about 8 % are within 0.5 mm (a voxel's side) of the sphere.
+  // About 8 % of the 30,000 outliers in a box of 0.06 m are within 0.5 mm (a voxel's side) of the sphere.
   EXPECT_GT(fitted.outliers, 25'000U);
   EXPECT_LT(fitted.outliers, 30'000U);
   EXPECT_LT(farthest_off(fitted.bodies[0].surface, from_sphere(0.03)), 2e-4);
 }
 
-// As a depth camera sees distant or oblique surfaces: sparse points are surface as well.
+// A part of the surface is sampled sparsely, as depth cameras sample distant or oblique surfaces. Its points
+// are no outliers.
 TEST(RoughScan, SparsePartsOfLargeCloudsAreKept) {
   Scan scan = random_cloud(300'000, 21, [](double s, double t) { return on_waves(s, t, 0.1, 0.006); });
   const auto is_sparse = [](const Vector3& p) { return p.x() > 0.06; };
@@ -171,7 +174,7 @@ TEST(RoughScan, NoiseDoesNotWrinkleTheSurface) {
     add_noise(scan, 6, 3e-4);
     const ScanFit fitted = fit(scan, 24);
     ASSERT_EQ(fitted.bodies.size(), 1U);
-    // 8 pi for a ball, slightly more for these.
+    // The bending energy of a sphere is 8 pi; that of these ellipsoids is slightly larger.
     EXPECT_LT(compute_bending_energy(fitted.bodies[0].surface), 45.0);
     EXPECT_LT(fitted.bodies[0].errors.surface_to_data.p95_m, 3e-4);
   }
@@ -187,7 +190,7 @@ Scan egg_with_normals() {
   return scan;
 }
 
-// As scanner software writes them: towards the scanner, or with random signs.
+// The normals point towards the scanner or have random signs, as scanner software writes them.
 TEST(RoughScan, NormalsThatDoNotAgreeAreMadeTo) {
   const ScanFit true_fit = fit(egg_with_normals(), 14);
   ASSERT_EQ(true_fit.bodies.size(), 1U);
@@ -212,7 +215,7 @@ TEST(RoughScan, NormalsThatDoNotAgreeAreMadeTo) {
   }
 }
 
-// Half a ball as a bowl with a wall of `wall_m`, with the true normals of both faces.
+// Returns half a ball as a bowl with a wall of `wall_m` and the true normals of both faces.
 Scan bowl_with_normals(double wall_m) {
   Scan scan;
   for (const double side : {1.0, -1.0}) {
@@ -227,7 +230,7 @@ Scan bowl_with_normals(double wall_m) {
   return scan;
 }
 
-// Nodes are about 4 mm apart, farther than the two faces of the walls.
+// The nodes are about 4 mm apart, which is more than the thickness of the walls.
 TEST(RoughScan, WallsKeepTheNormalsOfTheirFaces) {
   for (const double wall : {0.001, 0.002, 0.005}) {
     const ScanFit fitted = fit(bowl_with_normals(wall), 20, IslandChoice::all);
@@ -236,7 +239,7 @@ TEST(RoughScan, WallsKeepTheNormalsOfTheirFaces) {
   }
 }
 
-// Noise hides parts of the boundaries.
+// Noise hides parts of the tube's boundaries.
 TEST(RoughScan, NoisyOpenCylinderIsATube) {
   Scan scan = random_cloud(9000, 11, [](double s, double t) { return on_cylinder(s, t, 0.031, 0.08); });
   add_noise(scan, 12, 3e-4);
@@ -245,7 +248,7 @@ TEST(RoughScan, NoisyOpenCylinderIsATube) {
   EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::tube);
 }
 
-// A single face as thick as its noise is not a wall.
+// The dome has a single face; noise must not make it look like a wall with two faces.
 TEST(RoughScan, NoisyDomeIsASheet) {
   Scan scan = random_cloud(9000, 13, [](double s, double t) {
     const double r = 0.04 * std::sqrt(t), height = std::sqrt(0.045 * 0.045 - r * r);
@@ -258,7 +261,7 @@ TEST(RoughScan, NoisyDomeIsASheet) {
   EXPECT_LT(fitted.bodies[0].errors.surface_to_data.p95_m, 3e-4);
 }
 
-// Both faces of a 2 mm wall with points 3 mm apart: only the profile separates them.
+// The wall is 2 mm thick and its points are 3 mm apart, so that only the profile separates the two faces.
 TEST(RoughScan, ThinBowlWithoutNormalsHasTwoFaces) {
   const auto bowl = [](double s, double t, double radius) {
     const double height = t * radius, out = std::sqrt(radius * radius - height * height);

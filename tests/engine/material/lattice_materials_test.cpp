@@ -122,7 +122,8 @@ TEST(LatticeMaterials, WrongRegionsAreRefusedInALine) {
   EXPECT_EQ(refusal(region), Refusal(ErrorCode::too_few));
   region.region = {};
   region.material->density_kg_per_m3 = 0.0;
-  EXPECT_EQ(refusal(region).message, "regions[1].material skin: density_kg_per_m3 is 0, must be 1 to 30000");
+  EXPECT_EQ(refusal(region).message,
+            "regions[1].material skin: density_kg_per_m3 is 0, must be from 1 to 30000");
   const std::vector<MaterialRegion> many(17, MaterialRegion{{}, std::nullopt, 0.5});
   EXPECT_EQ(Refusal(lattice_materials(bar(), named("own", 1e6, 0.2), many)),
             Refusal(ErrorCode::out_of_range, "regions"));

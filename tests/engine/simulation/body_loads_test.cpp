@@ -157,7 +157,7 @@ TEST(BodyLoads, RefuseAPointBesideTheSurface) {
   };
   EXPECT_EQ(refused(0.5, 0.03), Refusal());
   EXPECT_EQ(refused(0.5, 0.07), Refusal(ErrorCode::out_of_range, "v"));
-  EXPECT_EQ(refused(0.5, 0.07).message, "loads[1]: v is 0.07, must be 0 to 0.06");
+  EXPECT_EQ(refused(0.5, 0.07).message, "loads[1]: v is 0.07, must be from 0 to 0.06");
   EXPECT_EQ(refused(std::nan(""), 0.03), Refusal(ErrorCode::out_of_range, "u"));
 }
 

@@ -35,7 +35,7 @@ void take_file(std::string_view bytes, const std::function<Status(const std::fil
 
 }  // namespace
 
-// Meshes and clouds.
+// Takes PLY files, which hold meshes or clouds.
 void take_ply(std::string_view bytes) {
   const auto content = parse_ply(bytes);
   if (!content) return must_be_one_line(content.error());

@@ -88,8 +88,8 @@ gp_Trsf moved(double x, double y, double z, double turn = 0.0) {
   return motion;
 }
 
-// Writes a trolley that is moved as a whole: a deck, and an axle with two wheels, one of which has a name of
-// its own.
+// Writes an assembly that is moved as a whole: a trolley of a deck and an axle with two wheels, one of which
+// has a name of its own.
 void write_trolley(const std::filesystem::path& file) {
   opencascade::handle<TDocStd_Document> document;
   XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
@@ -130,10 +130,10 @@ TEST_F(CadReader, AssembliesArePlacedAndNamed) {
   EXPECT_EQ(count("spare wheel"), 3);
   EXPECT_EQ(count("deck"), 6);
   EXPECT_EQ(found.model.notes,
-            std::vector<std::string>{
-                "the 12 faces of 3 solids come in as a body each; they leave joined where they still close"});
-  // The wheels are cylinders of 5 mm, which are approximated; the bound is above the deviation allowed for
-  // them.
+            std::vector<std::string>{"the 12 faces of 3 solids are imported as a body each; on export they "
+                                     "are joined again where they still close"});
+  // The wheels are cylinders with a radius of 5 mm, which are approximated. The bound is above the allowed
+  // deviation.
   EXPECT_LT((middle_of(found.surfaces, "wheel") - Vector3(0.1, 0.0, 0.001)).norm(), 2e-5);
   EXPECT_LT((middle_of(found.surfaces, "spare wheel") - Vector3(0.1, 0.0, 0.031)).norm(), 2e-5);
   // The deck of 40 x 20 mm is rotated by a quarter turn about its corner, then moved.
@@ -180,7 +180,7 @@ std::string with_unit(std::string text, const std::string& unit) {
 
 TEST_F(CadReader, AnIgesFileWithoutAUnitIsInMillimetresAndSaysSo) {
   const std::string text = content_of(box_in("in", "box.igs"));
-  // Cases: the unit is missing, its flag means none, or its name is not in the standard.
+  // The unit is missing, its flag means "none", or its name is not in the standard.
   for (const char* unit : {",,,", ",0,,", ",3,4HFOOT,", ",3,2Hmm,", ",3,,"}) {
     SCOPED_TRACE(unit);
     const Found found = read(folder_.write("none.igs", with_unit(text, unit)));
@@ -254,7 +254,7 @@ TEST_F(CadReader, OtherFilesThatAFileNamesAreNotOpened) {
   EXPECT_NE(found.error().message.find("names other files"), std::string::npos) << found.error().message;
 }
 
-// OpenCASCADE names a use of a part that has no name by its number.
+// OpenCASCADE uses a number as the name of an instance whose part has no name.
 TEST_F(CadReader, AUseWithoutANameHasItsPartsName) {
   const auto file = folder_.path() / "trolley.step";
   write_trolley(file);

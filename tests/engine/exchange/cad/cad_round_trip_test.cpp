@@ -134,7 +134,8 @@ TEST_F(CadRoundTrip, NamesAndTheirOrderAreKept) {
 }
 
 TEST_F(CadRoundTrip, LongNamesAreStillToldApart) {
-  // The name's multi-byte letters begin at different bytes, so that a line or a cut may split one.
+  // The letters of the name have several bytes and begin at different positions, so that a line break or a
+  // cut may be inside a letter.
   std::string name = "\xf0\x9f\xa5\x84 ";
   while (name.size() < 190) name += name.size() % 3 == 0 ? "a" : "\xc3\xb6";
   CadModel model;
@@ -217,7 +218,7 @@ TEST_F(CadRoundTrip, IgesFilesTellTheirLargestCoordinate) {
       const double told_m = metres * std::strtod(parameters[19].c_str(), nullptr);
       // OpenCASCADE computes the largest coordinate from bounding boxes, which contain the surface and are
       // inside the box of its control points. The bounds allow for OpenCASCADE's margin of 1e-7 mm and for
-      // the file's seven digits.
+      // the seven digits in the file.
       EXPECT_GE(told_m, largest_m * (1.0 - 1e-6));
       EXPECT_LE(told_m, largest_control_m * (1.0 + 1e-5));
     }
@@ -230,7 +231,7 @@ TEST_F(CadRoundTrip, FilesSayTheProgramAndNotThePerson) {
   for (const FileFormat format : {FileFormat::step, FileFormat::iges}) {
     const std::string text = write_cad(model, {format, StepSchema::ap214, "mm"})->text;
     EXPECT_NE(text.find("Spoonbill"), std::string::npos);
-    // OpenCASCADE writes these words by default.
+    // OpenCASCADE writes these words unless the program replaces them.
     for (const char* word : {"'Author'", "Open CASCADE Model", "Filename.iges"}) {
       EXPECT_EQ(text.find(word), std::string::npos) << word;
     }
@@ -294,7 +295,7 @@ TEST(CadNames, AreCleaned) {
   EXPECT_EQ(clean_cad_name("", "x"), "x");
   EXPECT_EQ(clean_cad_name("\x01\x7f", "x"), "x");
   EXPECT_EQ(clean_cad_name("a\xff\xfe", "x"), "a");
-  // The three bytes encode a surrogate, which UTF-8 forbids.
+  // The three bytes are the code of a surrogate, which UTF-8 forbids.
   EXPECT_EQ(clean_cad_name("a\xed\xa0\x80z", "x"), "a   z");
   EXPECT_EQ(clean_cad_name(std::string(300, 'a'), "x").size(), 200u);
   // The name is not cut inside a letter of several bytes.
@@ -314,12 +315,13 @@ TEST_F(CadRoundTrip, WhatACheckCallsClosedIsASolidAndSaysWhatItMisses) {
     EXPECT_EQ(content->solids, 1);
     EXPECT_EQ(content->open_shells, 0);
     ASSERT_EQ(content->notes.size(), 1u);
-    EXPECT_NE(content->notes[0].find("'tube' misses closing by "), std::string::npos) << content->notes[0];
+    EXPECT_NE(content->notes[0].find("'tube' is open by "), std::string::npos) << content->notes[0];
     EXPECT_NE(content->notes[0].find("; it is written closed"), std::string::npos) << content->notes[0];
   }
 }
 
-// The seam of the surface is slightly apart, as after cutting a surface that is closed by its edges alone.
+// The two edges at the seam are slightly apart, as after cutting a surface that is closed only by the
+// coincidence of its edges.
 TEST_F(CadRoundTrip, ASeamThatIsALittleApartIsClosed) {
   const Surface closed = torus_like(0.02, 0.005);
   Surface open = part_of(closed, Direction::u, closed.u.domain_start(), closed.u.domain_end()).value();

@@ -62,7 +62,8 @@ Surface seamed_ball() {
   return make_surface(u, tube.v, std::move(net)).value();
 }
 
-// Returns the bundled bowl and handle, which have different counts and knots, joined as by the merge command.
+// Returns the bundled bowl and handle, which have different numbers of control points and different knots,
+// joined as by the merge command.
 Surface merged_spoon() {
   const std::filesystem::path models = SPOONBILL_ASSETS "/models";
   std::vector<Surface> parts;

@@ -1,4 +1,4 @@
-// Provides surfaces of every kind that can be exported to CAD, and the distance between two surfaces.
+// Surfaces of every kind that can be exported to CAD, and the distance between two surfaces.
 #pragma once
 
 #include <string>

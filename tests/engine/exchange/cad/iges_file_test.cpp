@@ -14,7 +14,7 @@
 namespace spoonbill {
 namespace {
 
-// The fields of an entity that the tests change in a file of a few entities.
+// The fields of an entity that tests vary, for files of a few entities.
 struct Entity {
   int type = 128;
   std::string parameters;
@@ -195,8 +195,8 @@ TEST_F(IgesFile, ACurveThatIsDamagedIsTold) {
   const FoundInIges found = read(iges_text({{128, sheet_at(0)}, {142, "1,99,0,1,1"}}));
   EXPECT_EQ(found.surfaces.size(), 1u);
   EXPECT_EQ(found.model.notes,
-            std::vector<std::string>{
-                "damaged entities of the file: 1; what they belong to is missing or wrong; export it again"});
+            std::vector<std::string>{"damaged entities of the file: 1; the parts that they belong to are "
+                                     "missing or wrong; export the file again"});
 }
 
 TEST_F(IgesFile, AMatrixThatStretchesIsTold) {
@@ -210,7 +210,7 @@ TEST_F(IgesFile, AMatrixThatStretchesIsTold) {
             std::string::npos);
 }
 
-// A damaged file may name another entity, or nothing, as the matrix.
+// In a damaged file, the matrix may be missing or an entity of another type.
 TEST_F(IgesFile, AMatrixThatIsNoneIsTold) {
   const FoundInIges found = read(iges_text({{128, sheet_at(0), 2}, {110, "0.,0.,0.,1.,0.,0."}}));
   EXPECT_EQ(found.refusal, "");

@@ -1,4 +1,5 @@
-// Faces whose edges leave their surface's domain by a little, or whose control points do.
+// Tests faces whose edges, or only the control points of whose edges, are slightly outside the surface's
+// domain.
 #include <gtest/gtest.h>
 
 #include <BRepBuilderAPI_MakeEdge.hxx>
@@ -59,7 +60,8 @@ std::string with_each(std::string text, const std::string& from, const std::stri
   return text;
 }
 
-// A rectangle over the parameters that exceeds 0..1 by a fraction.
+// Returns a rectangular face in the parameter plane that exceeds the range from 0 to 1 by the fraction
+// `beyond`.
 TopoDS_Face overshooting_face(const opencascade::handle<Geom_Surface>& surface, double beyond, double v_end) {
   const double low = -beyond, high = 1.0 + beyond, top = v_end * (1.0 + beyond);
   const gp_Pnt2d corners[] = {{low, -beyond * v_end}, {high, -beyond * v_end}, {high, top}, {low, top}};
@@ -134,13 +136,14 @@ TEST_F(ImportedEdges, LoopsAreMeasuredAgainstTheirEdges) {
   EXPECT_EQ(within.notes.size(), 1u);
 }
 
-// The arch rises beyond its surface, which is made 12 mm long.
+// The surface ends at 12 mm, below the top of the arch.
 TEST_F(ImportedEdges, ACurveThatLeavesTheDomainIsCutThereAndNoted) {
   std::string text = with_each(text_of_file("arch.step"), "20.000000000,", "12.000000000,");
   text = with_each(text, "(0.,20.000000)", "(0.,12.000000)");
   const CadModel model = read_text(text);
   ASSERT_EQ(model.surfaces.size(), 4u);
-  // The arch x = 40 s^2 (3 - 2 s), y = 80 s (1 - s), below y = 12, by quadrature.
+  // The area is that below the arch x = 40 s^2 (3 - 2 s), y = 80 s (1 - s) and below y = 12, in mm, found by
+  // quadrature.
   constexpr double area_m2 = 453.805e-6;
   int ends = 0;
   for (const CadSurface& part : model.surfaces) {
@@ -150,9 +153,10 @@ TEST_F(ImportedEdges, ACurveThatLeavesTheDomainIsCutThereAndNoted) {
     ++ends;
   }
   EXPECT_EQ(ends, 2);
-  EXPECT_GE(std::count_if(
-                model.notes.begin(), model.notes.end(),
-                [](const std::string& note) { return note.find("beside its edges") != std::string::npos; }),
+  EXPECT_GE(std::count_if(model.notes.begin(), model.notes.end(),
+                          [](const std::string& note) {
+                            return note.find("away from its edges") != std::string::npos;
+                          }),
             2);
 }
 

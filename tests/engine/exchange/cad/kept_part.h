@@ -9,8 +9,8 @@
 
 namespace spoonbill {
 
-// Computes the distance of a point from the kept part of a surface: it takes the nearest points of a grid and
-// refines them by Gauss-Newton steps.
+// Computes the distance of a point from the kept part of a surface. The search starts from the nearest points
+// of a grid and refines them by Gauss-Newton steps.
 class NearestKeptPoint {
  public:
   explicit NearestKeptPoint(const CadSurface& part);
@@ -25,8 +25,8 @@ class NearestKeptPoint {
 
   double polished(const Sample& start, const Vector3& from) const;
 
-  // Returns true if the point is inside the kept part or within a hundred-thousandth of the domain of it, so
-  // that points on a loop count as kept.
+  // Returns true if the point is inside the kept part, or within a hundred-thousandth of the domain from it,
+  // so that points on a loop count as kept.
   bool is_kept(double u, double v) const;
 
   Surface surface_;

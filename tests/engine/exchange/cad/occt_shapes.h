@@ -1,4 +1,4 @@
-// Provides shapes, in millimetres, that OpenCASCADE's own builders make.
+// Shapes, in millimetres, that OpenCASCADE's own builders make.
 #pragma once
 
 #include <gtest/gtest.h>

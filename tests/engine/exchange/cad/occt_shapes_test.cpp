@@ -31,8 +31,8 @@ namespace spoonbill {
 namespace {
 
 constexpr double tolerance_m = 1e-5;
-// OpenCASCADE writes coordinates of 100 mm with an error of about 1e-12 mm, and some curved faces in IGES
-// with its own tolerance of 1e-4 mm.
+// In files of OpenCASCADE, coordinates of 100 mm have an error of about 1e-12 mm. Some curved faces in IGES
+// only have its own tolerance of 1e-4 mm.
 constexpr double shape_file_tolerance_m = 2e-7;
 
 Vector3 metres(const gp_Pnt& point) {

@@ -1,4 +1,4 @@
-// Tests meshing of whole solids that are imported as one surface per face.
+// Tests meshes of whole solids whose faces are imported as one surface each.
 #include <gtest/gtest.h>
 
 #include <BRepGProp.hxx>
@@ -79,12 +79,13 @@ class SolidMeshes : public testing::Test {
     expect_watertight(solid.mesh);
     EXPECT_LE(solid.chord_error_m, chord_m + solid.gap_m);
     const Measures whole = measures_of(shape);
-    // A surface displaced by at most an error changes the volume by at most that error times the area; a
-    // tenth is added for curvature. Normals that pointed inwards would change the sign of the volume.
+    // A surface displaced by at most an error changes the volume by at most the product of this error and the
+    // area; a tenth is added for curvature. Inward normals would change the sign of the volume.
     const double moved_m = 1.1 * (solid.chord_error_m + import_tolerance_m);
     EXPECT_NEAR(enclosed_volume_m3(solid.mesh), whole.volume_m3, moved_m * whole.area_m2);
     EXPECT_NEAR(solid.volume_m3, whole.volume_m3, 1.1 * import_tolerance_m * whole.area_m2);
-    // The chord error is at most a hundredth of a radius here, which reduces the area by half a hundredth.
+    // With the usual chord error, which is at most a hundredth of a radius here, the area is smaller by at
+    // most half a hundredth.
     if (chord_m > usual_chord_m) return;
     EXPECT_NEAR(solid.area_m2, area_of(solid.mesh), 1e-2 * solid.area_m2);
   }

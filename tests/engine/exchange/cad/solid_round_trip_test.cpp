@@ -1,4 +1,4 @@
-// Tests that solids, imported as one surface per face, are exported as solids.
+// Tests that solids whose faces are imported as one surface each are exported as solids.
 #include <gtest/gtest.h>
 
 #include <BRepCheck_Analyzer.hxx>
@@ -78,7 +78,7 @@ TEST_F(SolidRoundTrip, CavitiesStayCavities) {
   }
 }
 
-// The model of a box with a ball-shaped cavity is reduced to the cavity's surface, whose shell encloses no
+// Only the cavity's surface is left of the model of a box with a ball-shaped cavity. Its shell encloses no
 // material.
 TEST_F(SolidRoundTrip, ACavityByItselfIsNoSolid) {
   CadModel model = read(hollow_solids()[1].shape);

@@ -136,7 +136,7 @@ TEST_P(TrimmedRoundTrip, ASurfaceWithOneFaceKeepsItsParameters) {
   EXPECT_NEAR(after->remaining_fraction(), before.remaining_fraction(), 1e-6);
 }
 
-// Only the surfaces that would be closed without their trims get a note; a trimmed sheet gets none.
+// Only surfaces that would be closed without their trims get a note. A trimmed sheet gets none.
 TEST_P(TrimmedRoundTrip, WhatWouldCloseButForItsTrimsIsSaid) {
   CadModel model;
   for (const CadSurface& part : trimmed_surfaces()) model.surfaces.push_back(part);
@@ -146,9 +146,8 @@ TEST_P(TrimmedRoundTrip, WhatWouldCloseButForItsTrimsIsSaid) {
   EXPECT_EQ(content->open_shells, 6);
   ASSERT_EQ(content->notes.size(), 3u);
   EXPECT_EQ(content->notes[0],
-            "'tube with a hole' would close, but is trimmed; an open shell of what is left is written, cut "
-            "in 2 faces, which "
-            "come back as a body each");
+            "'tube with a hole' would close but is trimmed; the remaining part is written as an open shell, "
+            "cut in 2 faces, which are imported as a body each");
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, TrimmedRoundTrip, testing::Values(FileFormat::step, FileFormat::iges),
@@ -156,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(Both, TrimmedRoundTrip, testing::Values(FileFormat::ste
                            return std::string(format.param == FileFormat::step ? "Step" : "Iges");
                          });
 
-// The hole is small, so that the sign of the enclosed volume still shows which way the normals point.
+// The hole is small, so that the sign of the enclosed volume still shows whether the normals point inwards.
 TEST(BodyShape, FacesOfWhatWouldCloseAreTurnedOutwards) {
   for (const Surface& tube : {ellipsoid_tube(10, 10), reversed(ellipsoid_tube(10, 10), Direction::u)}) {
     CadSurface part = named("tube", tube);
@@ -169,7 +168,7 @@ TEST(BodyShape, FacesOfWhatWouldCloseAreTurnedOutwards) {
   }
 }
 
-// A closed surface is exported cut in two; the two faces share their edges.
+// A closed surface is cut into two faces when it is exported. The two faces share their edges.
 TEST(BodyShape, FacesOfOneSurfaceAreOneShell) {
   for (const CadSurface& part : trimmed_surfaces()) {
     SCOPED_TRACE(part.name);

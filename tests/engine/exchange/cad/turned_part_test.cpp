@@ -1,5 +1,5 @@
-// Tests merging of the faces of a turned part from a CAD system: faces of revolution between discs and rings,
-// which circles cut out of planes.
+// Tests merging of the faces of a turned part from a CAD system: faces of revolution, and between them discs
+// and rings, which are planes trimmed by circles.
 #include <gtest/gtest.h>
 
 #include <BRepAlgoAPI_Cut.hxx>
@@ -54,7 +54,8 @@ void expect_one_closed_body(const TopoDS_Shape& shape, std::size_t face_count) {
   ASSERT_TRUE(merged) << merged.error().message;
   EXPECT_LE(merged->deviation_m, request.join.tolerance_m);
   EXPECT_EQ(find_closing(merged->surface).closedness, Closedness::solid);
-  // The import may displace the sides, about 10 mm from the axis, by about 0.01 mm in or out.
+  // The sides are about 10 mm from the axis, and the import may move them by about 0.01 mm inwards or
+  // outwards.
   EXPECT_NEAR(std::abs(compute_enclosed_mass(merged->surface).volume_m3) / volume_m3(shape), 1.0, 2e-3);
 }
 

@@ -1,4 +1,4 @@
-// Meshes written and read again by Assimp alone (STL, OBJ, PLY) and libzip (3MF).
+// Tests that written meshes can be read by Assimp alone (STL, OBJ, PLY) or by libzip (3MF).
 #include "engine/exchange/mesh_export/mesh_writer.h"
 
 #include <assimp/postprocess.h>
@@ -92,7 +92,7 @@ TEST_F(MeshWriter, AssimpReadsTheSameTriangles) {
     ASSERT_TRUE(ours) << ours.error().message;
     EXPECT_EQ(ours->triangles.size(), triangles);
     EXPECT_NEAR(enclosed_volume_m3(ours.value()), enclosed_volume_m3(back), 1e-5 * enclosed_volume_m3(back));
-    // Assimp keeps single precision.
+    // Assimp stores coordinates in single precision.
     EXPECT_NEAR(enclosed_volume_m3(back) * std::pow(unit_m, 3), volume, 1e-5 * volume);
   }
 }

@@ -20,7 +20,8 @@
 namespace spoonbill {
 namespace {
 
-// Returns the number of edges that are not used exactly once in each direction by two triangles.
+// Returns the number of edges that violate the rule for a closed mesh: two triangles use each edge, in
+// opposite directions.
 std::size_t unmatched_edges(const TriangleMesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
   for (const TriangleCorners& corners : mesh.triangles) {
@@ -106,7 +107,7 @@ TEST(Tessellation, BodiesThatCloseAreWatertightWithNormalsOutward) {
   }
 }
 
-// A pole becomes one vertex of the mesh if its control points are closer together than the tolerance of
+// The control points at a pole become one vertex of the mesh if their distances are within the tolerance of
 // find_closing().
 TEST(Tessellation, WhatACheckCallsClosedIsWatertight) {
   for (const double apart_m : {1e-8, 0.9 * closing_tolerance_m}) {
@@ -135,8 +136,8 @@ TEST(Tessellation, AFlatSheetTakesTwoTrianglesAPiece) {
   EXPECT_EQ(flat->mesh.triangles.size(), 2u);
   EXPECT_EQ(flat->mesh.vertices_m.size(), 4u);
 
-  // A triangle of a saddle deviates by a quarter of the twist, |P00 - P10 - P01 + P11| / 4; one subdivision
-  // in each direction divides that by four.
+  // A triangle of a saddle deviates by a quarter of the twist, |P00 - P10 - P01 + P11| / 4. Halving the cells
+  // in each direction divides the twist by four.
   net.set_point(1, 1, {1, 1, 0.4});
   const auto saddle = tessellate(make_surface(line, line, net).value(), {}, 0.026);
   ASSERT_TRUE(saddle);
@@ -178,7 +179,7 @@ TEST(Tessellation, ATrimmedSurfaceStaysTrimmed) {
   ASSERT_TRUE(whole);
   ASSERT_TRUE(cut) << cut.error().message;
   EXPECT_LE(cut->chord_error_m, 2e-5);
-  // The mesh is open along one loop: every edge except those of the hole has two triangles.
+  // The mesh is open only along the loop of the hole: every other edge has two triangles.
   EXPECT_FALSE(cut->closed);
   EXPECT_GT(unmatched_edges(cut->mesh), 10u);
   EXPECT_LT(unmatched_edges(cut->mesh), cut->mesh.triangles.size() / 4);
@@ -200,7 +201,7 @@ double lowest_triangle_m(const TriangleMesh& mesh) {
   return lowest;
 }
 
-// The disc's corners on the left are as high as those on the right except for their last bits.
+// On the left and on the right the disc has corners of equal height, except for their last bits.
 TEST(Tessellation, NoTriangleIsWithoutArea) {
   constexpr double radius_m = 0.01;
   ControlNet net(2, 2);
@@ -224,7 +225,7 @@ TEST(Tessellation, NoTriangleIsWithoutArea) {
   EXPECT_NEAR(area_of(cut->mesh), std::numbers::pi * radius_m * radius_m, 1e-3 * area_of(cut->mesh));
 }
 
-// The hole is small, so that the sign of the enclosed volume still shows which way the normals point.
+// The hole is small, so that the sign of the enclosed volume still shows whether the normals point outwards.
 TEST(Tessellation, NormalsOfATrimmedBodyAreOutward) {
   const Surface tube = ellipsoid_tube(10, 10);
   for (const Surface& surface : {tube, reversed(tube, Direction::u)}) {

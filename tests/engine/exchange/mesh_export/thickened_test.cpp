@@ -55,9 +55,9 @@ TEST(Thickened, APlateIsABoxWithoutAnOpenEdge) {
   EXPECT_NEAR(enclosed_volume_m3(shell.value()), 0.1 * 0.06 * 0.003, 1e-15);
 }
 
-// The volume of the shell is that between two radii. Walls along the edges lean by half a chord's turn, a
-// quarter of a degree, which changes the volume by about 2e-4; chords instead of arcs reduce it by less than
-// 2e-5.
+// The volume of the shell is that between two cylinders. The walls along the edges lean by half of a chord's
+// turn, a quarter of a degree, which changes the volume by about 2e-4 of itself. Chords instead of arcs
+// reduce it by less than 2e-5.
 TEST(Thickened, ACurvedShellHasItsVolume) {
   constexpr double angle = std::numbers::pi / 2.0, radius_m = 0.05, thickness_m = 0.004, length_m = 0.03;
   const auto shell = thicken_mesh(cylinder(radius_m, length_m, angle, 180, 4), thickness_m);

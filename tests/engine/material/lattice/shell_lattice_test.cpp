@@ -120,7 +120,7 @@ TEST(ShellLattice, RingIsClosed) {
 
 TEST(ShellLattice, RefusesWhatIsNoShell) {
   const Surface sheet = flat_sheet(0.06, 0.04), bowl = spherical_bowl(0.03, pi / 3.0);
-  EXPECT_EQ(shell_refusal(sheet, -0.002).message, "shell_thickness_mm is -2, must be 0.01 to 100");
+  EXPECT_EQ(shell_refusal(sheet, -0.002).message, "shell_thickness_mm is -2, must be from 0.01 to 100");
   EXPECT_EQ(shell_refusal(sheet, 0.0), Refusal(ErrorCode::out_of_range, "shell_thickness_mm"));
   EXPECT_EQ(shell_refusal(sheet, std::nan("")), Refusal(ErrorCode::out_of_range, "shell_thickness_mm"));
   EXPECT_EQ(shell_refusal(sheet, std::numeric_limits<double>::infinity()),
