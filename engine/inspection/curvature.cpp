@@ -170,8 +170,8 @@ bool has_extent(const Surface& surface) {
 
 namespace {
 
-// Returns the curvatures at a point of a surface of this size. None where a derivative is the rounding of the
-// control points, or where the radius is less than a collapsed edge, as at a cusp.
+// Returns the curvatures at a point of a surface of this size. Returns nothing where a derivative consists of
+// rounding errors, or where the radius of curvature is below the length of a collapsed edge, as at a cusp.
 std::optional<PrincipalCurvatures> physical_curvatures(const Surface& surface, const SurfacePoint& point,
                                                        double size_m) {
   constexpr double least_relative_speed = 1e-9;

@@ -42,7 +42,7 @@ struct PrincipalCurvatures {
   double smallest = 0.0, largest = 0.0;
 };
 
-// Returns nothing where du x dv vanishes.
+// Returns the principal curvatures at a point, or nothing where du x dv vanishes.
 std::optional<PrincipalCurvatures> compute_principal_curvatures(const SurfacePoint& point);
 
 struct CurvatureExtreme {
@@ -63,7 +63,7 @@ struct CurvatureRange {
 CurvatureRange find_curvature_range(const Surface& surface, const TrimmedArea& area = {},
                                     const Progress& progress = {});
 
-// Returns whether the surface is larger than a point, for which coordinates hold rounding alone.
+// Returns whether the surface has an extent beyond the rounding of its coordinates. If not, it is a point.
 bool has_extent(const Surface& surface);
 
 // Returns the integral of the squared principal curvatures over the area, a dimensionless measure that is

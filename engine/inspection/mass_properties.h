@@ -65,17 +65,17 @@ struct MaterialMix {
   std::vector<std::string> materials;       // names of the materials in use, the body's own first
 };
 
-// Sums over the cells of the body's lattice, each with the material of its region. Refuses a body for
-// which no lattice can be made, and regions that lattice_materials() refuses.
+// Adds up the cells of the body's lattice, each with the material of its region. Refuses a body for which no
+// lattice can be made, and regions that lattice_materials() refuses.
 Result<MaterialMix> compute_material_mix(const Body& body);
 
 // Mass of a body, the same number wherever the program states it: the exact volume times the mean density.
-// The mass of the body's lattice, which forces move, differs by the cells' error.
+// The mass of the body's lattice, on which forces act, differs by the error of the cells.
 struct BodyMass {
   double volume_m3 = 0.0;
   Vector3 centre_m = Vector3::Zero();  // of mass
   MaterialMix mix;
-  std::string note;  // says why the regions do not count, if they cannot be evaluated; else empty
+  std::string note;  // reason why the regions are ignored; empty if they count
 
   double mass_kg() const { return volume_m3 * mix.density_kg_per_m3; }
   // Returns the mass with another density of the body's own material.
@@ -84,10 +84,11 @@ struct BodyMass {
   }
 };
 
-// Adds the materials to a volume that was computed from the body's surface.
+// Returns the mass of a body whose volume and centre have been computed from its surface.
 BodyMass mass_of_volume(const Body& body, double volume_m3, const Vector3& centre_m);
 
-// Returns nothing for a body that neither encloses its material nor is a shell with a thickness.
+// Returns the mass of a body; nothing if the body neither encloses its material nor is a shell with a
+// thickness.
 std::optional<BodyMass> compute_body_mass(const Body& body);
 
 }  // namespace spoonbill

@@ -68,8 +68,8 @@ struct SurfaceCheck {
   bool encloses() const { return closing.closedness == Closedness::solid && !is_trimmed; }
 };
 
-// Edges shorter than collapsed_edge_fraction of the surface's size count as points. Returns nothing if
-// `progress` stopped it.
+// Checks a surface. Edges shorter than collapsed_edge_fraction of its size count as points. Returns nothing
+// if `progress` stopped it.
 std::optional<SurfaceCheck> check_surface(const Surface& surface, const TrimmedArea& area = {},
                                           const Progress& progress = {});
 

@@ -33,12 +33,13 @@ class ThicknessSearch {
  public:
   explicit ThicknessSearch(const Surface& surface);
 
-  // Returns the first exit along a unit direction through a wall (exits_through_wall()). Exact up to rounding
-  // where Newton's method converges, on the facets elsewhere.
+  // Returns the first exit along a unit direction through a wall (exits_through_wall()). The exit is exact up
+  // to rounding where Newton's method converges, and on a facet elsewhere.
   std::optional<SurfaceExit> exit(const Vector3& from, const Vector3& direction) const;
 
-  // Returns nothing where the surface has no normal or the inward line meets no wall: it misses the
-  // surface between samples at an edge, or leaves beside an edge (exits_through_wall()).
+  // Returns the thickness at a surface point. Returns nothing where the surface has no normal or the inward
+  // line meets no wall: it misses the surface between samples at an edge, or leaves beside an edge
+  // (exits_through_wall()).
   std::optional<Thickness> at(double u, double v) const;
 
   // Returns the smallest thickness at the samples, refined around the best of them. Finds a wall thinner

@@ -90,7 +90,7 @@ Status check_materials(const LatticeMaterials& materials) {
     return Error{ErrorCode::inconsistent,
                  "material " + material.name + ": poissons_ratio is " + number_text(material.poissons_ratio) +
                      ", must be " + number_text(min_spring_poissons_ratio) +
-                     " or more in a body with a material that is plastic, creeps or stiffens",
+                     " or more in a body with a plastic, creeping or stiffening material",
                  "poissons_ratio"};
   }
   return {};

@@ -16,7 +16,7 @@ namespace spoonbill {
 // Materials by cell and friction by node, so that a body keeps them while its shape changes. Plain data, a
 // value.
 struct LatticeMaterials {
-  // Creates the materials of a uniform body. Implicit, because most bodies are uniform.
+  // Creates the materials of a uniform body. An implicit conversion, because most bodies are uniform.
   LatticeMaterials(const Material& own) : materials{own}, frictions{own.friction} {}
 
   std::vector<Material> materials;           // the body's own material, then those of its regions

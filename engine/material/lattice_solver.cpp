@@ -27,10 +27,10 @@ Vector3 support_velocity(const SupportedNodes& support, double time_s) {
   return (support.end_m - support.start_m) / time_s;
 }
 
-// Shortens the displacements of supports that would outrun the lattice. `reach_m` is the distance that a
-// node may move relative to another in the tick. If one support fixes all fixed nodes, the whole lattice
-// moves with it. It may then move twice as far as its motion ever does, so that it can return from its
-// position after an undone stroke. Returns whether any displacement was shortened.
+// Shortens the displacements of supports that would outrun the lattice. `reach_m` is the distance that a node
+// may move relative to another in the tick. If one support fixes all fixed nodes, the whole lattice moves
+// with this support. It may then move at least twice as far as its own motion ever does in a tick, so that it
+// can catch up after an undone stroke. Returns whether any displacement was shortened.
 bool limit_support_motion(std::span<SupportedNodes> supports, const SpringLattice& lattice, double reach_m) {
   SPOONBILL_ASSERT(reach_m >= 0.0);
   const SupportedNodes* const common = find_common_support(supports, lattice);
@@ -290,8 +290,8 @@ Vector3 frame_velocity(const Relaxation& relaxation, std::size_t at, std::span<c
   return Vector3(sum[0] * inverse, sum[1] * inverse, sum[2] * inverse);
 }
 
-// Gives a body without fixed nodes the momentum back that capping took from it. Without that, a body pressed
-// unevenly would be driven on by its own cap.
+// Restores the momentum that capping took from a body without fixed nodes. Otherwise an unevenly pressed body
+// would be propelled by its own speed cap.
 void restore_momentum(const SpringLattice& lattice, const LatticeView& view, const Vector3& mean) {
   float sum[4];
   lattice.kernels().momentum(view, lattice.free_mass(), sum);

@@ -44,8 +44,8 @@ inline constexpr double stability_fraction = 0.85;
 // flow raise the fastest frequency by 1.2 to 1.6 times; a relaxation step then takes a second substep.
 inline constexpr double effective_modulus_stability_fraction = 0.75;
 
-// Distance, in cells, that sets the speed cap: a node moves at most this far in a substep, or in 2 / w, the
-// longest undamped step that the lattice alone could take, if that is longer. Speeds are relative to the
+// Distance, in cells, that sets the speed cap: a node moves at most this far in a substep or, if 2 / w is
+// longer, in 2 / w, the longest undamped step that the lattice alone could take. Speeds are relative to the
 // tool or support that carries the whole body, or to the mean velocity of a body without fixed nodes.
 //
 // Waves cross a cell in about 2 / w. Nodes stay below a ninth of the wave speed, and an impact strains even
@@ -67,8 +67,8 @@ double stable_step_s(double angular_frequency, double damping_ratio);
 // modulus.
 double effective_modulus_limit_pa(double unit_frequency, double damping_ratio);
 
-// Settings of relax(). Tracking the fastest frequency and plastic flow each cost about as much as a
-// substep. They alternate: tracking in even ticks, flow in odd ticks for the material time of two.
+// Settings of relax(). Tracking the fastest frequency and plastic flow each cost about as much as a substep.
+// The two alternate: even ticks track the frequency, odd ticks flow for the material time of two ticks.
 struct RelaxSettings {
   std::uint64_t tick = 0;             // tick number
   int iterations = 1;                 // relaxation steps
@@ -82,7 +82,7 @@ struct RelaxSettings {
 struct RelaxedLattice {
   SpringLattice* lattice;
   Vector3 gravity_m_per_s2 = Vector3::Zero();
-  // Moves the lattice instead of its springs; null if the springs step.
+  // Steps the lattice in place of its springs; null if the springs step it.
   ImplicitSolver* implicit_solver = nullptr;
   std::span<SupportedNodes> supports = {};
 };

@@ -408,7 +408,7 @@ Result<Arrangement> arrange(const std::vector<Surface>& patches, const std::vect
   auto cells = place_patches(patches.size(), matches);
   int low_a = 0, low_b = 0, high_a = 0, high_b = 0;
   for (std::size_t p = 0; p < cells.size(); ++p) {
-    if (!cells[p]) return layout_error(static_cast<int>(p), "is connected to no other one");
+    if (!cells[p]) return layout_error(static_cast<int>(p), "is connected to no other patch");
     low_a = std::min(low_a, cells[p]->a);
     high_a = std::max(high_a, cells[p]->a);
     low_b = std::min(low_b, cells[p]->b);

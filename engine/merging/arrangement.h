@@ -14,7 +14,7 @@ namespace spoonbill {
 struct EdgeMatch {
   PatchEdge a, b;
   bool reversed = false;  // b runs against a
-  double seam = 0.0;      // parameter of a periodic b next to a's seam
+  double seam = 0.0;      // parameter on b at the seam of a, if b is periodic
   // Largest and mean distance between points at equal fractions of the arc length; for rings, at equal
   // fractions of the period from their seams.
   double gap_m = 0.0;
@@ -24,7 +24,7 @@ struct EdgeMatch {
 // Returns text such as "patch 2's v_start", with patches counted from 1.
 std::string edge_name(PatchEdge edge);
 
-// Returns the best match of two edges, restricted to b along or against a if `reversed` is given. Separate
+// Returns the best match of two edges. `reversed`, if given, sets the direction of b relative to a. Separate
 // rings are compared after rotating b to face a. Fails for a ring and an open edge.
 Result<EdgeMatch> match_edges(const std::vector<Surface>& patches, PatchEdge a, PatchEdge b,
                               std::optional<bool> reversed = std::nullopt);

@@ -225,7 +225,8 @@ constexpr int cells_in_bridge_piece = 4;
 
 struct Cells {
   std::vector<double> centres;
-  // True from each cell to the next, and from the last to the first; false across a crease.
+  // True where the surface is smooth from a cell to the next, and from the last to the first; false across a
+  // crease.
   std::vector<bool> is_smooth;
 };
 
@@ -383,10 +384,10 @@ Result<BridgeLength> even_speed_length(const Surface& before, const Surface& aft
   return BridgeLength{chord / speed_before, speed_after / speed_before, chord};
 }
 
-// Form of a bridge between rings. Columns in between are added where it bends, or where it is so long that
+// Form of a bridge between rings. Columns in between are added if it bends, or if it is so long that
 // irregular patch ends would grow into folds along it.
 struct BridgeForm {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  // from the ring after to the ring before
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  // maps the ring after the gap to the ring before it
   bool bends = false, has_columns_between = false;
 };
 

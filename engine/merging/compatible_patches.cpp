@@ -165,8 +165,9 @@ Result<Surface> align_seam(const Surface& before, const Surface& patch, const Jo
   const EdgeCurve a = edge_curve(before, Side::v_end), b = edge_curve(patch, Side::v_start);
   const Vector3 seam_point = position(a, a.knots.domain_start());
   const double nearest = nearest_on_ring(b, seam_point);
-  // The nearest seam replaces the best fit if it is at the same position, within this fraction of the
-  // tolerance. The two differ if the parameters differ, and by rounding for identical rings with corners.
+  // The seam nearest to the last ring's seam replaces the best fit if the two seams coincide, within this
+  // fraction of the tolerance. The nearest seam and the best fit differ if the parameters differ, and by
+  // rounding for identical rings with corners.
   constexpr double coincidence_fraction = 1e-6;
   const double near_m =
       request.tolerance_m * (match->gap_m > request.tolerance_m ? 1.0 : coincidence_fraction);
@@ -277,8 +278,8 @@ Status unify_knots(std::vector<Surface>& patches, const JoinRequest& request, do
   }
   deviation_m += moved_m;
   if (const int count = all.control_point_count(); count > request.largest_count) {
-    return Error(ErrorCode::too_many, "the patches' knots across make " + std::to_string(count) +
-                                          " control points together, more than " +
+    return Error(ErrorCode::too_many, "the patches' combined knots need " + std::to_string(count) +
+                                          " control points across the row, more than " +
                                           std::to_string(request.largest_count) +
                                           "; simplify them first, or merge fewer");
   }

@@ -152,7 +152,7 @@ Eigen::Vector2d LinesFromLoop::at(const Eigen::Vector2d& start, double fraction)
     const double s = (fraction - bend_) / (1.0 - bend_), start_slope = speed_at_bend_ * (1.0 - bend_);
     point = polar(circle_ + s * start_slope + s * s * (1.0 - circle_ - start_slope), angle);
   } else {
-    // Computes a Hermite cubic that goes over smoothly into the line beyond, at equal speed.
+    // Hermite cubic that joins the part of the line beyond the bend smoothly and at the same speed.
     const Eigen::Vector2d from = to_plane(start), to = polar(circle_, angle);
     const Eigen::Vector2d away = (from - centre_).normalized();
     const Eigen::Vector2d out = start_speed_m_ / metres_per_step(from, away) * away;
@@ -256,14 +256,14 @@ bool goes_around_pole(const Surface& other, const std::vector<LineCrossing>& cro
 Error not_crossed() {
   return Error(
       ErrorCode::mismatch,
-      "not every line of constant u of the first patch crosses the other; turn it (exchange u and v), "
-      "give the patches in the other order, or move it through");
+      "not every line of constant u of the first patch crosses the second; exchange u and v of the first, "
+      "give the patches in the other order, or move the first farther through the second");
 }
 
 Error periodic_in_both() {
   return Error(
       ErrorCode::unsupported,
-      "a patch is closed around both u and v, which would not give a tube; split it open with change first");
+      "a patch is closed in both u and v, and cutting it gives no tube; split it open with change first");
 }
 
 Error goes_through(const Vector3& exit_m) {
@@ -297,8 +297,8 @@ Status check_stays_inside(const Surface& first, const CrossingFinder& other) {
 Error not_side_by_side() {
   return Error(
       ErrorCode::mismatch,
-      "lines of constant u of the two patches do not follow each other along the crossing, as those of a "
-      "closed body cannot on a sheet; exchange u and v of one, or name closed bodies");
+      "lines of constant u of the two patches are not in the same order along the crossing, as where a "
+      "closed body meets a sheet; exchange u and v of one, or name closed bodies");
 }
 
 Error not_around_centre() {
@@ -449,9 +449,9 @@ std::optional<CornerLine> CornerLines::find(double u) const {
   return CornerLine{contact->v, contact->other_u, contact->other_v, contact->centre_m};
 }
 
-// Fraction of the tolerance for fitting each part. The edges of two parts then meet within twice that, and
-// joining uses the rest of the tolerance. Parts that start beside a pole get more, as their curvature is not
-// aligned with their lines.
+// Fraction of the tolerance for fitting each part. The edges of two parts then meet within twice this
+// tolerance, and joining uses the rest of the tolerance. Parts that start beside a pole get more, as their
+// curvature is not aligned with their lines.
 constexpr double part_fraction = 0.2, askew_fraction = 0.5;
 // Fraction of the work that fitting each of up to three parts takes, for the progress.
 constexpr double fitted_fraction = 0.25;
@@ -470,7 +470,8 @@ struct PartShape {
   std::optional<double> bend = {};
 };
 
-// Smallest numbers of cells in which spans are added.
+// Smallest number of spans that a fit starts with: at first, and in a second attempt that resolves local
+// detail.
 constexpr int few_spans = 4, local_spans = 48;
 
 Error not_fitted(const Error& error, double fraction, double tolerance_m) {

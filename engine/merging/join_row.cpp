@@ -270,7 +270,7 @@ Result<KnotVector> smooth_knots(const KnotVector& knots, const std::vector<doubl
   return KnotVector::open(knots.degree(), std::move(fewer));
 }
 
-// Samples the patch in every piece of the merged surface, which has more of them along v.
+// Samples the patch in every piece of the merged surface, which has more pieces along v.
 PointGrid sample_patch(const Surface& patch, const KnotVector& merged_v, int in_piece) {
   const std::vector<double> all = nested_parameters(merged_v, in_piece, 0).parameters;
   const double start = patch.v.domain_start(), end = patch.v.domain_end();

@@ -10,12 +10,13 @@
 
 namespace spoonbill {
 
-// Measures of the joint between two patches of a row. Parameter lengths are those of the patch before.
+// Measures of the joint between two patches of a row. Parameter lengths are measured on the patch before the
+// joint.
 struct JointMeasure {
   bool bridged = false;
   double gap_m = 0.0;             // largest gap between the edges; the mean gap for a bridge
   double gap_parameter = 0.0;     // length of a bridge
-  double stretch_of_after = 1.0;  // factor on the domain of the patch after for equal speed
+  double stretch_of_after = 1.0;  // factor on the domain of the patch after the joint, for equal speed
   double apart_m = 0.0;           // largest gap before cutting back
   double cut_back_m = 0.0;        // length cut off each of the two patches
 };

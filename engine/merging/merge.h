@@ -43,7 +43,7 @@ struct Merged {
 
 // Merges patches. A row or grid whose last edges meet its first becomes periodic with the requested
 // continuity, or stays open if that fails. Chosen poles, or the nearest poles of tubes that do not touch, are
-// cut off, and a bridge joins the tubes. Bridges may fold only if the direction of a chosen pair is given. A
+// cut off, and a bridge joins the tubes. Bridges may fold only if some chosen pair has a given direction. A
 // single patch is returned unchanged. Fails for no patches, more than 64, or two identical ones;
 // contradicting chosen edges; patches that do not fill a grid; failures of join_row(); or a deviation above
 // the tolerance. Can be stopped.

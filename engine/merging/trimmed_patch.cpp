@@ -265,7 +265,7 @@ class KeptPart {
   // Returns true if each line meets two edges. The edges are counted between consecutive corners, so that
   // none is missed.
   bool meets_all_lines_twice() const {
-    std::vector<std::pair<double, int>> changes;  // u and change of the number of edges that a line meets
+    std::vector<std::pair<double, int>> changes;  // u, and the change of the number of edges there
     for (const auto& [from, to] : edges_) {
       changes.emplace_back(std::min(from.x(), to.x()), 1);
       changes.emplace_back(std::max(from.x(), to.x()), -1);
@@ -290,8 +290,8 @@ class KeptPart {
 Error no_single_pieces() {
   return Error(
       ErrorCode::unsupported,
-      "its trims leave no part that lines of constant u, or of constant v, cross in one piece each, "
-      "and no disc or ring with smooth edges; fill its holes, and cut it off where it ends in a point");
+      "its part within the trims is not met in one piece by each line of constant u (or of constant v), and "
+      "is no disc or ring with smooth edges; fill its holes, and cut it off where it ends in a point");
 }
 
 Result<FittedShape> resample_piece(const Surface& surface, const KeptPart& part, const Interval& piece,
@@ -329,7 +329,7 @@ Result<FittedShape> resample(const Surface& surface, const KeptPart& part, doubl
   const std::vector<double> breaks = part.breaks_in_u();
   if (breaks.size() > most_pieces + 1) {
     return Error(ErrorCode::too_many, "its trims have corners on " + std::to_string(breaks.size() - 2) +
-                                          " lines, more than one patch can hold; simplify them");
+                                          " lines, too many for one patch; simplify them");
   }
   std::vector<Surface> pieces;
   double deviation_m = 0.0;

@@ -234,9 +234,9 @@ Result<Surface> open_pole(const Surface& surface, Side side, double wide_enough_
     }
     last = ring;
   }
-  return Error(ErrorCode::degenerate, "the tube has no straight sides near its " +
-                                          std::string(side_name(side)) +
-                                          " to be opened at; cut it there, or let it intersect the other");
+  return Error(ErrorCode::degenerate,
+               "the tube has no straight sides near its " + std::string(side_name(side)) +
+                   ", where it could be opened; cut it there, or let it intersect the other");
 }
 
 std::vector<std::pair<PatchEdge, PatchEdge>> find_nearest_ends(const std::vector<Surface>& tubes) {

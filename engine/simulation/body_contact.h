@@ -1,5 +1,5 @@
 // Contact between two bodies of a simulation, and of a body with itself, as constraints between lattices. The
-// surface of a thin shell is one of its faces; the far face is a thickness behind it, and each is touched
+// surface of a thin shell is one of its faces; the far face is one thickness behind it, and each is touched
 // from its own side.
 #pragma once
 
@@ -18,27 +18,29 @@
 
 namespace spoonbill {
 
-// Returns how much nearer than its surface the touched face of a shell is, m. `push` is the unit vector
-// along which the contact pushes the shell, `normal` the surface's unit normal. Exact for flat shells.
+// Returns the distance by which the touched face of a shell is nearer than the shell's surface, m. `push` is
+// the unit vector along which the contact pushes the shell, `normal` the surface's unit normal. Exact for
+// flat shells.
 double far_face_offset_m(double thickness_m, const Vector3& normal, const Vector3& push);
 
 // Finds the gap from a point near the surface point (u, v) to the face on its side, and that face's outward
-// normal. The far face counts beyond half the thickness. Returns false if the gap exceeds the margin, or if
-// the point is beside the rim and touches neither face.
+// normal. A point deeper than half the thickness belongs to the far face. Returns false if the gap exceeds
+// the margin, or if the point is beside the rim and touches neither face.
 bool find_shell_gap(const Surface& shell, double thickness_m, double u, double v, const Vector3& point_m,
                     double margin_m, Vector3& normal, double& gap_m);
 
-// Surface of a shell; of a solid if the thickness is 0.
+// Surface of a shell, or of a solid if the thickness is 0.
 struct ShellOrSolid {
   const Surface* surface;
   double thickness_m;
 };
-// Corrects a near point of `of` to `other` for their thicknesses. Returns false if the gap exceeds the
+// Corrects a point of `of` near `other` for the thickness of both. Returns false if the gap exceeds the
 // margin. Allocates nothing.
 bool resolve_shell_gap(const ShellOrSolid& of, const ShellOrSolid& other, double margin_m, NearPoint& near);
 
-// Largest penetration of pressed bodies up to a speed of 60 mm/s, in lattice cells of the coarser body.
-// Control nets follow a dent one cell wide only in part; the rest is undone as soon as the bodies rest.
+// Largest penetration of two bodies pressed together at up to 60 mm/s, in lattice cells of the coarser body.
+// Control nets follow a dent one cell wide only in part; the remaining penetration disappears as soon as the
+// bodies come to rest.
 inline constexpr double body_depth_limit_cells = 0.03;
 
 // Largest penetration of a body pressed onto itself, in lattice cells. It is twice the limit for two bodies,

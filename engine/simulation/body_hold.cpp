@@ -15,7 +15,7 @@ constexpr double least_second_extent = 1e-6;
 // Largest turn of a sound body in a tick, rad. Beyond it the shape has lost its orientation, for instance by
 // turning inside out, and the turn means nothing.
 constexpr double largest_turn_rad = 0.2;
-// Moves in a tick that are left alone, so that the rounding of a body at rest keeps its bits.
+// Displacements and turns per tick that are not corrected, so that a body at rest keeps its bits.
 constexpr double least_move_m = 1e-9, least_turn_rad = 1e-8;
 
 struct MassCentre {

@@ -1,6 +1,5 @@
-// Keeps a body in the scene through one tick: holds the place of a body that nothing fixes, and returns a
-// body to its last good shape if its lattice cannot follow. Allocates only on construction; one owner, the
-// body.
+// Keeps a body in the scene through one tick: keeps the pose of a body that nothing fixes, and returns a body
+// to its last good shape if its lattice cannot follow. Allocates only on construction; one owner, the body.
 #pragma once
 
 #include <vector>
@@ -18,14 +17,15 @@ class BodyHold {
   // Remembers the displacements and the mean pose at the start of a tick.
   void begin(const SpringLattice& lattice);
 
-  // Restores the start of the tick, at rest, if a node is not finite or farther than `reach_m` from the
-  // body's mean position. Returns whether it did. `solver` is null where the springs step.
+  // Restores the displacements at the start of the tick, without velocities, if a node is not finite or
+  // farther than `reach_m` from the body's mean position. Returns whether it did. `solver` is null if the
+  // springs step the body.
   bool limit(SpringLattice& lattice, ImplicitSolver* solver, double reach_m) const;
 
-  // Returns the body to its mean position and orientation at the start of the tick, as a gentle hand would
-  // that holds it everywhere, and removes its linear and angular momentum. The lattice must have no fixed
-  // nodes. The mean orientation is the rotation that fits the rest shape best (Kabsch 1976), so that it does
-  // not drift with a sequence of deformations.
+  // Returns the body to its mean position and orientation at the start of the tick, like a gentle hand that
+  // holds the whole body, and removes its linear and angular momentum. The lattice must have no fixed nodes.
+  // The mean orientation is the rotation that fits the rest shape best (Kabsch 1976), so that it does not
+  // drift with a sequence of deformations.
   void keep_pose(SpringLattice& lattice, ImplicitSolver* solver) const;
 
  private:

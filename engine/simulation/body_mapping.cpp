@@ -320,7 +320,7 @@ void BodyMapping::update(const SpringLattice& lattice) {
       (*net[axis])[p] = (*base[axis])[p] + static_cast<double>(control_[axis][p]);
     }
   }
-  // Single precision moves the points of a pole apart.
+  // Rounding to single precision moves the control points of a pole apart.
   for (const NetEdge& edge : collapsed_edges_) join_edge(current_.net, edge);
 }
 

@@ -39,8 +39,8 @@ class BodyMapping {
   // `rest` is the surface from which the lattice's rest shape was made. `current` is the surface for the
   // lattice's present displacements, with the same knots. The part of the surface wholly behind a plane stays
   // exactly fixed: knots are inserted at its edge, which changes no shape, and the control points that reach
-  // into it are fixed. This holds along v only, and only where v is open; a sheet fixed across u is fixed by
-  // its nodes.
+  // into it are fixed. Only parts at an open end of v are fixed in this way. A plane that cuts a sheet across
+  // u fixes only nodes.
   static Result<BodyMapping> make(const Surface& rest, const Surface& current, const SpringLattice& lattice,
                                   const std::vector<FixingPlane>& planes, InstructionSet set);
 
@@ -55,8 +55,8 @@ class BodyMapping {
   const MappingResidual& residual() const { return residual_; }
   void measure_residual();
 
-  // Returns the mapping with a knot at the midpoint of the elements that contain u and v. The shape stays the
-  // same up to rounding and gains control points there. Refused at the largest number of control points.
+  // Returns the mapping with a knot at the midpoint of the elements that contain u and v. The surface gains
+  // control points there and keeps its shape up to rounding. Fails at the largest number of control points.
   Result<BodyMapping> refine_at(double u, double v, const SpringLattice& lattice,
                                 const std::vector<FixingPlane>& planes) const;
 
@@ -80,7 +80,7 @@ class BodyMapping {
 
   InstructionSet set_;
   Surface rest_, base_, current_;
-  // Shared pointer, because colliders hold the grid's address when the mapping moves.
+  // Shared pointer, because colliders keep the grid's address when the mapping is moved.
   std::shared_ptr<NestedGrid> nested_;
   std::vector<EmbeddedPoint> embedding_;
   std::vector<CellWeights> cell_weights_;  // by sample, equal to embedding_
@@ -107,7 +107,7 @@ class MeshMapping {
   // Triangles in the mesh's own order, shared with snapshots.
   const std::shared_ptr<const std::vector<TriangleCorners>>& triangles() const { return triangles_; }
 
-  // Moves current() to the nodes.
+  // Moves current() with the nodes.
   void update(const SpringLattice& lattice);
 
   EmbeddedPoint vertex(std::uint32_t vertex) const;

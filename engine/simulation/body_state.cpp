@@ -24,7 +24,7 @@ std::string describe_slender_cells(const BodyState& body) {
     if (error(axis) > error(worst)) worst = axis;
   }
   if (!(error(worst) > slender_stiffness_limit)) return {};
-  return std::string("cells too slender to sculpt with, ") +
+  return std::string("cells are too slender for sculpting: ") +
          rounded_text(report.youngs_modulus_ratio[worst]) + " times as stiff as the material along " +
          "xyz"[worst] + "; give a node_budget instead of nodes";
 }
@@ -58,9 +58,8 @@ Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& 
 std::string describe_lattice_warning(const BodyState& body) {
   const std::string slender = describe_slender_cells(body);
   if (body.lattice.mesh().along.empty()) return slender.empty() ? slender : "lattice: " + slender;
-  return "lattice: a box of cells around the body, because no block of cells fits along it; nodes count "
-         "along x, y "
-         "and z, feature_map is ignored, and parts thinner than a cell are too stiff in bending" +
+  return "lattice: the body is in a box of cells, because no block of cells fits along it; nodes are counted "
+         "along x, y and z, feature_map is ignored, and parts thinner than a cell are too stiff in bending" +
          (slender.empty() ? slender : "; " + slender);
 }
 

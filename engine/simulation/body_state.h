@@ -32,7 +32,7 @@ struct BodyState {
   std::vector<std::uint8_t> fixed, touched;            // one byte per node
   std::optional<ImplicitSolver> implicit_solver = {};  // for materials too stiff for the lattice's springs
   bool implicit_suspended = false;
-  BodyHold hold = BodyHold(1);  // for the number of nodes of the lattice
+  BodyHold hold = BodyHold(1);  // replaced by one with the lattice's number of nodes
   BodyLoads loads = {};
   BodySupports supports = {};
   double shell_thickness_m = 0.0;                // 0 for a solid
@@ -76,7 +76,7 @@ struct BodyState {
     return active_solver() ? active_solver()->report() : lattice.report();
   }
 
-  // Surface of any body except a soft mesh tool.
+  // Mapping to the surface of any body except a soft mesh tool.
   BodyMapping& mapping() {
     SPOONBILL_ASSERT(mesh() == nullptr);
     return *std::get_if<BodyMapping>(&skin);
@@ -88,7 +88,7 @@ struct BodyState {
   // Triangles of a soft mesh tool; null for any other body.
   const MeshMapping* mesh() const { return std::get_if<MeshMapping>(&skin); }
 
-  // Moves the skin to the lattice.
+  // Makes the skin follow the lattice.
   void update_skin() {
     std::visit([this](auto& mapping) { mapping.update(lattice); }, skin);
   }
@@ -104,19 +104,20 @@ Result<SpringLattice> make_sculpting_lattice(const LatticeMesh& mesh, const Latt
                                              InstructionSet set);
 
 // Young's modulus from which elastic bodies are stepped implicitly at their true stiffness. The few newtons
-// of a hand dent them by less than a third of a millimetre; they bend. Softer bodies are dented, which takes
-// the finer lattice and its springs.
+// of a hand dent them by less than a third of a millimetre; they bend. Softer bodies are dented, which
+// requires the finer lattice and its springs.
 inline constexpr double stiff_youngs_modulus_pa = 1e6;
 
 // Makes the implicit solver of a lattice, unstrained at `rest_m`. It steps bodies whose materials are all
 // linear elastic, the stiffest with at least stiff_youngs_modulus_pa. It also steps elastic shells, which a
-// single layer of springs would make twice too stiff in bending. Empty for bodies that their springs step.
+// single layer of springs would make twice too stiff in bending. Empty for bodies that are stepped by their
+// springs.
 Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& lattice,
                                                            const std::vector<Vector3>& rest_m,
                                                            InstructionSet set);
 
-// Largest relative error of a lattice's Young's modulus along an axis without a warning. Cells too slender
-// for springs exceed it.
+// Relative error of a lattice's Young's modulus along an axis above which describe_lattice_warning() warns.
+// Cells too slender for springs exceed it.
 inline constexpr double slender_stiffness_limit = 0.25;
 // Returns a warning in one line about a lattice that can be simulated but deviates from its material, with a
 // remedy; empty without one.

@@ -14,7 +14,7 @@ namespace {
 constexpr int height_levels = 2;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-// Returns how much lower than its middle point the parabola through three points gets between the outer two.
+// Returns how far a parabola through three points falls below the middle point, between the outer two.
 double dip(double before, double middle, double after, double step_before, double step_after) {
   const double rise_before = (middle - before) / step_before, rise_after = (after - middle) / step_after;
   const double steps = step_before + step_after;
@@ -148,8 +148,8 @@ int find_heaviest_node(const EmbeddedPoint& sample, const Filter& accepts) {
   return node;
 }
 
-// Returns the node to which a sample is attached: one on the shell, or any node in a box if none of the
-// sample's is.
+// Returns the node to which a sample is attached: the heaviest of its nodes on the shell or, in a box and if
+// it has none there, the heaviest of all.
 int find_footing_node(const LatticeMesh& mesh, const EmbeddedPoint& sample) {
   const int node = find_heaviest_node(sample, [&](int candidate) { return on_shell(mesh, candidate); });
   return node < 0 && is_boxed(mesh) ? find_heaviest_node(sample, [](int) { return true; }) : node;

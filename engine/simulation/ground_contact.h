@@ -78,9 +78,9 @@ class BodyGroundContact {
 
  private:
   // Node with the samples attached to it: samples of the mapping, which follow the lattice, and samples of
-  // the skin, which the control net places slightly elsewhere. The node is on the surface; in a box of cells
-  // it is any node with attached skin samples, and without samples of the mapping it gets those nearest to
-  // its skin samples.
+  // the skin, which the control net places slightly elsewhere. The node is on the surface, or any node with
+  // attached skin samples in a box of cells. If no samples of the mapping are attached to it, it gets those
+  // nearest to its skin samples.
   struct Footing {
     int node = 0;
     int first_followed = 0, followed_count = 0;  // range in BodyFootings::followed

@@ -161,7 +161,8 @@ void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
 // Largest distance of a node from its body's mean position, as a fraction of the scene's size.
 constexpr double reach_fraction = 1.0;
 
-// Keeps the bodies in the scene after all else has moved them; BodyHold::begin() must precede.
+// Keeps the bodies in the scene. Call after everything else has moved them; BodyHold::begin() must have been
+// called at the start of the tick.
 void hold_bodies(Simulation::State& s) {
   s.bodies_limited = false;
   const double reach_m = reach_fraction * s.scene_size_m;
@@ -197,7 +198,7 @@ void mark_touched(Simulation::State& s) {
   }
 }
 
-// Measures the residual of one body in turn, about eight times a second, for the panel.
+// Measures the mapping residual for the panel, about eight times a second and for the next body each time.
 void measure_residuals(Simulation::State& s) {
   constexpr std::uint64_t interval_ticks = 128;
   if (s.tick % interval_ticks != 0) return;

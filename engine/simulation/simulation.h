@@ -48,8 +48,8 @@ struct ShapeState {
   friend bool operator==(const ShapeState&, const ShapeState&) = default;
 };
 
-// FNV-1a hash, 64 bits, of plain values in words of four bytes (Fowler, Noll and Vo 1991). A float takes one
-// multiplication.
+// FNV-1a hash, 64 bits, of plain values in words of four bytes (Fowler, Noll and Vo 1991). Hashing a float
+// costs one multiplication.
 class StateHash {
  public:
   void add(const float* values, std::size_t count) {
@@ -100,7 +100,7 @@ class Simulation {
   // Scene as it was set. Its surfaces date from the last structural change; surface() returns the current
   // surfaces.
   const Scene& scene() const;
-  // Writes the scene with current surfaces, for saving. Allocates only if `scene` has another structure.
+  // Writes the scene with current surfaces, for saving. Allocates only if the structure of `scene` differs.
   void write_scene(Scene& scene) const;
   std::uint64_t tick() const;
 
@@ -111,9 +111,9 @@ class Simulation {
   void write_snapshot(Snapshot& snapshot) const;
 
   ShapeState shape() const;
-  // Allocates only if `shape` has another size.
+  // Writes the shape. Allocates only if `shape` has another size.
   void write_shape(ShapeState& shape) const;
-  // Refuses the shape of another lattice.
+  // Restores a shape. Fails if the shape belongs to another lattice.
   Status restore(const ShapeState& shape);
 
   // Warnings about the bodies' lattices, at most one line per body (describe_lattice_warning()).

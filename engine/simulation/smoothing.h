@@ -27,7 +27,8 @@ struct SmoothingBrush {
   double reach_m = 0.0;
 };
 
-// One owner, the simulation, which rebuilds it with the lattice's mesh. apply() allocates nothing.
+// Smoothing of one lattice. One owner, the simulation, which rebuilds it with the lattice's mesh. apply()
+// allocates nothing.
 class Smoothing {
  public:
   explicit Smoothing(const LatticeMesh& mesh);
@@ -49,7 +50,7 @@ class Smoothing {
     std::array<double, 2> height_factor{};  // height above the neighbours per curvature, m^2
   };
 
-  // Returns nothing where fewer than two lines cross or a line has no length.
+  // Returns the curvature at a shell node; nothing where fewer than two lines cross or a line has no length.
   template <class PositionOf>
   std::optional<Curvature> curvature_at(int node, const PositionOf& position_of) const;
   // Returns the change of the curvature since the rest shape.

@@ -9,7 +9,7 @@
 namespace spoonbill {
 namespace {
 
-// Largest number of cached structures; a session rarely uses as many again.
+// Number of cached structures at which the cache is cleared. A session rarely needs as many.
 constexpr std::size_t max_cached_structures = 32;
 // Fingerprint that stands for the tool.
 constexpr std::uint64_t tool_structure = 0;
@@ -32,7 +32,7 @@ bool is_soft_body(const ToolSnapshot& tool) {
   return tool.kind == ToolKind::solid && (!tool.body || tool.body->soft);
 }
 
-// Returns the cached stages of a key, made by `make` if they are missing; null if that fails.
+// Returns the cached stages of a key. Calls `make` if they are missing; returns null if it fails.
 template <class Key, class Stages, class Make>
 Stages* find_or_make(std::map<Key, Stages>& all, const Key& key, const Make& make) {
   const auto found = all.find(key);

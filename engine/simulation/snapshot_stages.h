@@ -45,7 +45,7 @@ class SnapshotStages {
   void add_pair(const StructuredSurface& first, const StructuredSurface& second, ContactStages& stages);
 
   Solid solid_;
-  // Caches by the fingerprints of the surfaces.
+  // Both caches are keyed by the fingerprints of the surfaces.
   std::map<std::uint64_t, ToolStages> tool_stages_;
   std::map<std::pair<std::uint64_t, std::uint64_t>, PairStages> pair_stages_;
 };

@@ -280,8 +280,8 @@ void ToolContact::select_shell_face(BodyContact& contact, const BodyState& body,
   Vector3 normal = nearest.normal;
   bool behind = false;
   if (is_small(body)) {
-    // A small tool can be within the shell. Then the side on which it is decides which face it touches, not
-    // its push direction.
+    // A small tool can be within the shell. Then the tool's position, not its push direction, decides which
+    // face it touches.
     double gap = 0.0;
     collision.found = find_shell_gap(surface, thickness, nearest.u, nearest.v, shape_.centre_m,
                                      margin + shape_.radius_m, normal, gap);

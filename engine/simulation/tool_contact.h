@@ -70,19 +70,21 @@ class ToolContact {
                const ToolHold& hold);
   // Prepares a soft tool, which touches the bodies as a body itself.
   void prepare_soft();
-  // Updates and returns whether the tool acts in this tick, given whether it is inside a body and near one.
+  // Updates whether the tool acts in this tick, given whether it is inside a body and near one, and returns
+  // the result.
   bool acts(bool inside, bool near, const ToolHold& hold);
   void release();
 
-  // Keeps the bodies' surfaces out of the tool in this tick; they slide along it. For kernels, after
-  // prepare() has found the contacts.
+  // Keeps the bodies' surfaces out of the tool in this tick; the surfaces slide along the tool. For kernels,
+  // after prepare() has found the contacts.
   void push(std::span<const BodyState> bodies, const ToolHold& hold);
-  // Fixes the surface inside the tool in the tool's frame until release(). For kernels, like push().
+  // Holds the part of the surface that is inside the tool fixed in the tool's frame, until release(). For
+  // kernels, like push().
   void grip(std::span<const BodyState> bodies, const ToolHold& hold);
   bool gripped() const { return gripped_; }
 
-  // Suspends the tool from the next prepare() on, until the button is free and the tool is a margin away from
-  // the bodies or hovers outside them.
+  // Suspends the tool from the next prepare() on, until the button is released and the tool is a margin away
+  // from the bodies or hovers outside them.
   void lift();
   bool lifted() const { return lifted_; }
   bool hovered() const { return hovered_; }
@@ -114,8 +116,8 @@ class ToolContact {
   void select_shell_face(BodyContact& contact, const BodyState& body, double margin) const;
   // Returns whether the tool is a sphere that fits between samples.
   bool is_small(const BodyState& body) const;
-  // Returns whether the tool in the hand is a B-spline. Its kind decides too, because the model may be of an
-  // earlier solid tool.
+  // Returns whether the tool in the hand is a B-spline. Checks the tool's kind as well, because the model may
+  // belong to an earlier solid tool.
   bool is_surface() const { return is_solid_ && placed_ != nullptr; }
   void add_pushes(int body, const BodyState& state, const ToolHold& hold);
   void add_sphere_pushes(int body, const BodyState& state);

@@ -9,7 +9,7 @@ namespace spoonbill {
 
 namespace {
 
-// Push: keeps the surfaces of the bodies out of the tool, and lets go as the tool leaves.
+// Push: keeps the surfaces of the bodies out of the tool and never pulls them.
 void push(ToolContact& contact, const ToolTouch& touch) {
   contact.push(touch.bodies, touch.hold);
 }
@@ -60,7 +60,8 @@ double stiffness_ratio(const Simulation::State& s, std::size_t body) {
 
 namespace {
 
-// Returns the ratio of the body that is softened most, against which the coupling is scaled.
+// Returns the largest ratio of real to effective Young's modulus among the bodies. The coupling is divided by
+// it.
 double find_largest_stiffness_ratio(const Simulation::State& s) {
   double ratio = stiffness_ratio(s, 0);
   for (std::size_t body = 1; body < s.stepped_count(); ++body)
@@ -165,8 +166,8 @@ Vector3 compute_soft_tool_force(const Simulation::State& s) {
          (ratio / s.relaxed.material_time_s);
 }
 
-// Updates and returns whether the soft tool touches: from the first acting contact until it is no longer
-// near.
+// Updates the touching state of the soft tool and returns it. The tool touches from the first contact that
+// acts until it is no longer near any body.
 bool update_soft_touch(Simulation::State& s) {
   HeldTool& held = s.tool;
   const int tool = static_cast<int>(s.bodies.size()) - 1;

@@ -1,5 +1,5 @@
-// The first solution that a good programmer writes with a matrix library: dense products in single precision.
-// They are compiled for each instruction set with the flags of our own kernels, and selected in the same way.
+// The obvious implementation with a matrix library: dense products in single precision. They are compiled for
+// each instruction set with the flags of our own kernels, and selected in the same way.
 #pragma once
 
 #include <memory>

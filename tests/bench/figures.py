@@ -1,4 +1,4 @@
-"""The figures: what is measured, beside what, and what it must reach. Plain data, read by report.py and plot."""
+"""The figures: what is measured, the peer for comparison, and the target. Plain data, read by report.py and plot."""
 
 from dataclasses import dataclass
 
@@ -9,9 +9,9 @@ class Figure:
     unit: str
     judged: str  # "ratio" (peer / ours) or "ours"
     sense: str  # "at least" or "at most"
-    target: float | None  # None: stated beside another
+    target: float | None  # None: reported beside another figure
     compared: str  # what both sides do
-    case: str = ""  # tells rows of one name apart
+    case: str = ""  # distinguishes rows of the same name
 
     def met(self, ours, ratio):
         value = ratio if self.judged == "ratio" else ours
@@ -26,8 +26,8 @@ VERTICES, CONTROLS = "same vertices", "from control points"
 SPHERE_PEERS = ("sphere_fcl_boxes", "sphere_fcl_turned_boxes")
 SURFACES_PEERS = ("surfaces_fcl_boxes", "surfaces_fcl_turned_boxes")
 
-# Names of Google Benchmark's cases of a figure, by its name or its name and case: ours, then its peers, of which
-# the fastest counts.
+# Names of Google Benchmark's cases for each figure (by name, or by name and case): ours, then its peers, of which the
+# fastest counts.
 PAIRS = {
     "eval_vs_sisl": ("evaluate_ours/200/8", "evaluate_sisl/200/8"),
     "eval_vs_occt": ("evaluate_ours/200/8", "evaluate_occt_cached/200/8"),
@@ -132,7 +132,7 @@ FIGURES = (
 
 NAMES = tuple(dict.fromkeys(figure.name for figure in FIGURES))
 
-# How cost grows: what to plot, each a list of Google Benchmark's cases by what is counted along the axis.
+# Plots of how cost grows. Each curve maps the size on the horizontal axis to the name of Google Benchmark's case.
 GROWTH = {
     "grid": {name: {n: f"evaluate_{name}/{n}/8" for n in (25, 50, 100, 200, 400, 1000)}
              for name in ("ours", "ours_double", "eigen", "sisl", "occt_cached")},

@@ -59,7 +59,7 @@ int run(double seconds, bool with_loop, bool drawing) {
   using clock = std::chrono::steady_clock;
   std::optional<DrawingLoad> load;
   if (drawing) load.emplace(moments_of_press());
-  // Time for shaders to compile and buffers to grow.
+  // Gives shaders time to compile and buffers time to grow.
   if (drawing) std::this_thread::sleep_for(std::chrono::seconds(1));
   Hand hand;
   Json report = Json::object();

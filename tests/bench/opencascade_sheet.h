@@ -7,7 +7,7 @@
 
 namespace spoonbill {
 
-// The sheet must be clamped in both directions.
+// Converts a sheet, which must be clamped in both directions.
 opencascade::handle<Geom_BSplineSurface> opencascade_sheet(const Surface& sheet);
 
 }  // namespace spoonbill

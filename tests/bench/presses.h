@@ -20,7 +20,8 @@ struct Press {
 // Reads the inputs of a recording, tick by tick as they were recorded.
 Result<Press> recorded_press(const std::filesystem::path& recording);
 
-// As recorded_press(), but the bodies are of a plastic so stiff that only the implicit method can step it.
+// Reads a recording like recorded_press(), but the bodies are of a plastic so stiff that only the implicit
+// method can step it.
 Result<Press> stiff_press(const std::filesystem::path& recording);
 
 // A block of clay with 60 mm edges and count^3 nodes, fixed at one end. A sphere presses it from above within

@@ -40,7 +40,7 @@ class Measurements:
         self.build = build
 
     def medians(self, cases, repetitions=15, seconds=0.05):
-        """Medians of the cases' processor time, repetitions of all shuffled into each other."""
+        """Returns the medians of the cases' processor times. Repetitions of all cases run in random order."""
         pattern = "^(" + "|".join(cases) + ")$"
         report = json.loads(output_of([
             self.build / "tests/bench/kernel_bench", f"--benchmark_filter={pattern}", "--benchmark_format=json",
@@ -63,7 +63,7 @@ class Measurements:
         return json.loads(output_of([self.build / "tests/bench/tick_bench", rounds, case]))[case]
 
     def replay(self):
-        """Frames of the bundled recording, and the seconds and the processor's seconds that they took."""
+        """Replays the bundled recording. Returns the number of frames, the seconds and the processor seconds."""
         with tempfile.TemporaryDirectory() as folder:
             before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
             done = json.loads(output_of([self.build / "app/spoonbill", "replay", ROOT / HANDLE, "--out", folder,
@@ -73,7 +73,7 @@ class Measurements:
         return done["frames"], seconds, used
 
     def start(self, arguments, rounds=21):
-        """Milliseconds from starting the program with these arguments to its end, sorted."""
+        """Returns the milliseconds from starting the program with these arguments to its end, sorted."""
         times = []
         for _ in range(rounds):
             start = time.perf_counter()
@@ -84,7 +84,7 @@ class Measurements:
 
     @functools.cache
     def loop(self, load):
-        """Lateness of our loop, then of cyclictest under the same load, None where that is not permitted."""
+        """Returns the lateness of our loop, then of cyclictest under the same load (None if it is not permitted)."""
         ours = json.loads(output_of([self.build / "tests/bench/loop_bench", LOOP_SECONDS, "loop", load]))
         if ours["notice"]:
             say(ours["notice"])
@@ -107,7 +107,7 @@ class Measurements:
 
     @functools.cache
     def live(self):
-        """A live session that draws while strokes and commands fly, and cyclictest beside as much drawing."""
+        """Runs a live session that draws while it receives strokes and commands, then cyclictest with drawing."""
         with tempfile.TemporaryDirectory() as folder:
             script = Path(folder) / "live.script.json"
             script.write_text(json.dumps(live_script(LIVE_SECONDS)))
@@ -122,7 +122,7 @@ class Measurements:
 
 
 def live_script(seconds):
-    """Presses and lets go, with a command every tenth of a second while it presses, for so long."""
+    """Returns a script that presses and lets go for `seconds`, with a command every tenth of a second of a press."""
     steps = [{"start_mm": [88, 26, 0]}, {"command": "place_plane", "point_mm": [40, 0, 0], "normal": [1, 0, 0]},
              {"hold_s": 0.4}]
     for stroke in range(int(seconds / 2.4)):
@@ -137,7 +137,7 @@ def live_script(seconds):
 
 
 def resident_memory_of(program):
-    """Pairs of seconds and bytes while the program runs."""
+    """Returns pairs of seconds and bytes of resident memory, sampled while the program runs."""
     samples, start, page = [], time.monotonic(), os.sysconf("SC_PAGE_SIZE")
     while program.poll() is None:
         pages = Path(f"/proc/{program.pid}/statm").read_text().split()
@@ -148,7 +148,7 @@ def resident_memory_of(program):
 
 
 def lateness_of(histogram):
-    """Quantiles of cyclictest's histogram of microseconds."""
+    """Returns the quantiles of cyclictest's histogram of microseconds."""
     bins, beyond = [], 0
     for line in histogram.splitlines():
         words = line.split()

@@ -1,4 +1,4 @@
-"""The report of the benchmarks, with measurements made up: rows, targets, names. Nothing is timed."""
+"""Tests the report of the benchmarks (rows, targets, names) on made-up measurements. Nothing is timed."""
 
 import contextlib
 import io
@@ -14,7 +14,7 @@ from figures import FIGURES, NAMES, PAIRS
 
 
 class MadeUp:
-    """Ours takes 10, every peer 250; a tick 300 us; a block of more than 20 a side too long for 1 kHz."""
+    """Made-up times: ours 10, every peer 250, a tick 300 us; blocks with more than 20 nodes a side miss 1 kHz."""
 
     def __init__(self, _build):
         pass

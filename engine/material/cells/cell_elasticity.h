@@ -26,7 +26,7 @@ struct CellResponse {
 };
 
 // Selects whether a tangent includes the contribution of the present stress. Newton's method is fastest with
-// it; without it, no stress makes the tangent indefinite.
+// it. Without it, stress cannot make the tangent indefinite.
 enum class Tangent : std::uint8_t { stressed, plain };
 
 // Elasticity that a cell achieves along x, y and z. Plain data.

@@ -7,8 +7,8 @@
 namespace spoonbill {
 namespace {
 
-using Turns = Eigen::Matrix<double, 3, 24>;   // rotation vector from displacements
-using Levers = Eigen::Matrix<double, 24, 3>;  // displacements or forces from a rotation vector
+using Turns = Eigen::Matrix<double, 3, 24>;   // maps displacements to a rotation vector
+using Levers = Eigen::Matrix<double, 24, 3>;  // maps a rotation vector to displacements or forces
 
 Eigen::Matrix3d cross_matrix(const Vector3& a) {
   Eigen::Matrix3d matrix;
@@ -55,7 +55,7 @@ Eigen::Matrix3d turn_from(const Eigen::Quaterniond& quaternion) {
   return 2.0 * unit.w() * v + 2.0 * v * v;
 }
 
-// Returns the vector a of A - A^T = [a].
+// Returns the vector a for which [a] = A - A^T.
 Vector3 axial(const Eigen::Matrix3d& a) {
   return {a(2, 1) - a(1, 2), a(0, 2) - a(2, 0), a(1, 0) - a(0, 1)};
 }

@@ -8,8 +8,8 @@
 
 namespace spoonbill {
 
-// Returns R - 1 for the rotation R closest to the deformation gradient F = 1 + H; this form keeps the
-// digits of small rotations. F = R S with S symmetric; a reflection also gives the closest rotation.
+// Returns R - 1 for the rotation R closest to the deformation gradient F = 1 + H; this form keeps the digits
+// of small rotations. F = R S with S symmetric. If F contains a reflection, R is still a rotation.
 Eigen::Matrix3d nearest_turn(const Eigen::Matrix3d& change);
 
 // A cell that keeps the stiffness of its rest shape and rotates with the body: large rotations, small
@@ -36,10 +36,10 @@ class CorotatedCell {
   double energy_j(const CellMoves& moves) const;
 
  private:
-  // Returns u.
+  // Returns u = R^T (X + d) - X, the deformation without the rotation, in the axes of the rest shape.
   CellVector strained(const CellMoves& moves, const Eigen::Matrix3d& turn) const;
 
-  CellVector rest_ = CellVector::Zero();  // relative to the mean of the corners
+  CellVector rest_ = CellVector::Zero();  // corners relative to their mean
   CellMatrix stiffness_ = CellMatrix::Zero();
   CellGradients gradients_ = CellGradients::Zero();
 };

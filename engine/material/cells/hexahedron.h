@@ -18,9 +18,9 @@ namespace spoonbill {
 // condensed out. A plain trilinear cell shears in bending and is too stiff: by half if a beam of L/H = 10 has
 // a single cell through its height. It also locks near nu = 1/2 (Wilson et al. 1973).
 //
-// The gradients of the internal modes use the Jacobian at the cell's centre, so that distorted cells pass
-// the patch test (Taylor, Beresford and Wilson 1976). Two Gauss points per axis. The cell must not be
-// folded; -1 < nu < 1/2.
+// The gradients of the internal modes use the Jacobian at the cell's centre, so that distorted cells pass the
+// patch test (Taylor, Beresford and Wilson 1976). The integral uses two Gauss points per axis. The cell must
+// not be folded; -1 < nu < 1/2.
 CellMatrix hexahedron_stiffness(const CellCorners& corners, double youngs_modulus_pa, double poissons_ratio);
 
 // Part of a cell with its own elasticity: a box in the cell's natural coordinates, each -1 to 1 along i, j,
@@ -30,7 +30,7 @@ struct HexahedronPart {
   double youngs_modulus_pa = 0.0, poissons_ratio = 0.0;
 };
 
-// Returns the stiffness of a cell that is filled by parts. Each part has its own Gauss points, so that
+// Returns the stiffness of a cell that consists of several parts. Each part has its own Gauss points, so that
 // layers bend as a composite does.
 CellMatrix hexahedron_stiffness(const CellCorners& corners, std::span<const HexahedronPart> parts);
 

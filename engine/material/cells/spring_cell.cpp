@@ -8,7 +8,7 @@
 
 namespace spoonbill {
 
-// Corner bits: 0 = k, 1 = j, 2 = i.
+// Bit 0 of a corner's number steps along k, bit 1 along j, bit 2 along i.
 const std::array<std::array<int, 2>, cell_spring_count> cell_spring_corners = {{
     {0, 1}, {2, 3}, {4, 5}, {6, 7}, {0, 2}, {1, 3}, {4, 6}, {5, 7}, {0, 4}, {1, 5},
     {2, 6}, {3, 7}, {0, 3}, {1, 2}, {4, 7}, {5, 6}, {0, 5}, {1, 4}, {2, 7}, {3, 6},
@@ -99,9 +99,9 @@ ComponentMatrix spring_components(const CellCorners& corners, double volume) {
 // through the plane of its neighbours, and a cell without diagonals has zero-energy modes.
 constexpr double min_spring_fraction = 0.1;
 
-// Returns the stiffnesses closest to `start` that satisfy `matrix * k = target`. Stiffnesses that would fall
-// below their minimum are set to the minimum, in repeated rounds. A negligible ridge keeps the normal matrix
-// regular where springs of a distorted cell are dependent.
+// Returns the stiffnesses closest to `start` that satisfy `matrix * k = target`. Sets stiffnesses below their
+// minimum to it and solves again for the others, until none is below. A negligible multiple of the identity
+// keeps the normal matrix regular where springs of a distorted cell are dependent.
 Stiffnesses nearest_admissible(const ComponentMatrix& matrix, const Components& target,
                                const Stiffnesses& start) {
   Stiffnesses weight = start, from = start;
@@ -249,7 +249,8 @@ CellCorners SpringCell::deformed_corners(const CellMoves& moves) const {
   return corners;
 }
 
-// Uses L - L0 = (|n + e|^2 - |n|^2) / (L + L0) for the rest vector n, which keeps the digits of a small e.
+// Uses L - L0 = (|n + e|^2 - |n|^2) / (L + L0) for the rest vector n and its change e. This form keeps the
+// digits of a small e.
 double SpringCell::extension_m(std::size_t spring, const CellMoves& moves) const {
   const Vector3 before = across(spring, rest_), more = across(spring, moves), now = before + more;
   return more.dot(before + now) / (now.norm() + rest_length_[spring]);

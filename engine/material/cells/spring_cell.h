@@ -1,5 +1,5 @@
-// Lattice cells of springs and one volume force, with the elasticity of the lattice that sculpting steps
-// (springs/lattice_kernels.h), but in double precision and with a tangent.
+// Lattice cells made of springs and one volume force. They have the elasticity of the spring lattice for
+// sculpting (springs/lattice_kernels.h), but in double precision and with a tangent.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +12,8 @@ namespace spoonbill {
 
 inline constexpr int cell_spring_count = 28;
 
-// Corners of each spring, the lower number first: edges 0-11, face diagonals 12-23, body diagonals 24-27.
+// End corners of each spring, the lower number first. Springs 0-11 are edges, 12-23 face diagonals, 24-27
+// body diagonals.
 extern const std::array<std::array<int, 2>, cell_spring_count> cell_spring_corners;
 
 struct CellSprings {
@@ -30,15 +31,15 @@ struct CellSprings {
 // the target shear modulus mu = E / (2 (1 + nu)); a volume force adds bulk_stiffness().
 //
 // The stiffnesses solve 15 equations: the sum over springs of k L^2 n n n n = V mu (delta delta + 2
-// permutations). The solution is the one closest to a cube of the same volume with two fifths of the
-// largest possible body diagonals. Without body diagonals, or with the largest, zero-energy modes appear.
+// permutations). The solution is the one closest to a cube of the same volume whose body diagonals have two
+// fifths of their largest possible stiffness. With none of it or all of it, zero-energy modes appear.
 //
 // Eq. 6 of Pungotra et al. 2013, K = A E / L with A = a^2, is the stiffness of a bar; applied to every
 // spring, it makes a lattice 2.09 to 2.25 times too stiff.
 CellSprings cell_springs(const CellCorners& corners, double shear_modulus_pa);
 
-// Returns K_v = mu (4 nu - 1) / (1 - 2 nu), Pa: the stiffness that a cell's volume force adds to the
-// springs' nu = 1/4. Negative below nu = 1/4.
+// Returns K_v = mu (4 nu - 1) / (1 - 2 nu), Pa: the stiffness of the volume force that changes Poisson's
+// ratio from the springs' 1/4 to nu. Negative for nu < 1/4.
 double bulk_stiffness(double youngs_modulus_pa, double poissons_ratio);
 double shear_modulus(double youngs_modulus_pa, double poissons_ratio);
 
@@ -54,8 +55,8 @@ class SpringCell {
   // body.
   SpringCell(const CellCorners& rest, const CellSprings& springs, double bulk_stiffness_pa, double fraction);
 
-  // Computes energy, forces and tangent: 1/2 k (L - L0)^2 for each spring and 1/2 K_v (J - 1)^2 V0 with J =
-  // V / V0.
+  // Computes energy, forces and tangent. The energy is 1/2 k (L - L0)^2 for each spring plus 1/2 K_v (J -
+  // 1)^2 V0 with J = V / V0.
   CellResponse respond(const CellMoves& moves, Tangent tangent) const;
   double energy_j(const CellMoves& moves) const;
 

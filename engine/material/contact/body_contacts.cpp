@@ -12,7 +12,7 @@ namespace spoonbill {
 namespace {
 
 // The surfaces follow their nodes through the refit and may move slightly more or less than the constrained
-// points. Closing at most half of a gap leaves a margin for that.
+// points. Closing at most half of a gap leaves a margin for this difference.
 constexpr ContactPace body_pace{0.5, 0.7};
 
 Vector3 current_displacement(const BodyPoint& side) {

@@ -9,16 +9,16 @@
 
 namespace spoonbill {
 
-// A point of a body. `body` is the index of its lattice in the views that solve() gets.
+// A point of a body. `body` is the index of its lattice in the views passed to solve().
 struct BodyPoint {
   int body = 0;
   const SpringLattice* lattice = nullptr;
   EmbeddedPoint point;
 };
 
-// Contacts between two deformable bodies, or of one with itself: velocity constraints between points of
-// their surfaces, solved in each substep next to those of tools. Impulses are equal and opposite, so
-// momentum is conserved.
+// Contacts between two deformable bodies, or of one with itself: velocity constraints between points of their
+// surfaces, solved in each substep after those of tools. Impulses are equal and opposite, so momentum is
+// conserved.
 //
 // Working memory for the contacts of one tick. One owner, one thread; allocates only in its constructor.
 class BodyContacts {
@@ -42,7 +42,7 @@ class BodyContacts {
   // Returns whether any constraint of a body, or between two bodies, has acted since begin().
   bool acted(int body) const;
   bool acted(int body, int other) const;
-  // Sets the bytes in `touched` of those nodes of a body on which a constraint has acted.
+  // Sets to 1 the bytes in `touched` of the nodes of a body on which a constraint has acted.
   void mark_touched(int body, std::uint8_t* touched) const;
 
  private:
@@ -67,12 +67,12 @@ class BodyContacts {
 // present push. Friction that followed every oscillation of the push would amplify the oscillation, and a
 // body would hop down a slope on which it should stick.
 //
-// Measured friction follows a change of pressure gradually (Prakash 1998), which makes sliding well posed
-// (Ranjith and Rice 2001). Summed over that time, the impulses obey Coulomb's law.
+// In experiments, friction follows a change of pressure gradually (Prakash 1998), which makes sliding well
+// posed (Ranjith and Rice 2001). Summed over `friction_memory_s`, the impulses obey Coulomb's law.
 struct GroundContact {
   int body = 0, node = 0;
   double gap_m = 0.0;
-  Vector3 at_m = Vector3::Zero();  // displacement of the node at which gap_m was measured
+  Vector3 at_m = Vector3::Zero();  // displacement of the node when gap_m was measured
   double friction = 0.0;
   Vector3 impulse_ns = Vector3::Zero();  // in the present tick
   // Carried from tick to tick: the mean force in the last tick, the mean push and the contact time.
@@ -88,18 +88,18 @@ inline constexpr double friction_memory_s = 0.01;
 // Rigid ground under bodies: velocity constraints on their nodes. Lattices with springs solve them in each
 // substep, after all other contacts; the implicit solver once a tick.
 //
-// Stores the contacts of one tick and their memory for the next. Each contact constrains a single node, so
-// one pass solves the contacts of spring-stepped lattices exactly, and sticking contacts do not creep. One
-// owner, one thread; allocates only in its constructor.
+// Stores the contacts of one tick and the friction state that the next tick continues from. Each contact
+// constrains a single node, so one pass solves the contacts of spring-stepped lattices exactly, and sticking
+// contacts do not creep. One owner, one thread; allocates only in its constructor.
 class GroundContacts {
  public:
   explicit GroundContacts(int capacity);
 
   // Starts a tick of `material_time_s`; the unit vector `normal` points out of the ground.
   void begin(const Vector3& normal, double material_time_s);
-  // Adds a node whose attached surface is `gap_m` above the ground, negative if below it. `body` is the
-  // index of the lattice in the views that solve() gets. Call in ascending order of bodies and nodes; a
-  // contact of the last tick keeps its friction state. Fixed nodes are ignored. Returns false when full.
+  // Adds a node whose attached surface is `gap_m` above the ground, negative if below it. `body` is the index
+  // of the lattice in the views passed to solve(). Call in ascending order of bodies and nodes; a contact of
+  // the last tick keeps its friction state. Fixed nodes are ignored. Returns false when full.
   bool add(int body, const SpringLattice& lattice, int node, double gap_m, double friction);
   // Discards all contacts and their friction state.
   void forget();
@@ -107,14 +107,14 @@ class GroundContacts {
   const Vector3& normal() const { return normal_; }
   std::span<GroundContact> of_body(int body);
 
-  // Solves the contacts of a lattice that its springs step. Call after the kick and before the drift of a
-  // substep of h_s.
+  // Solves the contacts of a lattice that is stepped by its springs. Call after the kick and before the drift
+  // of a substep of h_s.
   void solve(int body, const LatticeView& view, double h_s, double push_speed_cap_m_per_s);
 
   int count() const { return static_cast<int>(contacts_.size()); }
   // Impulse of the ground on a body since begin(), N s.
   Vector3 impulse_ns(int body) const;
-  // Sets the bytes in `touched` of those nodes of a body that the ground has pushed.
+  // Sets to 1 the bytes in `touched` of the nodes of a body that the ground has pushed.
   void mark_touched(int body, std::uint8_t* touched) const;
 
   // Visits everything that the next tick depends on.

@@ -10,8 +10,8 @@ namespace {
 // The correction is below 1, so that neighbouring points that push the same node do not overshoot together.
 constexpr ContactPace tool_pace{1.0, 0.3};
 
-// Frequency at which a coupled tool follows the hand, rad/s of material time. It determines the tool's
-// mass: that of a few nodes of clay, so that neither dominates the other.
+// Frequency at which a coupled tool follows the hand, rad/s of material time. It determines the tool's mass,
+// which is about that of a few nodes of clay, so that neither tool nor clay dominates.
 constexpr double coupling_frequency = 60.0;
 
 }  // namespace

@@ -23,16 +23,16 @@ struct ContactPace {
 // Pace of ground contacts. Each node on the ground has its own contact and closes its gap within a substep.
 inline constexpr ContactPace ground_pace{1.0, 0.7};
 
-// Contact of two points that must not pass each other, as it is before the drift of a substep, and its
-// impulse.
+// State of a contact between two points before the drift of a substep, and the impulse that keeps the points
+// from passing each other.
 struct ContactPush {
   double gap_m;      // negative: penetration depth
   Vector3 normal;    // unit vector along which the points separate
   Vector3 relative;  // separation velocity, m/s
   double mass_kg;    // effective mass: 1 / the sum of the compliances
 
-  // Returns the smallest admissible separation speed, m/s: no passing if there is a gap, a partial
-  // correction if there is penetration. `cap_m_per_s` limits the speed of the correction.
+  // Returns the smallest admissible separation speed, m/s. Points with a gap may approach but must not pass
+  // each other. A penetration is partly corrected, at `cap_m_per_s` at most.
   double target_m_per_s(double h_s, const ContactPace& pace, double cap_m_per_s) const {
     return gap_m > 0.0 ? -gap_m * pace.closing / h_s : std::min(-gap_m * pace.correction / h_s, cap_m_per_s);
   }
@@ -40,15 +40,17 @@ struct ContactPush {
   double normal_impulse(double h_s, const ContactPace& pace, double cap_m_per_s) const {
     return std::max(0.0, (target_m_per_s(h_s, pace, cap_m_per_s) - relative.dot(normal)) * mass_kg);
   }
-  // Returns the friction impulse that stops the sliding, of at most `max_ns`, to be subtracted.
+  // Returns the friction impulse that stops the sliding, limited to `max_ns`. Subtract it from the normal
+  // impulse.
   Vector3 drag(double max_ns) const {
     const Vector3 sliding = relative - relative.dot(normal) * normal;
     const double slide = sliding.norm() * mass_kg;
     return (slide > 0.0 ? std::min(slide, max_ns) / slide : 0.0) * mass_kg * sliding;
   }
 
-  // Returns the normal and friction impulse, or nothing if the points separate fast enough. Coulomb
-  // friction: it stops the sliding up to the coefficient times the normal impulse.
+  // Returns the sum of the normal and the friction impulse, or nothing if the points separate fast enough. By
+  // Coulomb's law, friction is at most the coefficient times the normal impulse; below that, it stops the
+  // sliding.
   std::optional<Vector3> impulse(double h_s, const ContactPace& pace, double cap_m_per_s,
                                  double friction) const {
     const double separating = relative.dot(normal);
@@ -94,14 +96,14 @@ class ContactConstraints {
   explicit ContactConstraints(int capacity);
 
   void clear();
-  // Each add function returns false when full. `body` is the index of the lattice in the views that solve()
-  // gets.
+  // Each add function returns false when full. `body` is the index of the lattice in the views passed to
+  // solve().
   //
   // Adds a point that the tool's sphere may push outward but never pulls.
   bool add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point);
-  // Adds a point that must stay beyond a plane that moves with the tool: on the side to which the unit vector
-  // `normal` points, `offset_m` along it from the tool's centre. It serves tools smaller than a cell, and
-  // tools whose surface is flat over the distance moved in a tick.
+  // Adds a point that must stay beyond a plane that moves with the tool. The unit vector `normal` points to
+  // the admissible side; `offset_m` is the plane's distance from the tool's centre along `normal`. For tools
+  // smaller than a cell, and for tools whose surface is flat over the distance moved in a tick.
   bool add_plane_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
                       const Vector3& normal, double offset_m);
   // Adds a point gripped by the tool, at `offset_m` from its centre in the tool's frame.
@@ -123,7 +125,7 @@ class ContactConstraints {
   // Sum of the impulses of a body on the tool since begin(), N s.
   const Vector3& tool_impulse(int body) const { return tool_impulse_[body]; }
   bool acted() const { return acted_; }
-  // Sets the bytes in `touched` of those nodes of a body on which a constraint has acted.
+  // Sets to 1 the bytes in `touched` of the nodes of a body on which a constraint has acted.
   void mark_touched(int body, std::uint8_t* touched) const;
 
  private:
@@ -135,7 +137,7 @@ class ContactConstraints {
     Vector3 rest_m = Vector3::Zero();     // position in the rest shape
     Vector3 direction = Vector3::Zero();  // plane push: normal; grip: offset in the tool's frame
     double offset_m = 0.0;                // plane push only
-    double compliance = 0.0;              // of the point, 1/kg; 0 if all of its nodes are fixed
+    double compliance = 0.0;              // velocity change per impulse, 1/kg; 0 if all nodes are fixed
     double friction = 0.0;                // coefficient of the body's surface; tools have none
     bool acted = false;
   };

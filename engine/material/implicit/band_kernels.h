@@ -17,8 +17,8 @@ struct BandView {
 inline constexpr int band_block = 8;
 
 struct BandKernels {
-  // Factorises columns [from, to) in place: L L^T = A. The columns before `from` must be factorised. A
-  // pivot below `least` is set to it, so that a matrix that rounding made indefinite still has a factor.
+  // Factorises columns [from, to) in place: L L^T = A. The columns before `from` must be factorised. A pivot
+  // below `least` is raised to `least`, so that a matrix that rounding made indefinite still has a factor.
   void (*factor)(const BandView&, int from, int to, double least);
   // Sets x to L^-1 x, where x is zero before `from`.
   void (*forward)(const BandView&, int from, double* x);

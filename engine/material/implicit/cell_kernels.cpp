@@ -84,7 +84,7 @@ inline void compute_gradient(const CellBatch& b, const Field& moved, Matrix& cha
   }
 }
 
-// Computes R - 1 = 2 w [v] + 2 [v]^2.
+// Computes R - 1 = 2 w [v] + 2 [v]^2 from the unit quaternion w + v.
 inline void compute_turn(CellBatch& b) {
   for (int l = 0; l < lanes; ++l) {
     const double w = b.quaternion[0][l], x = b.quaternion[1][l], y = b.quaternion[2][l],
@@ -151,7 +151,8 @@ inline void spin_map_times(const CellBatch& b, const Rotation& a, Rotation& resu
   }
 }
 
-// Rotates by at most half a radian per step; beyond that, only the direction of a step is useful.
+// Rotates by at most half a radian per step: a longer Newton step has a useful direction, but no useful
+// length.
 inline void rotate_further(CellBatch& b, const Matrix& s) {
   Rotation skew, w;
   for (int l = 0; l < lanes; ++l) {
@@ -213,7 +214,7 @@ inline void stiffness_times(const CellBatch& b, const Field& field, Field& resul
   }
 }
 
-// Sets f to P^T f = f + G^T [x~]^T f: with m = sum x~_i x f_i, f_i + g_i x (T m).
+// Sets f to P^T f = f + G^T [x~]^T f. With m = sum x~_i x f_i, f_i becomes f_i + g_i x (T m).
 inline void project_transposed(const CellBatch& b, Field& f) {
   Rotation moment, m;
   for (int l = 0; l < lanes; ++l) moment.x[l] = moment.y[l] = moment.z[l] = 0.0;

@@ -1,6 +1,6 @@
-// Kernels of the cells of an implicit body, eight side by side: corotated hexahedra as
-// engine/material/cells/corotated_cell.h derives them. Compiled once for each instruction set, with the same
-// bits. Uses no standard library; engine/bspline/evaluate_kernels.h explains why.
+// Kernels for the cells of an implicit body, which process eight cells side by side. The cells are corotated
+// hexahedra (see engine/material/cells/corotated_cell.h). Compiled once for each instruction set, with the
+// same bits. Uses no standard library; engine/bspline/evaluate_kernels.h explains why.
 #pragma once
 
 namespace spoonbill {

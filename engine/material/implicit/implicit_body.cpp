@@ -132,7 +132,8 @@ void BlockCell::report(const CellMatrix& stiffness, LatticeReport& report) const
 namespace {
 
 constexpr int iteration_limit = 4;
-// Residual at which a solution is accepted, relative to the initial one, in the norm of the preconditioner.
+// Residual at which the velocities are accepted, relative to the initial one, in the norm of the
+// preconditioner.
 constexpr double accepted_residual = 1e-4;
 constexpr int power_steps = 200;
 // Largest displacement of a node in a step, in cells.
@@ -325,8 +326,9 @@ void ImplicitBody::apply_fixed_motion(double stiffness, double h) {
   for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) force_[n] -= image_[n] / h;
 }
 
-// Scales the present velocities by the best factor between 0 and 1 and computes the residual. If the
-// conjugate gradients stop early, the remaining velocities are then no larger than the forces allow.
+// Scales the velocities at the start of the step by the best factor between 0 and 1 and computes the
+// residual. Without this, conjugate gradients that stop early could leave velocities larger than the forces
+// allow.
 void ImplicitBody::begin_solve(double inertia, double stiffness, double h) {
   apply_matrix(inertia, stiffness, velocity_, image_);
   for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) {

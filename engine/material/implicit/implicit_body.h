@@ -1,5 +1,5 @@
-// Body whose material is too stiff for springs at a tick's step: corotated hexahedra under an implicit
-// Euler method, stable at any step.
+// Body whose material is too stiff for springs in a tick: corotated hexahedra under an implicit Euler method,
+// stable at any step.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +41,7 @@ struct BlockMaterials {
     std::size_t material = 0;
   };
 
-  // Creates the materials of a uniform body. Implicit, because most bodies are uniform.
+  // Creates the materials of a uniform body. An implicit conversion, because most bodies are uniform.
   BlockMaterials(const Material& material) : materials{material} {}
 
   std::vector<Material> materials;
@@ -67,8 +67,8 @@ struct BlockCell {
   CellMatrix stiffness() const;
   // Masses by corner, kg; equal if the cell is of one material.
   std::array<double, 8> masses() const;
-  // Adds the elasticity that a cell of this shape achieves for each of its materials. `stiffness` is the
-  // result of stiffness().
+  // Adds to `report` the elasticity that a cell of this shape achieves for each of its materials. `stiffness`
+  // is the result of stiffness().
   void report(const CellMatrix& stiffness, LatticeReport& report) const;
 };
 
@@ -153,16 +153,17 @@ class ImplicitBody {
   double rayleigh_quotient();
 
   // Parts of a step, to be called in order. solve_velocities() computes the velocities at the end of the
-  // step; `known_ns` are contact impulses by coordinate (of the first of joined nodes), N s. push() applies
-  // further impulses to the whole body and returns their work on the velocity change, J. move() advances
-  // the nodes and returns whether one reached the speed cap.
+  // step; `known_ns` are contact impulses, N s, by coordinate; those on joined nodes belong to the first of
+  // the pair. push() lets the whole body respond to further impulses and returns the product of impulses and
+  // velocity changes, J. move() advances the nodes and returns whether one reached the speed cap.
   ImplicitReport solve_velocities(const ImplicitStep& step, std::span<const double> known_ns = {});
   double push(const std::vector<double>& impulses) {
     const double work = respond_to(impulses);
     apply_response(1.0);
     return work;
   }
-  // Parts of push(): the velocity change of the impulses, and its application by a fraction.
+  // Parts of push(): respond_to() computes the velocity changes due to the impulses and returns their product
+  // with the impulses, J; apply_response() applies this fraction of the velocity changes.
   double respond_to(const std::vector<double>& impulses);
   void apply_response(double fraction);
   bool move(double step_s);
@@ -227,7 +228,7 @@ class ImplicitBody {
   Vector3 momentum_ = Vector3::Zero();  // of a free body at the end of the step
   RollingFactor factor_;
   CellBlock block_;
-  Doubles mass_, mass3_, free_;  // by node; by coordinate, 0 if fixed; by coordinate, 1 or 0
+  Doubles mass_, mass3_, free_;  // by node; by coordinate, 0 if fixed; 1 or, if fixed, 0
   Doubles moved_, velocity_, applied_;
   Doubles fixed_velocity_;                                      // 0 for free nodes
   Doubles force_, residual_, direction_, image_, conditioned_;  // working memory

@@ -12,8 +12,8 @@
 namespace spoonbill {
 namespace {
 
-// Largest number of steps in a tick. Each costs one solution with the factor, like an iteration of the
-// conjugate gradients.
+// Largest number of steps in a tick. Each costs one solve with the factor, as an iteration of the conjugate
+// gradients does.
 constexpr int step_limit = 4;
 // Velocity error below which a tick is solved: a nanometre per second.
 constexpr double accepted_error_m_per_s = 1e-9;
@@ -21,7 +21,8 @@ constexpr double min_diagonal_fraction = 0.1;
 // Bounds of the spectral mass, relative to the body's mass.
 constexpr double min_mass_ratio = 1e-5, max_mass_ratio = 10.0;
 
-// A point attached mostly to fixed nodes would not respond, or would throw its free nodes.
+// Smallest sum of the weights of free nodes at which a point can respond. A point attached mostly to fixed
+// nodes would hardly move, or would throw its few free nodes.
 constexpr double min_free_fraction = 0.5;
 
 double free_fraction(const GridPoint& point, const ImplicitBody& body) {
@@ -113,8 +114,8 @@ void ImplicitGroundContacts::solve(const GroundContacts& ground, std::span<Groun
 
 namespace {
 
-// Largest number of entries in the band. A solution multiplies each entry twice, and a tick takes about five
-// solutions.
+// Largest number of entries in the band. Each solve multiplies every entry twice, and a tick needs about five
+// solves.
 constexpr double max_band = 1.3e5;
 constexpr int min_budget = 30;
 // Inverse mass in contacts, relative to that of the whole body: the value before the first contact, and the
@@ -151,7 +152,7 @@ Vector3 extents(const LatticeMesh& mesh, const std::vector<Vector3>& nodes) {
   return size;
 }
 
-// Expresses a node of one grid by the nodes of another, trilinear in the grid.
+// Expresses a node of one grid as a weighted sum of the nodes of another, trilinear in the grid indices.
 GridPoint embed_node(const LatticeMesh& of, int node, const LatticeMesh& by) {
   const std::array<int, 3> at = of.grid_index(node);
   std::array<GridPosition, 3> positions{};
@@ -179,7 +180,7 @@ std::size_t find_heaviest_node(const GridPoint& follower) {
   return static_cast<std::size_t>(follower.node[static_cast<std::size_t>(most)]);
 }
 
-// Number of entries of the band, which a solution multiplies.
+// Number of entries of the band; each solve multiplies all of them.
 double band_size(const LatticeMesh& block) {
   return 9.0 * block.node_count() * (node_reach(block) + 1);
 }
@@ -188,7 +189,8 @@ Vector3 applied_force_n(const SpringLattice& lattice, int node) {
   return {lattice.applied_force(0)[node], lattice.applied_force(1)[node], lattice.applied_force(2)[node]};
 }
 
-// Chooses the largest counts that fit the node budget and the band, and no more than the lattice has.
+// Chooses the largest counts that respect the node budget and the limit of the band and do not exceed the
+// counts of the lattice.
 Result<LatticeMesh> choose_coarse_counts(const LatticeMesh& mesh, const Vector3& size_m) {
   LatticeMesh block;
   block.closed = mesh.closed;
@@ -205,8 +207,8 @@ Result<LatticeMesh> choose_coarse_counts(const LatticeMesh& mesh, const Vector3&
   }
 }
 
-// Scales the cells of a coarse shell to the volume of the fine one: its longer chords would lose volume
-// where the shell is bent.
+// Scales the cell fractions of a coarse shell so that it has the volume of the fine one. Otherwise its longer
+// chords would lose volume where the shell is bent.
 void set_shell_fractions(const LatticeMesh& mesh, LatticeMesh& coarse) {
   const auto filled_volume = [](const LatticeMesh& of) {
     double volume = 0.0;
@@ -427,8 +429,8 @@ void ImplicitSolver::update_contact_mass(double measured, SpringLattice& lattice
 }
 
 void ImplicitSolver::end_step(SpringLattice& lattice, const GroundPush& on_ground) {
-  // Each contact has changed its node's velocity by the impulse divided by the contact mass; the body now
-  // responds to all impulses together.
+  // So far each contact has changed only its node's velocity, by the impulse divided by the contact mass.
+  // Here the whole body responds to all impulses together.
   const double squares = collect_impulses(lattice);
   if (squares > 0.0) update_contact_mass(body_.push(impulse_) / squares, lattice);
   if (!on_ground.contacts.empty()) {

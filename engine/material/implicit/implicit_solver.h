@@ -60,8 +60,8 @@ class ImplicitGroundContacts {
  public:
   ImplicitGroundContacts(int points, double mass_kg);
 
-  // Sets the contacts to their impulses of the last tick and sums these by coordinate of the body, N s, as
-  // the start of the step.
+  // Gives the contacts their impulses of the last tick, from which the step starts, and sums these impulses
+  // by coordinate of the body, N s.
   void restore_last_impulses(std::span<GroundContact> contacts, std::span<const GridPoint> points,
                              double time_s, std::vector<double>& impulses_ns);
   // Solves the contacts after everything else that pushes the body. Changes the impulses and the body's
@@ -79,7 +79,8 @@ class ImplicitGroundContacts {
   // Computes the velocity errors of the points, m/s.
   void compute_velocity_errors(std::span<const GroundContact> contacts, std::span<const GridPoint> points,
                                const ImplicitBody& body);
-  // Computes the changes of the impulses in a step of the present mass. Returns the square of their norm.
+  // Computes the changes of the impulses for one step, with `mass_` as the impulse per velocity error.
+  // Returns the square of their norm.
   double compute_impulse_changes(std::span<const GroundContact> contacts);
 
   double mass_, min_mass_, max_mass_;
@@ -88,18 +89,19 @@ class ImplicitGroundContacts {
   std::vector<Vector3> velocity_errors_, impulse_changes_;  // by contact, m/s and N s
 };
 
-// Node budget of the hexahedral block: the largest number that a tick can solve for a long body with a
-// narrow band. Compact bodies get fewer. Hexahedra need few nodes, since each can bend.
+// Node budget of the hexahedral block: the largest number that a tick can solve for a long body with a narrow
+// band. Compact bodies get fewer nodes. A body needs few hexahedra, since each can bend.
 inline constexpr int implicit_node_budget = 500;
 
-// A rigid move of a body at one time, which also takes a rigid motion off its velocities.
+// An instantaneous rigid displacement of a body, which also subtracts a rigid motion from the body's
+// velocities.
 struct RigidMove {
   Vector3 from_m = Vector3::Zero(), to_m = Vector3::Zero();  // position of the centre, before and after
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();        // about the centre
-  Vector3 velocity_m_per_s = Vector3::Zero(), spin_rad_per_s = Vector3::Zero();  // taken off, before the turn
+  Vector3 velocity_m_per_s = Vector3::Zero(), spin_rad_per_s = Vector3::Zero();  // subtracted before the turn
 
   Vector3 moved(const Vector3& position_m) const { return to_m + turn * (position_m - from_m); }
-  // Returns the velocity of a point that was at `position_m` with the velocity `before`.
+  // Returns the new velocity of a point that was at `position_m` and had the velocity `before`.
   Vector3 slowed(const Vector3& position_m, const Vector3& before) const {
     return turn * (before - velocity_m_per_s - spin_rad_per_s.cross(position_m - from_m));
   }
@@ -141,11 +143,11 @@ class ImplicitSolver {
   // Replaces all node forces by the forces on these nodes of the lattice, N. Fixed nodes bear their forces
   // directly.
   void set_node_forces(const SpringLattice& lattice, std::span<const int> nodes);
-  // Moves the followers of these fixed nodes of the lattice, in ascending order, at the given velocity in
-  // the coming step.
+  // Moves the nodes of the block that follow these fixed nodes of the lattice, in ascending order, at the
+  // given velocity in the coming step.
   void move_fixed(std::span<const int> nodes, const Vector3& velocity_m_per_s);
-  // Force of cells, loads and gravity on these fixed nodes and their followers at the start of the last
-  // step, N.
+  // Force of cells, loads and gravity on these fixed nodes of the lattice and on the block nodes that follow
+  // them, at the start of the last step, N.
   Vector3 force_on_fixed(const SpringLattice& lattice, std::span<const int> nodes,
                          const Vector3& gravity_m_per_s2) const;
 

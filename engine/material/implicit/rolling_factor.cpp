@@ -10,8 +10,8 @@
 namespace spoonbill {
 namespace {
 
-// Number of multiplications in one part, which takes about 0.1 to 0.2 ms. The factor of a long body takes
-// about four parts.
+// Number of multiplications in one part of the factorisation. A part takes about 0.1 to 0.2 ms; a long body
+// has about four parts.
 constexpr double products_a_piece = 8e5;
 
 }  // namespace
@@ -101,8 +101,8 @@ void RollingFactor::factorise_columns(const MatrixParts& parts, int count) {
   const int all_layers = static_cast<int>(parts.cells->layers.size()) - 1;
   const int layers = std::min(all_layers, (to - 1) / slice_columns_ + 1);
   for (; next_.layers < layers; ++next_.layers) add_layer(parts, next_.layers);
-  // Except for rounding, no pivot of D + K is below the entry of the diagonal D if K is not indefinite. The
-  // second node of a seam pair has no mass.
+  // If K is positive semidefinite, no pivot of D + K is below the corresponding entry of the diagonal matrix
+  // D, except for rounding. The second node of a seam pair has no mass.
   double lightest = std::numeric_limits<double>::max();
   for (const double* mass = parts.mass; mass != parts.mass + next_.band.size / 3; ++mass) {
     if (*mass > 0.0) lightest = std::min(lightest, *mass);

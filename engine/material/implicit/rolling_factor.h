@@ -65,12 +65,12 @@ class RollingFactor {
   void add_cell(const MatrixParts& parts, const CellBatch& batch, int lane);
 
   const BandKernels* kernels_;
-  int slice_columns_;  // of the nodes at one k
+  int slice_columns_;  // number of columns of the nodes at one k
   BandView used_;
   struct Next {
     BandView band;
     double inertia = 0.0, stiffness = 0.0;
-    int layers = 0, columns = 0;  // finished
+    int layers = 0, columns = 0;  // finished so far
   } next_;
   Doubles columns_[2];
 };

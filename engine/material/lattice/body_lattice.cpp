@@ -273,8 +273,8 @@ double smallest_mesh_jacobian_ratio(const LatticeMesh& mesh) {
 // Smallest ratio of thickness to width: cells of flatter bodies have no spring that keeps them open.
 constexpr double min_thickness_ratio = 1e-4;
 
-// Direction of a node of a slice from its centre, as the parameter u of a point of the ring (arbitrary at
-// the centre), and its distance outward, 0 to 1.
+// Position of a node in its slice: the direction from the slice's centre, as the parameter u of a point of
+// the ring (arbitrary at the centre), and the distance from the centre, 0 to 1 at the ring.
 struct Outward {
   double u = 0.0;
   double radius = 0.0;
@@ -291,8 +291,8 @@ Outward find_outward(const Surface& surface, const RingParameters& ring, const L
   return {ring_parameter_at(surface, ring, ring_position(on_s, on_t, ni, nj)), radius};
 }
 
-// Influence of a slice's narrow sides at a fraction of its width: linear, or concentrated near the side for
-// bent sections, whose side centres are above the corners.
+// Influence of a slice's narrow sides, as a function of the fraction of its width. It is linear, or
+// concentrated near the side for bent sections, whose side centres are above the corners.
 double side_influence(double fraction, bool bent) {
   const double rest = 1.0 - fraction;
   return bent ? rest * rest * rest * rest : rest;
@@ -314,7 +314,7 @@ void fill_slice(LatticeMesh& mesh, int k, bool bent) {
   }
 }
 
-// Sets the position around the tube of each node.
+// Sets each node's position around the tube.
 void set_turns(const Surface& surface, const RingParameters& ring, LatticeMesh& mesh) {
   mesh.turns.assign(mesh.nodes.size(), 0.0);
   const double start = surface.u.domain_start(), period = surface.u.domain_end() - start;
@@ -421,9 +421,10 @@ std::vector<int> nodes_inside(const LatticeMesh& mesh) {
   return inside;
 }
 
-// Builds a block for a body that folds when filled slice by slice: the caps reach to the shoulders, and the
-// interior is filled from the whole hull. The near rim of a narrow nose may be on a flank as steep as the
-// side below. Returns nothing if these blocks fold too.
+// Builds a block for a body whose block folds when it is filled slice by slice: the caps reach to the
+// shoulders, and the interior is filled from the whole hull. First tries the near rims or the shoulders,
+// whichever are further from the end, then the shoulders. The near rim of a narrow nose may be on a flank as
+// steep as the side. Returns nothing if both blocks fold.
 std::optional<TubeBlock> make_unfolded_block(const Surface& surface, const Profile& profile,
                                              const LatticeRequest& request) {
   const Rims shoulders = shoulder_rims(profile);

@@ -151,8 +151,9 @@ double shortest_edge_m(const LatticeMesh& box) {
   return std::min({(cell[4] - cell[0]).norm(), (cell[2] - cell[0]).norm(), (cell[1] - cell[0]).norm()});
 }
 
-// Returns as few of the parameters as leave steps of at most `longest_m`, and at least `min_pieces` steps.
-// `step_m(from, to)` returns the largest distance of the surface's points between two of them.
+// Drops parameters as long as no step becomes longer than `longest_m` and at least `min_pieces` steps remain.
+// `step_m(from, to)` returns the largest distance between the surface's points at two parameters, given by
+// their indices.
 template <class StepOf>
 std::vector<double> thin_out(const std::vector<double>& parameters, double longest_m, const StepOf& step_m) {
   const std::size_t last = parameters.size() - 1, most = std::max<std::size_t>(last / min_pieces, 1);
@@ -189,9 +190,9 @@ ClosedSkin coarse_skin(const Surface& surface, double longest_m) {
   return sample_skin(surface, thin_out(u, longest_m, over_u), thin_out(v, longest_m, over_v));
 }
 
-// Returns the skin of a body in a box of cells. Its points are samples of make_skin(), at most two thirds of
-// a cell's shortest edge apart where the samples are that dense, and with at least eight steps per direction.
-// A round body loses only thin slivers of its volume.
+// Returns the skin of a body in a box of cells. Its points are samples of make_skin(), with at least eight
+// steps per direction. Where the samples are dense enough, the points are at most two thirds of a cell's
+// shortest edge apart. A round body loses only thin slivers of its volume.
 //
 // `coordinates_at` returns the body coordinates of (u, v). Points of the skin are in filled cells if
 // the samples are.
@@ -326,9 +327,9 @@ std::vector<Vector3> sample_skin(const ClosedSkin& skin, const Vector3& size,
   return points;
 }
 
-// Returns whether the opposite side of the body, within 45 degrees of facing the other way, is less than
-// two cells straight in from a point of the skin. A face beyond a sharp edge may be closer, but is not an
-// opposite side.
+// Returns whether the body is thinner than two cells at a point of the skin: whether the line straight
+// inwards leaves the body within two cells, through a side that faces the other way to within 45 degrees. A
+// face beyond a sharp edge may be closer, but is not an opposite side.
 bool is_thin_at(const ShellDistance& inside, const Vector3& skin_m, const Vector3& normal, double cell_m) {
   constexpr double far_side = -std::numbers::sqrt2 / 2.0;
   constexpr int bisections = 20;

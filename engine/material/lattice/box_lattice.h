@@ -29,8 +29,9 @@ inline constexpr double min_filled_fraction = 0.1;
 inline constexpr double void_fraction = 1e-3;
 
 // Builds a box of nodes over the bounds of a solid, with edges along x, y and z. Fractions of cells are
-// sampled from `inside` at 5 x 5 x 5 points per cell and scaled together, so that the lattice's volume is
-// `volume_m3`. `skin_m` are points of the surface that will be embedded. Fails on a box too flat for cells.
+// sampled from `inside` at 5 x 5 x 5 points per cell and scaled by one factor, so that the lattice's volume
+// is `volume_m3`. `skin_m` are points of the surface that will be embedded. Fails on a box too flat for
+// cells.
 Result<LatticeMesh> box_lattice(const ShellDistance& inside, double volume_m3,
                                 std::span<const Vector3> skin_m, std::array<int, 3> counts);
 
@@ -38,9 +39,10 @@ Result<LatticeMesh> box_lattice(const ShellDistance& inside, double volume_m3,
 CellPoint point_in_box(const LatticeMesh& box, const Vector3& point_m);
 EmbeddedPoint embed_in_box(const LatticeMesh& box, const Vector3& point_m);
 
-// Builds a box of cells about a closed surface. Cells have the fraction that is inside; parts thinner than
-// a cell are too stiff in bending. Counts are along x, y and z. Nodes and cells get body coordinates
-// from the nearest sample of the surface, and their depth. A feature map in the request is ignored.
+// Builds a box of cells about a closed surface. The fraction of a cell is its part inside the surface. Parts
+// thinner than a cell are too stiff in bending. Counts are along x, y and z. Nodes and cells get body
+// coordinates from the nearest sample of the surface, and their depth. A feature map in the request is
+// ignored.
 //
 // Fails on counts below 2, and on a body whose volume divided by half its area is below a ten-thousandth of
 // its size.

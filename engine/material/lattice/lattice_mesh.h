@@ -109,7 +109,8 @@ Vector3 trilinear(const CellCorners& corners, double a, double b, double c);
 Eigen::Matrix3d trilinear_jacobian(const CellCorners& corners, double a, double b, double c);
 
 // Position of a point relative to a cell: the weights of the corners, and its distance outside in units of
-// the cell. Found by Newton's method on the trilinear map; `outside` is infinite if that does not converge.
+// the cell. Found by Newton's method on the trilinear map; `outside` is infinite if the method does not
+// converge.
 struct CellLocation {
   std::array<double, 8> weights{};
   double outside = 0.0;
@@ -122,11 +123,11 @@ LatticeMesh box_mesh(const Vector3& size_m, std::array<int, 3> counts);
 // Checks that no cell is folded; the message names the worst cell.
 Status check_cells(const LatticeMesh& mesh);
 
-// Returns the node counts along i, j, k for a body of these extents, each above zero. Fails on counts below
-// 2.
+// Returns the node counts along i, j, k for a body of these extents, which must be above zero. Fails on
+// counts below 2.
 Result<std::array<int, 3>> lattice_counts(const LatticeRequest& request, const Vector3& size_m);
-// Returns the node counts for a shell, which may be a single layer of cells. `closed` is true if i runs
-// around. Fails on counts below 2, and on fewer than min_cells_around cells around a closed shell.
+// Returns the node counts for a shell, which may be a single layer of cells. `closed`: i runs once around the
+// shell. Fails on counts below 2, and on fewer than min_cells_around cells around a closed shell.
 Result<std::array<int, 3>> shell_counts(const LatticeRequest& request, const Vector3& size_m, bool closed);
 
 // Smallest number of cells around a closed shell.

@@ -19,7 +19,7 @@
 namespace spoonbill {
 namespace {
 
-// Surface of a shell by two fractions of its domain, reoriented so that one runs around or across and the
+// Surface of a shell as a function of two fractions of its domain. One runs around or across the shell, the
 // other along it. One owner; immutable. The surface must outlive it.
 class ShellSurface {
  public:
@@ -90,9 +90,10 @@ double extent(const ControlNet& net) {
 Result<ShellSurface> ShellSurface::make(const Surface& surface) {
   const bool around_u = surface.u.is_periodic(), around_v = surface.v.is_periodic();
   if (around_u && around_v) {
-    return Error{ErrorCode::unsupported,
-                 "surface: periodic in u and v; a shell can close in one direction only; open the other",
-                 "surface"};
+    return Error{
+        ErrorCode::unsupported,
+        "surface: is closed in u and v; a shell can be closed in one direction only, so open the other",
+        "surface"};
   }
   ShellSurface face(surface);
   face.swapped_ = around_v;
@@ -181,7 +182,7 @@ constexpr int length_stations = 200, lines = 16, volume_stations = 48;
 // Relative tolerance for the farthest point, so that the start of a ring does not depend on rounding.
 constexpr double farthest_tolerance = 1.0 - 1e-6;
 
-// Returns a table from arc length, averaged over the lines `over`, to the fractions of the stations.
+// Returns a table that maps arc length, averaged over the lines `over`, to the stations.
 template <class PositionAt>
 LinearTable length_to_fraction(const ShellSurface& face, const std::vector<double>& stations,
                                const std::vector<double>& over, const PositionAt& position_at) {
@@ -443,7 +444,7 @@ Result<LatticeMesh> shell_lattice(const Surface& surface, double thickness_m, co
   const double limit_m = thickness_limit_m(nodes);
   if (!(thickness_m < limit_m)) {
     return Error{ErrorCode::self_intersecting,
-                 "shell_thickness_mm: " + number_text(1e3 * thickness_m) +
+                 "shell_thickness_mm: a shell of " + number_text(1e3 * thickness_m) +
                      " mm folds over where the surface is curved; use less than " +
                      number_text(std::floor(1e5 * limit_m) / 100.0) + " mm",
                  "shell_thickness_mm"};

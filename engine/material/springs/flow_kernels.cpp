@@ -13,8 +13,8 @@ inline float max(float a, float b) {
   return a > b ? a : b;
 }
 
-// Flow and creep rules of a block: Common where all springs share one rule, Own where each spring has its
-// own.
+// Flow and creep rules of a block. All springs share one rule in CommonFlow and CommonCreep; each spring has
+// its own in OwnFlow and OwnCreep.
 struct CommonFlow {
   FlowRule rule;
   float yield(int) const { return rule.yield; }
@@ -87,8 +87,8 @@ inline void flow_block(const float* __restrict square, const float* __restrict r
   }
 }
 
-// Returns whether any spring of a block may be strained beyond yield, without roots or quotients. The
-// margin is far above the rounding of either way to compute a strain.
+// Returns whether any spring of a block may be strained beyond yield. Uses no roots or quotients; the margin
+// far exceeds the rounding of this test and of the exact strain.
 template <class Rule>
 inline bool may_flow(const float* __restrict square, const float* __restrict root,
                      const float* __restrict root_far, const float* __restrict stiffness,

@@ -54,7 +54,7 @@ void clear(float* x, float* y, float* z, int count) {
 enum class Springs { linear, stiffening, softening, mixed };
 
 struct Stiffened {
-  float secant, tangent;  // relative to those of a linear spring
+  float secant, tangent;  // stiffness relative to that of a linear spring
 };
 
 // Computes the stiffening factors for `by` = b e^2.
@@ -164,8 +164,8 @@ inline void over_springs(const LatticeView& view, const Field (&sums)[count], co
   }
 }
 
-// Destination of a block's tangents: stored, or a scratch buffer that spares most of the memory traffic of
-// a linearisation.
+// Destination of a block's tangents: the lattice's own arrays, or a scratch buffer, which avoids most of the
+// memory traffic of a linearisation.
 struct Tangents {
   Linearised stored;
   alignas(64) float scratch[tangent_runs * block];

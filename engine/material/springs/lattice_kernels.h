@@ -1,6 +1,6 @@
 // Inner loops of the spring lattice, compiled once for each instruction set and chosen at start. Every set
-// gives the same bits: lanes run over nodes, sums run in a fixed order, nothing is contracted. This header
-// and its sources use no standard library; engine/bspline/evaluate_kernels.h explains why.
+// gives the same bits: lanes run over nodes, sums run in a fixed order, and products are never fused with
+// sums. This header and its sources use no standard library; engine/bspline/evaluate_kernels.h explains why.
 //
 // Data are structures of arrays over nodes in the mesh's order. They are padded with zeros so that every
 // loop runs over whole blocks and every neighbour offset stays inside. A spring is stored at its first
@@ -122,8 +122,8 @@ struct Drifted {
   float moved_square = 0.0f;  // largest squared distance from the linearisation, m^2
 };
 
-// Result of a linearisation: the spring forces alone, which suffice if no further substep uses it, or the
-// forces and their derivatives.
+// Result of a linearisation: the spring forces alone, which suffice if no further substep uses the
+// linearisation, or the forces and their derivatives.
 enum class Linearised { forces, tangents };
 
 struct LatticeKernels {

@@ -91,7 +91,8 @@ std::vector<double> damping_times_s(const LatticeMaterials& materials, double fa
 
 }  // namespace
 
-// Sums over the cells in double precision, before they are stored in single precision.
+// The lattice's totals by node and by spring, in double precision, before they are stored in single
+// precision.
 struct SpringLattice::Assembly {
   // One value per node for each direction; it belongs to the spring that starts at the node.
   using BySpring = std::array<std::vector<double>, lattice_direction_count>;
@@ -348,7 +349,8 @@ SpringLattice::Assembly::Assembly(const SpringLattice& lattice) {
     const double youngs = is_own ? lattice.youngs_modulus_pa()
                                  : material.youngs_modulus_pa * lattice.youngs_modulus_pa() /
                                        composition.own().youngs_modulus_pa;
-    // Materials below this Poisson's ratio are moved by the implicit solver; their springs are inactive.
+    // Bodies with a Poisson's ratio below this bound are stepped by the implicit solver; their springs are
+    // inactive.
     const double poisson = std::max(material.poissons_ratio, min_spring_poissons_ratio);
     materials.push_back({youngs, shear_modulus(youngs, poisson), bulk_stiffness(youngs, poisson)});
   }
@@ -725,7 +727,7 @@ bool SpringLattice::reform_cells(int node, const Vector3& move, Reforming& next)
 }
 
 bool SpringLattice::reform(int node, const Vector3& move_m) {
-  // The move is measured as single precision stores it.
+  // Measures the move between the stored positions, which are rounded to single precision.
   const Vector3 before = displacement(node);
   const Vector3 move = (before + move_m).cast<float>().cast<double>() - before;
   const int twin = mesh_.twin(node);

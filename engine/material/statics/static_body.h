@@ -59,7 +59,7 @@ class PressedSkin {
 };
 
 enum class CellKind : std::uint8_t {
-  springs,    // as sculpting steps them; Poisson's ratio at least 1/4
+  springs,    // springs as in sculpting; Poisson's ratio at least 1/4
   hexahedra,  // far fewer cells for the same error in bending; any Poisson's ratio
 };
 

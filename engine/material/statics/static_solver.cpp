@@ -25,7 +25,7 @@ constexpr double min_decrease = 1e-4;
 // Relative rounding error of an energy that is a sum over cells.
 constexpr double rounding = 1e-13;
 
-// Factors that know their cost before any number is computed.
+// Cholesky factors whose cost is known before the numerical factorisation.
 class StiffnessFactors : public Eigen::SimplicialLDLT<StaticSystem::Stiffness> {
  public:
   // Returns the number of multiplications of a factorisation. Valid after analyzePattern().
@@ -41,7 +41,7 @@ class Equilibrium {
 
   double work() const { return factors_.work(); }
 
-  // Returns whether every motion is fixed, in the rest shape.
+  // Returns whether the supports prevent every rigid motion of the rest shape.
   bool is_fixed() {
     system_->respond(system_->rest(), Tangent::plain);
     factors_.factorize(system_->stiffness());
@@ -77,7 +77,7 @@ class Equilibrium {
 
  private:
   // Reports the progress as the orders of magnitude by which the unbalanced force has fallen, relative to the
-  // number required: Newton's method gains more of them with each step. Returns false if the caller has
+  // number required: Newton's method gains more orders with each step. Returns false if the caller has
   // cancelled.
   bool report(double fraction, double unbalanced, double first) const {
     if (!settings_->progress.is_watched()) return true;
@@ -140,15 +140,14 @@ Status check_fixed(const StaticBody& body, const std::vector<FixedAxis>& fixed) 
   return {};
 }
 
-// Suggests a number of nodes at which the body needs no more than the limit. In a lattice that is refined in
-// all directions alike the work grows with the number of nodes to the power of at most 7/3, as in a band.
+// Suggests a number of nodes at which the body needs no more than the limit. If a lattice is refined equally
+// in all directions, the work grows with the number of nodes to the power of at most 7/3, as in a band.
 Error too_large(int nodes, double work, double limit) {
   constexpr double reserve = 0.9, exponent = 3.0 / 7.0;
   const int enough = static_cast<int>(reserve * nodes * std::pow(limit / work, exponent)) / 100 * 100;
   return Error{ErrorCode::too_many,
-               "lattice: " + std::to_string(nodes) + " nodes in this shape take too long to bend; about " +
-                   std::to_string(std::max(enough, 100)) +
-                   " nodes are few enough; reduce node_budget or nodes",
+               "lattice: " + std::to_string(nodes) + " nodes in this shape take too long; use about " +
+                   std::to_string(std::max(enough, 100)) + " as node_budget or in nodes",
                "lattice"};
 }
 

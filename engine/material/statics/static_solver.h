@@ -10,8 +10,8 @@ struct StaticSettings {
   // Largest accepted unbalanced force, relative to the forces of the cells on the nodes.
   double tolerance = 1e-8;
   int step_limit = 400;  // Newton steps in total
-  // Most multiplications for one factor of the stiffness matrix; a body that needs more is refused before any
-  // of them. The default takes a few seconds each, and a body takes about five.
+  // Largest number of multiplications for one factor of the stiffness matrix. A body that needs more is
+  // refused beforehand. At the default, a factor takes a few seconds, and a body needs about five factors.
   double work_limit = 1e10;
   // Progress, reported after each step. It may decrease where the loads must grow more slowly. Cancelling it
   // makes rest_under_load() fail.
@@ -26,9 +26,9 @@ struct StaticResult {
   bool is_fixed_everywhere = false;  // no node is free to move
 };
 
-// Minimises the potential energy by Newton's method with sparse Cholesky factors, halving each step until
-// the energy falls. The loads grow in steps if that does not converge at once. Fails on a fixed axis
-// outside the body, supports that leave the body free to move, a body too large for the work limit, and
+// Minimises the potential energy by Newton's method with sparse Cholesky factors, halving each step until the
+// energy falls. If the method does not converge for the whole loads, they grow in steps. Fails on a fixed
+// axis outside the body, supports that leave the body free to move, a body too large for the work limit, and
 // loads without an equilibrium. A body that is fixed everywhere has the displacement of its fixed axes.
 Result<StaticResult> rest_under_load(const StaticBody& body, const StaticLoads& loads,
                                      const std::vector<FixedAxis>& fixed,

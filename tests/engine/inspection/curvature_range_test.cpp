@@ -32,7 +32,8 @@ TEST(PrincipalCurvatures, AreThoseOfAParaboloid) {
   ASSERT_TRUE(vertex);
   EXPECT_NEAR(vertex->smallest, -1.4, 1e-14);
   EXPECT_NEAR(vertex->largest, 0.4, 1e-14);
-  // Elsewhere on u, they are 2 a / (1 + 4 a^2 u^2)^(3/2) along it and 2 b over the root across it.
+  // Beside the vertex on the line v = 0, the curvatures are 2 a / root^3 along u and 2 b / root across it,
+  // with root = (1 + 4 a^2 u^2)^(1/2).
   const auto beside = compute_principal_curvatures(evaluate(paraboloid(0.7, 0.2), 0.5, 0.0));
   const double root = std::sqrt(1.0 + 4.0 * 0.49 * 0.25);
   EXPECT_NEAR(beside->smallest, -1.4 / (root * root * root), 1e-14);
@@ -41,7 +42,7 @@ TEST(PrincipalCurvatures, AreThoseOfAParaboloid) {
 
 TEST(PrincipalCurvatures, DoNotHangOnHowTheParametersRun) {
   const Surface straight = paraboloid(0.7, 0.2);
-  // The same points with sheared parameters: u = s + 100 t as a linear map of the second derivatives.
+  // The parameters are sheared: u = s + 100 t. The points stay the same, and the derivatives change linearly.
   const SurfacePoint point = evaluate(straight, 0.3, -0.2);
   const auto plain = compute_principal_curvatures(point);
   SurfacePoint sheared = point;
@@ -73,8 +74,8 @@ TEST(CurvatureRange, OfWhatTrimsKeep) {
   EXPECT_GE(range.smallest.u, 0.5);
 }
 
-// Second derivatives of a cubic spline with n spans around are too small by (2 pi / n)^2 / 12 of themselves,
-// here less than a thousandth.
+// Second derivatives of a cubic spline with n spans around are too small by the fraction (2 pi / n)^2 / 12,
+// which is less than a thousandth here.
 TEST(CurvatureRange, OfATorus) {
   ShapeFit fit;
   fit.control_counts = {{64, 64}};

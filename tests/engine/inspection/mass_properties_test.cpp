@@ -32,7 +32,7 @@ Surface egg(double h, double c) {
   return fitted(Result<ExactShape>(shape), fit).surface;
 }
 
-// Surfaces are fitted within 1e-7 m, or 1e-5 of the radius.
+// The surfaces are fitted within 1e-7 m, which is 1e-5 of the radius.
 TEST(EnclosedMass, HasVolumeAndMiddleOfAnEgg) {
   const double h = 0.03, c = 12.0;
   const EnclosedMass mass = compute_enclosed_mass(egg(h, c));
@@ -54,7 +54,7 @@ TEST(EnclosedMass, MovesWithTheBody) {
   EXPECT_LT((there.area_centre_m - here.area_centre_m - pose.position_m).norm(), 1e-10);
 }
 
-// Rectangle of 2 x 3, exact at any degree.
+// The area of a rectangle of 2 x 3 is exact at any degree.
 TEST(EnclosedMass, AreaOfASheet) {
   for (int degree = 1; degree <= 9; ++degree) {
     const KnotVector knots = KnotVector::clamped_uniform(degree, degree + 4).value();
@@ -75,7 +75,7 @@ TEST(EnclosedMass, AreaOfASheet) {
   }
 }
 
-// Hole of an eighth of a flat sheet, which the quadrature integrates exactly.
+// The hole takes an eighth of a flat sheet, which the quadrature integrates exactly.
 TEST(EnclosedMass, AreaOfWhatTrimsKeep) {
   const Surface sheet = fitted(sheet_shape(0.1, 0.06)).surface;
   const auto hole = polygon_loop(sheet.u, sheet.v, backwards(rectangle(0.25, 0.25, 0.5, 0.75)));
@@ -86,7 +86,7 @@ TEST(EnclosedMass, AreaOfWhatTrimsKeep) {
   const auto round = round_loop(sheet.u, sheet.v, {0.5, 0.5}, 0.2, 16, true);
   const EnclosedMass rounded =
       compute_enclosed_mass(sheet, TrimmedArea::make(sheet.u, sheet.v, {round}).value());
-  // Chords are within 1e-5 of the domain, over a circumference of 1.3 of it.
+  // The chords are within 1e-5 of the domain, and the circumference is 1.3 times as long as the domain.
   EXPECT_NEAR(rounded.area_m2 / 0.006, 1.0 - round_loop_area(0.2, 16), 2e-5);
 }
 
@@ -104,7 +104,7 @@ TEST(EnclosedMass, AreaOfAPartOfATube) {
   // The hole crosses the seam.
   const auto part = polygon_loop(tube.u, tube.v, rectangle(-0.25, 0.2, 0.25, 0.6));
   const EnclosedMass mass = compute_enclosed_mass(tube, TrimmedArea::make(tube.u, tube.v, {part}).value());
-  EXPECT_NEAR(mass.area_m2 / (pi * r * 0.4 * length), 1.0, 2e-5);  // 1e-7 of 1e-2
+  EXPECT_NEAR(mass.area_m2 / (pi * r * 0.4 * length), 1.0, 2e-5);  // fit within 1e-7 m; the radius is 1e-2 m
 }
 
 TEST(EnclosedMass, IsBelowZeroInsideOut) {
@@ -114,7 +114,7 @@ TEST(EnclosedMass, IsBelowZeroInsideOut) {
   EXPECT_NEAR(compute_enclosed_mass(inside_out).volume_m3, -volume, 1e-12 * volume);
 }
 
-// Volume between two balls, and between two tori whose tubes differ by the thickness.
+// Compares with the volume between two balls, and between two tori whose tubes differ by the thickness.
 TEST(ShellMass, IsWhatIsBetweenTwoSurfaces) {
   ShapeFit fit;
   fit.tolerance_m = 1e-7;
@@ -160,7 +160,7 @@ Body weighted() {
 TEST(MaterialMix, IsTheMeanOverTheBody) {
   const auto mix = compute_material_mix(weighted());
   ASSERT_TRUE(mix) << mix.error().message;
-  // Each cell is of one material, so that half of one layer of about 20 may count for either.
+  // Each cell is of one material, so half of one layer out of about 20 may count as either.
   EXPECT_NEAR(mix->density_kg_per_m3, 2000.0, 100.0);
   EXPECT_EQ(mix->materials, (std::vector<std::string>{"heavy", "light"}));
   // Three quarters of the mass are 15 mm above the centre, a quarter 15 mm below.

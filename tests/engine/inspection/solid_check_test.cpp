@@ -64,7 +64,8 @@ TEST(SolidCheck, TheWallAboutACavityIsTheThickness) {
   EXPECT_TRUE(check.self_intersections.empty());
 }
 
-// Faces drafted by 3 degrees meet the bottom at 87 degrees, between which lines can be arbitrarily short.
+// Faces with a draft of 3 degrees meet the bottom at 87 degrees. Near that edge, lines between the two can be
+// arbitrarily short.
 TEST(SolidCheck, EdgesOfADraftedBlockAreNotThin) {
   const double draft = 0.02 * std::tan(3.0 * pi / 180.0);
   const SolidCheck check =
@@ -80,7 +81,7 @@ TEST(SolidCheck, AKnifesEdgeIsThin) {
   EXPECT_LT(check.thinnest->thickness_m, 1e-4);
 }
 
-// Dent of the top, whose deepest point is this far below the bottom.
+// Returns a block with a dent in its top; the deepest point of the dent is `below_m` below the bottom.
 TriangleMesh dented(double below_m) {
   TriangleMesh mesh = box_of_triangles({0, 0, 0}, {0.03, 0.02, 0.01});
   const auto deepest = static_cast<std::uint32_t>(mesh.vertices_m.size());

@@ -58,8 +58,8 @@ TEST(SurfaceCheck, ASheetIsOpenBothWays) {
   EXPECT_TRUE(is_clean(check));
 }
 
-// The same tube without periodicity. With its edges together it is still closed around; 1 mm apart it is
-// open.
+// The same tube without periodicity. It counts as closed around while its edges coincide, and as open if they
+// are 1 mm apart.
 TEST(SurfaceCheck, EdgesThatMeetCloseATube) {
   for (const double apart : {0.0, 1e-3}) {
     ExactShape shape = open_tube(0.01, 0.05);

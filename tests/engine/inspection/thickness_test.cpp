@@ -13,7 +13,7 @@ namespace spoonbill {
 namespace {
 
 using std::numbers::pi;
-// Both walls are accurate to the fit's tolerance of 0.01 mm.
+// Each of the two walls is accurate to the fit's tolerance of 0.01 mm.
 constexpr double tolerance_m = 2e-5;
 
 TEST(Thickness, OfASphereIsItsDiameterEverywhere) {

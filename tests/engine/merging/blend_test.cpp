@@ -1,4 +1,4 @@
-// Edges with small gaps: cut back and blended, so that the surface has no step or fold.
+// Tests edges with small gaps. They are cut back and blended, so that the surface has no step or fold.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -60,8 +60,8 @@ TEST(Blend, TubesThatMissEachOtherByLittleAreCutBack) {
   }
 }
 
-// The edges are on one curve. With degrees 2 and 4, and 7 and 19 control points, they miss it by more than
-// the tolerance, to both sides.
+// Both edges approximate one curve. With degrees 2 and 4, and 7 and 19 control points, they miss it by more
+// than the tolerance, to both sides.
 TEST(Blend, SheetsWhoseEdgesMissEachOtherToEitherSide) {
   const auto sheet = [](int degree, int count, double start, double end) {
     const auto u = KnotVector::clamped_uniform(degree, count).value();

@@ -16,7 +16,7 @@ TEST(Bridge, AGapIsBridgedSmoothly) {
   ASSERT_TRUE(merged.ok()) << merged.error().message;
   ASSERT_EQ(merged->joints.size(), 1u);
   EXPECT_TRUE(merged->joints[0].joint.bridged);
-  // The chords of a gap of 10 mm on a slope of 0.1.
+  // The chords across the gap of 10 mm have a slope of 0.1.
   EXPECT_NEAR(merged->joints[0].joint.gap_m, 0.01 * std::hypot(1.0, 0.1), 1e-5);
   EXPECT_LT(merged->deviation_m, 1e-9);
   // A straight continuation of both is the cone itself.
@@ -27,7 +27,7 @@ TEST(Bridge, AGapIsBridgedSmoothly) {
   }
 }
 
-// As in fits of scans: irregular edges would grow into folds along a long strip.
+// Fits of scans end in irregular edges, which would grow into folds along a long strip.
 TEST(Bridge, RingsThatEndUnevenlyAreBridgedOverALongGap) {
   Surface first = ring_strip(0.0, 0.03, 16, 0.0), second = ring_strip(0.12, 0.15, 20, 0.2);
   for (Surface* ring : {&first, &second}) {
@@ -69,19 +69,20 @@ bool is_monotone_in_z(const Surface& surface) {
 TEST(Bridge, AWedgeShapedGapIsBridgedWithoutAFold) {
   const auto flat = [](double z) { return [z](double) { return z; }; };
   const Surface low = sheet_between(flat(0.0), flat(0.04));
-  // A gap from 0.1 mm to 4.1 mm wide.
+  // The gap is from 0.1 mm to 4.1 mm wide.
   const auto merged =
       merge({low, sheet_between([](double x) { return 0.0401 + x / 15.0; }, flat(0.09))}, request_of(2));
   ASSERT_TRUE(merged.ok()) << merged.error().message;
   EXPECT_TRUE(is_monotone_in_z(merged->surface));
-  // The same edge with parameters shifted by 3 mm, and a tolerance too small for the fits to agree.
+  // The edges coincide, but their parameters are shifted by 3 mm. The tolerance is too small for the fits to
+  // agree.
   const auto askew = merge({low, sheet_between(flat(0.04), flat(0.09), 0.2)}, request_of(2, 1e-16));
   ASSERT_FALSE(askew.ok());
   EXPECT_EQ(askew.error().code, ErrorCode::self_intersecting) << askew.error().message;
 }
 
-// A tube along a line between two points. u starts at `seam` and runs around it as a right-handed screw, or
-// against it, uneven by `warp`.
+// A tube along a line between two points. u starts in the direction `seam` and runs around the line,
+// right-handed by default, unevenly by `warp`.
 Surface pipe(const Vector3& from, const Vector3& to, const Vector3& seam, bool left_handed = false,
              double warp = 0.0) {
   const auto u = KnotVector::periodic_uniform(3, 24).value();
@@ -129,8 +130,8 @@ TEST(Bridge, PipesSideBySideAreJoinedByABend) {
     EXPECT_GT(least_section_m2(surface), 0.8 * std::numbers::pi * 6.4e-5);
     for (double u = 0.0; u < 1.0; u += 0.1) {
       const Vector3 start = position(surface, u, 0.0), end = position(surface, u, surface.v.domain_end());
-      // The ends mirror each other in x: points on the inside of the bend on one pipe are joined to the
-      // inside on the other.
+      // The two ends are mirror images in x: points on the inside of the bend on one pipe are joined to those
+      // on the inside on the other.
       EXPECT_NEAR(end.x(), 0.06 - start.x(), 1e-5);
       EXPECT_NEAR(end.z(), start.z(), 1e-5);
     }

@@ -1,4 +1,4 @@
-// Edges chosen by the user, and reports on matched ones.
+// Tests edges chosen by the user, and the reports on automatically matched edges.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -71,7 +71,7 @@ TEST(ChosenEdges, MayRunAgainstEachOtherAndRingsBeTurned) {
   ASSERT_TRUE(twisted.ok()) << twisted.error().message;
   const Surface& surface = twisted->surface;
   const Vector3 start = position(surface, 0.0, 0.0), end = position(surface, 0.0, surface.v.domain_end());
-  // A quarter of a turn from one end to the other.
+  // The merged surface twists by a quarter of a turn from one end to the other.
   EXPECT_NEAR(start.head<2>().normalized().dot(end.head<2>().normalized()), 0.0, 1e-9);
   MergeRequest against = request_of(1);
   against.chosen = {{{0, Side::v_end}, {1, Side::v_start}, true}};

@@ -24,7 +24,7 @@ Surface ribbon(const std::function<double(double)>& climb) {
   return fit_grid(u, v, points).value();
 }
 
-// Up to half a turn and back, too slowly for a right angle in any step.
+// The strip turns by up to half a turn and back, but never by a right angle in one step.
 TEST(FoldSearch, AStripThatTurnsBackSlowlyFolds) {
   const Surface back =
       ribbon([](double t) { return 0.9 * std::numbers::pi * std::sin(t * std::numbers::pi); });

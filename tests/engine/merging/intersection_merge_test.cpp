@@ -44,13 +44,13 @@ constexpr double ball_radius = 0.02, rod_radius = 0.006;
 Surface ball() {
   return fitted(true, 32, 32, [](double u, double v) {
     const double turn = 2 * pi * u, fall = pi * v;
-    // u runs so that the normals point outwards.
+    // The direction of u makes the normals point outwards.
     return Vector3(ball_radius * std::sin(fall) * std::cos(-turn),
                    ball_radius * std::sin(fall) * std::sin(-turn), ball_radius * std::cos(fall));
   });
 }
 
-// A rod from the ball's centre outwards along a direction, with round ends, its far end first.
+// Returns a rod from the ball's centre outwards along a direction, with round ends. It starts at the far end.
 Surface rod(const Vector3& direction) {
   const Vector3 across = direction.unitOrthogonal(), other = direction.cross(across);
   const double far = 0.06, quarter = 0.5 * pi * rod_radius, straight = far - 2 * rod_radius;
@@ -103,7 +103,7 @@ double largest_distance(const Surface& merged, const Vector3& direction, double 
 
 class RodInBall : public testing::TestWithParam<double> {};
 
-// Along the ball's pole, and oblique, where the ball gets other poles.
+// The rod is along the ball's pole, or oblique; then the ball gets other poles.
 TEST_P(RodInBall, BecomesOneSurface) {
   const double angle = GetParam();
   const Vector3 direction(std::sin(angle), 0.0, std::cos(angle));
@@ -167,7 +167,7 @@ TEST(IntersectionMerge, AFloorAndAWall) {
   }
 }
 
-// Lines run along the other's border, on either side of it by rounding.
+// Lines of one sheet run along the border of the other, and rounding puts them on either side of it.
 TEST(IntersectionMerge, SheetsOfOneWidth) {
   for (const double turn : {0.0, 0.3, 0.7, 1.1}) {
     const auto turned = [&](const Vector3& p) {
@@ -219,7 +219,7 @@ struct Drum {
   Surface surface() const {
     const double flat = radius - rounding, arc = 0.5 * pi * rounding, side = 2.0 * (half_height - rounding);
     const double whole = 2.0 * (flat + arc) + side;
-    // The upper half, from the pole.
+    // Profile of the upper half, from the pole.
     const auto profile = [=, this](double way) -> Eigen::Vector2d {
       if (way < flat) return {way, half_height};
       const double turn = (way - flat) / rounding;
@@ -237,7 +237,7 @@ struct Drum {
   }
 };
 
-// A rod in the side of a drum, and upright on it beside its pole.
+// A rod is in the side of a drum, or upright on the drum beside its pole.
 TEST(IntersectionMerge, LinesLeadAwayFromACrossingBesideThePole) {
   const Drum tall{0.01, 0.03}, wide{0.03, 0.01};
   const Vector3 x(1, 0, 0), z(0, 0, 1), beside(0.012, 0, 0);
@@ -295,8 +295,9 @@ TEST(IntersectionMerge, ABodyThatIsAsWideAsTheOtherIsRefusedBeforeItIsFitted) {
   EXPECT_NE(merged.error().message.find("as wide"), std::string::npos) << merged.error().message;
 }
 
-// The ball has a radius of 20 mm, the drum 8 mm about an axis 6 mm off the centre. The lower rim is 14 mm off
-// and 16 mm down, 1.3 mm outside, where a third of the lines leads.
+// The ball has a radius of 20 mm. The drum's radius is 8 mm, and its axis is 6 mm from the ball's centre. The
+// drum's lower rim is 14 mm beside and 16 mm below that centre, which is 1.3 mm outside the ball. A third of
+// the lines lead there.
 TEST(IntersectionMerge, ARimThatLooksOutOfTheBallIsRefusedWhereItDoes) {
   const Drum drum{0.008, 0.023, 0.001};
   const Quaternion along_y(Eigen::AngleAxisd(-0.5 * pi, Vector3::UnitX()));
@@ -308,7 +309,7 @@ TEST(IntersectionMerge, ARimThatLooksOutOfTheBallIsRefusedWhereItDoes) {
     EXPECT_EQ(merged.error().code, ErrorCode::mismatch) << message;
     EXPECT_NE(message.find("leaves the other again at (1"), std::string::npos) << message;
   }
-  // Fully inside, it is a knob.
+  // A drum whose end is fully inside the ball makes a knob.
   const auto merged =
       merge_crossing(placed(drum.surface(), {Vector3(0.003, 0, 0.011), Quaternion::Identity()}), ball(), {});
   EXPECT_TRUE(merged.ok()) << merged.error().message;
@@ -325,7 +326,7 @@ TEST(IntersectionMerge, BodiesWhoseNormalsPointInwardsAreTurnedAroundFirst) {
     ASSERT_TRUE(merged.ok()) << merged.error().message;
     EXPECT_EQ(merged->first_was_inward, first);
     EXPECT_EQ(merged->second_was_inward, second);
-    // The same surface except for the added knots.
+    // The surface is the same except for the added knots.
     EXPECT_NEAR(compute_enclosed_mass(merged->surface).volume_m3, union_m3, 1e-3 * union_m3);
   }
 }
@@ -344,7 +345,7 @@ TEST(IntersectionMerge, WhatGoesThroughIsRefused) {
   const auto lost = merge_crossing(through, ball(), {});
   ASSERT_FALSE(lost.ok());
   EXPECT_EQ(lost.error().code, ErrorCode::unsupported) << lost.error().message;
-  // A rod standing on a sheet: the sheet's lines cross each other at its foot.
+  // A rod stands on a sheet: the sheet's lines cross each other at the rod's foot.
   const auto folded = merge_crossing(through, plane({-0.05, -0.05, 0}, {0.1, 0, 0}, {0, 0.1, 0}), {});
   ASSERT_FALSE(folded.ok());
   EXPECT_EQ(folded.error().code, ErrorCode::mismatch) << folded.error().message;

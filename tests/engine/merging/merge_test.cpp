@@ -33,7 +33,7 @@ TEST(Merge, GivesASplitSurfaceBackAtEveryDegree) {
   for (int degree = 2; degree <= 5; ++degree) {
     for (int repeat = 0; repeat < 25; ++repeat) {
       const Surface whole = smooth_sheet(random, degree, 8, 9);
-      // At an arbitrary parameter, and just beside a knot.
+      // The cut is at an arbitrary parameter, or just beside a knot.
       const double inner = knots_along(whole, Direction::u).breakpoints()[1];
       const double cut =
           repeat % 2 == 0 ? random.uniform(0.05, 0.95) : inner + std::pow(10.0, -random.uniform(1.5, 6.0));
@@ -88,7 +88,7 @@ TEST(Merge, GridsInAnyOrderAndHeldInAnyWay) {
   }
 }
 
-// Edges at z = 0 with unrelated degrees and counts.
+// The edges at z = 0 have unrelated degrees and counts.
 TEST(Merge, PatchesOfOtherDegreesAndCounts) {
   const auto sheet = [](int degree, int count, double start, double end) {
     const auto u = KnotVector::clamped_uniform(degree, count).value();
@@ -117,7 +117,8 @@ TEST(Merge, PatchesOfOtherDegreesAndCounts) {
   }
 }
 
-// |u - 1/2| over four equal pieces, 41 samples: C0 leaves no error, C1 and C2 3.52e-2 before knots are added.
+// Fits |u - 1/2| with four equal pieces to 41 samples: C0 leaves no error; C1 and C2 leave 3.52e-2 before
+// knots are added.
 TEST(Merge, TheKinkOfTheLiterature) {
   const auto u = KnotVector::clamped_uniform(1, 2).value();
   for (const auto& [multiplicity, residual] :
@@ -162,7 +163,7 @@ TEST(Merge, AKinkBecomesC2WithinTheTolerance) {
   }
 }
 
-// Sampled far more densely than measured.
+// The test samples the surface far more densely than merge() does to measure the deviation.
 TEST(Merge, NoPointIsFartherThanTold) {
   const auto roofs = roof();
   for (const double tolerance_m : {1e-3, 2e-4, 5e-5}) {
@@ -188,7 +189,8 @@ TEST(Merge, AKinkIsBlendedOverTheLengthAsked) {
   const Joint& joint = merged->joints[0].joint;
   EXPECT_TRUE(joint.bridged);
   EXPECT_LT(merged->deviation_m, 1e-12);
-  // From 5 mm before the ridge to 5 mm behind it: between the chord and the path around the corner.
+  // The blend runs from 5 mm before the ridge to 5 mm behind it: its length is between the chord and the path
+  // around the corner.
   EXPECT_LT(joint.blend_length_m, 0.01);
   EXPECT_GT(joint.blend_length_m, 0.005 * std::numbers::sqrt2);
   const Vector3 start = position(merged->surface, 0.5, joint.blend_start);
@@ -308,13 +310,13 @@ TEST(Merge, AGridIsBlendedInAllRowsAlike) {
     EXPECT_NEAR(joint.joint.gap_m, 0.01, 1e-4);
   }
   EXPECT_EQ(along_v, 2);
-  // A gap of 1 mm at one end of the joint, none at the other.
+  // The gap is 1 mm wide at one end of the joint and closed at the other.
   const auto mixed = merge(fading_roof(0.001), request_of(2));
   ASSERT_FALSE(mixed.ok());
   EXPECT_EQ(mixed.error().code, ErrorCode::mismatch) << mixed.error().message;
 }
 
-// Edges within the tolerance that are brought together, with a kink beside them.
+// The edges differ by less than the tolerance and are brought together, with a kink beside them.
 TEST(Merge, TheToleranceHoldsForAllOfADeviation) {
   for (const Vector3& moved : {Vector3(2.63e-5, -2.72e-5, -3.25e-5), Vector3(0, 4.5e-5, 0),
                                Vector3(0, 0, -4.5e-5), Vector3(4.5e-5, 0, 0)}) {

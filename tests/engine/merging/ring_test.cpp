@@ -1,4 +1,4 @@
-// Rows and grids of patches whose last edges meet their first.
+// Tests rows and grids of patches whose last edges meet their first.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -63,7 +63,7 @@ std::vector<Surface> square_tube() {
 TEST(Ring, ABodyOfRevolutionCutInFourIsOneAgain) {
   const Surface whole = turned_body();
   std::vector<Surface> parts = parts_of(whole, Direction::u, {0.1, 0.33, 0.6, 0.9, 1.1});
-  // In any orientation and order.
+  // The patches may be given in any orientation and order.
   std::swap(parts[1], parts[2]);
   parts[3] = reversed(parts[3], Direction::v);
   for (const int continuity : {0, 1, 2}) {
@@ -115,7 +115,8 @@ TEST(Ring, ASharpSeamIsRoundedWithinTheToleranceAsTheJointsAre) {
   EXPECT_GT(position(surface, start, 0.5).head<2>().norm(), 1e-6);
 }
 
-// Reported with the reason if matched automatically, an error if chosen.
+// Edges that cannot be closed are reported with the reason if they were matched automatically, and are an
+// error if the user chose them.
 TEST(Ring, WhatCannotBeClosedStaysOpen) {
   std::vector<Surface> shifted = parts_of(ring_strip(0.0, 0.03, 16, 0.0), Direction::u, {0.0, 0.5, 1.0});
   // The last edge is on the first, with parameters shifted by 1 mm.
@@ -204,7 +205,7 @@ TEST(Ring, StopsWhereverItIsAskedTo) {
     const auto merged = merge(square_tube(), request);
     ASSERT_FALSE(merged.ok()) << stop;
     EXPECT_EQ(merged.error().code, ErrorCode::cancelled);
-    EXPECT_LE(asked, stop + 2);  // immediately
+    EXPECT_LE(asked, stop + 2);  // stops immediately
   }
 }
 

@@ -74,7 +74,7 @@ TEST(RoundPart, ADiscEndsInAPoleAndKeepsItsArea) {
   }
 }
 
-// An eccentric hole's edge is met exactly too.
+// The edge of an eccentric hole is met exactly too.
 TEST(RoundPart, ARingRunsFromItsEdgeToItsHole) {
   const Surface sheet = level_plane(0.0, true);
   const auto ring = untrimmed(
@@ -111,7 +111,7 @@ TEST(RoundPart, CornersAndLinesThatMeetAnEdgeTwiceAreRefused) {
   const auto square =
       make_polygon_loop(sheet.u, sheet.v, {{0.2, 0.2}, {0.8, 0.2}, {0.8, 0.8}, {0.2, 0.8}}).value();
   EXPECT_FALSE(untrimmed(sheet, {square, circle(sheet, 0.01, true)}, 1e-6));
-  // A kidney, not star-shaped about its centroid.
+  // The loop is a kidney, which is not star-shaped about its centroid.
   std::vector<Eigen::Vector2d> kidney;
   for (int k = 0; k < 720; ++k) {
     const double turn = 2.0 * pi * k / 720, reach = 0.1 + 0.28 * std::sin(turn / 2.0);

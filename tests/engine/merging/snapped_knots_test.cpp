@@ -55,7 +55,7 @@ TEST(NearlySameKnots, RoundedKnotsBecomeThoseOfTheFirstPatch) {
   const auto merged = merge({low, high}, request_of(2));
   ASSERT_TRUE(merged.ok()) << merged.error().message;
   EXPECT_EQ(merged->surface.u, low.u);
-  // The cost is reported.
+  // The deviation that snapping causes is reported.
   EXPECT_GT(merged->deviation_m, 1e-11);
   EXPECT_LT(merged->deviation_m, 1e-8);
 }

@@ -93,7 +93,7 @@ TEST(TrimmedPatch, IsMergedWithItsNeighbour) {
 }
 
 TEST(TrimmedPatch, LinesOfTheOtherDirectionServeToo) {
-  // A notch from the side: lines of constant u are in two pieces there, lines of constant v in one.
+  // The notch comes from the side: lines of constant u are in two pieces there, lines of constant v in one.
   const auto notched = untrimmed(
       wave(), {polygon({{0.0, 0.0}, {0.6, 0.0}, {0.6, 0.4}, {0.4, 0.5}, {0.6, 0.6}, {0.6, 1.0}, {0.0, 1.0}})},
       2e-5);
@@ -116,7 +116,7 @@ TEST(TrimmedPatch, WhatLiesOutsideAHoleIsNotTakenForIt) {
   EXPECT_EQ(refused.error().code, ErrorCode::unsupported);
 }
 
-// Narrower than the steps between checked lines.
+// The gap and the slit are narrower than the steps between checked lines.
 TEST(TrimmedPatch, NarrowGapsAndSlitsAreNotMissed) {
   const TrimLoop left = polygon({{0.1, 0.1}, {0.4003, 0.1}, {0.4003, 0.9}, {0.1, 0.9}});
   const TrimLoop right = polygon({{0.4004, 0.1}, {0.9, 0.1}, {0.9, 0.9}, {0.4004, 0.9}});

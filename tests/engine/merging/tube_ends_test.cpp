@@ -21,7 +21,7 @@ struct TubeProfile {
   double radius, along;
 };
 
-// A profile turned about the z axis, with poles at ends of zero radius.
+// Returns a profile turned about the z axis, with poles at ends of zero radius.
 Surface turned_profile(const std::function<TubeProfile(double)>& profile, int along, double shift_z = 0.0) {
   const auto u = KnotVector::periodic_uniform(3, 24).value();
   const auto v = KnotVector::clamped_uniform(3, along).value();
@@ -91,7 +91,7 @@ TEST(TubeEnds, ARoundCapIsHalfAnEllipsoid) {
     EXPECT_TRUE(is_pole(capped->surface, side));
     const TubeEnd pole = tube_end(capped->surface, side);
     EXPECT_NEAR(pole.centre_m.z(), side == Side::v_end ? 0.056 : -0.006, 1e-9);
-    // The cubic quarter ellipse is within 3e-4 of its size.
+    // The cubic quarter ellipse deviates by at most 3e-4 of its size.
     const double whole = pi * 1e-4 * 0.05 + 2.0 / 3.0 * pi * 1e-4 * 0.006;
     const Side other = opposite(side);
     const auto closed = add_cap(capped->surface, other, 0.0, c2());
@@ -135,7 +135,7 @@ TEST(TubeEnds, ClosedBodiesAreBridgedAtTheirNearestPoles) {
   EXPECT_LT(merged->deviation_m, 1e-9);
   EXPECT_TRUE(is_pole(merged->surface, Side::v_start));
   EXPECT_TRUE(is_pole(merged->surface, Side::v_end));
-  // No waist: the bridge is nowhere narrower than the rod at its start.
+  // The bridge has no waist: it is nowhere narrower than the rod at its start.
   const Joint& joint = merged->joints[0].joint;
   const double at_rod = position(merged->surface, 0.0, joint.blend_start).head<2>().norm();
   for (int k = 0; k <= 50; ++k) {
@@ -181,7 +181,7 @@ TEST(TubeEnds, AFlatCapThatWouldFoldIsRefusedWhereItDoes) {
         << refused.error().message;
     EXPECT_TRUE(add_cap(slightly, side, 0.0, c2()).ok());
   }
-  // An angle profile whose plates meet at edges.
+  // The section is an angle profile whose plates meet at edges.
   const auto plates = KnotVector::periodic_uniform(1, 6).value();
   const std::vector<Eigen::Vector2d> corners{{0, 0},         {0.03, 0},     {0.03, 0.002},
                                              {0.002, 0.002}, {0.002, 0.03}, {0, 0.03}};

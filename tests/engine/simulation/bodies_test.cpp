@@ -26,7 +26,7 @@ double depth_between_bodies(const Impact& impact) {
   return depth_between(impact.body(0).mapping().current(), impact.body(1).mapping().current());
 }
 
-// Two pebbles flat on flat and off centre, so that they also begin to turn.
+// The pebbles meet flat on flat and off centre, so that they also begin to turn.
 TEST(Bodies, ThatCollideKeepTheirMomentum) {
   Impact impact(state_of(pebble({0, 0, 0}, 400)), state_of(pebble({0.012, 0.0235, 0.02}, 700)));
   impact.throw_at(1, {0.01, -0.06, 0.005});
@@ -56,7 +56,8 @@ TEST(Bodies, ThatBeginInEachOtherPart) {
   EXPECT_GT(impact.momentum_of(1).y(), 0.0);
 }
 
-// Two handles one above the other, the lower one fixed. The tool's action on the upper one reaches it.
+// Returns two handles one above the other, the lower one fixed. The tool's action on the upper one reaches
+// the lower one.
 Scene stacked_handles() {
   Scene scene = small_handle();
   Body upper = scene.bodies[0];

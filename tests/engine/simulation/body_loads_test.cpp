@@ -1,4 +1,4 @@
-// Loads on the lattice of a body, against closed forms and the static solver.
+// Tests loads on the lattice of a body against closed forms and the static solver.
 #include "engine/simulation/body_loads.h"
 
 #include <gtest/gtest.h>

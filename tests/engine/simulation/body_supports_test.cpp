@@ -1,4 +1,4 @@
-// Supports that fix or move a body.
+// Tests supports that fix or move a body.
 #include <gtest/gtest.h>
 
 #include <cmath>

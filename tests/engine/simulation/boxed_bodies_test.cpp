@@ -1,4 +1,5 @@
-// Bodies in a box of cells: untouched they stay at rest, pressed they yield, and they rest on the ground.
+// Tests bodies in a box of cells: untouched they stay at rest, pressed they yield, and they rest on the
+// ground.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +20,7 @@ namespace {
 
 constexpr double body_ring_m = 0.02, body_tube_m = 0.005, tool_radius_m = 0.004;
 
-// Torus about y, its tube round to 5 %. It has few control points, which a tick moves quickly.
+// Torus about y, whose tube is round to within 5 %. It has few control points, which a tick moves quickly.
 Surface ring() {
   constexpr int around = 20, along = 8;
   ControlNet net(around, along);
@@ -89,8 +90,8 @@ TEST(BoxedBody, KeepsStillUntouched) {
   }
 }
 
-// Square bar as thick as wide, so that it can touch itself. Beside an edge, none of its four faces is near to
-// the next.
+// The ring has a square section: it is as thick as wide, so that it can touch itself. Beside an edge, none of
+// its four faces is near to the next.
 TEST(BoxedBody, WithSharpEdgesKeepsStillUntouched) {
   constexpr int along = 24;
   ControlNet net(4, along);

@@ -1,4 +1,4 @@
-// Loads and supports of bodies in a box of cells act on the body, not on the box.
+// Tests that loads and supports of bodies in a box of cells act on the body, not on the box.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -120,8 +120,8 @@ double skin_volume_m3(const LatticeMesh& mesh, const std::vector<Vector3>& moved
   return volume;
 }
 
-// Fixes six coordinates of three nodes, which prevents rigid motion only. They bear nothing if the loads
-// balance.
+// Fixes six coordinates of three nodes, which prevents rigid motion only. The fixed coordinates bear no force
+// if the loads balance.
 std::vector<FixedAxis> held_loosely(const LatticeMesh& mesh) {
   const auto nearest = [&](const Vector3& place) {
     int best = 0;
@@ -174,8 +174,8 @@ TEST(BoxedLoads, AForceOnAPartIsAllOnThatPart) {
     for (int n = 0; n < mesh.node_count(); ++n) {
       centre += applied_n(lattice, n).norm() / force_n.norm() * mesh.nodes[static_cast<std::size_t>(n)];
     }
-    // Over a quarter turn the mean is at 2 sqrt(2) / pi of the radius, and further out by the square of the
-    // tube, because the outer side is longer. A cell is 3 mm long.
+    // The centre of a quarter turn is at 2 sqrt(2) / pi of the radius, plus a term with the square of the
+    // tube's radius, because the outer side is longer. A cell is 3 mm long.
     EXPECT_NEAR(centre.norm(), 2.0 * std::numbers::sqrt2 / pi * ring_m, 0.1 * ring_m);
     EXPECT_GT(Vector3(middle.x(), 0.0, middle.z()).normalized().dot(centre.normalized()), 0.999);
   }
@@ -214,7 +214,8 @@ TEST(BoxedLoads, ABodyWeighsWhatItIs) {
       }
     }
   }
-  // The block's cells sample those of the lattice.
+  // Each cell of the block gets the filled fraction of the lattice's cells that it overlaps, so the mass is
+  // conserved.
   EXPECT_NEAR(of_block_kg / mass_kg, 1.0, 0.05);
 }
 
@@ -225,8 +226,8 @@ TEST(BoxedLoads, RemarksTellOfTheBoxAndOfItsCells) {
     if (slender) body.lattice.counts = {5, 4, 40};
     const std::string warning =
         describe_lattice_warning(make_body_state(body, {}, InstructionSet::baseline).value());
-    EXPECT_NE(warning.find("nodes count along x, y and z"), std::string::npos) << warning;
-    EXPECT_EQ(warning.find("cells too slender") != std::string::npos, slender) << warning;
+    EXPECT_NE(warning.find("nodes are counted along x, y and z"), std::string::npos) << warning;
+    EXPECT_EQ(warning.find("cells are too slender") != std::string::npos, slender) << warning;
   }
 }
 

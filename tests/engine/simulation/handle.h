@@ -1,4 +1,4 @@
-// Small clay handle for simulation tests: 60 x 10 x 5 mm along x, wide along z, coarse for speed.
+// Provides a small clay handle for simulation tests: 60 x 10 x 5 mm along x, wide along z, coarse for speed.
 #pragma once
 
 #include "engine/scene/scene.h"

@@ -1,4 +1,4 @@
-// Two colliding bodies for tests.
+// Provides two colliding bodies for tests.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Block of material for tests of loads and supports.
+// Provides a block of material for tests of loads and supports.
 #pragma once
 
 #include <optional>

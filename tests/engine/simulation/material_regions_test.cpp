@@ -1,4 +1,4 @@
-// Bodies with regions of other materials or friction.
+// Tests bodies with regions of different material or friction.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -67,8 +67,8 @@ TEST(MaterialRegions, AreSoftenedAlike) {
   simulation.write_snapshot(snapshot);
   EXPECT_EQ(snapshot.substeps, 1);
   EXPECT_EQ(snapshot.flags & tick_flag_nodes_slowed, 0u);
-  // Wood gets the stiffness that it can have alone, except for the cells at the join to the lighter and
-  // softer clay. Clay gets a hundredth of that.
+  // Wood gets the stiffness that it would have in a body of wood alone, except for the cells at the join to
+  // the lighter and softer clay. Clay gets a hundredth of the wood's stiffness.
   const double felt_wood = 100.0 * simulation.lattice().youngs_modulus_pa();
   EXPECT_NEAR(felt_wood / alone.lattice().youngs_modulus_pa(), 1.0, 0.35);
 }
@@ -182,7 +182,7 @@ TEST(MaterialRegions, ANewMaterialIsOfTheRestOfTheBody) {
   EXPECT_EQ(clay.lattice().materials().own().name, "clay");
 }
 
-// Materials belong to the cells: a bent body that keeps its shape keeps them.
+// Materials belong to cells, so a bent body that keeps its shape also keeps its materials.
 TEST(MaterialRegions, StayWhereTheyAreWhenAShapeIsKept) {
   const Material clay = small_handle().bodies[0].material;
   Simulation simulation = simulate(handle_with_regions(clay, {far_half_of(elastic("rubber", 1e5))}));

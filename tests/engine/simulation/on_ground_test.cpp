@@ -1,4 +1,4 @@
-// Bodies on the rigid ground.
+// Tests bodies on the rigid ground.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 constexpr double g_m_per_s2 = 9.81;
 constexpr double degree_rad = std::numbers::pi / 180.0;
 
-// Block with its flat side at y = 0, on a ground from whose normal gravity deviates.
+// Block with its flat side at y = 0, on the ground. Gravity is inclined to the ground's normal.
 class Incline {
  public:
   Incline(double angle_rad, double friction, Stepping stepping)
@@ -42,7 +42,7 @@ class Incline {
   // The force is distributed over all nodes.
   void push(const Vector3& force_n) { block_.load({ForceLoad{{}, force_n, ForceDistribution::volume}}); }
 
-  // Returns the mean over the whole block.
+  // Returns the mean displacement or velocity over the whole block.
   Vector3 mean(bool velocity) const {
     Vector3 sum = Vector3::Zero();
     const SpringLattice& lattice = block_.lattice;
@@ -130,7 +130,7 @@ TEST(OnGround, ABlockSlidesBeyondTheAngleOfFriction) {
   }
 }
 
-// Pushes on level ground with a force on the whole block.
+// A force on the whole block pushes it along level ground.
 TEST(OnGround, ABlockPushedSidewaysStaysUntilThePushIsMoreThanItsFriction) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     for (const double share : {0.8, 1.2}) {
@@ -201,7 +201,7 @@ double least_volume_share(const SpringLattice& lattice) {
   return least;
 }
 
-// Tests soft, softened and stiff materials.
+// The handle's material is soft, softened or stiff.
 TEST(OnGround, AHandleThatFallsComesToRestOnItsSkin) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const double youngs : {1e4, 2e5, 2e9}) {
@@ -259,7 +259,7 @@ TEST(OnGround, AFallOfHalfAMetreLeavesNoCellInsideOut) {
 }
 
 // Drops from 27 mm and faster than a cell per tick. The speed limit keeps nodes together while the body is
-// squashed, so that the skin penetrates by up to half a cell and leaves again.
+// squashed, so that the skin penetrates by up to half a cell and comes out again.
 TEST(OnGround, NoFallIsTooFast) {
   Scene scene = falling_handle(1e4);
   scene.ground->point_m.y() = -0.03;
@@ -272,8 +272,8 @@ TEST(OnGround, NoFallIsTooFast) {
   EXPECT_LT(depth_cells(simulation), ground_depth_limit_cells);
 }
 
-// A hand that presses a body on the ground feels what the ground bears beyond the weight. The tool's spring
-// is far softer than the body and yields almost the whole distance.
+// A hand that presses a body on the ground feels the force that the ground bears in addition to the weight.
+// The tool's spring is far softer than the body and takes up almost the whole distance.
 TEST(OnGround, AStiffHandlePassesOnWhatTheToolPresses) {
   Simulation simulation = simulate(falling_handle(2e9));
   for (int tick = 0; tick < 400; ++tick) simulation.advance(far_away);

@@ -1,4 +1,4 @@
-// Mapping residual of the control net, and knots inserted where it is largest.
+// Tests the mapping residual of the control net, and knots inserted where it is largest.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -164,8 +164,8 @@ TEST(BodyMapping, FollowsKnotsOfEveryMultiplicity) {
   EXPECT_LT(shown_residual_m(simulation), 1e-3);
 }
 
-// A plane needs knots at its edge. A document holds 200 columns; beyond that, columns are fixed without
-// knots.
+// A plane needs knots at its edge. A document holds at most 200 columns; beyond that number, columns are
+// fixed without knots.
 TEST(BodyMapping, HoldsWithoutMoreColumnsThanADocumentTakes) {
   for (const int columns : {190, 198, 199, 200}) {
     SCOPED_TRACE(columns);

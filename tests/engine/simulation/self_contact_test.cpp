@@ -1,4 +1,4 @@
-// Soft bodies that are bent onto themselves do not pass through themselves.
+// Tests that soft bodies bent onto themselves do not pass through themselves.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -68,7 +68,7 @@ double depth_in_itself(const Surface& surface, bool* touching = nullptr) {
   return deepest;
 }
 
-// Free body that can be pulled anywhere, with or without self-contact.
+// Free body that can be pulled by any forces, with or without self-contact.
 class Folding {
  public:
   Folding(const Body& body, bool is_self_intersecting)
@@ -169,7 +169,7 @@ TEST(SelfContact, HoldsTheArmsOfAHairpinApart) {
   EXPECT_LT(deepest, self_depth_limit_cells * bar.cell_m());
 }
 
-// Only the contact acts on the ends, which collide and separate again.
+// Only the contact acts on the body, whose ends collide and separate again.
 TEST(SelfContact, KeepsTheMomentum) {
   Folding bar(hairpin(), true);
   bar.throw_ends({0.0, 0.05, 0.01});

@@ -1,4 +1,4 @@
-// Sculpting without ringing.
+// Tests that sculpted bodies come to rest without ringing.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,8 +31,8 @@ double tip_m(const LoadedBlock& bar) {
 
 TEST(Settling, IsCriticalForTheMotionThatABodyIsIn) {
   LoadedBlock bar = pushed_bar(Stepping::springs);
-  // The first mode remains after the fast modes have decayed. The quotient is the square of 2 pi over its
-  // period.
+  // The first mode remains after the fast modes have decayed. The Rayleigh quotient is then the square of 2
+  // pi divided by the mode's period.
   for (int tick = 0; tick < 400; ++tick) bar.tick(0.0);
   double longest = 0.0, last_turn = 0.0, before = tip_m(bar), way = 0.0;
   for (int tick = 0; tick < 3000; ++tick) {

@@ -1,4 +1,4 @@
-// Thin shells in a simulation: a tool dents them from either side and touches them only once.
+// Tests thin shells in a simulation: a tool dents them from either side and touches them only once.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -164,7 +164,8 @@ TEST(Shell, OutlastsFastStrokes) {
   }
 }
 
-// The tool presses the ring at its seam, or half a turn from it; the ring must yield equally.
+// The tool presses the ring at its seam, or half a turn from the seam; the ring must yield equally in both
+// cases.
 TEST(Shell, RingGivesWayAtItsSeamAsElsewhere) {
   const auto pressed = [](double seam_turn) {
     Scene scene = clay_bowl();
@@ -197,7 +198,7 @@ TEST(Shell, BearsAnotherBody) {
     scene.bodies[0].material = shell_material(2e9);
     const double sign = upside_down ? -1.0 : 1.0;
     const double floor_m = upside_down ? -shell_radius_m : -shell_radius_m + shell_thickness_m;
-    // Half axes of 20, 10 and 50 mm, scaled down; flat along y.
+    // An ellipsoid with semi-axes of 20, 10 and 50 mm, scaled to a quarter; it is flattest along y.
     Surface pillow = ellipsoid_tube(12, 12, {0, 0, 0});
     for (auto* axis : {&pillow.net.x, &pillow.net.y, &pillow.net.z}) {
       for (double& value : *axis) value *= 0.25;

@@ -1,4 +1,4 @@
-// Heights of a surface above a plane, against dense sampling.
+// Tests the heights of a surface above a plane against dense sampling.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ double densely_lowest(const Surface& surface, const Vector3& normal) {
   return lowest;
 }
 
-// The plane is at a side, at the edges, and inclined towards an end, where elements are long compared with
+// The lowest point is on a side, at an edge, or at an inclined end, where the elements are long compared with
 // their bend. The tolerance is that of the ground, a hundredth of a cell.
 TEST(SkinHeights, FindTheLowestPlaceBetweenTheSamples) {
   const Surface handle = small_handle().bodies[0].surface;

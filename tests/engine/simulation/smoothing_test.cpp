@@ -1,4 +1,4 @@
-// Smoothing removes bumps and dents, keeps the form, and causes no force.
+// Tests that smoothing removes bumps and dents, keeps the form, and causes no force.
 #include "engine/simulation/smoothing.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,8 @@ double thickness_m(const Surface& surface, double v) {
   return (top(surface, v) - middle_line(surface, v, 0.1, 0.4)).norm();
 }
 
-// Returns by how much the handle is thinner within 7 mm than at rest; a bend has no effect.
+// Returns the largest loss of the handle's thickness since the rest shape, within 7 mm of v; a bend does not
+// count.
 double dent_m(const Simulation& simulation, double v) {
   double deepest = 0.0;
   for (int i = -14; i <= 14; ++i) {

@@ -1,4 +1,4 @@
-// Soft bodies for tests, and the penetration of two bodies.
+// Provides soft bodies for tests, and the penetration of two bodies.
 #pragma once
 
 #include "engine/bspline/surface.h"
@@ -9,11 +9,11 @@ namespace spoonbill {
 // Elastic material with the stiffness of the test clay.
 Material silicone();
 
-// Measures with the collider, which is independent of the constraints. Bodies that enclose each other fail
-// the test.
+// Returns the penetration of two bodies according to the collider, which is independent of the constraints.
+// Bodies that enclose each other fail the test.
 double depth_between(const Surface& first, const Surface& second);
 
-// The least height of a control point.
+// Returns the least height of a control point.
 double lowest(const Surface& surface);
 
 }  // namespace spoonbill

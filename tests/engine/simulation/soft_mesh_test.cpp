@@ -1,4 +1,4 @@
-// Soft tessellated tools.
+// Tests soft tools made of triangles.
 #include <gtest/gtest.h>
 
 #include <algorithm>

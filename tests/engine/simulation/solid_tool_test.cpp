@@ -69,7 +69,7 @@ MeshSolid cube(double half_m) {
   return {clean_mesh(std::move(mesh), "cube").value()};
 }
 
-// Every rigid shape rests on the handle, which is 2.5 mm half as thick, with its lowest point 1 mm deep.
+// Every rigid shape rests on the handle, whose half thickness is 2.5 mm, with its lowest point 1 mm deep.
 TEST(SolidTool, OfEveryRigidShapePushes) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   struct Case {

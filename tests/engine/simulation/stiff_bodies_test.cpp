@@ -1,4 +1,4 @@
-// Bodies of stiff elastic materials, stepped with their true stiffness.
+// Tests bodies of stiff elastic materials, which are stepped with their true stiffness.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,7 +40,7 @@ ToolInput hand_at(double y_m) {
   return input;
 }
 
-// Interpolates between the slices on both sides.
+// Returns the mean of `of` over the nodes at the pressed x, interpolated between the slices on both sides.
 template <class Of>
 double mean_at_press(const LatticeMesh& mesh, const Of& of) {
   const double pitch_m = 0.06 / (mesh.count[2] - 1);
@@ -92,7 +92,7 @@ TEST(StiffBodies, BendUnderTheHandAsTheStaticSolverSays) {
     }
     EXPECT_TRUE(reaction.touching);
     EXPECT_GT(reaction.force_n.y(), 0.1);
-    // The coupling spring takes the part of the distance that the body does not yield.
+    // The coupling spring is stretched by the part of the hand's distance that the body does not yield.
     EXPECT_NEAR(reaction.force_n.y() / (coupling_n_per_m * (reaction.proxy.position_m.y() - 0.0065)), 1.0,
                 0.01);
     // A sphere presses on a few nodes of one slice only, which accounts for 3 %.
@@ -115,14 +115,14 @@ TEST(StiffBodies, KeepTheShapeInWhichTheyAreCast) {
   for (int tick = 0; tick < 300; ++tick) simulation.advance(above(press_x_m, 0.03));
   EXPECT_NEAR(sunk_m(simulation), bent, 1e-7);
   const ShapeState cast = simulation.shape();
-  // Undoes the press.
+  // Presses the steel body and then undoes the press.
   for (int tick = 0; tick < 200; ++tick) simulation.advance(hand_at(0.0085 - 1e-5 * tick));
   ASSERT_TRUE(simulation.restore(cast).ok());
   for (int tick = 0; tick < 100; ++tick) simulation.advance(hand_at(0.03));
   EXPECT_NEAR(sunk_m(simulation), bent, 1e-7);
 }
 
-// Includes a hand without coupling that moves at 5 m/s.
+// The hands include one without coupling that moves at 5 m/s.
 TEST(StiffBodies, NoHandBlowsThemUp) {
   for (const double youngs : {2e6, 2e9, 193e9}) {
     if (sanitized && youngs != 2e9) continue;

@@ -96,9 +96,9 @@ TEST(Tool, AHoveringToolTouchesNothingUntilItIsOutside) {
     input.hovering = hovering;
     return simulation.advance(input).touching;
   };
-  for (int tick = 0; tick < 100; ++tick) ASSERT_FALSE(hover(0.02 - 4e-4 * tick, true));  // right through
+  for (int tick = 0; tick < 100; ++tick) ASSERT_FALSE(hover(0.02 - 4e-4 * tick, true));  // passes through
   for (int tick = 0; tick < 20; ++tick) ASSERT_FALSE(hover(0.0, true));
-  for (int tick = 0; tick < 20; ++tick) ASSERT_FALSE(hover(0.0, false));  // still inside
+  for (int tick = 0; tick < 20; ++tick) ASSERT_FALSE(hover(0.0, false));  // is still inside
   for (int tick = 0; tick < 50; ++tick) hover(0.02, false);
   bool touching = false;
   for (int tick = 0; tick < 60; ++tick) touching = hover(0.009 - 6e-5 * tick, false);

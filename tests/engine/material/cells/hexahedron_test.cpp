@@ -127,8 +127,8 @@ TEST(SpringCell, ForceIsTheGradientOfItsEnergyAndTheTangentItsChange) {
   }
 }
 
-// A cell that is turned without strain has no force, at any angle; and the force of a strained cell never has
-// a moment.
+// A cell that is turned without strain exerts no force, at any angle. The forces of a strained cell never
+// have a moment.
 TEST(CorotatedCell, FeelsNoTurn) {
   const CellCorners corners = distorted_cell(9);
   const CorotatedCell cell(corners, hexahedron_stiffness(corners, 1.0, 0.3));

@@ -65,7 +65,7 @@ TEST(ImplicitBody, SettlesToTheStaticAnswer) {
       ImplicitStep step;
       step.damping_per_s = 20.0;
       for (int tick = 0; tick < 1000; ++tick) body.step(step);
-      // The bound is what a damping of 20 per second leaves of the lowest mode after a second.
+      // After a second, a damping of 20 per second leaves less than this bound of the lowest mode.
       EXPECT_NEAR(body.displacement(beam.tip()).y() / expected, 1.0, 1e-3) << youngs << " Pa, load " << load;
     }
   }

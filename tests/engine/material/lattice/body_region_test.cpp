@@ -123,7 +123,7 @@ TEST(BodyRegion, DepthInABoxIsTheDistanceToItsNearestFace) {
   }
 }
 
-// A ring has no end faces at its seam: its cells are half its thickness deep all the way around.
+// A ring has no end faces at its seam: the centres of its cells are at half its thickness all the way around.
 TEST(BodyRegion, CellsOfAThinRingLieBetweenItsFaces) {
   LatticeRequest request;
   request.counts = {25, 2, 3};
@@ -146,7 +146,7 @@ TEST(BodyRegion, CellsOfAThinRingLieBetweenItsFaces) {
   EXPECT_EQ(held, 8) << "the middles of four of 24 cells around, twice";
 }
 
-// Includes the faces of the caps that meet on the axis, where the direction around is undefined.
+// The test includes the faces of the caps that meet on the axis, where the direction around is undefined.
 TEST(BodyRegion, FacesOfARoundBarAreWhereTheCylinderHasThem) {
   const LatticeMesh mesh = bar_lattice({7, 7, 41});
   const std::vector<BodyCoordinates> places = find_node_coordinates(mesh);

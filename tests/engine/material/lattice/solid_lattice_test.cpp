@@ -69,7 +69,8 @@ TEST(SolidLattice, OfARingHasItsVolumeAndKnowsWhereItsNodesLie) {
   EXPECT_GT(inside, 100);
 }
 
-// Also checks cells across the seams and cells whose corners are on both sides of the tube's centre line.
+// The test also covers cells across the seams, and cells whose corners are on both sides of the tube's centre
+// line.
 TEST(SolidLattice, OfARingKnowsWhereItsCellsLie) {
   const Surface ring = round_torus(round_ring_m, round_tube_m);
   const LatticeMesh mesh = solid_lattice(ring, {4000, {}}).value();
@@ -120,7 +121,8 @@ TEST(SolidLattice, TheHollowOfABowlIsOfWhatIsAboutIt) {
   EXPECT_GT(in_hollow, 100);
 }
 
-// The region is far smaller than a cell and is where u and v begin: only skin is in it, and no node.
+// The region, at the start of u and v, is far smaller than a cell: it contains a part of the skin, but no
+// node.
 TEST(SolidLattice, ARegionWithoutSurfaceNodesHasNoFriction) {
   MaterialRegion spot;
   spot.region.along = spot.region.around = {0.0, 1e-9};

@@ -232,9 +232,9 @@ TEST(CompositeSprings, OnlyThePlasticHalfKeepsItsLength) {
   EXPECT_NEAR(strain_between(lattice, 15, 21), 0.0, 2e-3);
 }
 
-// In a bar that is held stretched, the half that creeps yields to the other half. Finally half of its shear
-// stress is gone and none of its pressure: with K = E / 1.2 and half the shear modulus, G = E / 5.2, its
-// modulus is 9 K G / (3 K + G) = 0.536 E.
+// In a bar that is held stretched, the half that creeps yields to the other half. In the end, half of its
+// shear stress is gone and none of its pressure: with K = E / 1.2 and half the shear modulus, G = E / 5.2,
+// its modulus is 9 K G / (3 K + G) = 0.536 E.
 TEST(CompositeSprings, OnlyTheGelCreeps) {
   Material gel = elastic_material(4e3, 0.3, 1000.0), rubber = elastic_material(4e3, 0.3, 1000.0);
   gel.relaxing_fraction = 0.5;
@@ -324,8 +324,8 @@ TEST(CompositeSprings, StepsAllocateNothing) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-// A block slides down an incline on a base whose middle has another friction: the mean of both frictions
-// applies, because the weight is evenly distributed.
+// A block slides down an incline on a base whose central part has a different friction: the mean of both
+// frictions applies, because the weight is evenly distributed.
 TEST(CompositeSprings, ABlockSlidesByTheFrictionsOfItsBase) {
   constexpr double tilt = 0.35, g = 9.81;
   const LatticeMesh mesh = box_mesh({0.02, 0.01, 0.024}, {5, 3, 7});

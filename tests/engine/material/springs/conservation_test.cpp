@@ -42,9 +42,9 @@ Energies energies_of(const SpringLattice& lattice, const StaticBody& springs, do
   return energies;
 }
 
-// Returns a block each node of which moves at up to 2 mm/s. The block stays near its origin: displacements
-// have seven digits, and a body that flies thousands of its own strains away would gain energy from rounding,
-// 5 % of its flight's energy in as many ticks.
+// Returns a block whose nodes each move at up to 2 mm/s. The block must stay near its origin, because
+// displacements have seven digits. If it flew away by thousands of times its strains, rounding would add 5 %
+// of the energy of its flight in thousands of ticks.
 SpringLattice shaken_block(double damping_ratio) {
   Material material = elastic_material(5000.0, 0.35, 1000.0);
   material.damping_ratio = damping_ratio;

@@ -74,8 +74,8 @@ TEST(Integration, StabilityFlipsAtTheLimit) {
   }
 }
 
-// A kick and then a drift conserve v^2 + w^2 x^2 - h w^2 x v: the scheme in double precision does, and so
-// does the lattice.
+// A kick followed by a drift conserves v^2 + w^2 x^2 - h w^2 x v, both in the scheme in double precision and
+// in the lattice.
 TEST(Integration, KickDriftConservesItsOwnEnergy) {
   const double omega = 7.0, h = 0.02;
   double x = 1.0, v = 0.5;

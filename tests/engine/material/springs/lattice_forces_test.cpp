@@ -79,8 +79,8 @@ TEST(LatticeForces, RestShapeFeelsExactlyNothing) {
   }
 }
 
-// A damper on the full relative velocity of a spring's ends would brake a rigid rotation; ours takes no power
-// from it.
+// A damper on the full relative velocity of a spring's ends would brake a rigid rotation; the lattice's
+// damping takes no power from it.
 TEST(LatticeForces, RigidRotationProducesNoDamping) {
   SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, elastic_material(5000.0, 0.45, 1000.0));
   const Vector3 spin(3.0, -2.0, 5.0);

@@ -113,7 +113,7 @@ TEST(Beam, CellsNearABeamWithTheirNumber) {
 
 struct Stiff {
   const char* name;
-  // `sinking_m` is that of the spoon-like beam by Timoshenko.
+  // `sinking_m` is the deflection of the spoon-like beam according to Timoshenko's theory.
   double youngs_modulus_pa, poissons_ratio, sinking_m;
 };
 

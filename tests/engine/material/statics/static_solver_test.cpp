@@ -153,6 +153,8 @@ TEST(StaticSolver, PressureFromAllSides) {
         for (int q = 0; q < 3; ++q) {
           PressedFace face{{}, pressure};
           const int corners[4][2] = {{p, q}, {p + 1, q}, {p + 1, q + 1}, {p, q + 1}};
+          // On the low side p and q are exchanged, which reverses the order of the corners. All faces are
+          // still visited, because p and q have the same range.
           for (std::size_t c = 0; c < 4; ++c) {
             std::array<int, 3> at{};
             at[axis] = high ? 3 : 0;
@@ -160,8 +162,6 @@ TEST(StaticSolver, PressureFromAllSides) {
             at[b] = corners[c][high ? 1 : 0];
             face.nodes[c] = mesh.index(at[0], at[1], at[2]);
           }
-          // On the low side p and q are exchanged, which reverses the order of the corners and still visits
-          // all faces.
           loads.pressures.push_back(face);
         }
       }
