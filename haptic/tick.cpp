@@ -38,9 +38,10 @@ Vector3 damped_spring(const DeviceSpecification& specification, const Vector3& d
 }  // namespace
 
 TickResult couple(CouplingState& coupling, const DeviceSpecification& specification,
-                  const Vector3& position_m, const Vector3& displacement_m) {
+                  const Vector3& position_m, const Vector3& displacement_m, std::uint32_t missed) {
+  const double elapsed_s = (1.0 + missed) * tick_s;
   Vector3 velocity_m_per_s = Vector3::Zero();
-  if (coupling.position_known) velocity_m_per_s = (position_m - coupling.position_m) / tick_s;
+  if (coupling.position_known) velocity_m_per_s = (position_m - coupling.position_m) / elapsed_s;
   coupling.position_m = position_m;
   coupling.position_known = true;
 
@@ -71,7 +72,7 @@ TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpe
 
   Vector3 displacement_m = Vector3::Zero();
   if (reaction.touching) displacement_m = reaction.proxy.position_m - input.pose.position_m;
-  TickResult result = couple(coupling, specification, input.pose.position_m, displacement_m);
+  TickResult result = couple(coupling, specification, input.pose.position_m, displacement_m, reading.missed);
   result.flags |= reaction.flags;
   result.touching = reaction.touching || reaction.mirror_touching;
   return result;

@@ -37,9 +37,9 @@ TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpe
                 const DeviceReading& reading);
 
 // Computes the coupling alone. `displacement_m` is the vector from the device to the proxy, zero without
-// contact.
+// contact; `missed` is that of DeviceReading.
 TickResult couple(CouplingState& coupling, const DeviceSpecification& specification,
-                  const Vector3& position_m, const Vector3& displacement_m);
+                  const Vector3& position_m, const Vector3& displacement_m, std::uint32_t missed = 0);
 
 // Adds the coupling to the state hash.
 void add_to_hash(const CouplingState& coupling, StateHash& hash);

@@ -91,12 +91,12 @@ void HapticSide::tick(const LoopTick& tick) noexcept {
     run_tick(tick);
     last_tick_failed_ = false;
   } catch (const FailedAssertion& failure) {
-    abandon_tick(failure, tick.dropped);
+    abandon_tick(failure);
   }
 }
 
-void HapticSide::abandon_tick(const FailedAssertion& failure, std::uint64_t dropped) {
-  safe_device_.give_none(dropped);
+void HapticSide::abandon_tick(const FailedAssertion& failure) {
+  safe_device_.give_none();
   safe_device_.request_proxy_reset();
   if (lent_.session != nullptr) lent_.session->flags |= tick_flag_failed;
   recording_ = false;
@@ -106,19 +106,19 @@ void HapticSide::abandon_tick(const FailedAssertion& failure, std::uint64_t drop
 
 void HapticSide::run_tick(const LoopTick& tick) {
   if (journal_->consume_recording_failure()) recording_ = false;
-  const DeviceReading reading = safe_device_.read();
+  const DeviceReading reading = safe_device_.read(tick.dropped);
   if (lent_.session == nullptr) reclaim_if_done();
   if (lent_.session != nullptr) {
     record_state_when_due();
     run_commands();
   }
-  if (lent_.session == nullptr) return safe_device_.give_none(tick.dropped);
-  advance_session(reading, tick.dropped);
+  if (lent_.session == nullptr) return safe_device_.give_none();
+  advance_session(reading);
   publish(tick.index);
 }
 
 void HapticSide::close() {
-  safe_device_.give_none(0);
+  safe_device_.give_none();
   if (lent_.session == nullptr) return;
   if (recording_) end_recording();
   // Passes on the newest state, for the autosave of a session that ends in a fault.
@@ -238,16 +238,17 @@ void HapticSide::push(JournalEntry&& entry) {
   exchange_->recordings_lost.fetch_add(1, std::memory_order_relaxed);
 }
 
-void HapticSide::advance_session(const DeviceReading& reading, std::uint64_t dropped) {
+void HapticSide::advance_session(DeviceReading reading) {
   if (safe_device_.consume_proxy_reset()) reset_proxy();
   if (recording_) {
+    if (recorded_ticks_ == 0) reading.missed = 0;  // the recording begins with this tick
     push(RecordedReading{reading});
-    if (recorded_ticks_ > 0) recorded_missed_ += dropped;
+    recorded_missed_ += reading.missed;
     ++recorded_ticks_;
     state_recorded_ = false;
   }
   const TickResult result = advance(*lent_.session, reading);
-  const Vector3 force_n = safe_device_.give(result.force_n, dropped);
+  const Vector3 force_n = safe_device_.give(result.force_n);
   exchange_->forces.push(ForceSample{static_cast<float>(force_n.norm())});
   if (result.touching) count_edit();
 }

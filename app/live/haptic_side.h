@@ -147,7 +147,7 @@ class HapticSide {
 
  private:
   void run_tick(const LoopTick& tick);
-  void abandon_tick(const FailedAssertion& failure, std::uint64_t dropped);
+  void abandon_tick(const FailedAssertion& failure);
   void run_commands();
   bool run_command();
   void lend();
@@ -160,7 +160,7 @@ class HapticSide {
   void end_recording();
   void record_state_when_due();
   void push(JournalEntry&& entry);
-  void advance_session(const DeviceReading& reading, std::uint64_t dropped);
+  void advance_session(DeviceReading reading);
   void count_edit();
   void publish(std::uint64_t index);
   void publish_scene();

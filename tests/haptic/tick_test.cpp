@@ -94,6 +94,21 @@ TEST(Tick, ForceStaysWithinTheDevicesLimit) {
   EXPECT_TRUE(limited);
 }
 
+// The damping of the coupling depends on the speed of the hand, not on how many ticks were missed.
+TEST(Coupling, MissedTicksDoNotMakeTheHandFaster) {
+  DeviceSpecification specification = VirtualDevice::default_specification();
+  const Vector3 displacement_m(1e-3, 0.0, 0.0);
+  for (const std::uint32_t missed : {0U, 4U, 8U}) {
+    CouplingState coupling;
+    Vector3 force_n = Vector3::Zero();
+    for (int k = 0; k < 100; ++k) {
+      const Vector3 position_m(0.2 * k * (1.0 + missed) * tick_s, 0.0, 0.0);
+      force_n = couple(coupling, specification, position_m, displacement_m, missed).force_n;
+    }
+    EXPECT_NEAR(force_n.x(), 700.0 * 1e-3 - 2.1 * 0.2, 1e-9) << missed;
+  }
+}
+
 TEST(Tick, AllocatesNothing) {
   Simulation simulation = held_handle(20.0);
   CouplingState coupling;
