@@ -87,9 +87,10 @@ struct DeviceReading {
 //
 // A factory function of each class opens the device, on a thread that may block, and returns an Error that
 // says what is missing. The destructor closes it. The ticking thread calls read() and set_force(); its owner
-// may also call them before that thread starts and after it has ended. Neither may allocate, lock, block or
-// throw. A driver with a callback thread or a socket exchanges readings and forces through a TripleBuffer,
-// and drops a force that is not renewed within 50 ms.
+// may also call them before that thread starts and after it has ended, and the watchdog
+// (haptic/watched_device.h) sets zero force from its own thread, but never two of them at once. Neither may
+// allocate, lock, block or throw. A driver with a callback thread or a socket exchanges readings and forces
+// through a TripleBuffer, and drops a force that is not renewed within 50 ms.
 //
 // Only SafeDevice (haptic/safe_device.h) calls set_force().
 class Device {

@@ -13,9 +13,9 @@
 // The last line also has "missed":N if a live recording missed N periods of 1 ms: the performance then took
 // that much longer than its ticks.
 //
-// What a fault of the device or the program changes is recorded too: the tool that only points while there is
-// no valid reading is a reading with button_hover, and a reset of the proxy is a command. So a session with
-// faults replays to its own states.
+// Faults of the device and the program are recorded by their effects, so that a session with faults replays
+// to its own states: without a valid reading the tool only points (button_hover), and a reset of the proxy
+// and the switch of the force are commands.
 //
 // Version 1. Lines are in the order of their ticks. Within a tick the order is: state hash, commands, motion.
 // The state hash is that of the simulation after ticks 0 to tick - 1, before any command of this tick. A

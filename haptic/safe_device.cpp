@@ -48,6 +48,7 @@ std::uint32_t find_faults(const SafetyState& state, const DeviceSpecification& s
   const std::uint32_t pressed = input.buttons & specification.dead_man_buttons;
   if (pressed != specification.dead_man_buttons) faults |= safety_flag_dead_man;
   if (input.no_device) faults |= safety_flag_no_device;
+  if (input.off) faults |= safety_flag_off;
   return faults;
 }
 
@@ -129,6 +130,7 @@ struct FlagText {
 };
 
 constexpr FlagText flag_texts[] = {
+    {safety_flag_off, "Force switched off: Shift+Space switches it on"},
     {safety_flag_no_device, "Force cut: the device has no valid reading"},
     {safety_flag_jumped, "Force cut: the device reported an impossibly fast motion"},
     {safety_flag_not_finite, "Force cut: a number was not finite"},
@@ -189,6 +191,10 @@ SafeDevice::SafeDevice(Device& device, const DeviceReading& last)
   SPOONBILL_ASSERT(last.is_valid());
 }
 
+SafeDevice::~SafeDevice() {
+  device_->set_force(Vector3::Zero());
+}
+
 bool SafeDevice::has_jumped(const DeviceReading& reading) const {
   if (!position_known_) return false;
   const Vector3 offset_m = reading.pose().position_m - reading_.pose().position_m;
@@ -247,6 +253,7 @@ Vector3 SafeDevice::give(SafetyInput input) {
   input.buttons = reading_.buttons;
   input.dropped_ticks = dropped_ticks_;
   input.no_device = !answers_;
+  input.off = !force_on_;
   const SafeForce safe = make_safe(state_, limits_, input);
   flags_ = safe.flags;
   // After a stall the proxy has been reset before the simulation advanced.

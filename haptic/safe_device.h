@@ -4,7 +4,8 @@
 // SafeDevice is the only code that sets the force of a device, both live and in lock-step, so no force
 // reaches a hand unchecked. make_safe() applies these steps in every tick:
 //   1. A fault gives zero force within that tick: a value that is not finite, a stale simulation, a stall, a
-//      hand that moves impossibly fast, a released dead-man button, a device without a valid reading.
+//      hand that moves impossibly fast, a released dead-man button, a device without a valid reading. So does
+//      the user's switch.
 //   2. The force stays off until the requested force has been small for some ticks, so that a hand that
 //      starts inside the material is not thrown out; then the force ramps in.
 //   3. Its norm is limited to the maximum of the device.
@@ -46,6 +47,7 @@ enum SafetyFlag : std::uint32_t {
   // Further faults, which stay set like the faults above.
   safety_flag_no_device = 1u << 12,
   safety_flag_jumped = 1u << 13,
+  safety_flag_off = 1u << 14,
 };
 
 // Ticks between two calls that are a stall. In that time a hand moves by several millimetres, so the force is
@@ -69,6 +71,7 @@ struct SafetyInput {
   std::uint32_t buttons = 0;
   std::uint64_t dropped_ticks = 0;  // whole ticks that passed without a call since the last one
   bool stale = false;               // requested_n is not from this tick
+  bool off = false;                 // the user has switched the force off
   bool no_device = false;           // no valid reading: position and buttons are not from this tick
 };
 
@@ -123,6 +126,9 @@ class SafeDevice {
   // come from there. The workspace has the radius of the specification and is centred on the first valid
   // reading. `last` is returned while the device has never answered; it must be valid.
   explicit SafeDevice(Device& device, const DeviceReading& last = {});
+  ~SafeDevice();  // leaves the device without force
+  SafeDevice(const SafeDevice&) = delete;
+  SafeDevice& operator=(const SafeDevice&) = delete;
 
   // Moves or resizes the workspace, in scene coordinates.
   void set_workspace_centre(const Vector3& centre_m) {
@@ -139,6 +145,10 @@ class SafeDevice {
   bool consume_proxy_reset();
   // Requests a reset of the proxy, for a simulation that has missed the last motion of the hand.
   void request_proxy_reset() { proxy_is_stale_ = true; }
+
+  // Switches the force on or off; default: on. Off counts as a fault, so the force ramps in when it is back
+  // on.
+  void switch_force(bool on) { force_on_ = on; }
 
   // Sends the safe part of the requested force to the hand and returns it.
   Vector3 give(const Vector3& requested_n);
@@ -160,6 +170,7 @@ class SafeDevice {
   bool answers_ = true;
   bool position_known_ = false;  // the last tick had a valid reading
   bool proxy_is_stale_ = false;
+  bool force_on_ = true;
   SafetyState state_;
   std::uint32_t flags_ = safety_flag_none;
 };

@@ -162,6 +162,25 @@ TEST(SafeDevice, PlaybackPassesReadingsUnchangedAndAsksForNoReset) {
   }
 }
 
+TEST(SafeDevice, TheSwitchCutsTheForceAtOnceAndLetsItRampInAgain) {
+  Stub stub;
+  {
+    SafeDevice safe(stub);
+    engage(safe);
+    safe.switch_force(false);
+    run(safe, 1.0, 1);
+    EXPECT_EQ(stub.given_n, Vector3::Zero());
+    EXPECT_EQ(safe.flags(), safety_flag_off | safety_flag_cut);
+    EXPECT_FALSE(safe.consume_proxy_reset());  // the tool goes on sculpting
+    safe.switch_force(true);
+    run(safe, 1.0, 100);
+    EXPECT_EQ(stub.given_n, Vector3::Zero());
+    engage(safe);
+    EXPECT_EQ(stub.given_n, Vector3(1, 0, 0));
+  }
+  EXPECT_EQ(stub.given_n, Vector3::Zero());  // the chain has ended
+}
+
 TEST(SafeDevice, TheWorkspaceIsWhereTheHandBeginsOrWhereItIsPut) {
   Stub stub;
   stub.reading = reading_at_x(5.0);
