@@ -14,6 +14,8 @@ namespace {
 
 constexpr int quiet_ticks_needed = 10;
 
+constexpr double lowest_tick_count = lowest_tick_rate_hz * tick_s * TickHistory::window_ms;
+
 // Multiples of the workspace radius and of the maximum speed at which the force has faded to zero.
 constexpr double workspace_end = 1.1;
 constexpr double speed_end = 2.0;
@@ -41,6 +43,7 @@ std::uint32_t find_faults(const SafetyState& state, const DeviceSpecification& s
   if (!input.requested_n.allFinite() || !input.position_m.allFinite()) faults |= safety_flag_not_finite;
   if (input.stale) faults |= safety_flag_stale;
   if (is_stall(input.dropped_ticks)) faults |= safety_flag_stalled;
+  if (static_cast<double>(state.ticks.count()) < lowest_tick_count) faults |= safety_flag_slow;
   const bool comparable = state.position_known && !input.no_device && input.position_m.allFinite();
   if (comparable && is_jump(specification, input.position_m - state.position_m, input.dropped_ticks)) {
     faults |= safety_flag_jumped;
@@ -55,9 +58,11 @@ std::uint32_t find_faults(const SafetyState& state, const DeviceSpecification& s
 constexpr std::uint32_t faults_with_proxy_reset =
     safety_flag_not_finite | safety_flag_stalled | safety_flag_jumped;
 
-// Resets the chain, apart from the position, and returns zero force.
+// Resets the chain, apart from the position and the ticks, and returns zero force.
 SafeForce cut(SafetyState& state, const SafetyInput& input, std::uint32_t faults) {
+  const TickHistory ticks = state.ticks;
   state = SafetyState{};
+  state.ticks = ticks;
   state.cause = faults;
   state.position_known = !input.no_device && input.position_m.allFinite();
   if (state.position_known) state.position_m = input.position_m;
@@ -136,6 +141,7 @@ constexpr FlagText flag_texts[] = {
     {safety_flag_not_finite, "Force cut: a number was not finite"},
     {safety_flag_stale, "Force cut: the simulation did not keep up"},
     {safety_flag_stalled, "Force cut: the program stalled"},
+    {safety_flag_slow, "Force cut: fewer than 200 ticks a second; close other programs"},
     {safety_flag_buzzing, "Force cut: it was oscillating; touch more lightly, or lower the force scale"},
     {safety_flag_dead_man, "Force off: hold the safety button"},
     {safety_flag_waiting, "Force off until the tool is clear of the material"},
@@ -144,6 +150,7 @@ constexpr FlagText flag_texts[] = {
     {safety_flag_fast, "Force fades: move more slowly"},
     {safety_flag_force_limited, "Force at the device's limit: lower the force scale"},
     {safety_flag_change_limited, "Force limited: it changes too fast"},
+    {safety_flag_softened, "Force is softer: the program misses ticks"},
 };
 
 }  // namespace
@@ -154,6 +161,11 @@ bool is_jump(const DeviceSpecification& specification, const Vector3& offset_m, 
 }
 
 SafeForce make_safe(SafetyState& state, const DeviceSpecification& specification, const SafetyInput& input) {
+  if (is_stall(input.dropped_ticks)) {
+    state.ticks = TickHistory();
+  } else {
+    state.ticks.add(input.dropped_ticks);
+  }
   if (const std::uint32_t faults = find_faults(state, specification, input); faults != 0) {
     return cut(state, input, faults);
   }
@@ -162,9 +174,10 @@ SafeForce make_safe(SafetyState& state, const DeviceSpecification& specification
   state.position_m = input.position_m;
   state.position_known = true;
   SafeForce safe;
+  if (state.ticks.find_longest_hold() > 1) safe.flags |= safety_flag_softened;
   if (!state.engaged) {
     engage_when_quiet(state, specification, input.requested_n);
-    safe.flags = safety_flag_waiting | state.cause;
+    safe.flags |= safety_flag_waiting | state.cause;
     return safe;
   }
   ramp(state, specification, safe);

@@ -4,8 +4,8 @@
 // SafeDevice is the only code that sets the force of a device, both live and in lock-step, so no force
 // reaches a hand unchecked. make_safe() applies these steps in every tick:
 //   1. A fault gives zero force within that tick: a value that is not finite, a stale simulation, a stall, a
-//      hand that moves impossibly fast, a released dead-man button, a device without a valid reading. So does
-//      the user's switch.
+//      loop that misses most of its ticks, a hand that moves impossibly fast, a released dead-man button, a
+//      device without a valid reading. So does the user's switch.
 //   2. The force stays off until the requested force has been small for some ticks, so that a hand that
 //      starts inside the material is not thrown out; then the force ramps in.
 //   3. Its norm is limited to the maximum of the device.
@@ -24,6 +24,7 @@
 #include <string>
 
 #include "haptic/device.h"
+#include "haptic/tick_history.h"
 
 namespace spoonbill {
 
@@ -48,11 +49,17 @@ enum SafetyFlag : std::uint32_t {
   safety_flag_no_device = 1u << 12,
   safety_flag_jumped = 1u << 13,
   safety_flag_off = 1u << 14,
+  safety_flag_slow = 1u << 15,
+  // Another condition: the stiffness of the coupling is reduced (haptic/tick.h).
+  safety_flag_softened = 1u << 16,
 };
 
 // Ticks between two calls that are a stall. In that time a hand moves by several millimetres, so the force is
 // no longer valid. Shorter gaps only lower the speed that is computed from two positions.
 inline constexpr std::uint64_t stall_ticks = 10;
+
+// Ticks a second below which the force is cut, counted over the last 100 ms.
+inline constexpr double lowest_tick_rate_hz = 200.0;
 
 // Multiple of the device's maximum speed above which a change of position is a fault of the sensor.
 inline constexpr double jump_speed_factor = 5.0;
@@ -93,6 +100,7 @@ struct SafetyState {
   Vector3 slow_force_n = Vector3::Zero();   // low-passed force, which a hand can follow
   Vector3 swing_force_n = Vector3::Zero();  // last large deviation from slow_force_n
   double swings = 0.0;                      // decaying count of reversals
+  TickHistory ticks;                        // since the last stall
 };
 
 // Applies the chain to one tick. A pure function: it does not allocate, lock, read a clock or throw. The

@@ -159,6 +159,22 @@ TEST(Safety, AFewDroppedTicksCutNothing) {
   EXPECT_FALSE(safe.reset_proxy);
 }
 
+TEST(Safety, FewerThanTwoHundredTicksASecondGetNoForce) {
+  for (const std::uint64_t dropped : {1U, 4U, 5U, 8U}) {
+    SafetyState state = pressing_state(3.0);
+    SafetyInput input = wanting(3.0);
+    input.dropped_ticks = dropped;
+    SafeForce safe;
+    for (int tick = 0; tick < 100; ++tick) safe = make_safe(state, device, input);
+    const bool is_slow = 1000 / (dropped + 1) < 200;
+    EXPECT_EQ(safe.force_n.x(), is_slow ? 0.0 : 3.0) << dropped;
+    EXPECT_EQ(safe.flags, is_slow ? safety_flag_slow | safety_flag_cut : safety_flag_softened) << dropped;
+    // Back at full rate the force waits, as at the start.
+    for (int tick = 0; tick < 300; ++tick) safe = make_safe(state, device, wanting(3.0));
+    EXPECT_EQ(safe.flags, is_slow ? safety_flag_slow | safety_flag_waiting : safety_flag_none) << dropped;
+  }
+}
+
 TEST(Safety, ABuzzIsCutWithinATenthOfASecond) {
   for (const double frequency_hz : {50.0, 100.0, 250.0, 500.0}) {
     SafetyState state = pressing_state(1.0);
@@ -243,7 +259,7 @@ TEST(Safety, AllocatesNothing) {
 TEST(Safety, EveryFlagHasItsLine) {
   EXPECT_EQ(safety_text(safety_flag_none), "");
   std::set<std::string> lines;
-  for (std::uint32_t flag = safety_flag_not_finite; flag <= safety_flag_off; flag <<= 1) {
+  for (std::uint32_t flag = safety_flag_not_finite; flag <= safety_flag_softened; flag <<= 1) {
     const std::string line = safety_text(flag);
     EXPECT_FALSE(line.empty()) << flag;
     EXPECT_EQ(line.find('\n'), std::string::npos);
