@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace spoonbill {
 
@@ -16,8 +17,9 @@ constexpr double smallest_square = 1e-12;
 // Tolerance for the squared length of a unit quaternion; rounding to billionths changes it by up to 4e-9.
 constexpr double unit_square_tolerance = 1e-6;
 
+// A coordinate that is not finite becomes one that is not valid.
 std::int64_t whole_nanometres(double metres) {
-  if (!std::isfinite(metres)) return 0;
+  if (!std::isfinite(metres)) return reading_limit_nm + 1;
   const double limit = static_cast<double>(reading_limit_nm);
   return static_cast<std::int64_t>(std::round(std::clamp(metres * nanometres_per_metre, -limit, limit)));
 }
@@ -89,7 +91,10 @@ DeviceReading DeviceReading::from(const Pose& pose, std::uint32_t buttons) {
   const double q[4] = {pose.orientation.x(), pose.orientation.y(), pose.orientation.z(),
                        pose.orientation.w()};
   const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-  if (!std::isfinite(square) || square < smallest_square) return reading;
+  if (!std::isfinite(square) || square < smallest_square) {
+    std::fill(std::begin(reading.orientation_e9), std::end(reading.orientation_e9), 0);
+    return reading;
+  }
   const double length = std::sqrt(square);
   for (int k = 0; k < 4; ++k) {
     reading.orientation_e9[k] = static_cast<std::int64_t>(std::round(q[k] / length * billion));

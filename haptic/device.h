@@ -65,6 +65,8 @@ struct DeviceReading {
   std::int64_t position_nm[3] = {0, 0, 0};
   std::int64_t orientation_e9[4] = {0, 0, 0, 1'000'000'000};  // x, y, z, w
   std::uint32_t buttons = 0;  // button_main, button_hover and the device's own
+  // Ticks that passed without a reading since the one before. Set by SafeDevice, not by devices.
+  std::uint32_t missed = 0;
 
   // Returns true if every coordinate is within reading_limit_nm and the orientation is a unit quaternion.
   // Only valid readings may reach the simulation or a recording.
@@ -74,9 +76,8 @@ struct DeviceReading {
   // Returns the pose with the orientation normalised; the identity if the quaternion is zero.
   Pose pose() const;
 
-  // Rounds a pose to the nearest reading and clamps coordinates to reading_limit_nm. Coordinates that are not
-  // finite become 0 and a degenerate quaternion the identity, so that a faulty driver cannot harm the
-  // simulation.
+  // Rounds a pose to the nearest reading and clamps coordinates to reading_limit_nm. A pose that is not
+  // finite or has a degenerate quaternion gives an invalid reading, which SafeDevice treats as a fault.
   static DeviceReading from(const Pose& pose, std::uint32_t buttons);
 
   friend bool operator==(const DeviceReading&, const DeviceReading&) = default;
@@ -85,8 +86,9 @@ struct DeviceReading {
 // A haptic device, or a substitute for one.
 //
 // A factory function of each class opens the device, on a thread that may block, and returns an Error that
-// says what is missing. The destructor closes the device. The ticking thread calls read() and set_force();
-// its owner may also call them before that thread starts and after it has ended. Neither function may
+// says what is missing. The destructor closes it. The ticking thread calls read() and set_force(); its owner
+// may also call them before that thread starts and after it has ended, and the watchdog
+// (haptic/watched_device.h) sets zero force from its own thread, but never two of them at once. Neither may
 // allocate, lock, block or throw. A driver with a callback thread or a socket exchanges readings and forces
 // through a TripleBuffer, and drops a force that is not renewed within 50 ms.
 //
@@ -104,6 +106,10 @@ class Device {
 
   // Sets the force on the hand until the next tick, at most the maximum of the specification.
   virtual void set_force(const Vector3& force_n) = 0;
+
+  // Returns true for a device that plays back readings which were checked when they were recorded. They reach
+  // the simulation unchanged, and the recording contains the proxy resets that faults caused.
+  virtual bool is_playback() const { return false; }
 };
 
 }  // namespace spoonbill

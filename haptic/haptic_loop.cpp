@@ -38,20 +38,6 @@ void increase(std::atomic<std::uint64_t>& number, std::uint64_t by) noexcept {
 
 constexpr std::int64_t nanoseconds_per_second = 1'000'000'000;
 
-std::int64_t now_ns() {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * nanoseconds_per_second + now.tv_nsec;
-}
-
-void sleep_until(std::int64_t deadline_ns) {
-  timespec deadline{};
-  deadline.tv_sec = deadline_ns / nanoseconds_per_second;
-  deadline.tv_nsec = deadline_ns % nanoseconds_per_second;
-  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr) == EINTR) {
-  }
-}
-
 // Priority above ordinary threads and below the kernel threads at 99.
 constexpr int desired_priority = 80;
 
@@ -90,6 +76,17 @@ std::string make_notice(const RealTimeGrant& grant) {
          " to /etc/security/limits.conf and log in again";
 }
 
+// Returns the clock of the loop, which also advances while the machine is suspended. Some containers cannot
+// sleep by it.
+clockid_t loop_clock() {
+  static const clockid_t clock = [] {
+    const timespec past{};
+    return clock_nanosleep(CLOCK_BOOTTIME, TIMER_ABSTIME, &past, nullptr) == 0 ? CLOCK_BOOTTIME
+                                                                               : CLOCK_MONOTONIC;
+  }();
+  return clock;
+}
+
 // Requests first-in-first-out scheduling for the thread, at priority 80 or the highest permitted one, and
 // locks the memory of the process.
 RealTimeGrant grant_real_time(pthread_t thread) {
@@ -115,6 +112,24 @@ void release_real_time(const RealTimeGrant& grant) {
 }
 
 }  // namespace
+
+std::int64_t boot_time_ns() {
+  timespec now{};
+  clock_gettime(loop_clock(), &now);
+  return now.tv_sec * nanoseconds_per_second + now.tv_nsec;
+}
+
+void sleep_until_ns(std::int64_t deadline_ns) {
+  timespec deadline{};
+  deadline.tv_sec = deadline_ns / nanoseconds_per_second;
+  deadline.tv_nsec = deadline_ns % nanoseconds_per_second;
+  while (clock_nanosleep(loop_clock(), TIMER_ABSTIME, &deadline, nullptr) == EINTR) {
+  }
+}
+
+void make_ahead_of_haptic_thread(std::thread& thread) {
+  set_priority(thread.native_handle(), desired_priority + 1);
+}
 
 std::size_t DurationHistogram::bin_index(std::uint64_t duration_ns) noexcept {
   if (duration_ns < bins_per_octave) return duration_ns;
@@ -219,7 +234,7 @@ void HapticLoop::State::tick_at(std::int64_t begin_ns, std::int64_t lateness_ns,
   tick_begin_ns.store(begin_ns, std::memory_order_relaxed);
   body(tick);
   tick_begin_ns.store(0, std::memory_order_relaxed);
-  work.add(now_ns() - begin_ns);
+  work.add(boot_time_ns() - begin_ns);
   ++tick.index;
 }
 
@@ -228,12 +243,12 @@ void HapticLoop::State::run() noexcept {
   touch_stack();
   started.wait(false);
   LoopTick tick;
-  std::int64_t deadline_ns = now_ns() + period_ns;
+  std::int64_t deadline_ns = boot_time_ns() + period_ns;
   RateWindow window{deadline_ns - period_ns};
   for (;;) {
-    sleep_until(deadline_ns);
+    sleep_until_ns(deadline_ns);
     if (stopping.load(std::memory_order_acquire)) return;
-    const std::int64_t begin_ns = now_ns();
+    const std::int64_t begin_ns = boot_time_ns();
     tick_at(begin_ns, begin_ns - deadline_ns, tick);
     window.add_tick(begin_ns, rate_hz);
     deadline_ns += static_cast<std::int64_t>(tick.dropped + 1) * period_ns;
@@ -243,9 +258,9 @@ void HapticLoop::State::run() noexcept {
 void HapticLoop::State::watch() noexcept {
   const auto longest_ns = std::llround(longest_real_time_tick_s * 1e9);
   while (!stopping.load(std::memory_order_acquire)) {
-    sleep_until(now_ns() + longest_ns / 5);
+    sleep_until_ns(boot_time_ns() + longest_ns / 5);
     const std::int64_t begin_ns = tick_begin_ns.load(std::memory_order_relaxed);
-    if (begin_ns == 0 || now_ns() - begin_ns <= longest_ns) continue;
+    if (begin_ns == 0 || boot_time_ns() - begin_ns <= longest_ns) continue;
     const sched_param ordinary{};
     pthread_setschedparam(thread.native_handle(), SCHED_OTHER, &ordinary);
     fifo.store(false, std::memory_order_relaxed);
@@ -281,7 +296,7 @@ Result<HapticLoop> HapticLoop::start(const LoopSettings& settings,
   if (state->grant.fifo) {
     try {
       state->watcher = std::thread([&inner = *state] { inner.watch(); });
-      set_priority(state->watcher.native_handle(), desired_priority + 1);
+      make_ahead_of_haptic_thread(state->watcher);
     } catch (const std::system_error&) {
       // Without a watcher the loop runs all the same, but no tick loses its real-time scheduling.
     }

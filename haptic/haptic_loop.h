@@ -5,6 +5,8 @@
 //   ticks      [0]          [1........................]  [4]       [5]
 //                                        ^ dropped    ^ late, but by less than a period
 //
+// The clock also runs while the machine is suspended, so that a resume is a gap like any other.
+//
 // A tick that is late by a whole period or more is dropped and never caught up; the next tick receives the
 // number of dropped ticks. The function must not lock, allocate, access files or block in any other way.
 #pragma once
@@ -16,14 +18,22 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <thread>
 
 #include "engine/base/geometry.h"
 #include "engine/base/result.h"
 
 namespace spoonbill {
 
-// A lock-free histogram of durations. Exactly one thread calls add(). Any thread may read; a reader may miss
-// values that are being added.
+// Returns the time since the machine was started, including the time it was suspended.
+std::int64_t boot_time_ns();
+void sleep_until_ns(std::int64_t deadline_ns);
+
+// Requests first-in-first-out scheduling above that of the haptic thread, for threads that only watch it.
+void make_ahead_of_haptic_thread(std::thread& thread);
+
+// A lock-free histogram of durations. Exactly one thread calls add(). Any thread may read; values being added
+// may not yet be included.
 class DurationHistogram {
  public:
   // Adds a duration. Negative durations count as zero.

@@ -7,11 +7,15 @@
 //   {"tick":0,"state_hash":"0123456789abcdef"}                                      every 1,000 ticks
 //   {"tick":0,"command":"place_plane","point_mm":[20,0,0],"normal":[1,0,0]}         a command
 //   {"tick":0,"ticks":100,"dx_nm":[...],"dy_nm":[...],"dz_nm":[...],"dq_e9":[[...],[...],[...],[...]],
-//    "buttons":[...]}                                                               motion (on one line)
+//    "buttons":[...],"missed":[...]}                                                motion (on one line)
 //   {"end":true,"ticks":4300,"state_hash":"fedcba9876543210"}                       last line
 //
-// The last line also has "missed":N if a live recording missed N periods of 1 ms. The performance took longer
-// than its ticks by this time, which a replay skips.
+// The last line also has "missed":N if a live recording missed N periods of 1 ms: the performance then took
+// that much longer than its ticks.
+//
+// Faults of the device and the program are recorded by their effects, so that a session with faults replays
+// to its own states: without a valid reading the tool only points (button_hover), and a reset of the proxy
+// and the switch of the force are commands.
 //
 // Version 1. Lines are in the order of their ticks. Within a tick the order is: state hash, commands, motion.
 // The state hash is that of the simulation after ticks 0 to tick - 1, before any command of this tick. A
@@ -19,8 +23,9 @@
 // a command or the end, so that the same recording always has the same lines. dx_nm, dy_nm and dz_nm are the
 // differences of DeviceReading::position_nm to the previous reading (before tick 0: the default reading),
 // dq_e9 those of orientation_e9 (x, y, z, w). Each is omitted if all its numbers are zero. `buttons` lists
-// the buttons themselves and is omitted while they do not change. The hash of the last line is that of the
-// final state.
+// the buttons themselves and is omitted while they do not change. `missed` lists DeviceReading::missed and is
+// omitted if all are zero, as in lock-step and in recordings from before it existed. The hash of the last
+// line is that of the final state.
 //
 // device: name, maximum_force_n, maximum_stiffness_n_per_m, maximum_damping_n_s_per_m, workspace_radius_m,
 // position_resolution_m, senses_orientation, actuates_torque. Optional, with the defaults of

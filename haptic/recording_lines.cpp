@@ -125,6 +125,21 @@ void read_buttons(FieldReader& reader, const DeviceReading& before, std::span<De
   }
 }
 
+void read_missed(FieldReader& reader, std::span<DeviceReading> readings) {
+  const char* field = "missed";
+  const int count = static_cast<int>(readings.size());
+  for (DeviceReading& reading : readings) reading.missed = 0;
+  if (!reader.has(field)) return reader.ignore(field);
+  const Json& list = reader.list(field, {count, count});
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (!list[i].is_number_unsigned() || list[i].get<std::uint64_t>() > 0xffffffffu) {
+      reader.refuse(field, "contains " + json_excerpt(list[i]) + ", must contain 32-bit whole numbers");
+      return;
+    }
+    readings[i].missed = list[i].get<std::uint32_t>();
+  }
+}
+
 Json device_to_json(const DeviceSpecification& device) {
   Json json;
   json["name"] = device.name;
@@ -226,6 +241,11 @@ Json motion_to_json(std::uint64_t tick, const DeviceReading& before,
     Json& buttons = json["buttons"] = Json::array();
     for (const DeviceReading& reading : readings) buttons.push_back(reading.buttons);
   }
+  const auto has_missed = [](const DeviceReading& reading) { return reading.missed != 0; };
+  if (std::any_of(readings.begin(), readings.end(), has_missed)) {
+    Json& missed = json["missed"] = Json::array();
+    for (const DeviceReading& reading : readings) missed.push_back(reading.missed);
+  }
   return json;
 }
 
@@ -239,6 +259,7 @@ void read_motion(FieldReader& reader, std::vector<DeviceReading>& readings) {
   read_positions(reader, before, added);
   read_orientations(reader, before, added);
   read_buttons(reader, before, added);
+  read_missed(reader, added);
 }
 
 Status check_command(const Json& command, const std::string& source) {

@@ -117,7 +117,11 @@ class RecordingBuilder {
       add_checkpoint(reader);
     } else {
       check_tick(reader);
+      const std::size_t first = recording_.readings.size();
       read_motion(reader, recording_.readings);
+      for (std::size_t i = first; i < recording_.readings.size(); ++i) {
+        recording_.missed += recording_.readings[i].missed;
+      }
     }
     reader.finish();
     if (recording_.readings.size() > recording_tick_limit) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "engine/base/assert.h"
@@ -13,9 +14,7 @@ namespace {
 
 constexpr int quiet_ticks_needed = 10;
 
-// Number of dropped ticks that counts as a stall. In this time a hand can move by its own breadth, so an old
-// force is no longer valid. Shorter gaps are covered by the limit on the change of the force.
-constexpr std::uint64_t stall_ticks = 25;
+constexpr double lowest_tick_count = lowest_tick_rate_hz * tick_s * TickHistory::window_ms;
 
 // The force has faded to zero at these multiples of the workspace radius and of the maximum speed.
 constexpr double workspace_end = 1.1;
@@ -38,24 +37,38 @@ double fade(double value, double begin, double end) {
   return std::clamp((end - value) / (end - begin), 0.0, 1.0);
 }
 
-std::uint32_t find_faults(const DeviceSpecification& specification, const SafetyInput& input) {
+std::uint32_t find_faults(const SafetyState& state, const DeviceSpecification& specification,
+                          const SafetyInput& input) {
   std::uint32_t faults = safety_flag_none;
   if (!input.requested_n.allFinite() || !input.position_m.allFinite()) faults |= safety_flag_not_finite;
   if (input.stale) faults |= safety_flag_stale;
-  if (input.dropped_ticks >= stall_ticks) faults |= safety_flag_stalled;
+  if (is_stall(input.dropped_ticks)) faults |= safety_flag_stalled;
+  if (static_cast<double>(state.ticks.count()) < lowest_tick_count) faults |= safety_flag_slow;
+  const bool comparable = state.position_known && !input.no_device && input.position_m.allFinite();
+  if (comparable && is_jump(specification, input.position_m - state.position_m, input.dropped_ticks)) {
+    faults |= safety_flag_jumped;
+  }
   const std::uint32_t pressed = input.buttons & specification.dead_man_buttons;
   if (pressed != specification.dead_man_buttons) faults |= safety_flag_dead_man;
   if (input.no_device) faults |= safety_flag_no_device;
+  if (input.off) faults |= safety_flag_off;
   return faults;
 }
 
-// Resets the chain and returns zero force.
-SafeForce cut(SafetyState& state, std::uint32_t faults) {
+constexpr std::uint32_t faults_with_proxy_reset =
+    safety_flag_not_finite | safety_flag_stalled | safety_flag_jumped;
+
+// Resets the chain, apart from the position and the ticks, and returns zero force.
+SafeForce cut(SafetyState& state, const SafetyInput& input, std::uint32_t faults) {
+  const TickHistory ticks = state.ticks;
   state = SafetyState{};
+  state.ticks = ticks;
   state.cause = faults;
+  state.position_known = !input.no_device && input.position_m.allFinite();
+  if (state.position_known) state.position_m = input.position_m;
   SafeForce safe;
   safe.flags = faults | safety_flag_cut;
-  safe.reset_proxy = (faults & safety_flag_stalled) != 0;
+  safe.reset_proxy = (faults & faults_with_proxy_reset) != 0;
   return safe;
 }
 
@@ -66,10 +79,8 @@ void engage_when_quiet(SafetyState& state, const DeviceSpecification& specificat
   state.engaged = state.quiet_ticks >= quiet_ticks_needed;
 }
 
-double compute_speed(const SafetyState& state, const SafetyInput& input) {
-  if (!state.position_known) return 0.0;
-  const double elapsed_s = (1.0 + static_cast<double>(input.dropped_ticks)) * tick_s;
-  return (input.position_m - state.position_m).stableNorm() / elapsed_s;
+double compute_speed(const Vector3& offset_m, std::uint64_t dropped_ticks) {
+  return offset_m.stableNorm() / ((1.0 + static_cast<double>(dropped_ticks)) * tick_s);
 }
 
 void ramp(SafetyState& state, const DeviceSpecification& specification, SafeForce& safe) {
@@ -124,10 +135,13 @@ struct FlagText {
 };
 
 constexpr FlagText flag_texts[] = {
-    {safety_flag_no_device, "Force cut: the device does not answer"},
+    {safety_flag_off, "Force switched off: Shift+Space switches it on"},
+    {safety_flag_no_device, "Force cut: the device has no valid reading"},
+    {safety_flag_jumped, "Force cut: the device reported an impossibly fast motion"},
     {safety_flag_not_finite, "Force cut: a number was not finite"},
     {safety_flag_stale, "Force cut: the simulation did not keep up"},
     {safety_flag_stalled, "Force cut: the program stalled"},
+    {safety_flag_slow, "Force cut: fewer than 200 ticks a second; close other programs"},
     {safety_flag_buzzing, "Force cut: it was oscillating; touch more lightly, or lower the force scale"},
     {safety_flag_dead_man, "Force off: hold the safety button"},
     {safety_flag_waiting, "Force off until the tool is clear of the material"},
@@ -136,25 +150,40 @@ constexpr FlagText flag_texts[] = {
     {safety_flag_fast, "Force fades: move more slowly"},
     {safety_flag_force_limited, "Force at the device's limit: lower the force scale"},
     {safety_flag_change_limited, "Force limited: it changes too fast"},
+    {safety_flag_softened, "Force is softer: the program misses ticks"},
 };
 
 }  // namespace
 
+bool is_jump(const DeviceSpecification& specification, const Vector3& offset_m, std::uint64_t dropped_ticks) {
+  const double limit_m_per_s = jump_speed_factor * specification.maximum_speed_m_per_s;
+  return !(compute_speed(offset_m, dropped_ticks) <= limit_m_per_s);
+}
+
 SafeForce make_safe(SafetyState& state, const DeviceSpecification& specification, const SafetyInput& input) {
-  if (const std::uint32_t faults = find_faults(specification, input); faults != 0) return cut(state, faults);
-  const double speed_m_per_s = compute_speed(state, input);
+  if (is_stall(input.dropped_ticks)) {
+    state.ticks = TickHistory();
+  } else {
+    state.ticks.add(input.dropped_ticks);
+  }
+  if (const std::uint32_t faults = find_faults(state, specification, input); faults != 0) {
+    return cut(state, input, faults);
+  }
+  const double speed_m_per_s =
+      state.position_known ? compute_speed(input.position_m - state.position_m, input.dropped_ticks) : 0.0;
   state.position_m = input.position_m;
   state.position_known = true;
   SafeForce safe;
+  if (state.ticks.find_longest_hold() > 1) safe.flags |= safety_flag_softened;
   if (!state.engaged) {
     engage_when_quiet(state, specification, input.requested_n);
-    safe.flags = safety_flag_waiting | state.cause;
+    safe.flags |= safety_flag_waiting | state.cause;
     return safe;
   }
   ramp(state, specification, safe);
   const Vector3 requested_n = limit_force(state, specification, input, speed_m_per_s, safe);
   safe.force_n = limit_change(state.force_n, requested_n, specification, safe);
-  if (is_buzzing(state, specification, safe.force_n)) return cut(state, safety_flag_buzzing);
+  if (is_buzzing(state, specification, safe.force_n)) return cut(state, input, safety_flag_buzzing);
   state.force_n = safe.force_n;
   return safe;
 }
@@ -175,33 +204,58 @@ SafeDevice::SafeDevice(Device& device, const DeviceReading& last)
   SPOONBILL_ASSERT(last.is_valid());
 }
 
-DeviceReading SafeDevice::read() {
+SafeDevice::~SafeDevice() {
+  device_->set_force(Vector3::Zero());
+}
+
+bool SafeDevice::has_jumped(const DeviceReading& reading) const {
+  if (!position_known_) return false;
+  const Vector3 offset_m = reading.pose().position_m - reading_.pose().position_m;
+  return is_jump(limits_, offset_m, dropped_ticks_);
+}
+
+DeviceReading SafeDevice::read(std::uint64_t dropped_ticks) {
   const std::optional<DeviceReading> reading = device_->read();
-  const bool answered = std::exchange(answers_, reading.has_value() && reading->is_valid());
-  if (!answers_) {
-    reading_.buttons = button_hover;
+  if (device_->is_playback() && reading) {
+    reading_ = *reading;
+    if (!workspace_centre_m_) workspace_centre_m_ = reading_.pose().position_m;
     return reading_;
   }
-  if (!answered) proxy_is_stale_ = true;
+  dropped_ticks_ = dropped_ticks;
+  const auto missed = static_cast<std::uint32_t>(
+      std::min<std::uint64_t>(dropped_ticks, std::numeric_limits<std::uint32_t>::max()));
+  const bool answered = std::exchange(answers_, reading.has_value() && reading->is_valid());
+  if (!answered || is_stall(dropped_ticks)) proxy_is_stale_ = true;
+  if (!answers_) {
+    position_known_ = false;
+    reading_.buttons = button_hover;
+    reading_.missed = missed;
+    return reading_;
+  }
+  const bool jumped = has_jumped(*reading);
+  position_known_ = true;
   reading_ = *reading;
+  reading_.missed = missed;
   if (!workspace_centre_m_) workspace_centre_m_ = reading_.pose().position_m;
-  return reading_;
+  if (!jumped) return reading_;
+  DeviceReading pointing = reading_;
+  pointing.buttons = button_hover;
+  return pointing;
 }
 
 bool SafeDevice::consume_proxy_reset() {
-  return std::exchange(proxy_is_stale_, false);
+  // While the device has no valid reading, nothing touches; the reset waits for the hand.
+  return answers_ && std::exchange(proxy_is_stale_, false);
 }
 
-Vector3 SafeDevice::give(const Vector3& requested_n, std::uint64_t dropped_ticks) {
+Vector3 SafeDevice::give(const Vector3& requested_n) {
   SafetyInput input;
   input.requested_n = requested_n;
-  input.dropped_ticks = dropped_ticks;
   return give(input);
 }
 
-void SafeDevice::give_none(std::uint64_t dropped_ticks) {
+void SafeDevice::give_none() {
   SafetyInput input;
-  input.dropped_ticks = dropped_ticks;
   input.stale = true;
   give(input);
 }
@@ -210,10 +264,14 @@ Vector3 SafeDevice::give(SafetyInput input) {
   input.position_m = reading_.pose().position_m;
   if (workspace_centre_m_) input.position_m -= *workspace_centre_m_;
   input.buttons = reading_.buttons;
+  input.dropped_ticks = dropped_ticks_;
   input.no_device = !answers_;
+  input.off = !force_on_;
   const SafeForce safe = make_safe(state_, limits_, input);
   flags_ = safe.flags;
-  proxy_is_stale_ = proxy_is_stale_ || safe.reset_proxy;
+  // After a stall the proxy has been reset before the simulation advanced.
+  const bool is_reset = (flags_ & safety_flag_stalled) != 0;
+  if (!device_->is_playback()) proxy_is_stale_ = proxy_is_stale_ || (safe.reset_proxy && !is_reset);
   device_->set_force(safe.force_n);
   return safe.force_n;
 }

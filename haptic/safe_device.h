@@ -4,7 +4,8 @@
 // SafeDevice is the only code that sets the force of a device, both live and in lock-step, so no force
 // reaches a hand unchecked. make_safe() applies these steps in every tick:
 //   1. A fault gives zero force within that tick: a value that is not finite, a stale simulation, a stall, a
-//      released dead-man button, a device that does not answer.
+//      loop that misses most of its ticks, a hand that moves impossibly fast, a released dead-man button, a
+//      device without a valid reading. So does the user's switch.
 //   2. The force stays off until the requested force has been small for some ticks, so that a hand that
 //      starts inside the material is not thrown out; then the force ramps in.
 //   3. Its norm is limited to the maximum of the device.
@@ -23,6 +24,7 @@
 #include <string>
 
 #include "haptic/device.h"
+#include "haptic/tick_history.h"
 
 namespace spoonbill {
 
@@ -43,9 +45,32 @@ enum SafetyFlag : std::uint32_t {
   safety_flag_fast = 1u << 9,
   safety_flag_outside = 1u << 10,
   safety_flag_change_limited = 1u << 11,
-  // Another fault, which stays set like the faults above.
+  // Further faults, which stay set like the faults above.
   safety_flag_no_device = 1u << 12,
+  safety_flag_jumped = 1u << 13,
+  safety_flag_off = 1u << 14,
+  safety_flag_slow = 1u << 15,
+  // Another condition: the stiffness of the coupling is reduced (haptic/tick.h).
+  safety_flag_softened = 1u << 16,
 };
+
+// Ticks between two calls that are a stall. In that time a hand moves by several millimetres, so the force is
+// no longer valid. Shorter gaps only lower the speed that is computed from two positions.
+inline constexpr std::uint64_t stall_ticks = 10;
+
+// Ticks a second below which the force is cut, counted over the last 100 ms.
+inline constexpr double lowest_tick_rate_hz = 200.0;
+
+// Multiple of the device's maximum speed above which a change of position is a fault of the sensor.
+inline constexpr double jump_speed_factor = 5.0;
+
+// Returns whether no hand on the device can have moved by `offset_m` in dropped_ticks + 1 ticks.
+bool is_jump(const DeviceSpecification& specification, const Vector3& offset_m, std::uint64_t dropped_ticks);
+
+// Returns whether so many whole ticks without a call are a stall.
+constexpr bool is_stall(std::uint64_t dropped_ticks) {
+  return dropped_ticks >= stall_ticks - 1;
+}
 
 struct SafetyInput {
   Vector3 requested_n = Vector3::Zero();  // force requested by the coupling
@@ -53,7 +78,8 @@ struct SafetyInput {
   std::uint32_t buttons = 0;
   std::uint64_t dropped_ticks = 0;  // whole ticks that passed without a call since the last one
   bool stale = false;               // requested_n is not from this tick
-  bool no_device = false;           // the device does not answer: position and buttons are not from this tick
+  bool off = false;                 // the user has switched the force off
+  bool no_device = false;           // no valid reading: position and buttons are not from this tick
 };
 
 struct SafeForce {
@@ -69,11 +95,12 @@ struct SafetyState {
   double gain = 0.0;                  // progress of the ramp, 0 to 1
   std::uint32_t cause = 0;            // faults that caused the last restart
   Vector3 force_n = Vector3::Zero();  // force of the last tick
-  bool position_known = false;
+  bool position_known = false;        // false without a valid position in the last tick
   Vector3 position_m = Vector3::Zero();
   Vector3 slow_force_n = Vector3::Zero();   // low-passed force, which a hand can follow
   Vector3 swing_force_n = Vector3::Zero();  // last large deviation from slow_force_n
   double swings = 0.0;                      // decaying count of reversals
+  TickHistory ticks;                        // since the last stall
 };
 
 // Applies the chain to one tick. A pure function: it does not allocate, lock, read a clock or throw. The
@@ -86,13 +113,19 @@ std::string safety_text(std::uint32_t flags);
 
 // A device behind the safety chain.
 //
-//   once a tick:  read() -> reset the proxy if consume_proxy_reset() -> advance the simulation -> give(force)
-//   or, without a simulation to advance:  read() -> give_none()
+//   once a tick:  read(dropped ticks) -> reset the proxy if consume_proxy_reset() -> advance the simulation
+//   ->
+//                 give(force)
+//   or, without a simulation to advance:  read(dropped ticks) -> give_none()
 //
 // A device that does not answer, or answers with an invalid reading, gets no force. Its last valid reading
 // replaces the missing one, as a hand that only points: the tool releases the material and touches nothing.
-// When the device is back, the proxy is reset to the position of the hand, and the force returns as after any
-// other fault.
+// So does a hand that moves impossibly fast. When the fault is over, the proxy is reset to the position of
+// the hand, and the force returns as after any other fault. After a stall the proxy is reset in the same
+// tick.
+//
+// All of this is in the readings and proxy resets that a recording holds; the readings of a playback device
+// pass unchanged.
 //
 // One owner, the owner of the device. Does not allocate, lock or read a clock.
 class SafeDevice {
@@ -101,37 +134,51 @@ class SafeDevice {
   // check_specification(). The workspace has the radius of the specification and is centred on the first
   // valid reading. read() returns `last` as long as the device has never answered; it must be valid.
   explicit SafeDevice(Device& device, const DeviceReading& last = {});
+  ~SafeDevice();  // leaves the device without force
+  SafeDevice(const SafeDevice&) = delete;
+  SafeDevice& operator=(const SafeDevice&) = delete;
 
   // Moves or resizes the workspace, in scene coordinates.
-  void set_workspace_centre(const Vector3& centre_m) { workspace_centre_m_ = centre_m; }
+  void set_workspace_centre(const Vector3& centre_m) {
+    workspace_centre_m_ = centre_m;
+    state_.position_known = false;
+  }
   void set_workspace_radius(double radius_m) { limits_.workspace_radius_m = radius_m; }
 
   // Returns a valid reading for this tick: that of the device, or a replacement as described above.
-  DeviceReading read();
+  // `dropped_ticks` is the number of whole ticks skipped before this one.
+  DeviceReading read(std::uint64_t dropped_ticks = 0);
 
   // Returns true if the proxy must be moved to the device before this tick advances, and clears the request.
   bool consume_proxy_reset();
   // Requests a reset of the proxy, for use after the simulation has missed motions of the hand.
   void request_proxy_reset() { proxy_is_stale_ = true; }
 
-  // Sends the safe part of the requested force to the hand and returns it. `dropped_ticks` is the number of
-  // whole ticks skipped before this one.
-  Vector3 give(const Vector3& requested_n, std::uint64_t dropped_ticks);
+  // Switches the force on or off; default: on. Off counts as a fault, so the force ramps in when it is back
+  // on.
+  void switch_force(bool on) { force_on_ = on; }
+
+  // Sends the safe part of the requested force to the hand and returns it.
+  Vector3 give(const Vector3& requested_n);
   // Sends zero force while nothing computes a force.
-  void give_none(std::uint64_t dropped_ticks);
+  void give_none();
 
   // SafetyFlag bits of the last force sent.
   std::uint32_t flags() const { return flags_; }
 
  private:
   Vector3 give(SafetyInput input);
+  bool has_jumped(const DeviceReading& reading) const;
 
   Device* device_;
   DeviceSpecification limits_;  // limits of the device, except for the radius of the workspace
   std::optional<Vector3> workspace_centre_m_;
   DeviceReading reading_;  // last valid reading
+  std::uint64_t dropped_ticks_ = 0;
   bool answers_ = true;
+  bool position_known_ = false;  // the last tick had a valid reading
   bool proxy_is_stale_ = false;
+  bool force_on_ = true;
   SafetyState state_;
   std::uint32_t flags_ = safety_flag_none;
 };

@@ -8,6 +8,7 @@
 
 #include "engine/simulation/simulation.h"
 #include "haptic/device.h"
+#include "haptic/tick_history.h"
 
 namespace spoonbill {
 
@@ -21,11 +22,19 @@ namespace spoonbill {
 // tick). The hand is therefore damped along the spring by 2 K t, at most by the maximum damping of the
 // device.
 //
+// A force that is held for several ticks is later still, so the stiffness is scaled by 1 ms over the longest
+// hold of the last 100 ms. A spring that becomes stiffer under load would give the hand energy: under load it
+// recovers only the energy that its softening withheld, and the rest once the tool is free.
+//
 // Plain data, owned with the simulation by the ticking thread.
 struct CouplingState {
   Vector3 force_n = Vector3::Zero();  // force on the hand
   Vector3 position_m = Vector3::Zero();
   bool position_known = false;
+  TickHistory ticks;
+  double stiffness_scale = 1.0;
+  double length_m = 0.0;    // distance to the proxy in the last tick
+  double withheld_j = 0.0;  // energy of the spring that its softening has withheld from the hand
 };
 
 struct TickResult {
@@ -38,11 +47,11 @@ TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpe
                 const DeviceReading& reading);
 
 // Computes the coupling alone. `displacement_m` is the vector from the device to the proxy, zero without
-// contact.
+// contact; `missed` is that of DeviceReading.
 TickResult couple(CouplingState& coupling, const DeviceSpecification& specification,
-                  const Vector3& position_m, const Vector3& displacement_m);
+                  const Vector3& position_m, const Vector3& displacement_m, std::uint32_t missed = 0);
 
-// Adds the coupling to the state hash.
+// Adds the coupling to the state hash: the last three members only after missed ticks.
 void add_to_hash(const CouplingState& coupling, StateHash& hash);
 
 }  // namespace spoonbill

@@ -91,6 +91,7 @@ class PlaybackDevice : public Device {
   // readings, returns the default reading.
   std::optional<DeviceReading> read() override;
   void set_force(const Vector3& force_n) override;
+  bool is_playback() const override { return true; }
 
   bool finished() const { return next_ >= readings_.size(); }
 

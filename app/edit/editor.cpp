@@ -282,14 +282,10 @@ ViewSettings Editor::view_settings(double top_px) const {
 Status Editor::lay_out(const LiveFrame& frame, double seconds) {
   const Theme& theme = window_.theme();
   ImGui::PushFont(theme.fonts.body);
-  MenuState state{frame.facts.can_undo,
-                  frame.facts.can_redo,
-                  frame.recording,
-                  frame.facts.symmetry.on,
-                  static_cast<int>(frame.snapshot.planes.size()),
-                  settings_.navigation,
-                  view_.overlays,
-                  view_.see_through_body};
+  MenuState state{
+      frame.facts.can_undo,    frame.facts.can_redo, frame.recording,
+      frame.facts.symmetry.on, frame.facts.force_on, static_cast<int>(frame.snapshot.planes.size()),
+      settings_.navigation,    view_.overlays,       view_.see_through_body};
   const MenuChoice choice = draw_menu(state);
   settings_.navigation = choice.navigation;
   for (const EditAction action : choice.actions) act(action, frame);
@@ -319,6 +315,7 @@ void Editor::lay_out_panel(const LiveFrame& frame) {
   model.presets = presets_;
   model.rate_hz = figures.rate_hz;
   model.rate_is_nominal = false;
+  model.force_on = frame.facts.force_on;
   model.safety_text = safety_text(frame.safety_flags);
   model.drawing_text = budget_.text();
   PanelAnswer answer = draw_panel(model, window_.theme(), shown_.panel_px);
@@ -363,6 +360,9 @@ void Editor::lay_out_prompts() {
 }
 
 void Editor::send(Request request) {
+  if (const auto* force = std::get_if<SwitchForce>(&request); force != nullptr && !force->on) {
+    return live_->cut_force();
+  }
   if (live_->ask(std::move(request))) return;
   messages_.add_problem("The haptic thread is busy: try again");
 }
@@ -383,14 +383,14 @@ Pointer Editor::read_pointer() const {
 
 void Editor::handle_keys(const LiveFrame& frame) {
   const std::vector<GlfwWindow::KeyPress> presses = window_.window().consume_key_presses();
-  if (unsaved_.is_open() || recovery_.is_open()) return;
+  const bool is_asking = unsaved_.is_open() || recovery_.is_open();
   for (const GlfwWindow::KeyPress& press : presses) {
     // While text is typed, Esc is the only key that acts as a command.
     if (ImGui::GetIO().WantTextInput && press.key != GLFW_KEY_ESCAPE) continue;
     for (const KeyBinding& binding : key_bindings()) {
       const bool matches =
           binding.key == press.key && binding.ctrl == press.ctrl && binding.shift == press.shift;
-      if (!matches) continue;
+      if (!matches || (is_asking && binding.action != EditAction::cut_force)) continue;
       if (binding.action == EditAction::choose_tool) {
         set_tool(frame, binding.kind, binding.tool_action);
       } else {
@@ -515,6 +515,12 @@ void Editor::act(EditAction action, const LiveFrame& frame) {
         hand_.release_press();
         send(CancelStroke{});
       }
+      break;
+    case EditAction::cut_force:
+      send(SwitchForce{false});
+      break;
+    case EditAction::allow_force:
+      send(SwitchForce{true});
       break;
     case EditAction::toggle_symmetry: {
       Symmetry symmetry = frame.facts.symmetry;

@@ -26,6 +26,8 @@ constexpr auto before_tools = std::to_array<KeyBinding>({
     {Action::redo, GLFW_KEY_Z, true, true, "Ctrl+Shift+Z", "Redo stroke"},
     {Action::redo, GLFW_KEY_Y, true, false, "Ctrl+Y", "Redo stroke"},
     {Action::cancel, GLFW_KEY_ESCAPE, false, false, "Esc", "Cancel stroke, or close prompt"},
+    {Action::cut_force, GLFW_KEY_SPACE, false, false, "Space", "Force off at once"},
+    {Action::allow_force, GLFW_KEY_SPACE, false, true, "Shift+Space", "Force on"},
 });
 
 constexpr auto after_tools = std::to_array<KeyBinding>({
@@ -145,6 +147,9 @@ void draw_edit(const MenuState& state, const ActionItems& item) {
   item("Add fixing plane", EditAction::place_plane);
   item("Remove fixing planes", EditAction::remove_planes, state.plane_count > 0);
   item("Keep shape", EditAction::keep_shape);
+  ImGui::Separator();
+  item(state.force_on ? "Force off" : "Force on",
+       state.force_on ? EditAction::cut_force : EditAction::allow_force);
   ImGui::EndMenu();
 }
 

@@ -23,6 +23,8 @@ enum class EditAction {
   undo,
   redo,
   cancel,
+  cut_force,
+  allow_force,
   toggle_symmetry,
   toggle_recording,
   screenshot,
@@ -67,6 +69,7 @@ struct MenuState {
   bool can_redo = false;
   bool recording = false;
   bool symmetric = false;
+  bool force_on = true;
   int plane_count = 0;
   NavigationPreset navigation = NavigationPreset::rhino;
   Overlays overlays;

@@ -76,7 +76,8 @@ bool is_main_thread_request(const Request& request) {
 HapticSide::HapticSide(std::unique_ptr<Session> session, std::unique_ptr<Device> device,
                        LiveExchange& exchange, Journal& journal, SessionWorker& worker)
     : device_(std::move(device)),
-      safe_device_(*device_, session->reading),
+      watched_device_(*device_),
+      safe_device_(watched_device_, session->reading),
       exchange_(&exchange),
       journal_(&journal),
       worker_(&worker) {
@@ -91,12 +92,12 @@ void HapticSide::tick(const LoopTick& tick) noexcept {
     run_tick(tick);
     last_tick_failed_ = false;
   } catch (const FailedAssertion& failure) {
-    abandon_tick(failure, tick.dropped);
+    abandon_tick(failure);
   }
 }
 
-void HapticSide::abandon_tick(const FailedAssertion& failure, std::uint64_t dropped) {
-  safe_device_.give_none(dropped);
+void HapticSide::abandon_tick(const FailedAssertion& failure) {
+  safe_device_.give_none();
   safe_device_.request_proxy_reset();
   if (lent_.session != nullptr) lent_.session->flags |= tick_flag_failed;
   recording_ = false;
@@ -106,19 +107,22 @@ void HapticSide::abandon_tick(const FailedAssertion& failure, std::uint64_t drop
 
 void HapticSide::run_tick(const LoopTick& tick) {
   if (journal_->consume_recording_failure()) recording_ = false;
-  const DeviceReading reading = safe_device_.read();
+  // A force that the watchdog has cut comes back as after any other stall.
+  const std::uint64_t cut_ticks = watched_device_.consume_cut() ? stall_ticks - 1 : 0;
+  const DeviceReading reading = safe_device_.read(std::max(tick.dropped, cut_ticks));
   if (lent_.session == nullptr) reclaim_if_done();
   if (lent_.session != nullptr) {
     record_state_when_due();
     run_commands();
   }
-  if (lent_.session == nullptr) return safe_device_.give_none(tick.dropped);
-  advance_session(reading, tick.dropped);
+  update_force_switch();
+  if (lent_.session == nullptr) return safe_device_.give_none();
+  advance_session(reading);
   publish(tick.index);
 }
 
 void HapticSide::close() {
-  safe_device_.give_none(0);
+  safe_device_.give_none();
   if (lent_.session == nullptr) return;
   if (recording_) end_recording();
   // Publishes the newest state, so that a session that ends in a fault has it in its autosave.
@@ -131,11 +135,23 @@ void HapticSide::run_commands() {
   }
 }
 
+// Switches the force of the device, and records that as the replay needs it: a new session starts with the
+// force on.
+void HapticSide::update_force_switch() {
+  if (exchange_->force_cut.exchange(false, std::memory_order_acq_rel)) force_on_ = false;
+  safe_device_.switch_force(force_on_);
+  if (lent_.session == nullptr || lent_.session->force_on == force_on_) return;
+  lent_.session->force_on = force_on_;
+  if (recording_) push(RecordedForceSwitch{force_on_});
+}
+
 // Runs command_. Returns false if the session is on loan afterwards.
 bool HapticSide::run_command() {
   if (auto* queued = std::get_if<QueuedRequest>(&command_)) {
     if (is_main_thread_request(queued->request)) {
       record(std::move(queued->json));
+    } else if (const auto* force = std::get_if<SwitchForce>(&queued->request)) {
+      force_on_ = force->on;
     } else if (needs_rebuild(*lent_.session, queued->request)) {
       lend();
       return false;
@@ -238,16 +254,17 @@ void HapticSide::push(JournalEntry&& entry) {
   exchange_->recordings_lost.fetch_add(1, std::memory_order_relaxed);
 }
 
-void HapticSide::advance_session(const DeviceReading& reading, std::uint64_t dropped) {
+void HapticSide::advance_session(DeviceReading reading) {
   if (safe_device_.consume_proxy_reset()) reset_proxy();
   if (recording_) {
+    if (recorded_ticks_ == 0) reading.missed = 0;  // the recording begins with this tick
     push(RecordedReading{reading});
-    if (recorded_ticks_ > 0) recorded_missed_ += dropped;
+    recorded_missed_ += reading.missed;
     ++recorded_ticks_;
     state_recorded_ = false;
   }
   const TickResult result = advance(*lent_.session, reading);
-  const Vector3 force_n = safe_device_.give(result.force_n, dropped);
+  const Vector3 force_n = safe_device_.give(result.force_n);
   exchange_->forces.push(ForceSample{static_cast<float>(force_n.norm())});
   if (result.touching) count_edit();
 }

@@ -29,6 +29,7 @@
 #include "haptic/lock_free.h"
 #include "haptic/recording.h"
 #include "haptic/safe_device.h"
+#include "haptic/watched_device.h"
 
 namespace spoonbill {
 
@@ -119,6 +120,7 @@ struct LiveExchange {
       : commands(command_capacity), frames(first), forces(force_capacity), failures(failure_capacity) {}
 
   BoundedQueue<LiveCommand> commands;             // main -> haptic
+  std::atomic<bool> force_cut{false};             // main -> haptic: switch the force off, whatever is queued
   TripleBuffer<LiveFrame> frames;                 // haptic -> main
   BoundedQueue<ForceSample> forces;               // haptic -> main; dropped when full
   std::atomic<std::uint64_t> recordings_lost{0};  // recordings that ended because the disk was too slow
@@ -143,16 +145,20 @@ class HapticSide {
   // last changes to the journal. Must be called only after the thread has stopped.
   void close();
 
+  // The watchdog of the device, whose thread the owner starts and stops.
+  WatchedDevice& watched_device() { return watched_device_; }
+
   const Session* session() const { return lent_.session.get(); }
 
  private:
   void run_tick(const LoopTick& tick);
-  void abandon_tick(const FailedAssertion& failure, std::uint64_t dropped);
+  void abandon_tick(const FailedAssertion& failure);
   void run_commands();
   bool run_command();
   void lend();
   void reclaim_if_done();
   void report_job(bool is_done);
+  void update_force_switch();
   void apply_now(QueuedRequest& queued);
   void record(Json&& command);
   void reset_proxy();
@@ -160,14 +166,16 @@ class HapticSide {
   void end_recording();
   void record_state_when_due();
   void push(JournalEntry&& entry);
-  void advance_session(const DeviceReading& reading, std::uint64_t dropped);
+  void advance_session(DeviceReading reading);
   void count_edit();
   void publish(std::uint64_t index);
   void publish_scene();
 
   LentSession lent_;  // the session is null while the worker has it
   std::unique_ptr<Device> device_;
+  WatchedDevice watched_device_;
   SafeDevice safe_device_;  // the only access to the device
+  bool force_on_ = true;    // kept when another session takes over
 
   LiveExchange* exchange_;
   Journal* journal_;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/files/conversion.h"
+#include "app/session/session.h"
 
 namespace spoonbill {
 
@@ -131,6 +132,9 @@ Status Journal::write_to_recording(JournalEntry& entry) {
     return command->recorded ? writer.command(command->command) : Status();
   }
   if (std::holds_alternative<RecordedReset>(entry)) return writer.command(command_to_json(ResetProxy{}));
+  if (const auto* force = std::get_if<RecordedForceSwitch>(&entry)) {
+    return writer.command(request_to_json(SwitchForce{force->on}));
+  }
   const auto* state = std::get_if<RecordedState>(&entry);
   if (state == nullptr) return {};
   if (!state->last) return writer.checkpoint(state->state_hash);

@@ -84,6 +84,9 @@ struct RecordedCommand {
   bool recorded = true;
 };
 struct RecordedReset {};  // reset of the proxy after a pause
+struct RecordedForceSwitch {
+  bool on = true;
+};
 struct RecordedState {
   std::uint64_t state_hash = 0;
   bool last = false;         // ends the recording
@@ -97,7 +100,7 @@ struct RecordedTicks {
 };
 
 using JournalEntry = std::variant<std::monostate, RecordingStart, RecordedReading, RecordedCommand,
-                                  RecordedReset, RecordedState>;
+                                  RecordedReset, RecordedForceSwitch, RecordedState>;
 
 // A document's scene at one tick, passed from the haptic thread to be saved.
 struct LiveScene {

@@ -77,6 +77,8 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const Document& document
       HapticLoop::start(loop_settings, [side = &live->haptic_](const LoopTick& tick) { side->tick(tick); });
   if (!loop) return loop.error();
   live->loop_.emplace(std::move(loop).value());
+  if (Status watched = live->haptic_.watched_device().start(settings.real_time); !watched)
+    return watched.error();
   if (const std::string notice = live->loop_->figures().notice; !notice.empty()) {
     live->notices_.add(Notice::Kind::information, notice);
   }
@@ -100,6 +102,7 @@ LiveSession::~LiveSession() {
 void LiveSession::stop() {
   if (!loop_) return;
   loop_->stop();
+  haptic_.watched_device().stop();
   haptic_.close();
   journal_.stop();
 }

@@ -33,7 +33,10 @@ class LiveSession {
   // because the haptic thread is far behind.
   bool ask(Request request);
 
-  // Queues the replacement of the document. A recording ends before the replacement.
+  // Switches the force of the device off at the next tick, ahead of everything that is queued.
+  void cut_force() { exchange_.force_cut.store(true, std::memory_order_release); }
+
+  // Queues the replacement of the document. A recording ends first.
   bool open(Document document, std::string source);
 
   // Restarts the session from the current shape, at rest, and records from there, so that the recording is

@@ -271,8 +271,14 @@ void draw_device(const PanelModel& model, const Theme& theme, PanelAnswer& answe
     const RowGroup group(("Device: " + model.device).c_str(), theme);
     if (!group) return;
     Sculpting sculpting = model.sculpting;
-    gauge_row("Force", model.force_limit_n > 0.0 ? model.force_n / model.force_limit_n : 0.0,
-              rounded_text(model.force_n, 2, "") + " of " + newtons_text(model.force_limit_n));
+    const double fraction = model.force_limit_n > 0.0 ? model.force_n / model.force_limit_n : 0.0;
+    const std::string text = rounded_text(model.force_n, 2, "") + " of " + newtons_text(model.force_limit_n);
+    bool on = model.force_on.value_or(true);
+    if (!model.force_on) {
+      gauge_row("Force", fraction, text);
+    } else if (gauge_switch_row("Force", fraction, text, "on", on)) {
+      answer.requests.emplace_back(SwitchForce{on});
+    }
     if (field_row(field_of(&Sculpting::force_scale), sculpting, answer.refusal)) {
       answer.requests.emplace_back(Command(SetSculpting{sculpting}));
     }

@@ -1,6 +1,7 @@
 // The panel: tool, material, fixtures, view and device, in the order of work.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,8 +50,9 @@ struct PanelModel {
   bool rate_is_nominal = true;  // true in lock-step, where no clock measures it
   int substeps = 0;
   std::uint32_t flags = tick_flag_none;
-  std::string safety_text;   // reasons for a limited device force, one per line
-  std::string drawing_text;  // details omitted from the picture
+  std::optional<bool> force_on;  // switch of the device's force; empty in a replay, which has no device
+  std::string safety_text;       // reasons for a limited device force, one per line
+  std::string drawing_text;      // details omitted from the picture
 };
 
 // Makes the panel's contents. `snapshot` must be of the same session and tick; `view` draws it.

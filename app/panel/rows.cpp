@@ -274,10 +274,28 @@ bool switch_row(const char* label, const std::string& text, const char* name, bo
   return ImGui::Checkbox(name, &on);
 }
 
-void gauge_row(const char* label, double fraction, const std::string& text) {
+namespace {
+
+// `width` as ImGui takes it: negative values leave so much room at the right.
+void draw_gauge(const char* label, double fraction, const std::string& text, float width) {
   begin_row(label);
   const auto filled = static_cast<float>(std::clamp(fraction, 0.0, 1.0));
-  ImGui::ProgressBar(filled, ImVec2(-FLT_MIN, ImGui::GetFrameHeight()), text.c_str());
+  ImGui::ProgressBar(filled, ImVec2(width, ImGui::GetFrameHeight()), text.c_str());
+}
+
+}  // namespace
+
+void gauge_row(const char* label, double fraction, const std::string& text) {
+  draw_gauge(label, fraction, text, -FLT_MIN);
+}
+
+bool gauge_switch_row(const char* label, double fraction, const std::string& text, const char* name,
+                      bool& on) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float box_width = ImGui::GetFrameHeight() + style.ItemInnerSpacing.x + ImGui::CalcTextSize(name).x;
+  draw_gauge(label, fraction, text, -(box_width + style.ItemSpacing.x));
+  ImGui::SameLine();
+  return ImGui::Checkbox(name, &on);
 }
 
 }  // namespace spoonbill

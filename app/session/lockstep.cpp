@@ -98,7 +98,8 @@ Status Lockstep::run_tick() {
   if (writer_ != nullptr) {
     if (Status written = writer_->reading(reading); !written) return written;
   }
-  device_.give(result.force_n, 0);
+  device_.switch_force(session_->force_on);
+  device_.give(result.force_n);
   ++tick_;
   is_prepared_ = false;
   return {};

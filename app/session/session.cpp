@@ -41,6 +41,15 @@ Result<Request> read_mark(const TimedCommand& timed, FileMarkKind kind) {
   return Request(std::move(mark));
 }
 
+Result<Request> read_force_switch(const TimedCommand& timed) {
+  FieldReader reader(timed.command, timed.origin);
+  reader.ignore("command");
+  const SwitchForce force{reader.boolean("on")};
+  reader.finish();
+  if (!reader.status()) return reader.status().error();
+  return Request(force);
+}
+
 Result<Request> read_view_command(const TimedCommand& timed) {
   ViewChoice scratch;
   if (Status read = apply_view_command(timed.command, timed.origin, scratch); !read) return read.error();
@@ -58,6 +67,7 @@ struct RequestToJson {
   Json operator()(const UndoStroke&) const { return {{"command", "undo"}}; }
   Json operator()(const RedoStroke&) const { return {{"command", "redo"}}; }
   Json operator()(const CancelStroke&) const { return {{"command", "cancel_stroke"}}; }
+  Json operator()(const SwitchForce& force) const { return {{"command", "switch_force"}, {"on", force.on}}; }
   Json operator()(const ChangeView& change) const { return change.command; }
   Json operator()(const MarkFile& mark) const {
     return {{"command", mark.kind == FileMarkKind::document ? "save" : "screenshot"}, {"name", mark.name}};
@@ -74,16 +84,18 @@ Result<Request> request_from_json(const TimedCommand& timed) {
   if (!reader.status()) return reader.status().error();
   if (name == "save") return read_mark(timed, FileMarkKind::document);
   if (name == "screenshot") return read_mark(timed, FileMarkKind::picture);
+  if (name == "switch_force") return read_force_switch(timed);
   for (const PlainRequest& plain : plain_requests()) {
     if (name != plain.name) continue;
     reader.finish();
     if (!reader.status()) return reader.status().error();
     return plain.request;
   }
-  reader.refuse("command", "is " + json_excerpt(Json(name)) +
-                               ", must be one of save, screenshot, undo, redo, cancel_stroke, set_camera, "
-                               "set_overlays, " +
-                               simulation_command_names());
+  reader.refuse("command",
+                "is " + json_excerpt(Json(name)) +
+                    ", must be one of save, screenshot, undo, redo, cancel_stroke, switch_force, set_camera, "
+                    "set_overlays, " +
+                    simulation_command_names());
   return reader.status().error();
 }
 
@@ -124,6 +136,10 @@ struct RequestApplier {
     if (!session.history.in_stroke()) return {};
     if (Status cancelled = session.history.cancel(session.simulation); !cancelled) return cancelled;
     return session.simulation.apply(LiftTool{});
+  }
+  Status operator()(const SwitchForce& force) {
+    session.force_on = force.on;
+    return {};
   }
   Status operator()(const ChangeView& change) {
     return apply_view_command(change.command, "view", session.view);
@@ -188,7 +204,8 @@ Result<Session> Session::make(const Document& document, const std::string& sourc
                  {},
                  true,
                  {},
-                 0};
+                 0,
+                 true};
 }
 
 TickResult advance(Session& session, const DeviceReading& reading) {
@@ -274,6 +291,7 @@ void write_facts(const Session& session, SessionFacts& facts) {
   facts.can_undo = session.history.can_undo();
   facts.can_redo = session.history.can_redo();
   facts.in_stroke = session.history.in_stroke();
+  facts.force_on = session.force_on;
 }
 
 }  // namespace spoonbill

@@ -25,6 +25,7 @@ namespace spoonbill {
 // Plain values, each with one JSON form:
 //  the simulation's commands (engine/exchange/document.h)     the view's (app/session/view_choice.h)
 //  {"command": "undo"}    {"command": "redo"}    {"command": "cancel_stroke"}
+//  {"command": "switch_force", "on": false}      the force of the device; on at the start
 //  {"command": "save", "name": "bent"}           the document at that tick
 //  {"command": "screenshot", "name": "bent"}     the next frame
 // A replay writes the last two as saved-NAME.json and picture-NAME.png into its own output folder. Names have
@@ -32,6 +33,9 @@ namespace spoonbill {
 struct UndoStroke {};
 struct RedoStroke {};
 struct CancelStroke {};
+struct SwitchForce {
+  bool on = true;
+};
 
 // One of the view's commands, already validated.
 struct ChangeView {
@@ -47,7 +51,8 @@ struct MarkFile {
   std::string name;
 };
 
-using Request = std::variant<Command, UndoStroke, RedoStroke, CancelStroke, ChangeView, MarkFile>;
+using Request =
+    std::variant<Command, UndoStroke, RedoStroke, CancelStroke, SwitchForce, ChangeView, MarkFile>;
 
 // Reads a request. An error names the command's origin and the field.
 Result<Request> request_from_json(const TimedCommand& timed);
@@ -79,6 +84,7 @@ struct Session {
   bool keeps_documents = true;           // false if the documents of marks are not written: they stay empty
   std::shared_ptr<const Document> saved = {};  // the last mark's document while nothing has changed since
   std::size_t saves_at_tick = 0;               // number of different documents saved at this tick
+  bool force_on = true;                        // false while the user has switched the device's force off
 
   // Makes a session of the document. `source` names the document's file in messages; `watch` receives the
   // progress of feature maps.
@@ -125,6 +131,7 @@ struct SessionFacts {
   bool can_undo = false;
   bool can_redo = false;
   bool in_stroke = false;
+  bool force_on = true;
 };
 
 // Copies the facts. Allocates only when a text is longer than the previous one.

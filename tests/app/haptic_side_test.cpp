@@ -2,11 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
 #include <thread>
 
+#include "app/program.h"
 #include "haptic/virtual_device.h"
 #include "tests/app/workplace.h"
 #include "tests/engine/allocations.h"
+#include "tests/engine/random.h"
 #include "tests/engine/simulation/handle.h"
 
 namespace spoonbill {
@@ -16,10 +22,31 @@ HandTarget at_height(double y_m, std::uint32_t buttons = 0) {
   return {{Vector3(0.05, y_m, 0.0), Quaternion::Identity()}, buttons};
 }
 
-// The haptic thread's part of a live session. It runs on the test's thread, whose allocations are counted.
+// The virtual device with a sensor that fails now and then.
+class FailingSensor : public Device {
+ public:
+  explicit FailingSensor(std::unique_ptr<Device> device) : device_(std::move(device)) {}
+  const DeviceSpecification& specification() const override { return device_->specification(); }
+  void set_force(const Vector3& force_n) override { device_->set_force(force_n); }
+
+  std::optional<DeviceReading> read() override {
+    std::optional<DeviceReading> reading = device_->read();
+    ++tick_;
+    if (tick_ % 97 == 0) return {};
+    if (tick_ % 131 == 0) reading->position_nm[1] += 45'000'000;
+    if (tick_ % 173 == 0) return DeviceReading::from({Vector3::Constant(std::nan("")), {}}, 0);
+    return reading;
+  }
+
+ private:
+  std::unique_ptr<Device> device_;
+  std::uint64_t tick_ = 0;
+};
+
+// The haptic thread's part of a live session, called on the test's thread, whose allocations are counted.
 class Side {
  public:
-  Side() {
+  explicit Side(bool sensor_fails = false) {
     auto session = Session::make(held_handle(), "test", VirtualDevice::default_specification(),
                                  InstructionSet::baseline);
     EXPECT_TRUE(session);
@@ -31,8 +58,10 @@ class Side {
     journal_.emplace(notices_, scene);
     worker_.emplace(notices_);
     exchange_.emplace(first);
-    auto device = SteeredDevice::make(Hand{}, at_height(0.03)).value();
-    mailbox_ = device->mailbox();
+    auto steered = SteeredDevice::make(Hand{}, at_height(0.03)).value();
+    mailbox_ = steered->mailbox();
+    std::unique_ptr<Device> device = std::move(steered);
+    if (sensor_fails) device = std::make_unique<FailingSensor>(std::move(device));
     side_.emplace(std::move(made), std::move(device), *exchange_, *journal_, *worker_);
   }
 
@@ -46,6 +75,11 @@ class Side {
       auto recording =
           RecordingWriter::create(file, {lent.session->device, make_session_document(*lent.session)});
       if (!recording) return Status(recording.error());
+      auto restarted = Session::make(make_session_document(*lent.session), "test", lent.session->device,
+                                     InstructionSet::baseline);
+      if (!restarted) return Status(restarted.error());
+      lent.session = std::make_unique<Session>(std::move(restarted).value());
+      lent.is_new_session = true;
       lent.recording = std::make_unique<RecordingWriter>(std::move(recording).value());
       return Status();
     };
@@ -57,7 +91,15 @@ class Side {
     ASSERT_TRUE(frame().recording);
   }
 
-  // Runs ticks and returns the number of heap allocations that they made.
+  void cut_force() { exchange_->force_cut.store(true); }
+
+  // Ends the session with its recording.
+  void close() {
+    side_->close();
+    journal_->stop();
+  }
+
+  // Runs ticks. Returns their number of heap allocations.
   std::size_t tick(int count, std::uint64_t dropped = 0) {
     const std::size_t before = allocation_count();
     for (int i = 0; i < count; ++i) side_->tick({index_++, dropped});
@@ -103,6 +145,36 @@ TEST(HapticSide, TicksStrokesAndLightCommandsAllocateNothing) {
   side.ask(RedoStroke{});
   EXPECT_EQ(side.tick(100), 0U);
   EXPECT_EQ(side.tick(5, 40), 0U);  // dropped ticks reset the proxy
+}
+
+TEST(HapticSide, ARecordingWithFaultsAndMissedTicksReplaysToItsOwnStates) {
+  const Workplace place;
+  Side side(true);
+  side.begin_recording(place.path("faults.jsonl"));
+  Random random(24);
+  double highest_n = 0.0;
+  for (int k = 0; k < 3000; ++k) {
+    if (k % 250 == 0) side.aim(at_height(k % 500 == 0 ? 0.004 : 0.03));
+    if (k == 1200) side.cut_force();
+    if (k == 1700) side.ask(SwitchForce{true});
+    const std::uint64_t dropped = random.once_in(20) ? random.bits() % 8 : random.once_in(400) ? 20 : 0;
+    side.tick(1, dropped);
+    highest_n = std::max(highest_n, side.frame().snapshot.force_n.norm());
+  }
+  side.close();
+  EXPECT_GT(highest_n, 0.1);
+  const auto recording = read_recording(place.path("faults.jsonl"));
+  ASSERT_TRUE(recording) << recording.error().message;
+  std::map<std::string, int> commands;
+  for (const TimedCommand& timed : recording->commands)
+    ++commands[timed.command["command"].get<std::string>()];
+  EXPECT_EQ(commands["switch_force"], 2);
+  EXPECT_GT(commands["reset_proxy"], 30);
+  EXPECT_GT(recording->missed, 300U);
+  const Outcome replayed =
+      run({"replay", place.text("faults.jsonl"), "--no-frames", "--rerecord", place.text("again.jsonl")});
+  EXPECT_EQ(replayed.code, exit_done) << replayed.err;
+  EXPECT_TRUE(content_of(place.path("again.jsonl")) == content_of(place.path("faults.jsonl")));
 }
 
 TEST(HapticSide, ATargetThatIsNotFiniteIsNotFollowed) {

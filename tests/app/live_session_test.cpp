@@ -281,6 +281,38 @@ TEST(LiveSession, TheWorkspaceFollowsTheModelThatIsOpened) {
   }));
 }
 
+// The force that is cut stays off in another document and is part of the recording.
+TEST(LiveSession, TheForceIsCutAtOnceUntilItIsSwitchedOn) {
+  const Workplace place;
+  Live live(held_handle());
+  const auto is_off = [](const LiveFrame& frame) {
+    return !frame.facts.force_on && (frame.safety_flags & safety_flag_off) != 0;
+  };
+  const std::uint64_t edits = live->frame().edit_count;
+  live->cut_force();
+  ASSERT_TRUE(wait_for(*live, is_off));
+  EXPECT_EQ(live->frame().edit_count, edits) << "the switch changes no document";
+  ASSERT_TRUE(live->open(held_handle(), "again"));
+  ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.completed_jobs == 1; }));
+  EXPECT_TRUE(is_off(live->frame()));
+  ASSERT_TRUE(live->start_recording(place.path("off.jsonl"), ViewChoice()));
+  ASSERT_TRUE(wait_for(*live, [&](const LiveFrame& frame) { return frame.recording && is_off(frame); }));
+  stroke(live);
+  ASSERT_TRUE(live->ask(SwitchForce{true}));
+  ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.facts.force_on; }));
+  live->stop();
+  ASSERT_TRUE(live->is_last_recording_complete());
+  const auto recording = read_recording(place.path("off.jsonl"));
+  ASSERT_TRUE(recording) << recording.error().message;
+  std::vector<bool> switches;
+  for (const TimedCommand& timed : recording->commands) {
+    if (timed.command["command"] == "switch_force") switches.push_back(timed.command["on"].get<bool>());
+  }
+  EXPECT_EQ(switches, (std::vector{false, true}));
+  const Outcome replayed = run({"replay", place.text("off.jsonl"), "--no-frames"});
+  EXPECT_EQ(replayed.code, exit_done) << replayed.err;
+}
+
 TEST(LiveSession, CancellingWithoutAStrokeChangesNothing) {
   Live live(held_handle());
   const std::uint64_t edits = live->frame().edit_count;

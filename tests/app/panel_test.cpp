@@ -77,6 +77,7 @@ TEST(Panel, ClipsNothingAtTheUsualSizes) {
     PanelModel model = full_model();
     model.tool.body = std::make_shared<ToolBody>();
     model.region_count = 16;
+    model.force_on = true;
     frame.draw(model);
     frame.draw(model);
     const ImGuiWindow* window = ImGui::FindWindowByName("Panel");
@@ -139,6 +140,24 @@ TEST(Panel, OffersASolidWhereTheToolHasABody) {
   ASSERT_NE(set, nullptr);
   EXPECT_EQ(set->tool.kind, ToolKind::solid);
   EXPECT_EQ(set->tool.body, model.tool.body);
+}
+
+TEST(Panel, SwitchesTheForceOfALiveDevice) {
+  // Returns the switch that is requested by clicks down the right edge of the panel.
+  const auto find_switch = [](const PanelModel& model) -> std::optional<bool> {
+    for (float y = 500.0F; y < 700.0F; y += 10.0F) {
+      for (const Request& request : click_once(model, 275.0F, y)) {
+        if (const auto* force = std::get_if<SwitchForce>(&request)) return force->on;
+      }
+    }
+    return {};
+  };
+  PanelModel model = full_model();
+  EXPECT_EQ(find_switch(model), std::nullopt) << "a replay moves no device";
+  model.force_on = true;
+  EXPECT_EQ(find_switch(model), false);
+  model.force_on = false;
+  EXPECT_EQ(find_switch(model), true);
 }
 
 TEST(Panel, LetsBodiesSettleAndSwingAgain) {

@@ -125,6 +125,8 @@ TEST(DamagedRecording, NamesLineAndField) {
             Refusal(ErrorCode::out_of_range, "dq_e9"));
   EXPECT_EQ(recording_refusal("{\"tick\":0,\"ticks\":1,\"dq_e9\":[[0],[0],[0]]}\n"),
             Refusal(ErrorCode::too_few, "dq_e9"));
+  EXPECT_EQ(recording_refusal("{\"tick\":0,\"ticks\":1,\"missed\":[-1]}\n"),
+            Refusal(ErrorCode::out_of_range, "missed"));
   EXPECT_EQ(recording_refusal("{\"tick\":0,\"ticks\":1,\"buttons\":[-1]}\n"),
             Refusal(ErrorCode::out_of_range, "buttons"));
   EXPECT_EQ(recording_refusal("{\"tick\":0,\"ticks\":1,\"speed\":1}\n"),

@@ -32,11 +32,15 @@ TEST(DeviceReading, NeverHandsOnGarbage) {
   const double infinity = std::numeric_limits<double>::infinity();
   const DeviceReading reading =
       DeviceReading::from({Vector3(nan, infinity, 1e300), Quaternion(nan, 0, 0, 0)}, 0);
-  EXPECT_EQ(reading.position_nm[0], 0);
-  EXPECT_EQ(reading.position_nm[1], 0);
   EXPECT_EQ(reading.position_nm[2], reading_limit_nm);
-  EXPECT_EQ(reading.orientation_e9[3], 1000000000);
-  EXPECT_EQ(DeviceReading::from({Vector3::Zero(), Quaternion(0, 0, 0, 0)}, 0), DeviceReading{});
+  EXPECT_FALSE(reading.is_valid());
+  const Quaternion upright = Quaternion::Identity();
+  for (const double bad : {nan, infinity, -infinity}) {
+    EXPECT_FALSE(DeviceReading::from({Vector3(0, bad, 0), upright}, 0).is_valid());
+    EXPECT_FALSE(DeviceReading::from({Vector3::Zero(), Quaternion(1, 0, bad, 0)}, 0).is_valid());
+  }
+  EXPECT_FALSE(DeviceReading::from({Vector3::Zero(), Quaternion(0, 0, 0, 0)}, 0).is_valid());
+  EXPECT_TRUE(DeviceReading::from({Vector3(1e300, 0, 0), upright}, 0).is_valid());
   DeviceReading empty;
   empty.orientation_e9[3] = 0;
   EXPECT_EQ(empty.pose().orientation.w(), 1.0);

@@ -68,6 +68,7 @@ TEST(Recording, KeepsExtremePositions) {
   readings[1].position_nm[0] = -reading_limit_nm;
   readings[2].orientation_e9[3] = -1'000'000'000;
   readings[2].buttons = 0xffffffffu;
+  readings[1].missed = 7;
   {
     auto writer = RecordingWriter::create(file, sample_header()).value();
     for (const DeviceReading& reading : readings) ASSERT_TRUE(writer.reading(reading).ok());

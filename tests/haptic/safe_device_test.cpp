@@ -2,6 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <vector>
+
+#include "engine/simulation/simulation.h"
+#include "haptic/virtual_device.h"
+
 namespace spoonbill {
 namespace {
 
@@ -25,7 +31,7 @@ DeviceReading reading_at_x(double x_m, std::uint32_t buttons = 0) {
 void run(SafeDevice& safe, double x_n, int ticks) {
   for (int tick = 0; tick < ticks; ++tick) {
     safe.read();
-    safe.give(Vector3(x_n, 0, 0), 0);
+    safe.give(Vector3(x_n, 0, 0));
   }
 }
 
@@ -46,8 +52,8 @@ TEST(SafeDevice, GivesTheForceAndNeverMoreThanTheDeviceMay) {
   EXPECT_EQ(safe.flags(), safety_flag_none);
   run(safe, 50.0, 100);
   EXPECT_NEAR(stub.given_n.norm(), 2.0, 1e-12);
-  EXPECT_EQ(safe.give(Vector3(1.9, 0, 0), 0), stub.given_n);
-  safe.give_none(0);
+  EXPECT_EQ(safe.give(Vector3(1.9, 0, 0)), stub.given_n);
+  safe.give_none();
   EXPECT_EQ(stub.given_n, Vector3::Zero());
   EXPECT_EQ(safe.flags(), safety_flag_stale | safety_flag_cut);
 }
@@ -66,7 +72,7 @@ TEST(SafeDevice, StandsInForADeviceThatDoesNotAnswerWithAHandThatTouchesNothing)
     EXPECT_FALSE(safe.consume_proxy_reset());
     stub.reading = answer;
     EXPECT_EQ(safe.read(), reading_at_x(0.02, button_hover));
-    EXPECT_EQ(safe.give(Vector3(1, 0, 0), 0), Vector3::Zero());
+    EXPECT_EQ(safe.give(Vector3(1, 0, 0)), Vector3::Zero());
     EXPECT_EQ(stub.given_n, Vector3::Zero());
     EXPECT_EQ(safe.flags(), safety_flag_no_device | safety_flag_cut);
     EXPECT_FALSE(safe.consume_proxy_reset());
@@ -88,7 +94,7 @@ TEST(SafeDevice, StandsInWithWhatItWasGivenUntilTheDeviceAnswers) {
   stub.reading.reset();
   SafeDevice safe(stub, reading_at_x(0.05));
   EXPECT_EQ(safe.read(), reading_at_x(0.05, button_hover));
-  safe.give(Vector3(1, 0, 0), 0);
+  safe.give(Vector3(1, 0, 0));
   EXPECT_EQ(stub.given_n, Vector3::Zero());
 }
 
@@ -96,13 +102,83 @@ TEST(SafeDevice, AsksForTheProxyToBeResetAfterAStall) {
   Stub stub;
   SafeDevice safe(stub);
   engage(safe);
-  safe.read();
-  safe.give(Vector3(1, 0, 0), 100);
+  EXPECT_EQ(safe.read(8).missed, 8U);
+  safe.give(Vector3(1, 0, 0));
+  EXPECT_EQ(stub.given_n, Vector3(1, 0, 0));
+  EXPECT_FALSE(safe.consume_proxy_reset());
+  EXPECT_EQ(safe.read(9).missed, 9U);
+  EXPECT_TRUE(safe.consume_proxy_reset());  // before the simulation advances
+  safe.give(Vector3(1, 0, 0));
   EXPECT_EQ(stub.given_n, Vector3::Zero());
-  EXPECT_TRUE(safe.consume_proxy_reset());
+  EXPECT_EQ(safe.flags(), safety_flag_stalled | safety_flag_cut);
+  EXPECT_FALSE(safe.consume_proxy_reset());
   safe.request_proxy_reset();
   EXPECT_TRUE(safe.consume_proxy_reset());
   EXPECT_FALSE(safe.consume_proxy_reset());
+}
+
+TEST(SafeDevice, AHandThatJumpsOnlyPointsAndGetsNoForce) {
+  Stub stub;
+  stub.reading = reading_at_x(0.0, button_main);
+  SafeDevice safe(stub);
+  engage(safe);
+  const double limit_m = jump_speed_factor * stub.limits.maximum_speed_m_per_s * tick_s;
+  stub.reading = reading_at_x(0.045, button_main);
+  EXPECT_EQ(safe.read(), reading_at_x(0.045, button_hover));
+  EXPECT_FALSE(safe.consume_proxy_reset());
+  EXPECT_EQ(safe.give(Vector3(1, 0, 0)), Vector3::Zero());
+  EXPECT_EQ(safe.flags(), safety_flag_jumped | safety_flag_cut);
+  EXPECT_EQ(safe.read(), reading_at_x(0.045, button_main));
+  EXPECT_TRUE(safe.consume_proxy_reset());
+  run(safe, 1.0, 100);
+  EXPECT_EQ(stub.given_n, Vector3::Zero());  // waits for a small force, as at the start
+  engage(safe);
+  EXPECT_EQ(stub.given_n, Vector3(1, 0, 0));
+  stub.reading = reading_at_x(0.045 + 1.01 * 3.0 * limit_m, button_main);
+  EXPECT_EQ(safe.read(2).buttons, button_hover);  // too fast even in three ticks
+  stub.reading = reading_at_x(0.045 + 4.0 * limit_m, button_main);
+  EXPECT_EQ(safe.read().buttons, button_main);
+}
+
+TEST(SafeDevice, APoseThatIsNotFiniteGetsNoForceAtOnce) {
+  Stub stub;
+  SafeDevice safe(stub);
+  engage(safe);
+  stub.reading = DeviceReading::from({Vector3(std::nan(""), 0, 0), Quaternion::Identity()}, button_main);
+  EXPECT_EQ(safe.read().buttons, button_hover);
+  EXPECT_EQ(safe.give(Vector3(1, 0, 0)), Vector3::Zero());
+  EXPECT_EQ(safe.flags(), safety_flag_no_device | safety_flag_cut);
+}
+
+TEST(SafeDevice, PlaybackPassesReadingsUnchangedAndAsksForNoReset) {
+  std::vector<DeviceReading> readings = {reading_at_x(0.0), reading_at_x(0.3), reading_at_x(-0.3)};
+  readings[1].missed = 40;
+  PlaybackDevice device(Stub().limits, readings);
+  SafeDevice safe(device);
+  for (const DeviceReading& reading : readings) {
+    EXPECT_EQ(safe.read(), reading);
+    EXPECT_FALSE(safe.consume_proxy_reset());
+    safe.give(Vector3::Zero());
+  }
+}
+
+TEST(SafeDevice, TheSwitchCutsTheForceAtOnceAndLetsItRampInAgain) {
+  Stub stub;
+  {
+    SafeDevice safe(stub);
+    engage(safe);
+    safe.switch_force(false);
+    run(safe, 1.0, 1);
+    EXPECT_EQ(stub.given_n, Vector3::Zero());
+    EXPECT_EQ(safe.flags(), safety_flag_off | safety_flag_cut);
+    EXPECT_FALSE(safe.consume_proxy_reset());  // the tool goes on sculpting
+    safe.switch_force(true);
+    run(safe, 1.0, 100);
+    EXPECT_EQ(stub.given_n, Vector3::Zero());
+    engage(safe);
+    EXPECT_EQ(stub.given_n, Vector3(1, 0, 0));
+  }
+  EXPECT_EQ(stub.given_n, Vector3::Zero());  // the chain has ended
 }
 
 TEST(SafeDevice, TheWorkspaceIsWhereTheHandBeginsOrWhereItIsPut) {

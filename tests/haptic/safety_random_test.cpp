@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <deque>
 #include <limits>
 
 #include "engine/simulation/simulation.h"
@@ -17,7 +18,8 @@ namespace spoonbill {
 namespace {
 
 constexpr std::uint32_t all_faults = safety_flag_not_finite | safety_flag_stale | safety_flag_stalled |
-                                     safety_flag_buzzing | safety_flag_dead_man;
+                                     safety_flag_buzzing | safety_flag_dead_man | safety_flag_jumped |
+                                     safety_flag_slow;
 
 DeviceSpecification random_specification(Random& random) {
   DeviceSpecification specification;
@@ -89,22 +91,44 @@ class RandomInput {
 };
 
 // Returns true if the input is a fault, computed without the safety chain.
-bool is_fault(const DeviceSpecification& specification, const SafetyInput& input) {
+// `last_m` is the position of the previous tick, not finite if that one was not.
+// `tick_count` is the number of ticks in the last 100 ms.
+bool is_fault(const DeviceSpecification& specification, const SafetyInput& input, const Vector3& last_m,
+              std::size_t tick_count) {
   if (input.stale || !input.requested_n.allFinite() || !input.position_m.allFinite()) return true;
-  return input.dropped_ticks >= 25 || (specification.dead_man_buttons & ~input.buttons) != 0;
+  const double reach_m =
+      5.0 * specification.maximum_speed_m_per_s * 1e-3 * (1.0 + static_cast<double>(input.dropped_ticks));
+  if (last_m.allFinite() && (input.position_m - last_m).norm() > reach_m) return true;
+  return input.dropped_ticks >= 9 || tick_count < 20 ||
+         (specification.dead_man_buttons & ~input.buttons) != 0;
 }
 
 struct WatchedForces {
   std::uint64_t beyond_limit = 0, jumps = 0, not_cut = 0, cut_without_reason = 0, missed_resets = 0;
   std::uint64_t faults = 0, buzzes = 0, with_force = 0, limited = 0;
   Vector3 last_n = Vector3::Zero();
+  Vector3 last_m = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
+
+  std::deque<std::uint64_t> times;  // of the ticks in the last 100 ms
+
+  std::size_t count_ticks(std::uint64_t dropped) {
+    if (dropped >= 9) times.clear();
+    if (times.empty()) {  // as if no tick had been missed before
+      for (std::uint64_t time = 0; time < 100; ++time) times.push_back(time);
+    } else {
+      times.push_back(times.back() + dropped + 1);
+    }
+    while (times.front() + 100 <= times.back()) times.pop_front();
+    return times.size();
+  }
 
   // The relative tolerance allows for rounding of the norm.
   static constexpr double rounding = 1e-12;
 
   void watch(const DeviceSpecification& specification, const SafetyInput& input, const SafeForce& safe) {
     const double most_n = specification.maximum_force_rate_n_per_s * tick_s;
-    const bool fault = is_fault(specification, input);
+    const bool fault = is_fault(specification, input, last_m, count_ticks(input.dropped_ticks));
+    last_m = input.position_m;
     const bool buzz = !fault && (safe.flags & (safety_flag_cut | safety_flag_buzzing)) ==
                                     (safety_flag_cut | safety_flag_buzzing);
     const bool cut = (safe.flags & safety_flag_cut) != 0;
@@ -115,7 +139,7 @@ struct WatchedForces {
     jumps += !cut && !((safe.force_n - last_n).norm() <= allowed_n);
     not_cut += (fault || cut) && !safe.force_n.isZero(0.0);
     cut_without_reason += cut != (fault || buzz) || (cut && (safe.flags & all_faults) == 0);
-    missed_resets += safe.reset_proxy != (input.dropped_ticks >= 25);
+    missed_resets += !safe.reset_proxy && (input.dropped_ticks >= 9 || !input.position_m.allFinite());
     faults += fault;
     buzzes += buzz;
     with_force += !safe.force_n.isZero(0.0);
@@ -143,6 +167,8 @@ TEST(SafetyAtRandom, LimitsHoldWhateverHappens) {
     RandomInput inputs(random);
     SafetyState state;
     all.last_n.setZero();
+    all.times.clear();
+    all.last_m.setConstant(std::numeric_limits<double>::quiet_NaN());
     for (std::uint64_t tick = 0; tick < ticks_a_device; ++tick) {
       const SafetyInput input = inputs.next();
       all.watch(specification, input, make_safe(state, specification, input));

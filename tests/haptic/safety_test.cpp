@@ -107,18 +107,24 @@ void expect_cut(const SafetyInput& fault, std::uint32_t flag) {
   const SafeForce safe = make_safe(state, device, fault);
   EXPECT_EQ(safe.force_n, Vector3::Zero());
   EXPECT_EQ(safe.flags, flag | safety_flag_cut);
-  EXPECT_EQ(safe.reset_proxy, flag == safety_flag_stalled);
+  EXPECT_EQ(safe.reset_proxy, flag != safety_flag_stale);
+  // The hand stays where it is now.
+  const auto wanting_there = [&fault](double x_n) {
+    SafetyInput input = wanting(x_n);
+    if (fault.position_m.allFinite()) input.position_m = fault.position_m;
+    return input;
+  };
   // The fault stays reported while the force waits and ramps up again.
   for (int tick = 0; tick < 100; ++tick) {
-    const SafeForce waiting = make_safe(state, device, wanting(3.0));
+    const SafeForce waiting = make_safe(state, device, wanting_there(3.0));
     EXPECT_EQ(waiting.force_n, Vector3::Zero());
     EXPECT_EQ(waiting.flags, flag | safety_flag_waiting);
     EXPECT_FALSE(waiting.reset_proxy);
   }
-  for (int tick = 0; tick < 20; ++tick) make_safe(state, device, wanting(0.0));
-  EXPECT_EQ(make_safe(state, device, wanting(0.0)).flags, flag | safety_flag_ramping);
-  for (int tick = 0; tick < 200; ++tick) make_safe(state, device, wanting(0.0));
-  EXPECT_EQ(make_safe(state, device, wanting(1.0)).force_n.x(), 1.0);
+  for (int tick = 0; tick < 20; ++tick) make_safe(state, device, wanting_there(0.0));
+  EXPECT_EQ(make_safe(state, device, wanting_there(0.0)).flags, flag | safety_flag_ramping);
+  for (int tick = 0; tick < 200; ++tick) make_safe(state, device, wanting_there(0.0));
+  EXPECT_EQ(make_safe(state, device, wanting_there(1.0)).force_n.x(), 1.0);
 }
 
 TEST(Safety, FaultsGiveZeroForceInTheirTick) {
@@ -133,20 +139,40 @@ TEST(Safety, FaultsGiveZeroForceInTheirTick) {
   SafetyInput fault = wanting(3.0);
   fault.stale = true;
   expect_cut(fault, safety_flag_stale);
-  for (const std::uint64_t dropped : {std::uint64_t{25}, std::numeric_limits<std::uint64_t>::max()}) {
+  for (const std::uint64_t dropped : {std::uint64_t{9}, std::numeric_limits<std::uint64_t>::max()}) {
     fault = wanting(3.0);
     fault.dropped_ticks = dropped;
     expect_cut(fault, safety_flag_stalled);
   }
+  fault = wanting(3.0);
+  fault.position_m.z() = 1.01 * jump_speed_factor * device.maximum_speed_m_per_s * tick_s;
+  expect_cut(fault, safety_flag_jumped);
 }
 
 TEST(Safety, AFewDroppedTicksCutNothing) {
   SafetyState state = pressing_state(3.0);
   SafetyInput input = wanting(3.0);
-  input.dropped_ticks = 24;
+  input.dropped_ticks = 8;
+  input.position_m.x() = 0.99 * 9.0 * tick_s * device.maximum_speed_m_per_s;
   const SafeForce safe = make_safe(state, device, input);
   EXPECT_EQ(safe.force_n.x(), 3.0);
   EXPECT_FALSE(safe.reset_proxy);
+}
+
+TEST(Safety, FewerThanTwoHundredTicksASecondGetNoForce) {
+  for (const std::uint64_t dropped : {1U, 4U, 5U, 8U}) {
+    SafetyState state = pressing_state(3.0);
+    SafetyInput input = wanting(3.0);
+    input.dropped_ticks = dropped;
+    SafeForce safe;
+    for (int tick = 0; tick < 100; ++tick) safe = make_safe(state, device, input);
+    const bool is_slow = 1000 / (dropped + 1) < 200;
+    EXPECT_EQ(safe.force_n.x(), is_slow ? 0.0 : 3.0) << dropped;
+    EXPECT_EQ(safe.flags, is_slow ? safety_flag_slow | safety_flag_cut : safety_flag_softened) << dropped;
+    // Back at full rate the force waits, as at the start.
+    for (int tick = 0; tick < 300; ++tick) safe = make_safe(state, device, wanting(3.0));
+    EXPECT_EQ(safe.flags, is_slow ? safety_flag_slow | safety_flag_waiting : safety_flag_none) << dropped;
+  }
 }
 
 TEST(Safety, ABuzzIsCutWithinATenthOfASecond) {
@@ -179,6 +205,7 @@ TEST(Safety, FadesOutsideTheWorkspace) {
     SafetyState state = engaged_state();
     SafetyInput input = wanting(2.0);
     input.position_m = Vector3(0.0, share * device.workspace_radius_m, 0.0);
+    state.position_m = input.position_m;
     SafeForce safe;
     for (int tick = 0; tick < 20; ++tick) safe = make_safe(state, device, input);
     EXPECT_NEAR(safe.force_n.x(), 2.0 * expected, 1e-9) << share;
@@ -232,7 +259,7 @@ TEST(Safety, AllocatesNothing) {
 TEST(Safety, EveryFlagHasItsLine) {
   EXPECT_EQ(safety_text(safety_flag_none), "");
   std::set<std::string> lines;
-  for (std::uint32_t flag = safety_flag_not_finite; flag <= safety_flag_change_limited; flag <<= 1) {
+  for (std::uint32_t flag = safety_flag_not_finite; flag <= safety_flag_softened; flag <<= 1) {
     const std::string line = safety_text(flag);
     EXPECT_FALSE(line.empty()) << flag;
     EXPECT_EQ(line.find('\n'), std::string::npos);

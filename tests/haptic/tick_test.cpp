@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "engine/base/processor.h"
@@ -92,6 +93,24 @@ TEST(Tick, ForceStaysWithinTheDevicesLimit) {
     limited |= (result.flags & tick_flag_force_limited) != 0;
   }
   EXPECT_TRUE(limited);
+}
+
+// The damping of the coupling depends on the speed of the hand, not on how many ticks were missed.
+TEST(Coupling, MissedTicksDoNotMakeTheHandFaster) {
+  DeviceSpecification specification = VirtualDevice::default_specification();
+  const Vector3 displacement_m(5e-3, 0.0, 0.0);
+  for (const std::uint32_t missed : {0U, 4U, 8U}) {
+    CouplingState coupling;
+    Vector3 force_n = Vector3::Zero();
+    for (int k = 0; k < 100; ++k) {
+      const Vector3 position_m(0.2 * k * (1.0 + missed) * tick_s, 0.0, 0.0);
+      force_n = couple(coupling, specification, position_m, displacement_m, missed).force_n;
+    }
+    const double hold_s = (1.0 + missed) * 1e-3, stiffness = 700.0 * 1e-3 / hold_s;
+    const double weight = 1.0 - std::pow(0.5, 1.0 + missed);
+    const double damping = 2.0 * stiffness * (1.0 / weight - 0.5) * hold_s;
+    EXPECT_NEAR(force_n.x(), stiffness * 5e-3 - damping * 0.2, 1e-9) << missed;
+  }
 }
 
 TEST(Tick, AllocatesNothing) {

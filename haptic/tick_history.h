@@ -1,0 +1,64 @@
+// The recent ticks of a loop that may miss some.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bitset>
+#include <cstddef>
+#include <cstdint>
+
+namespace spoonbill {
+
+// Ticks of the last 100 ms, by millisecond. Plain data; starts as if no tick had been missed.
+class TickHistory {
+ public:
+  static constexpr std::size_t window_ms = 100;
+  // Longest hold that is told apart; longer ones are stalls.
+  static constexpr std::size_t longest_hold_ms = 10;
+
+  TickHistory() { ticked_.set(); }
+
+  // Adds a tick, before which `missed` ticks were left out.
+  void add(std::uint64_t missed) {
+    const auto elapsed = static_cast<std::size_t>(std::min<std::uint64_t>(missed, ticked_.size())) + 1;
+    ticked_ <<= elapsed;
+    ticked_.set(0);
+  }
+
+  // Returns the longest time between two ticks, in milliseconds, of those that ended within the window: 1 if
+  // none was missed, at most longest_hold_ms.
+  std::size_t find_longest_hold() const {
+    std::size_t longest = 1;
+    std::size_t end = 0;  // age of the tick that ended the current hold
+    for (std::size_t age = 1; age < ticked_.size() && end < window_ms; ++age) {
+      if (!ticked_[age]) continue;
+      longest = std::max(longest, age - end);
+      end = age;
+    }
+    if (end < window_ms) longest = longest_hold_ms;  // a hold that began before the history
+    return std::min(longest, longest_hold_ms);
+  }
+
+  // Returns the number of ticks within the window.
+  std::size_t count() const { return (ticked_ & window_mask()).count(); }
+
+  std::array<std::uint64_t, 2> words() const {
+    const Bits low(~std::uint64_t{0});
+    return {(ticked_ & low).to_ullong(), (ticked_ >> 64).to_ullong()};
+  }
+
+  bool has_missed() const { return !ticked_.all(); }
+
+  friend bool operator==(const TickHistory&, const TickHistory&) = default;
+
+ private:
+  using Bits = std::bitset<window_ms + longest_hold_ms>;
+  static const Bits& window_mask() {
+    static const Bits mask = ~Bits() >> longest_hold_ms;
+    return mask;
+  }
+
+  Bits ticked_;  // bit n: a tick n milliseconds ago
+};
+
+}  // namespace spoonbill
