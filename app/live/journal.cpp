@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <exception>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "app/files/content_hash.h"
@@ -177,6 +179,13 @@ void Journal::store(const LiveScene& scene) {
     return notices_->add(Notice::Kind::problem, "not saved: another document was opened in the meantime");
   }
   if (Exporter::has_export_extension(save->file)) return exporter_.begin(scene.scene.bodies, save->file);
+  std::error_code ignored;
+  // Writing a pipe could block the thread, and with it recording and autosaving.
+  if (std::filesystem::exists(save->file, ignored) &&
+      !std::filesystem::is_regular_file(save->file, ignored)) {
+    return notices_->add(Notice::Kind::problem, "not saved: " + save->file.string() +
+                                                    ": is not a regular file; choose another name");
+  }
   if (!may_replace(*save)) {
     const std::lock_guard lock(mutex_);
     save_conflict_ = save->file;
@@ -194,7 +203,7 @@ void Journal::store(const LiveScene& scene) {
   if (autosave_) autosave_->remove();
 }
 
-// A file that cannot be read is not known. Nothing but a regular file is replaced, see replace_file().
+// A file that cannot be read is not known.
 bool Journal::may_replace(const SaveRequest& save) {
   std::error_code ignored;
   if (save.replaced == Replaced::any || !std::filesystem::is_regular_file(save.file, ignored)) return true;
