@@ -136,7 +136,7 @@ void answer_solids(const SolidMeshing& meshing, std::ostream& out) {
   write_frame(out, FrameKind::ending, json_to_line(ending));
 }
 
-int serve(const std::vector<std::string>& arguments) {
+int serve(const std::vector<std::string>& arguments, const Status& confined) {
   CadReading reading;
   const bool reads = arguments.size() == 6 && arguments[0] == "read" && parse(arguments[3], reading.unit_m) &&
                      parse(arguments[4], reading.tolerance_m) && parse(arguments[5], reading.face_limit);
@@ -150,6 +150,10 @@ int serve(const std::vector<std::string>& arguments) {
   }
   AnswerStream answers;
   std::ostream out(&answers);
+  if (!confined) {
+    write_failure(out, confined.error());
+    return 1;
+  }
   set_assertion_handler(throw_failed_assertion);
   try {
     prepare_occt();
@@ -168,6 +172,6 @@ int serve(const std::vector<std::string>& arguments) {
 }  // namespace spoonbill
 
 int main(int argc, char** argv) {
-  spoonbill::confine_reader();
-  return spoonbill::serve(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
+  const spoonbill::Status confined = spoonbill::confine_reader();
+  return spoonbill::serve(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc), confined);
 }

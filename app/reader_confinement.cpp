@@ -11,12 +11,31 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
+#include <string>
+#include <system_error>
 #include <vector>
 
 namespace spoonbill {
 
-#if (defined(__x86_64__) || defined(__aarch64__)) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+
+Status confine_reader() {
+  return {};
+}
+
+#else
+
+namespace {
+
+Error no_filter(const std::string& reason) {
+  return {ErrorCode::unavailable,
+          "is refused, because this system cannot confine the process that handles foreign files (" + reason +
+              "); use a kernel with seccomp filters"};
+}
+
+}  // namespace
+
+#if defined(__x86_64__) || defined(__aarch64__)
 
 namespace {
 
@@ -84,19 +103,23 @@ std::vector<sock_filter> reader_filter() {
 
 }  // namespace
 
-bool confine_reader() {
-  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return false;
+Status confine_reader() {
   std::vector<sock_filter> filter = reader_filter();
   const sock_fprog program{static_cast<unsigned short>(filter.size()), filter.data()};
-  return syscall(__NR_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_TSYNC, &program) == 0;
+  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 ||
+      syscall(__NR_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_TSYNC, &program) != 0) {
+    return no_filter(std::generic_category().message(errno));
+  }
+  return {};
 }
 
 #else
 
-bool confine_reader() {
-  return false;
+Status confine_reader() {
+  return no_filter("its processor is not known to the filter");
 }
 
+#endif
 #endif
 
 }  // namespace spoonbill

@@ -1,13 +1,15 @@
 // Limits what a child process that parses a foreign file can do once a hostile file has taken it over.
 #pragma once
 
+#include "engine/base/result.h"
+
 namespace spoonbill {
 
-// Permanently forbids the calling process to gain privileges, open sockets, start processes or programs, and
-// trace others: these calls then fail with EPERM. Threads stay allowed, because OpenCASCADE may start some.
-// Call it before the file is opened. Returns false if the kernel or the processor offers no such filter, or
-// in a sanitizer build, whose runtime starts processes. The limits on memory, time and files apply in any
-// case.
-bool confine_reader();
+// Forbids the calling process, for good, to gain privileges, to open sockets, to start processes or programs
+// and to trace others: those calls fail with EPERM. Threads stay allowed, because OpenCASCADE may start some.
+// Call it before the file is opened, which must not happen after an error. Returns ErrorCode::unavailable if
+// the kernel or the processor offers no such filter. Does nothing in a sanitizer build, whose runtime starts
+// processes.
+[[nodiscard]] Status confine_reader();
 
 }  // namespace spoonbill

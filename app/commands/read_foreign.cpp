@@ -89,7 +89,10 @@ CommandEntry add_reader(OptionSet root, const char* name, const char* descriptio
   const OptionSet parser = root.add_command(name, description);
   parser.add_option("FILE", *file, file_help).require();
   return {parser, [file, send](Console& console) {
-            confine_reader();
+            if (Status confined = confine_reader(); !confined) {
+              write_failure(console.out, confined.error());
+              return confined;
+            }
             return send(*file, console);
           }};
 }

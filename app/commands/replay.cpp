@@ -45,13 +45,19 @@ struct Replay {
   Session& session;
   Lockstep& lockstep;
   Console& console;
+  const RecordingWriter* writer = nullptr;
 };
 
-Error stopped_replay(const Lockstep& lockstep, InterruptWatch& interrupt) {
+Error stopped_replay(const Replay& replay, InterruptWatch& interrupt) {
   interrupt.answer();
-  return Error{ErrorCode::cancelled, "stopped after " + std::to_string(lockstep.tick()) + " of " +
-                                         std::to_string(lockstep.tick_count()) +
-                                         " ticks; the frames written so far are complete"};
+  std::string text = "stopped after " + std::to_string(replay.lockstep.tick()) + " of " +
+                     std::to_string(replay.lockstep.tick_count()) + " ticks";
+  if (!replay.options.no_frames) text += "; the frames written so far are complete";
+  if (replay.writer != nullptr) {
+    text += "; the recording is " + replay.writer->written_file().string() +
+            ", which can be replayed up to there";
+  }
+  return Error{ErrorCode::cancelled, text};
 }
 
 Status run_without_pictures(const Replay& replay) {
@@ -61,7 +67,7 @@ Status run_without_pictures(const Replay& replay) {
   ProgressBar progress(replay.console, "Replaying", replay.options.progress);
   Lockstep& lockstep = replay.lockstep;
   while (lockstep.tick() < lockstep.tick_count()) {
-    if (interrupt.requested()) return stopped_replay(lockstep, interrupt);
+    if (interrupt.requested()) return stopped_replay(replay, interrupt);
     if (Status ran = lockstep.run_to(lockstep.tick() + ticks_between_checks); !ran) return ran;
     replay.session.marks.clear();  // there is no folder for these files
     progress.show(lockstep.tick(), lockstep.tick_count());
@@ -178,7 +184,7 @@ Status run_with_pictures(const Replay& replay, FactSheet& facts) {
   auto pictures = ReplayPictures::start(request);
   if (!pictures) return pictures.error();
   if (Status drawn = draw_frames(replay, request, pictures.value(), interrupt); !drawn) return drawn;
-  if (interrupt.requested()) return stopped_replay(replay.lockstep, interrupt);
+  if (interrupt.requested()) return stopped_replay(replay, interrupt);
   if (Status finished = replay.lockstep.finish(); !finished) return finished;
   if (Status finished = pictures->finish(); !finished) return finished;
 
@@ -228,7 +234,10 @@ Status replay_recording(const ReplayOptions& options, const Recording& recording
   } else {
     facts.add("", "", "missed", recording.missed);
   }
-  if (Status ran = run_with_pictures({options, session.value(), lockstep, console}, facts); !ran) return ran;
+  if (Status ran = run_with_pictures(
+          {options, session.value(), lockstep, console, writer ? &*writer : nullptr}, facts);
+      !ran)
+    return ran;
   if (writer) {
     if (Status committed = writer->commit(); !committed) return committed;
   }

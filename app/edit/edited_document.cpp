@@ -23,12 +23,10 @@ Result<std::optional<Document>> EditedDocument::recovered_document() const {
   return file->recovered_document();
 }
 
-void EditedDocument::discard_recovered() const {
-  if (const auto file = autosave()) file->remove();
-}
-
-void EditedDocument::set_recovered_aside() const {
-  if (const auto file = autosave()) file->set_aside();
+Result<std::filesystem::path> EditedDocument::set_recovered_aside() const {
+  const auto file = autosave();
+  if (!file) return Error{ErrorCode::unavailable, "there is no folder for autosaves"};
+  return file->set_aside();
 }
 
 void EditedDocument::switch_to(std::filesystem::path file, LiveSession& live) {

@@ -23,9 +23,11 @@ class EditedDocument {
   // Returns the document that an interrupted session of this file left; usually none.
   Result<std::optional<Document>> recovered_document() const;
 
-  void discard_recovered() const;
-  // Renames a recovered document that cannot be read, so that this session can autosave.
-  void set_recovered_aside() const;
+  // Moves the recovered document to another name, so that this session can autosave, and returns that name.
+  Result<std::filesystem::path> set_recovered_aside() const;
+
+  // Returns true if another window had the file open when this one opened it.
+  bool is_open_elsewhere() const { return claim_ && claim_->is_open_elsewhere(); }
 
   // Switches to a file that the session has opened. Nothing is autosaved before begin(), because a recovered
   // document must be kept until the user has decided about it.

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "app/assets_folder.h"
+#include "app/files/content_hash.h"
 #include "app/files/documents.h"
 #include "app/files/state_folder.h"
 #include "app/live/journal.h"
@@ -107,6 +108,7 @@ std::string document_stem(const std::filesystem::path& file) {
 
 Result<std::unique_ptr<Editor>> Editor::make(const EditSettings& settings) {
   const std::filesystem::path model = find_model(settings);
+  const auto content = file_content_hash(settings.model);  // before reading: a change meanwhile is noticed
   const auto document = read_document(model);
   if (!document) return document.error();
   auto view = view_from_json(document->view, model.string());
@@ -123,6 +125,7 @@ Result<std::unique_ptr<Editor>> Editor::make(const EditSettings& settings) {
   const std::shared_ptr<TargetMailbox> mailbox = device.value()->mailbox();
   auto live = LiveSession::start(document.value(), model.string(), live_settings, std::move(device).value());
   if (!live) return live.error();
+  live.value()->set_known_content(content);
   auto state = state_folder();
   std::optional<std::filesystem::path> folder;
   if (state) folder = state.value();
@@ -206,7 +209,7 @@ Status Editor::frame(double seconds) {
   if (Status drawn = window_.end_frame(frame.snapshot, shown_); !drawn) return drawn;
   if (log_) log_->add(shown_frame(frame));
   if (screenshot_due_) write_screenshot();
-  if (window_.window().should_close() && !unsaved_.is_open()) {
+  if (window_.window().should_close() && !unsaved_.is_open() && !conflict_.is_open()) {
     window_.window().set_should_close(false);
     finish_document(NextStep::quit);
   }
@@ -223,10 +226,10 @@ ShownFrame Editor::shown_frame(const LiveFrame& frame) const {
   shown.can_undo = frame.facts.can_undo;
   shown.can_redo = frame.facts.can_redo;
   shown.pressing = hand_.is_pressing();
-  shown.prompt = file_prompt_.is_open()                      ? "file"
-                 : shape_prompt_.is_open()                   ? "shape"
-                 : unsaved_.is_open() || recovery_.is_open() ? "question"
-                                                             : "";
+  shown.prompt = file_prompt_.is_open()    ? "file"
+                 : shape_prompt_.is_open() ? "shape"
+                 : is_question_open()      ? "question"
+                                           : "";
   if (file_prompt_.is_open()) shown.typed = file_prompt_.typed();
   const ImVec2 pointer = ImGui::GetIO().MousePos;
   if (ImGui::IsMousePosValid(&pointer)) {
@@ -251,6 +254,7 @@ void Editor::receive_updates(const LiveFrame& frame, double seconds) {
     // A save that was made before the last edit does not allow the next step.
     if (continues_after_save_ && frame.edit_count <= saved->edit_count) start_next_step(next_step_);
   }
+  if (auto conflict = live_->consume_save_conflict()) ask_about_conflict(std::move(*conflict));
 }
 
 // Jobs are completed in the order of their requests.
@@ -267,6 +271,7 @@ void Editor::handle_completed_jobs(const LiveFrame& frame) {
       document_.begin_recovered(*live_);
     } else {
       document_.switch_to(opened->file, *live_);
+      live_->set_known_content(opened->content);
       offer_recovery();
     }
   }
@@ -353,8 +358,17 @@ void Editor::lay_out_prompts() {
     if (*answer == 0) {
       recover();
     } else {
-      document_.discard_recovered();
-      document_.begin(*live_);
+      begin_without_recovery();
+    }
+  }
+  if (const auto answer = conflict_.draw()) {
+    if (*answer == 0) {
+      save_as(conflict_file_, Replaced::any);
+    } else if (*answer == 1) {
+      file_prompt_.ask(FilePurpose::save_model, conflict_file_);
+    } else {
+      next_step_ = NextStep::none;
+      continues_after_save_ = false;
     }
   }
 }
@@ -383,7 +397,7 @@ Pointer Editor::read_pointer() const {
 
 void Editor::handle_keys(const LiveFrame& frame) {
   const std::vector<GlfwWindow::KeyPress> presses = window_.window().consume_key_presses();
-  const bool is_asking = unsaved_.is_open() || recovery_.is_open();
+  if (is_question_open()) return;
   for (const GlfwWindow::KeyPress& press : presses) {
     // While text is typed, Esc is the only key that acts as a command.
     if (ImGui::GetIO().WantTextInput && press.key != GLFW_KEY_ESCAPE) continue;
@@ -616,12 +630,13 @@ void Editor::start_next_step(NextStep step) {
 }
 
 void Editor::open(const std::filesystem::path& file) {
+  const auto content = file_content_hash(file);
   auto document = read_document(file);
   if (!document) return messages_.add_problem(document.error().message);
   auto view = view_from_json(document->view, file.string());
   if (!view) return messages_.add_problem(view.error().message);
   if (!live_->open(std::move(document).value(), file.string())) return;
-  pending_jobs_.emplace_back(PendingOpen{file, view.value()});
+  pending_jobs_.emplace_back(PendingOpen{file, view.value(), false, content});
 }
 
 void Editor::open_spoon_handle() {
@@ -646,6 +661,11 @@ void Editor::open_shape(const StockShapeChoice& choice) {
 }
 
 void Editor::offer_recovery() {
+  if (document_.is_open_elsewhere()) {
+    messages_.add_problem(document_.file().filename().string() +
+                          " is open in another window too: a save there or here asks before it replaces "
+                          "the other's");
+  }
   const auto found = document_.recovered_document();
   if (!found) {
     messages_.add_problem(found.error().message);
@@ -653,11 +673,14 @@ void Editor::offer_recovery() {
   }
   if (!found.value()) return document_.begin(*live_);
   recovery_.ask("An earlier session of " + document_stem(document_.file()) +
-                " ended without saving.\nIts unsaved changes can be recovered.");
+                " ended without saving, and its work differs from the saved file.\nBoth are kept, "
+                "whichever you continue with.");
 }
 
 void Editor::begin_without_recovery() {
-  document_.set_recovered_aside();
+  const auto kept = document_.set_recovered_aside();
+  if (!kept) return messages_.add_problem(kept.error().message);  // without autosaves, which would replace it
+  messages_.add({Notice::Kind::information, "the unsaved work is kept as " + kept->string()});
   document_.begin(*live_);
 }
 
@@ -676,9 +699,20 @@ void Editor::save() {
   save_as(document_.file());
 }
 
-void Editor::save_as(const std::filesystem::path& file) {
+bool Editor::is_question_open() const {
+  return unsaved_.is_open() || recovery_.is_open() || conflict_.is_open();
+}
+
+void Editor::ask_about_conflict(std::filesystem::path file) {
+  conflict_file_ = std::move(file);
+  conflict_.ask(conflict_file_.filename().string() +
+                " holds something that this window neither read nor saved.\nReplace it? A copy stays as " +
+                conflict_file_.filename().string() + ".bak.");
+}
+
+void Editor::save_as(const std::filesystem::path& file, Replaced replaced) {
   live_->set_view(view_to_json(view_));
-  live_->save(file);
+  live_->save(file, replaced);
   send(MarkFile{FileMarkKind::document, make_mark_name(document_stem(file))});
 }
 

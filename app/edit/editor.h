@@ -55,6 +55,7 @@ class Editor {
     std::filesystem::path file;
     ViewChoice view;
     bool recovered = false;
+    std::optional<std::uint64_t> content = {};  // of the file when it was read, see content_hash()
   };
 
   Editor(const EditSettings& settings, EditWindow window, std::unique_ptr<LiveSession> live,
@@ -94,7 +95,9 @@ class Editor {
   void open_shape(const StockShapeChoice& choice);
   void recover();
   void save();
-  void save_as(const std::filesystem::path& file);
+  void save_as(const std::filesystem::path& file, Replaced replaced = Replaced::known);
+  void ask_about_conflict(std::filesystem::path file);
+  bool is_question_open() const;
   std::filesystem::path default_export_file() const;
   void export_to(const std::filesystem::path& file);
   void toggle_recording(const LiveFrame& frame);
@@ -131,7 +134,9 @@ class Editor {
   FilePrompt file_prompt_;
   ShapePrompt shape_prompt_;
   Question unsaved_{"Unsaved changes", "Save", "Don't save", "Cancel"};
-  Question recovery_{"Unsaved work", "Recover", "Discard"};
+  Question recovery_{"Unsaved work", "Recover", "Open the saved version"};
+  Question conflict_{"Another version on the disk", "Replace", "Save as", "Cancel"};
+  std::filesystem::path conflict_file_;
   NextStep next_step_ = NextStep::none;
   bool continues_after_save_ = false;
   bool is_finished_ = false;

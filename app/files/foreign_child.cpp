@@ -98,7 +98,10 @@ Error ForeignChild::failure(const FrameHead& head) {
     return error(ErrorCode::too_many,
                  task_.too_much + std::to_string(ChildOutput::memory_limit >> 30) + " GiB; " + task_.remedy);
   }
-  return error(ErrorCode::malformed, task_.refusal(reason.value()));
+  // A reader that cannot be confined says so itself; every other reason is about the file.
+  const Error sent = parse_failure(reason.value());
+  if (sent.code == ErrorCode::unavailable) return error(sent.code, ForeignTask::printable(sent.message));
+  return error(ErrorCode::malformed, task_.refusal(sent.message));
 }
 
 }  // namespace spoonbill

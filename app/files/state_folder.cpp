@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <system_error>
 #include <utility>
@@ -41,13 +42,15 @@ Result<std::filesystem::path> state_folder() {
   return folder;
 }
 
-std::optional<FileLock> FileLock::acquire(const std::filesystem::path& file) {
+Result<FileLock> FileLock::acquire(const std::filesystem::path& file) {
   while (true) {
     const int descriptor = open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600);
-    if (descriptor < 0) return std::nullopt;
+    if (descriptor < 0) return Error{ErrorCode::unwritable, file.string() + ": cannot be created"};
     if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+      const bool is_held = errno == EWOULDBLOCK;
       close(descriptor);
-      return std::nullopt;
+      if (is_held) return Error{ErrorCode::in_use, file.string() + ": is locked by another program"};
+      return Error{ErrorCode::unwritable, file.string() + ": cannot be locked"};
     }
     if (is_still_named(descriptor, file)) return FileLock(file, descriptor);
     close(descriptor);

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 
 #include "engine/base/result.h"
 
@@ -16,8 +15,9 @@ Result<std::filesystem::path> state_folder();
 // The system releases the lock when the process ends, however it ends. One owner; any thread.
 class FileLock {
  public:
-  // Returns nothing if this or another process holds the lock, or if the file cannot be created.
-  static std::optional<FileLock> acquire(const std::filesystem::path& file);
+  // Returns ErrorCode::in_use if this or another process holds the lock, ErrorCode::unwritable if the file
+  // cannot be created.
+  static Result<FileLock> acquire(const std::filesystem::path& file);
 
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&& other) noexcept;

@@ -31,9 +31,19 @@ std::filesystem::path canonical_path(const std::filesystem::path& path) {
   return problem ? path : canonical;
 }
 
-// Returns true if the file holds the same document. Times do not matter: a copy, a checkout or a
-// synchronisation gives a file a newer time without any work of the user. A different view does not count as
-// work.
+// Returns FILE-N with two endings around the number, the first such name that is free. The claim's lock keeps
+// other windows from choosing the same name.
+std::filesystem::path find_free_name(const std::filesystem::path& file, const std::string& before,
+                                     const std::string& after) {
+  for (int number = 1;; ++number) {
+    std::filesystem::path name = file.string() + before + "-" + std::to_string(number) + after;
+    std::error_code ignored;
+    if (!std::filesystem::exists(std::filesystem::symlink_status(name, ignored))) return name;
+  }
+}
+
+// Returns true if the file holds the same document. Times tell nothing: a copy, a checkout or a
+// synchronisation gives a file a newer time without the user's work. The view alone is not work.
 bool holds_same(const std::filesystem::path& file, Document recovered) {
   auto saved = read_document(file);
   if (!saved) return false;
@@ -52,9 +62,7 @@ Status Autosave::write(const Document& document) const {
   return replace_file(file_, json_to_page(json));
 }
 
-Result<std::optional<Document>> Autosave::recovered_document() const {
-  std::error_code problem;
-  if (!std::filesystem::exists(file_, problem)) return std::optional<Document>();
+Result<Document> Autosave::read() const {
   const auto text = read_file(file_, bytes_limit);
   if (!text) return text.error();
   const auto json = parse_json(text.value(), file_.string());
@@ -66,15 +74,32 @@ Result<std::optional<Document>> Autosave::recovered_document() const {
   reader.ignore("document");
   reader.finish();
   if (!reader.status()) return reader.status().error();
-  auto document = document_from_json(inner, file_.string() + ": document");
+  return document_from_json(inner, file_.string() + ": document");
+}
+
+Result<std::optional<Document>> Autosave::recovered_document() const {
+  std::error_code problem;
+  if (!std::filesystem::exists(file_, problem)) return std::optional<Document>();
+  auto document = read();
   if (!document) return document.error();
   if (!of_.empty() && holds_same(of_, document.value())) return std::optional<Document>();
   return std::optional<Document>(std::move(document).value());
 }
 
-void Autosave::set_aside() const {
-  std::error_code ignored;
-  std::filesystem::rename(file_, file_.string() + ".unread", ignored);
+Result<std::filesystem::path> Autosave::set_aside() const {
+  if (const auto document = read()) {
+    const std::filesystem::path kept = find_free_name(file_, ".kept", ".json");
+    if (write_document(document.value(), kept, {NamedBy::program})) {
+      remove();
+      return kept;
+    }
+  }
+  // Renaming needs no space on the disk.
+  const std::filesystem::path kept = find_free_name(file_, ".unread", "");
+  std::error_code problem;
+  std::filesystem::rename(file_, kept, problem);
+  if (!problem) return kept;
+  return Error{ErrorCode::unwritable, file_.string() + ": cannot be renamed: " + problem.message()};
 }
 
 void Autosave::remove() const {
@@ -84,19 +109,26 @@ void Autosave::remove() const {
 }
 
 AutosaveClaim AutosaveClaim::acquire(const std::filesystem::path& folder, const std::filesystem::path& of) {
-  std::optional<AutosaveClaim> first_free;
+  std::optional<AutosaveClaim> left, first_free;
+  bool is_open_elsewhere = false;
   for (int number = 1; number <= windows_limit; ++number) {
     Autosave autosave(folder, of, number);
     auto lock = FileLock::acquire(autosave.file().string() + ".lock");
-    if (!lock) continue;
+    if (!lock) {
+      // Untitled documents share a name, but they are not the same document.
+      is_open_elsewhere = is_open_elsewhere || (!of.empty() && lock.error().code == ErrorCode::in_use);
+      continue;
+    }
     std::error_code problem;
-    const bool exists = std::filesystem::exists(autosave.file(), problem);
-    AutosaveClaim claim(std::move(autosave), std::move(lock));
-    if (exists) return claim;
-    if (!first_free) first_free = std::move(claim);
+    std::optional<AutosaveClaim>& kind =
+        std::filesystem::exists(autosave.file(), problem) ? left : first_free;
+    if (!kind) kind = AutosaveClaim(std::move(autosave), std::move(lock).value());
   }
-  if (first_free) return std::move(*first_free);
-  return AutosaveClaim(Autosave(folder, of), std::nullopt);
+  AutosaveClaim claim = left         ? std::move(*left)
+                        : first_free ? std::move(*first_free)
+                                     : AutosaveClaim(Autosave(folder, of), std::nullopt);
+  claim.is_open_elsewhere_ = is_open_elsewhere;
+  return claim;
 }
 
 }  // namespace spoonbill

@@ -1,5 +1,6 @@
 // Autosaved documents: unsaved work that survives a crash. Each window has one file in the program's state
-// folder, which is removed when the document is saved or closed normally.
+// folder, which is removed when the document is saved or closed normally. The locks beside these files show
+// which documents are open in other windows.
 //
 //  {"spoonbill_autosave": 1, "of": "/home/ada/spoon.json", "document": {...}}
 #pragma once
@@ -32,12 +33,16 @@ class Autosave {
 
   // Removes the file if it exists.
   void remove() const;
-  // Renames the file, so that later autosaves do not overwrite it.
-  void set_aside() const;
+  // Moves the file's content to a free name in the same folder, so that later autosaves do not overwrite it,
+  // and returns that name. The new file is a document that can be opened; a file that cannot be read is only
+  // renamed.
+  Result<std::filesystem::path> set_aside() const;
 
   const std::filesystem::path& file() const { return file_; }
 
  private:
+  Result<Document> read() const;
+
   std::filesystem::path of_;
   std::filesystem::path file_;
 };
@@ -49,6 +54,8 @@ class AutosaveClaim {
   static AutosaveClaim acquire(const std::filesystem::path& folder, const std::filesystem::path& of);
 
   const Autosave& autosave() const { return autosave_; }
+  // Returns true if another window had the same file open when this claim was acquired.
+  bool is_open_elsewhere() const { return is_open_elsewhere_; }
 
  private:
   AutosaveClaim(Autosave autosave, std::optional<FileLock> lock)
@@ -56,6 +63,7 @@ class AutosaveClaim {
 
   Autosave autosave_;
   std::optional<FileLock> lock_;  // empty where the folder does not support locks
+  bool is_open_elsewhere_ = false;
 };
 
 }  // namespace spoonbill

@@ -2,11 +2,14 @@
 
 #include <chrono>
 #include <exception>
+#include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 
+#include "app/files/content_hash.h"
 #include "app/files/conversion.h"
-#include "app/session/session.h"
+#include "engine/exchange/json.h"
 
 namespace spoonbill {
 
@@ -83,6 +86,16 @@ void Journal::save(SaveRequest save) {
 std::optional<SavedDocument> Journal::consume_saved_document() {
   const std::lock_guard lock(mutex_);
   return std::exchange(saved_, std::nullopt);
+}
+
+std::optional<std::filesystem::path> Journal::consume_save_conflict() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(save_conflict_, std::nullopt);
+}
+
+void Journal::set_known_content(std::optional<std::uint64_t> content) {
+  const std::lock_guard lock(mutex_);
+  known_content_ = content;
 }
 
 void Journal::run() {
@@ -169,13 +182,37 @@ void Journal::store(const LiveScene& scene) {
     return notices_->add(Notice::Kind::problem, "not saved: another document was opened in the meantime");
   }
   if (Exporter::has_export_extension(save->file)) return exporter_.begin(scene.scene.bodies, save->file);
-  const Status written = write_document(make_document(scene), save->file);
+  std::error_code ignored;
+  // Writing a pipe could block the thread, and with it recording and autosaving.
+  if (std::filesystem::exists(save->file, ignored) &&
+      !std::filesystem::is_regular_file(save->file, ignored)) {
+    return notices_->add(Notice::Kind::problem, "not saved: " + save->file.string() +
+                                                    ": is not a regular file; choose another name");
+  }
+  if (!may_replace(*save)) {
+    const std::lock_guard lock(mutex_);
+    save_conflict_ = save->file;
+    return;
+  }
+  const Document document = make_document(scene);
+  const Status written = write_document(document, save->file);
   if (!written) return notices_->add(Notice::Kind::problem, "not saved: " + written.error().message);
   notices_->add(Notice::Kind::information, "saved " + save->file.filename().string());
+  const std::uint64_t content = content_hash(json_to_page(document_to_json(document)));
   const std::lock_guard lock(mutex_);
+  known_content_ = content;
   saved_ = SavedDocument{save->file, scene.document, scene.edit_count};
   saved_change_ = scene.change;
   if (autosave_) autosave_->remove();
+}
+
+// A file that cannot be read is not known.
+bool Journal::may_replace(const SaveRequest& save) {
+  std::error_code ignored;
+  if (save.replaced == Replaced::any || !std::filesystem::is_regular_file(save.file, ignored)) return true;
+  const auto content = file_content_hash(save.file);
+  const std::lock_guard lock(mutex_);
+  return content && content == known_content_;
 }
 
 Document Journal::make_document(const LiveScene& scene) {

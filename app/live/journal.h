@@ -119,11 +119,16 @@ struct SavedDocument {
   std::uint64_t edit_count = 0;
 };
 
+// The files that a save may replace: those whose content this session has read or saved last, or any. Another
+// program may have changed the file in the meantime, or a person may have named an existing one.
+enum class Replaced { known, any };
+
 // A request to save or export the document that is shown.
 struct SaveRequest {
   std::uint64_t request = 0;
   std::uint64_t document = 0;  // the document shown at the time of the request
   std::filesystem::path file;
+  Replaced replaced = Replaced::known;
 };
 
 // Writes the files of one live session. The autosave is at most a second older than the simulation.
@@ -165,6 +170,11 @@ class Journal {
   void save(SaveRequest save);
   // Returns the last document that was saved since the previous call, or nullopt.
   std::optional<SavedDocument> consume_saved_document();
+  // Returns the file of a save since the last call that was not written, because the file exists with content
+  // that this session does not know.
+  std::optional<std::filesystem::path> consume_save_conflict();
+  // Sets the content of the document's file as it was read, see content_hash(); empty if there is no file.
+  void set_known_content(std::optional<std::uint64_t> content);
 
  private:
   void run();
@@ -173,6 +183,7 @@ class Journal {
   Status write_to_recording(JournalEntry& entry);
   void abandon_recording(const Error& error);
   void store(const LiveScene& scene);
+  bool may_replace(const SaveRequest& save);
   Document make_document(const LiveScene& scene);
   void autosave(const LiveScene& scene);
   bool was_superseded(std::uint64_t autosave_count);
@@ -182,11 +193,13 @@ class Journal {
   BoundedQueue<JournalEntry> entries_;
   TripleBuffer<LiveScene> scenes_;
 
-  std::mutex mutex_;  // guards the six members below
+  std::mutex mutex_;  // guards the eight members below
   Json view_ = Json::object();
   std::optional<Autosave> autosave_;
   std::optional<SaveRequest> save_;
   std::optional<SavedDocument> saved_;
+  std::optional<std::filesystem::path> save_conflict_;
+  std::optional<std::uint64_t> known_content_;
   std::uint64_t autosave_count_ = 0;  // number of set_autosave() calls
   std::uint64_t saved_change_ = 0;    // last change that is already in the file
 

@@ -148,9 +148,9 @@ bool LiveSession::stop_recording() {
   return send(EndRecording{});
 }
 
-bool LiveSession::save(std::filesystem::path file) {
+bool LiveSession::save(std::filesystem::path file, Replaced replaced) {
   const std::uint64_t request = ++saves_;
-  journal_.save({request, last_frame().document, std::move(file)});
+  journal_.save({request, last_frame().document, std::move(file), replaced});
   return send(SceneRequest{request});
 }
 

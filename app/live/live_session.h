@@ -47,10 +47,14 @@ class LiveSession {
   // Lets the recording end as FILE.part instead of replacing FILE. Called before stop_recording().
   void leave_recording_unpublished() { journal_.leave_recordings_unpublished(); }
 
-  // Saves the document that frame() returned last, in the state of the next tick. consume_saved_document()
-  // and the notices report the result. Fails if another document was opened in the meantime.
-  bool save(std::filesystem::path file);
+  // Saves the document of the last frame in the state of the next tick. consume_saved_document() and the
+  // notices report the result. Fails if another document was opened in the meantime. A file that `replaced`
+  // protects stays as it is, and consume_save_conflict() reports it.
+  bool save(std::filesystem::path file, Replaced replaced = Replaced::known);
   std::optional<SavedDocument> consume_saved_document() { return journal_.consume_saved_document(); }
+  std::optional<std::filesystem::path> consume_save_conflict() { return journal_.consume_save_conflict(); }
+  // Sets the content of the document's file as it was read, see Journal.
+  void set_known_content(std::optional<std::uint64_t> content) { journal_.set_known_content(content); }
 
   // Set the view that is saved with documents, and the autosave of unsaved work.
   void set_view(Json view) { journal_.set_view(std::move(view)); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -264,6 +265,13 @@ Status write_document(const Document& document, const std::filesystem::path& fil
   if (!read_back.ok()) return read_back.error();
   auto checked = document_from_json(read_back.value(), file.string() + ": not saved");
   if (!checked.ok()) return checked.error();
+  // A pipe or device that a person named is written directly.
+  std::error_code ignored;
+  const auto status = std::filesystem::status(file, ignored);
+  const bool is_special = std::filesystem::is_fifo(status) || std::filesystem::is_character_file(status);
+  if (is_special && options.named_by == NamedBy::person) {
+    return write_file(file, page, Durability::now, options);
+  }
   return replace_file(file, page, options);
 }
 

@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 #include <sys/mount.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <vector>
 
 #include "tests/app/workplace.h"
 #include "tests/engine/simulation/handle.h"
@@ -53,6 +56,39 @@ TEST(AutosaveClaim, WindowsOnOneDocumentDoNotShareAnAutosave) {
   EXPECT_EQ(next.autosave().recovered_document().value()->name, "first");
 }
 
+TEST(AutosaveClaim, KnowsWhetherTheDocumentIsOpenElsewhere) {
+  const Workplace place;
+  EXPECT_FALSE(AutosaveClaim::acquire(place.path("."), "/a/spoon.json").is_open_elsewhere());
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const pid_t window = fork();
+  if (window == 0) {
+    const auto claim = AutosaveClaim::acquire(place.path("."), "/a/spoon.json");
+    const char ready = claim.is_open_elsewhere() ? 1 : 0;
+    if (write(ends[1], &ready, 1) == 1) pause();
+    _exit(1);
+  }
+  char wrong = 1;
+  EXPECT_EQ(read(ends[0], &wrong, 1), 1);
+  EXPECT_EQ(wrong, 0);
+  {
+    // Also where this window continues the work that a crashed one left.
+    ASSERT_TRUE(Autosave(place.path("."), "/a/spoon.json", 2).write(handle("left")));
+    const auto second = AutosaveClaim::acquire(place.path("."), "/a/spoon.json");
+    EXPECT_TRUE(second.is_open_elsewhere());
+    EXPECT_TRUE(second.autosave().recovered_document().value().has_value());
+    EXPECT_FALSE(AutosaveClaim::acquire(place.path("."), "/a/other.json").is_open_elsewhere());
+  }
+  kill(window, SIGKILL);
+  waitpid(window, nullptr, 0);
+  EXPECT_FALSE(AutosaveClaim::acquire(place.path("."), "/a/spoon.json").is_open_elsewhere());
+  // Untitled documents are not the same.
+  const auto untitled = AutosaveClaim::acquire(place.path("."), {});
+  EXPECT_FALSE(AutosaveClaim::acquire(place.path("."), {}).is_open_elsewhere());
+  close(ends[0]);
+  close(ends[1]);
+}
+
 TEST(AutosaveClaim, FindsWhatASecondWindowLeft) {
   const Workplace place;
   ASSERT_TRUE(Autosave(place.path("."), {}, 2).write(handle("second")));
@@ -96,6 +132,26 @@ TEST(Autosave, WithTheContentOfTheFileIsNothing) {
   ASSERT_TRUE(autosave.write(handle("saved")));
   std::filesystem::last_write_time(file, std::filesystem::last_write_time(autosave.file()) - 10s);
   EXPECT_FALSE(autosave.recovered_document().value().has_value());
+}
+
+TEST(Autosave, OneThatIsDeclinedStaysAsADocument) {
+  const Workplace place;
+  const Autosave autosave(place.path("."), {});
+  std::vector<std::filesystem::path> kept;
+  for (const char* name : {"first", "second"}) {
+    ASSERT_TRUE(autosave.write(handle(name)));
+    const auto aside = autosave.set_aside();
+    ASSERT_TRUE(aside) << aside.error().message;
+    kept.push_back(aside.value());
+    EXPECT_FALSE(std::filesystem::exists(autosave.file()));
+  }
+  EXPECT_EQ(read_document(kept[0]).value().name, "first");
+  EXPECT_EQ(read_document(kept[1]).value().name, "second");
+  std::ofstream(autosave.file()) << "{";
+  const auto unread = autosave.set_aside();
+  ASSERT_TRUE(unread) << unread.error().message;
+  EXPECT_EQ(content_of(unread.value()), "{");
+  EXPECT_FALSE(autosave.set_aside());
 }
 
 TEST(Autosave, ABrokenOneIsAnErrorAndStays) {

@@ -291,6 +291,17 @@ TEST_F(EditWindow, KilledInAStrokeItLosesASecondAtMost) {
   EXPECT_GT(largest_difference(*found.value(), held_model()), 1e-4);
 }
 
+TEST_F(EditWindow, AsksBeforeItReplacesAFileThatAnotherProgramChanged) {
+  ASSERT_TRUE(write_document(held_model(), place_.path("handle.json")));
+  start({place_.text("handle.json")});
+  Document theirs = held_model();
+  theirs.name = "theirs";
+  ASSERT_TRUE(write_document(theirs, place_.path("handle.json")));
+  ASSERT_TRUE(hands("key ctrl+s"));
+  EXPECT_TRUE(wait_shown([](const Json& frame) { return frame["prompt"] == "question"; }));
+  EXPECT_EQ(read_document(place_.path("handle.json")).value().name, "theirs");
+}
+
 TEST(EditWithoutDisplay, SaysSoInOneLineAndNamesReplay) {
   const Outcome outcome = run_process(SPOONBILL_PROGRAM, {"edit"}, "DISPLAY= WAYLAND_DISPLAY=");
   EXPECT_EQ(outcome.code, exit_failed);

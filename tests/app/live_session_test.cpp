@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "app/files/content_hash.h"
 #include "app/program.h"
 #include "haptic/recording.h"
 #include "haptic/safe_device.h"
@@ -174,14 +175,51 @@ TEST(LiveSession, ExportsAMeshWhichSavesNothing) {
   EXPECT_EQ(next_notice(*live, Notice::Kind::problem).substr(0, 14), "not exported: ");
 }
 
-// A save that is late must not write one document to the file of another.
+bool waits_for_save(LiveSession& live) {
+  return wait_for(live, [&](const LiveFrame&) { return live.consume_saved_document().has_value(); });
+}
+
+bool waits_for_conflict(LiveSession& live) {
+  return wait_for(live, [&](const LiveFrame&) { return live.consume_save_conflict().has_value(); });
+}
+
+TEST(LiveSession, AFileThatChangedOnTheDiskIsNotReplacedUnasked) {
+  const Workplace place;
+  const auto file = place.path("model.json");
+  Live live(held_handle());
+  live->set_known_content(file_content_hash(file));
+  // Repeated saves know what the last one wrote.
+  for (int n = 0; n < 2; ++n) {
+    ASSERT_TRUE(live->save(file));
+    EXPECT_TRUE(waits_for_save(*live));
+  }
+  std::filesystem::last_write_time(file, std::filesystem::file_time_type::clock::now());
+  ASSERT_TRUE(live->save(file));
+  EXPECT_TRUE(waits_for_save(*live));
+  std::ofstream(file, std::ios::app) << " ";
+  const std::string theirs = content_of(file);
+  ASSERT_TRUE(live->save(file));
+  EXPECT_TRUE(waits_for_conflict(*live));
+  EXPECT_EQ(content_of(file), theirs);
+  EXPECT_FALSE(live->consume_saved_document().has_value());
+  ASSERT_TRUE(live->save(file, Replaced::any));
+  EXPECT_TRUE(waits_for_save(*live));
+  EXPECT_EQ(content_of(file.string() + ".bak"), theirs);
+  // Neither is a file that a person names by mistake.
+  const auto other = place.write("other.json", "theirs");
+  ASSERT_TRUE(live->save(other));
+  EXPECT_TRUE(waits_for_conflict(*live));
+  EXPECT_EQ(content_of(other), "theirs");
+}
+
+// The live session must not write a late save of one document to the file of another.
 TEST(LiveSession, ASaveDoesNotPassToADocumentThatWasOpenedMeanwhile) {
   const Workplace place;
   Live live(held_handle());
   Document other = held_handle();
   other.name = "another";
   ASSERT_TRUE(live->open(other, "other"));
-  ASSERT_TRUE(live->save(place.path("model.json")));  // the document that is still shown
+  ASSERT_TRUE(live->save(place.path("model.json"), Replaced::any));  // the document that is still shown
   EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.facts.title == "another"; }));
   wait_ticks(*live, 1000);
   EXPECT_FALSE(live->consume_saved_document().has_value());
@@ -219,7 +257,7 @@ TEST(LiveSession, AutosavesUnsavedWorkUntilItIsSaved) {
   ASSERT_TRUE(found.value().has_value());
   // The session must be at rest, so that nothing is autosaved after the save.
   wait_ticks(*live, 4000);
-  ASSERT_TRUE(live->save(place.path("model.json")));
+  ASSERT_TRUE(live->save(place.path("model.json"), Replaced::any));
   EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) { return live->consume_saved_document().has_value(); }));
   EXPECT_FALSE(std::filesystem::exists(autosave.file()));
 }

@@ -3,6 +3,8 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
 #include <sys/prctl.h>
 #include <sys/ptrace.h>
 #include <sys/socket.h>
@@ -13,14 +15,19 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <sstream>
 #include <string>
 #include <thread>
 
 #include "app/child_process.h"
+#include "app/program.h"
+#include "tests/app/process.h"
+#include "tests/app/workplace.h"
 #include "tests/engine/exchange/sample_document.h"
 
 namespace spoonbill {
@@ -94,7 +101,7 @@ int wrong_results() {
     bit *= 2;
   };
   const auto is_denied = [](long result, int error) { return result == -1 && errno == error; };
-  expect(confine_reader());
+  expect(confine_reader().ok());
   expect(is_denied(socket(AF_INET, SOCK_STREAM, 0), EPERM));
   const pid_t child = fork();
   if (child == 0) _exit(0);
@@ -116,6 +123,43 @@ TEST(ReaderConfinement, ThreadsStartButNoProcess) {
   const int state = wait_for_process(process);
   ASSERT_TRUE(WIFEXITED(state));
   EXPECT_EQ(WEXITSTATUS(state), 0);
+}
+
+// Makes the system calls that confine a reader fail for this thread and its children, as on an old kernel.
+bool forbid_filters() {
+  sock_filter calls[] = {
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(offsetof(seccomp_data, nr))),
+      BPF_JUMP(BPF_JMP | BPF_K | BPF_JEQ, __NR_seccomp, 0, 1),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | ENOSYS), BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)};
+  const sock_fprog program{static_cast<unsigned short>(std::size(calls)), calls};
+  return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+         prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
+}
+
+TEST(ReaderConfinement, NothingIsReadWithoutIt) {
+  if (!are_readers_confined) GTEST_SKIP() << "sanitizers start processes";
+  const Workplace place;
+  place.write("a.xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 1\n");
+  place.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  place.write("a.step", "ISO-10303-21;\n");
+  const std::vector<std::vector<std::string>> commands = {
+      {"fit", place.text("a.xyz"), "--out", place.text("out.json")},
+      {"fit", place.text("a.obj"), "--out", place.text("out.json")},
+      {"convert", place.text("a.step"), place.text("out.json")},
+      {"convert", place.text("model.json"), place.text("out.step")}};
+  std::vector<Outcome> outcomes;
+  std::thread([&] {
+    if (!forbid_filters()) return;
+    for (const auto& command : commands) outcomes.push_back(run_process(SPOONBILL_PROGRAM, command));
+  }).join();
+  ASSERT_EQ(outcomes.size(), commands.size());
+  for (const Outcome& outcome : outcomes) {
+    EXPECT_EQ(outcome.code, exit_failed);
+    EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
+    EXPECT_NE(outcome.err.find("seccomp"), std::string::npos) << outcome.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(place.path("out.json")) ||
+               std::filesystem::exists(place.path("out.step")));
 }
 
 TEST(StartReader, GivesACleanEnvironmentAndNoDescriptors) {

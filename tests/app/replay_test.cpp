@@ -1,4 +1,6 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <set>
@@ -129,6 +131,25 @@ TEST(Replay, AReadOnlyFileIsReplacedOnlyByForce) {
   for (const auto& file : {again, model, mesh}) {
     EXPECT_NE(content_of(file), "old");
     EXPECT_EQ(std::filesystem::status(file).permissions(), read_only) << "the mode is kept";
+  }
+}
+
+TEST(Replay, NamedPipesAreWrittenDirectly) {
+  const Workplace place;
+  const std::vector<std::vector<std::string>> commands = {
+      {"new", "sphere", "--control", "12x12", "--out", place.text("pipe.json")},
+      {"sample", place.text("model.json"), "--grid", "2x2", "--out", place.text("pipe.csv")},
+      {"record", place.text("script.json"), "--out", place.text("pipe.jsonl")}};
+  for (const auto& command : commands) {
+    ASSERT_EQ(mkfifo(command.back().c_str(), 0600), 0);
+    // Holding an end open keeps both sides from waiting for each other.
+    const int held = open(command.back().c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+    fcntl(held, F_SETPIPE_SZ, 1 << 20);
+    EXPECT_EQ(run(command).code, exit_done) << command[0];
+    char first = 0;
+    EXPECT_EQ(read(held, &first, 1), 1) << command[0];
+    close(held);
+    EXPECT_TRUE(std::filesystem::is_fifo(command.back()));
   }
 }
 

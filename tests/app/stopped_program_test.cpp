@@ -133,7 +133,19 @@ TEST(StoppedProgram, LeavesALiveRecordingUnpublished) {
   expect_replayable(place, recording, "l.jsonl");
 }
 
-// The stroke goes through a ball with almost endless ticks.
+TEST(StoppedProgram, NamesTheRecordingThatAReplayHasBegun) {
+  const Workplace place;
+  RunningProgram replay({"replay", SPOONBILL_ASSETS "/recordings/spoon-handle-bend.recording.jsonl",
+                         "--no-frames", "--rerecord", place.text("r.jsonl")},
+                        place.path("err"));
+  replay.wait_for_size(place.path("r.jsonl.part"), 1);
+  EXPECT_LT(replay.stop(SIGTERM), stop_limit_s);
+  EXPECT_TRUE(replay.failed());
+  EXPECT_NE(replay.err().find(place.text("r.jsonl.part")), std::string::npos) << replay.err();
+  EXPECT_FALSE(std::filesystem::exists(place.path("r.jsonl")));
+}
+
+// A stroke through a ball that felt nothing until now: some of its ticks have been endless.
 TEST(StoppedProgram, EndsInTheMidstOfALongTick) {
   const Workplace place;
   for (const char* name : {"endless-tick.script.json", "endless-tick-model.json"}) {
