@@ -20,13 +20,6 @@ constexpr double lowest_tick_count = lowest_tick_rate_hz * tick_s * TickHistory:
 constexpr double workspace_end = 1.1;
 constexpr double speed_end = 2.0;
 
-// Weight of the low pass at 20 Hz, which a hand can follow: 1 - exp(-2 pi 20 Hz tick_s).
-constexpr double slow_weight = 0.118;
-// Decay of the swing count per tick. Swings are forgotten within 100 ticks, so the count of a steady buzz of
-// f Hz reaches 0.2 f. The fastest tremor of a hand, at 12 Hz, reaches 2.4.
-constexpr double swing_memory = 0.99;
-constexpr double maximum_swings = 5.0;
-
 Vector3 clamp_norm(const Vector3& vector, double limit) {
   const double norm = vector.stableNorm();
   return norm > limit ? Vector3(vector * (limit / norm)) : vector;
@@ -117,16 +110,9 @@ Vector3 limit_change(const Vector3& from_n, const Vector3& to_n, const DeviceSpe
   return clamp_norm(from_n + clamp_norm(step_n, maximum_n), specification.maximum_force_n);
 }
 
-// Returns true if the force oscillates too often. A swing counts if it exceeds the quiet force and its
-// direction is opposite to the previous swing.
-bool is_buzzing(SafetyState& state, const DeviceSpecification& specification, const Vector3& force_n) {
-  state.slow_force_n += slow_weight * (force_n - state.slow_force_n);
-  state.swings *= swing_memory;
-  const Vector3 swing_n = force_n - state.slow_force_n;
-  if (swing_n.norm() < specification.quiet_force_n) return false;
-  if (swing_n.dot(state.swing_force_n) < 0.0) state.swings += 1.0;
-  state.swing_force_n = swing_n;
-  return state.swings > maximum_swings;
+bool is_buzzing(SafetyState& state, const DeviceSpecification& specification, const SafetyInput& input) {
+  const VibrationLimits limits{specification.quiet_force_n, specification.maximum_force_n};
+  return detect_vibration(state.vibration, limits, input.requested_n, input.position_m, input.dropped_ticks);
 }
 
 struct FlagText {
@@ -180,10 +166,10 @@ SafeForce make_safe(SafetyState& state, const DeviceSpecification& specification
     safe.flags |= safety_flag_waiting | state.cause;
     return safe;
   }
+  if (is_buzzing(state, specification, input)) return cut(state, safety_flag_buzzing);
   ramp(state, specification, safe);
   const Vector3 requested_n = limit_force(state, specification, input, speed_m_per_s, safe);
   safe.force_n = limit_change(state.force_n, requested_n, specification, safe);
-  if (is_buzzing(state, specification, safe.force_n)) return cut(state, input, safety_flag_buzzing);
   state.force_n = safe.force_n;
   return safe;
 }

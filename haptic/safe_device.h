@@ -11,7 +11,8 @@
 //   3. Its norm is limited to the maximum of the device.
 //   4. It fades for a hand that is too fast or outside the workspace.
 //   5. Its change per tick is limited.
-//   6. A force that oscillates with energy, faster than a hand moves, is cut.
+//   6. A requested force that vibrates faster than a hand moves (haptic/vibration.h) is cut. It is judged
+//      before the limits, which would hide it.
 // After a fault or a cut the chain restarts at step 2. A cut is the one change that may exceed the limit of
 // step 5.
 //
@@ -24,7 +25,7 @@
 #include <string>
 
 #include "haptic/device.h"
-#include "haptic/tick_history.h"
+#include "haptic/vibration.h"
 
 namespace spoonbill {
 
@@ -97,10 +98,7 @@ struct SafetyState {
   Vector3 force_n = Vector3::Zero();  // force of the last tick
   bool position_known = false;        // false without a valid position in the last tick
   Vector3 position_m = Vector3::Zero();
-  Vector3 slow_force_n = Vector3::Zero();   // low-passed force, which a hand can follow
-  Vector3 swing_force_n = Vector3::Zero();  // last large deviation from slow_force_n
-  double swings = 0.0;                      // decaying count of reversals
-  TickHistory ticks;                        // since the last stall
+  VibrationState vibration;  // of the requested force since the chain engaged
 };
 
 // Applies the chain to one tick. A pure function: it does not allocate, lock, read a clock or throw. The

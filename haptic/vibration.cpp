@@ -1,0 +1,99 @@
+#include "haptic/vibration.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "engine/simulation/simulation.h"
+#include "haptic/device.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr int shortest_period = 2, longest_period = 66;  // in ticks
+constexpr int fewest_periods = 3, fewest_ticks = 75;
+constexpr int turns = 8;  // number of ticks in which every period is tried once
+
+constexpr double largest_mismatch = 0.15;
+constexpr double slowest_hz = 15.0;
+constexpr double lasting_fraction = 0.7;
+constexpr double pattern_m = 2.5e-3;
+constexpr double reversing_fraction = 0.6;
+
+// Forces are clamped to this norm, so that no sum overflows. No device is stronger.
+constexpr double largest_force_n = device_force_range_n.high;
+
+constexpr int count_periods(int period) {
+  return std::max(fewest_periods, (fewest_ticks + period - 1) / period);
+}
+static_assert(fewest_periods * longest_period <= static_cast<int>(VibrationState::capacity));
+
+const VibrationState::Sample& at(const VibrationState& state, int ticks_ago) {
+  return state.samples[(state.count - 1 - static_cast<std::uint64_t>(ticks_ago)) % VibrationState::capacity];
+}
+
+// Returns the mismatch below which a period counts as repeated: at most that of a sine of `slowest_hz`, of
+// which 1 - cos(x) is the exact value for a phase error x.
+double mismatch_limit(int period) {
+  const double phase_error = 2.0 * std::numbers::pi * (1.0 - period * tick_s * slowest_hz);
+  return std::min(largest_mismatch, 0.5 * phase_error * phase_error);
+}
+
+bool vibrates(const VibrationState& state, const VibrationLimits& limits, int period) {
+  const int periods = count_periods(period);
+  const int ticks = periods * period;
+  if (state.count < static_cast<std::uint64_t>(ticks)) return false;
+  double change = 0.0, moved_m2 = 0.0;  // sums of |f(t) - f(t - L)|^2 and of the same for the hand
+  double energy = 0.0, newest_energy = 0.0, oldest_energy = 0.0;  // sums of |a(t)|^2
+  const int third = periods / 3;
+  for (int p = 0; p < periods; ++p) {
+    Vector3 sum = Vector3::Zero();
+    double squares = 0.0;
+    for (int k = p * period; k < (p + 1) * period; ++k) {
+      const VibrationState::Sample& sample = at(state, k);
+      sum += sample.force_n;
+      squares += sample.force_n.squaredNorm();
+      if (p + 1 == periods) continue;
+      const VibrationState::Sample& before = at(state, k + period);
+      change += (sample.force_n - before.force_n).squaredNorm();
+      moved_m2 += (sample.position_m - before.position_m).squaredNorm();
+    }
+    const double of_period = std::max(0.0, squares - sum.squaredNorm() / period);
+    energy += of_period;
+    if (p < third) newest_energy += of_period;
+    if (p >= periods - third) oldest_energy += of_period;
+  }
+  const double mean_energy = energy / ticks;
+  const int pairs = ticks - period;
+  if (!(mean_energy > limits.quiet_force_n * limits.quiet_force_n)) return false;
+  if (!(change / pairs < mismatch_limit(period) * 2.0 * mean_energy)) return false;
+  const double lasting_energy = lasting_fraction * mean_energy * third * period;
+  if (!(std::min(newest_energy, oldest_energy) >= lasting_energy)) return false;
+  const double reversing_n = reversing_fraction * limits.maximum_force_n;
+  return mean_energy > reversing_n * reversing_n || moved_m2 / pairs < pattern_m * pattern_m;
+}
+
+void add(VibrationState& state, const VibrationState::Sample& sample) {
+  state.samples[state.count % VibrationState::capacity] = sample;
+  ++state.count;
+}
+
+}  // namespace
+
+bool detect_vibration(VibrationState& state, const VibrationLimits& limits, const Vector3& force_n,
+                      const Vector3& position_m, std::uint64_t dropped_ticks) {
+  if (state.count > 0) {
+    const VibrationState::Sample last = at(state, 0);
+    const std::uint64_t held = std::min<std::uint64_t>(dropped_ticks, VibrationState::capacity);
+    for (std::uint64_t k = 0; k < held; ++k) add(state, last);
+  }
+  const double norm = force_n.stableNorm();
+  const Vector3 clamped_n = norm > largest_force_n ? Vector3(force_n * (largest_force_n / norm)) : force_n;
+  add(state, {clamped_n, position_m});
+  const int turn = static_cast<int>(state.count % turns);
+  for (int period = shortest_period + turn; period <= longest_period; period += turns) {
+    if (vibrates(state, limits, period)) return true;
+  }
+  return false;
+}
+
+}  // namespace spoonbill

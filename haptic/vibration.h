@@ -1,0 +1,61 @@
+// Recognises a requested force that vibrates, by what repeats.
+//
+// For each period of L ticks, from 2 to 66, the force is compared with itself L ticks before. The comparison
+// covers n periods, at least three and at least 75 ticks. With the deviation a(t) of the force f(t) from its
+// mean over the period that contains t, the mismatch is
+//
+//   d(L) = mean |f(t) - f(t - L)|^2 / (2 mean |a(t)|^2)
+//
+// It is 0 for a force of period L in any directions and with any constant offset, 1 for noise, 2 for a ramp,
+// and about 1 - cos(2 pi L / P) for a sine of a longer period P. This is the difference function of pitch
+// detection (de Cheveigne and Kawahara 2002, JASA 111:1917), relative to the variation within a period. The
+// force repeats if d(L) is below 0.15 and below the mismatch of a sine of 15 Hz, so that slower motion does
+// not count.
+//
+// A force that repeats is a vibration if it is also
+//   - strong: the root mean square of a(t) exceeds the quiet force;
+//   - lasting: the newest and the oldest third of the periods each have at least 0.7 of the mean |a(t)|^2,
+//     unlike the first ticks of a pulse and the bounces after a tap, which die down;
+//   - no pattern that the hand crosses, such as ridges, or one ridge again and again with a tremor: the
+//     hand is within 2.5 mm of its position a period before (root mean square). A contact only pushes, so the
+//     root mean square of its a(t) is at most half the maximum force; above 0.6 of the maximum, the force
+//     reverses, and the position does not matter.
+//
+// A pulse does not repeat. A steady vibration is recognised within 150 ms of its first tick from 22 Hz on and
+// within 100 ms from 50 Hz on; between 16 and 22 Hz it takes three periods.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/base/geometry.h"
+
+namespace spoonbill {
+
+// The last forces and positions. Plain data; initially without any.
+struct VibrationState {
+  static constexpr std::size_t capacity = 256;  // a power of two, at least three periods of 60 ticks
+  struct Sample {
+    Vector3 force_n = Vector3::Zero();
+    Vector3 position_m = Vector3::Zero();
+  };
+  std::array<Sample, capacity> samples;
+  std::uint64_t count = 0;  // number of samples added; the newest is at (count - 1) % capacity
+};
+
+struct VibrationLimits {
+  double quiet_force_n = 0.2;    // a weaker vibration is ignored
+  double maximum_force_n = 3.3;  // of the device
+};
+
+// Adds the force that the coupling requests in this tick, before any limit, with the position of the hand,
+// and returns whether the force vibrates. Both must be finite. `dropped_ticks` ticks passed before this one
+// without a force; the last force counts for them, at most `capacity` times.
+//
+// Tries an eighth of the periods in each tick, so that a tick costs a few microseconds and a vibration is
+// recognised at most 7 ticks late. Does not allocate, lock, read a clock or throw.
+bool detect_vibration(VibrationState& state, const VibrationLimits& limits, const Vector3& force_n,
+                      const Vector3& position_m, std::uint64_t dropped_ticks);
+
+}  // namespace spoonbill
