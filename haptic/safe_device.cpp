@@ -166,7 +166,7 @@ SafeForce make_safe(SafetyState& state, const DeviceSpecification& specification
     safe.flags |= safety_flag_waiting | state.cause;
     return safe;
   }
-  if (is_buzzing(state, specification, input)) return cut(state, safety_flag_buzzing);
+  if (is_buzzing(state, specification, input)) return cut(state, input, safety_flag_buzzing);
   ramp(state, specification, safe);
   const Vector3 requested_n = limit_force(state, specification, input, speed_m_per_s, safe);
   safe.force_n = limit_change(state.force_n, requested_n, specification, safe);

@@ -255,7 +255,9 @@ Result<std::vector<Vector2>> harmonic_square_map(const PointGraph& graph,
                                                  const std::vector<std::uint32_t>& loop,
                                                  const std::array<std::size_t, 4>& corners) {
   SPOONBILL_ASSERT(loop.size() >= 4);
-  SPOONBILL_ASSERT_DEBUG(std::is_sorted(corners.begin(), corners.end()));
+  // The corners are in the order of the loop, which may start between any two of them.
+  SPOONBILL_ASSERT_DEBUG(std::is_sorted_until(corners.begin(), corners.end()) == corners.end() ||
+                         corners.back() <= corners.front());
   static const std::array<Vector2, 4> square{Vector2(0, 0), Vector2(1, 0), Vector2(1, 1), Vector2(0, 1)};
   std::array<std::vector<double>, 2> fixed;
   fixed.fill(std::vector<double>(graph.size(), not_a_number));
