@@ -25,6 +25,7 @@
 #include <string>
 
 #include "haptic/device.h"
+#include "haptic/tick_history.h"
 #include "haptic/vibration.h"
 
 namespace spoonbill {
@@ -99,6 +100,7 @@ struct SafetyState {
   bool position_known = false;        // false without a valid position in the last tick
   Vector3 position_m = Vector3::Zero();
   VibrationState vibration;  // of the requested force since the chain engaged
+  TickHistory ticks;         // since the last stall
 };
 
 // Applies the chain to one tick. A pure function: it does not allocate, lock, read a clock or throw. The

@@ -397,7 +397,7 @@ Pointer Editor::read_pointer() const {
 
 void Editor::handle_keys(const LiveFrame& frame) {
   const std::vector<GlfwWindow::KeyPress> presses = window_.window().consume_key_presses();
-  if (is_question_open()) return;
+  const bool is_asking = is_question_open();
   for (const GlfwWindow::KeyPress& press : presses) {
     // While text is typed, Esc is the only key that acts as a command.
     if (ImGui::GetIO().WantTextInput && press.key != GLFW_KEY_ESCAPE) continue;

@@ -226,7 +226,7 @@ TEST_F(ConvertTest, WhatMakesNoSenseIsRefused) {
   expect_failure({handle_, place_.text("a.stl"), "--chord", "0mm"}, "must be from 0.0001 mm to 100 mm",
                  exit_wrong_use);
   expect_failure({handle_, place_.text("a.stl"), "--chord", "nanmm"}, "is not a length", exit_wrong_use);
-  expect_failure({handle_, place_.text("a.stl"), "--unit", "ell"}, "is not a unit", exit_wrong_use);
+  expect_failure({handle_, place_.text("a.stl"), "--unit", "ell"}, "is not a supported unit", exit_wrong_use);
   expect_failure({handle_, place_.text("a.step"), "--schema", "ap1"}, "is not a supported STEP schema",
                  exit_wrong_use);
   expect_failure({handle_}, "OUT", exit_wrong_use);

@@ -153,9 +153,9 @@ TouchingRun run_hand(const Hand& hand, const HandPath& target_m, int ticks,
   for (int t = -300; t < ticks; ++t) {
     target.pose.position_m = target_m(std::max(0, t));
     device.set_target(target);
-    const DeviceReading reading = safe.read();
+    const DeviceReading reading = safe.read(0);
     const Vector3 requested_n = touch(reading);
-    safe.give(requested_n, 0);
+    safe.give(requested_n);
     run.strongest_n = std::max(run.strongest_n, requested_n.norm());
     run.cut = run.cut || (safe.flags() & safety_flag_buzzing) != 0;
   }
