@@ -107,37 +107,28 @@ void read_orientations(FieldReader& reader, const DeviceReading& before, std::sp
   check_orientations(reader, readings);
 }
 
-void read_buttons(FieldReader& reader, const DeviceReading& before, std::span<DeviceReading> readings) {
-  const char* field = "buttons";
+// Reads one whole number for each reading; returns false if the field is missing.
+bool read_counts(FieldReader& reader, const char* field, std::span<DeviceReading> readings,
+                 std::uint32_t DeviceReading::*member) {
   const int count = static_cast<int>(readings.size());
   if (!reader.has(field)) {
     reader.ignore(field);
-    for (DeviceReading& reading : readings) reading.buttons = before.buttons;
-    return;
+    return false;
   }
   const Json& list = reader.list(field, {count, count});
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (!list[i].is_number_unsigned() || list[i].get<std::uint64_t>() > 0xffffffffu) {
       reader.refuse(field, "contains " + json_excerpt(list[i]) + ", must contain 32-bit whole numbers");
-      return;
+      break;
     }
-    readings[i].buttons = list[i].get<std::uint32_t>();
+    readings[i].*member = list[i].get<std::uint32_t>();
   }
+  return true;
 }
 
-void read_missed(FieldReader& reader, std::span<DeviceReading> readings) {
-  const char* field = "missed";
-  const int count = static_cast<int>(readings.size());
-  for (DeviceReading& reading : readings) reading.missed = 0;
-  if (!reader.has(field)) return reader.ignore(field);
-  const Json& list = reader.list(field, {count, count});
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    if (!list[i].is_number_unsigned() || list[i].get<std::uint64_t>() > 0xffffffffu) {
-      reader.refuse(field, "contains " + json_excerpt(list[i]) + ", must contain 32-bit whole numbers");
-      return;
-    }
-    readings[i].missed = list[i].get<std::uint32_t>();
-  }
+void read_buttons(FieldReader& reader, const DeviceReading& before, std::span<DeviceReading> readings) {
+  if (read_counts(reader, "buttons", readings, &DeviceReading::buttons)) return;
+  for (DeviceReading& reading : readings) reading.buttons = before.buttons;
 }
 
 Json device_to_json(const DeviceSpecification& device) {
@@ -259,7 +250,7 @@ void read_motion(FieldReader& reader, std::vector<DeviceReading>& readings) {
   read_positions(reader, before, added);
   read_orientations(reader, before, added);
   read_buttons(reader, before, added);
-  read_missed(reader, added);
+  read_counts(reader, "missed", added, &DeviceReading::missed);
 }
 
 Status check_command(const Json& command, const std::string& source) {

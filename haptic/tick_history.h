@@ -13,7 +13,7 @@ namespace spoonbill {
 class TickHistory {
  public:
   static constexpr std::size_t window_ms = 100;
-  // Longest hold that is told apart; longer ones are stalls.
+  // Longest hold that is measured; longer ones are stalls.
   static constexpr std::size_t longest_hold_ms = 10;
 
   TickHistory() { ticked_.set(); }

@@ -12,7 +12,6 @@
 #include "app/files/documents.h"
 #include "app/report/check_facts.h"
 #include "app/report/document_facts.h"
-#include "engine/bspline/collapsed_edges.h"
 #include "engine/inspection/solid_check.h"
 
 namespace spoonbill {
@@ -156,9 +155,8 @@ Status check_overlaps(FactSheet& facts, const std::vector<std::size_t>& solids, 
 }
 
 Status check(const CheckOptions& options, Console& console) {
-  auto document = read_document_file(options.model);
+  const auto document = read_document_file(options.model);
   if (!document) return document.error();
-  for (Body& body : document->scene.bodies) join_collapsed_edges(body.surface);
   FactSheet facts;
   facts.add("File", options.model.string(), "file", options.model.string());
   const std::vector<Body>& all = document->scene.bodies;

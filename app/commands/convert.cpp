@@ -46,8 +46,7 @@ void add_conversion_facts(FactSheet& facts, const ConversionReport& report) {
 }
 
 Status convert_model(const ConvertOptions& options, Console& console) {
-  const OutputOptions how{NamedBy::person, options.request.replaces_read_only};
-  if (Status checked = check_output(options.request.out, how); !checked) return checked;
+  if (Status checked = check_output(options.request.out, options.request.how); !checked) return checked;
   InterruptWatch interrupt;
   Result<ConversionReport> report = Error{ErrorCode::internal, "not converted"};
   {
@@ -115,7 +114,7 @@ CommandEntry add_convert(OptionSet root) {
       [&request](const std::vector<int>& numbers) { request.bodies = numbers; },
       "Numbers of the bodies to convert, as `spoonbill info` lists them, such as 1,3-5; default: all");
   parser.add_flag("--progress", options->progress, "Show progress even if the output is not a terminal");
-  parser.add_flag("--force", request.replaces_read_only, "Replace the output even if it is read-only");
+  add_force_option(parser, request.how);
   add_json_option(parser, options->json);
   return {parser, [options](Console& console) { return convert_model(*options, console); }};
 }

@@ -176,8 +176,7 @@ Status write_model(const CadModel& model, const ConversionJob& job, const CadChi
   report.open_shells = content->open_shells;
   for (std::string& note : list_shell_notes(model)) report.notes.push_back(std::move(note));
   report.notes.insert(report.notes.end(), content->notes.begin(), content->notes.end());
-  return write_file(request.out, content->text, Durability::now,
-                    {NamedBy::person, request.replaces_read_only});
+  return write_file(request.out, content->text, Durability::now, request.how);
 }
 
 CadChild make_child(const ConversionRequest& request, const Progress& progress) {
@@ -331,7 +330,7 @@ Status write_mesh_file(const CadModel& model, const ConversionJob& job, const Pr
     *report.closed_meshes += mesh.closed ? 1 : 0;
   }
   report.unit_out = unit.name;
-  auto out = OutputFile::create(request.out, {NamedBy::person, request.replaces_read_only});
+  auto out = OutputFile::create(request.out, request.how);
   if (!out) return out.error();
   // Errors of the file contain its name; errors of the writer do not.
   Status file_status;
@@ -354,7 +353,7 @@ Status write_native(const CadModel& model, const ConversionRequest& request, Con
                            std::to_string(sculpted_body_count_range.high) +
                            " can be sculpted together; choose some with --bodies 1,3-5");
   }
-  return write_document(document.value(), request.out, {NamedBy::person, request.replaces_read_only});
+  return write_document(document.value(), request.out, request.how);
 }
 
 // Copies some bodies of a document unchanged.
@@ -362,9 +361,7 @@ Result<ConversionReport> convert_document(const ConversionRequest& request) {
   auto document = read_document(request.in);
   if (!document) return document.error();
   if (Status chosen = select_bodies(request, document->scene.bodies); !chosen) return chosen.error();
-  if (Status written =
-          write_document(document.value(), request.out, {NamedBy::person, request.replaces_read_only});
-      !written)
+  if (Status written = write_document(document.value(), request.out, request.how); !written)
     return written.error();
   ConversionReport report;
   report.unit_in = report.unit_out = millimetre.name;

@@ -9,6 +9,7 @@
 
 #include "app/files/cad_file.h"
 #include "app/files/length_unit.h"
+#include "engine/base/file.h"
 #include "engine/base/progress.h"
 #include "engine/base/result.h"
 #include "engine/exchange/cad_model.h"
@@ -25,7 +26,7 @@ struct ConversionRequest {
   std::optional<double> tolerance_m;  // of CAD geometry that is not a B-spline; default: 0.01 mm
   std::optional<StepSchema> schema;   // default: AP214
   std::vector<int> bodies;            // bodies to convert, numbered from 1; all if empty
-  bool replaces_read_only = false;    // an existing file `out`
+  OutputOptions how;                  // to write `out`
   std::filesystem::path cad_program;  // see CadChild::program
 };
 

@@ -175,10 +175,6 @@ std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& file, con
           "file:" + file.string()};
 }
 
-}  // namespace
-
-namespace {
-
 // The file that ffmpeg writes, and the file that it becomes. Both are the same for a pipe or a device.
 struct VideoPlace {
   std::filesystem::path unfinished, target;

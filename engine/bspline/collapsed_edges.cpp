@@ -5,13 +5,6 @@
 namespace spoonbill {
 namespace {
 
-bool is_clamped_at(const KnotVector& knots, bool at_end) {
-  if (knots.is_periodic()) return false;
-  const std::vector<double>& all = knots.knots();
-  const auto degree = static_cast<std::size_t>(knots.degree());
-  return at_end ? all.back() == all[all.size() - 1 - degree] : all.front() == all[degree];
-}
-
 Vector3 point_of(const ControlNet& net, std::size_t index) {
   return {net.x[index], net.y[index], net.z[index]};
 }
@@ -28,19 +21,23 @@ double extent_of_edge(const ControlNet& net, const NetEdge& edge) {
 
 }  // namespace
 
+NetEdge find_edge(const ControlNet& net, bool of_u, bool at_end) {
+  const auto rows = static_cast<std::size_t>(net.rows), columns = static_cast<std::size_t>(net.columns);
+  if (of_u) return {at_end ? (rows - 1) * columns : 0, 1, columns};
+  return {at_end ? columns - 1 : 0, columns, rows};
+}
+
+bool is_collapsed(const ControlNet& net, const NetEdge& edge) {
+  return extent_of_edge(net, edge) <= collapsed_edge_fraction * bounding_box(net).size();
+}
+
 std::vector<NetEdge> find_collapsed_edges(const Surface& surface) {
-  const auto rows = static_cast<std::size_t>(surface.net.rows),
-             columns = static_cast<std::size_t>(surface.net.columns);
-  const double tolerance_m = collapsed_edge_fraction * bounding_box(surface.net).size();
   std::vector<NetEdge> edges;
   for (const bool at_end : {false, true}) {
-    const NetEdge of_u{at_end ? (rows - 1) * columns : 0, 1, columns};
-    const NetEdge of_v{at_end ? columns - 1 : 0, columns, rows};
-    if (is_clamped_at(surface.u, at_end) && extent_of_edge(surface.net, of_u) <= tolerance_m) {
-      edges.push_back(of_u);
-    }
-    if (is_clamped_at(surface.v, at_end) && extent_of_edge(surface.net, of_v) <= tolerance_m) {
-      edges.push_back(of_v);
+    for (const bool of_u : {true, false}) {
+      const NetEdge edge = find_edge(surface.net, of_u, at_end);
+      const KnotVector& knots = of_u ? surface.u : surface.v;
+      if (knots.is_clamped(at_end) && is_collapsed(surface.net, edge)) edges.push_back(edge);
     }
   }
   return edges;

@@ -17,6 +17,12 @@ struct NetEdge {
   std::size_t first = 0, stride = 1, count = 0;
 };
 
+// Returns the first or last row of control points, at an end of u, or if not `of_u` the first or last column.
+NetEdge find_edge(const ControlNet& net, bool of_u, bool at_end);
+
+// Returns true if the control points of the edge are a single point up to collapsed_edge_fraction.
+bool is_collapsed(const ControlNet& net, const NetEdge& edge);
+
 // Returns the edges at clamped ends whose control points coincide up to collapsed_edge_fraction.
 std::vector<NetEdge> find_collapsed_edges(const Surface& surface);
 

@@ -47,6 +47,11 @@ class KnotVector {
   int degree() const { return degree_; }
   int control_point_count() const { return control_point_count_; }
   bool is_periodic() const { return periodic_; }
+  // Returns true if the surface meets its control points at this end; false for a periodic direction.
+  bool is_clamped(bool at_end) const {
+    if (periodic_) return false;
+    return at_end ? knots_.back() == domain_end() : knots_.front() == domain_start();
+  }
   double domain_start() const { return extended_[degree_]; }
   double domain_end() const { return extended_[extended_.size() - 1 - degree_]; }
   double domain_length() const { return domain_end() - domain_start(); }

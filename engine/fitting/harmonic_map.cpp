@@ -256,8 +256,8 @@ Result<std::vector<Vector2>> harmonic_square_map(const PointGraph& graph,
                                                  const std::array<std::size_t, 4>& corners) {
   SPOONBILL_ASSERT(loop.size() >= 4);
   // The corners are in the order of the loop, which may start between any two of them.
-  SPOONBILL_ASSERT_DEBUG(std::is_sorted_until(corners.begin(), corners.end()) == corners.end() ||
-                         corners.back() <= corners.front());
+  const auto ahead = [&](std::size_t c) { return (corners[c] + loop.size() - corners[0]) % loop.size(); };
+  SPOONBILL_ASSERT(0 < ahead(1) && ahead(1) < ahead(2) && ahead(2) < ahead(3));
   static const std::array<Vector2, 4> square{Vector2(0, 0), Vector2(1, 0), Vector2(1, 1), Vector2(0, 1)};
   std::array<std::vector<double>, 2> fixed;
   fixed.fill(std::vector<double>(graph.size(), not_a_number));

@@ -66,24 +66,14 @@ ParameterMinimum search_cell(Candidate from, const std::function<double(double, 
   return from.minimum;
 }
 
-// Returns whether the control points of an edge coincide: those of the first or last row if `of_u`, otherwise
-// those of the first or last column.
-bool is_collapsed(const ControlNet& net, bool of_u, bool last) {
-  const double size = bounding_box(net).size();
-  const int count = of_u ? net.columns : net.rows, line = last ? (of_u ? net.rows : net.columns) - 1 : 0;
-  const auto at = [&](int k) { return of_u ? net.point(line, k) : net.point(k, line); };
-  for (int k = 1; k < count; ++k) {
-    if ((at(k) - at(0)).norm() > collapsed_edge_fraction * size) return false;
-  }
-  return true;
-}
-
 std::vector<std::array<double, 2>> intervals(const Surface& surface, bool of_u, int parts) {
   std::vector<std::array<double, 2>> result;
   const KnotVector& knots = of_u ? surface.u : surface.v;
   const std::vector<double> ends = knots.breakpoints();
   const auto off_end = [&](bool last) {
-    return !knots.is_periodic() && is_collapsed(surface.net, of_u, last) ? off_poles : off_knots;
+    const bool is_pole =
+        !knots.is_periodic() && is_collapsed(surface.net, find_edge(surface.net, of_u, last));
+    return is_pole ? off_poles : off_knots;
   };
   const double off_first = off_end(false), off_last = off_end(true);
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
@@ -163,12 +153,10 @@ std::optional<PrincipalCurvatures> compute_principal_curvatures(const SurfacePoi
   return PrincipalCurvatures{mean - spread, mean + spread};
 }
 
-bool has_extent(const Surface& surface) {
-  constexpr double least_size_m = 1e-9;
-  return bounding_box(surface.net).size() > least_size_m;
-}
-
 namespace {
+
+// Size up to which the extent of a surface is the rounding of its coordinates. It is a point.
+constexpr double least_size_m = 1e-9;
 
 // Returns the curvatures at a point of a surface of this size. Returns nothing where a derivative consists of
 // rounding errors, or where the radius of curvature is below the length of a collapsed edge, as at a cusp.
@@ -191,7 +179,7 @@ CurvatureRange find_curvature_range(const Surface& surface, const TrimmedArea& a
   SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   const std::vector<PieceCell> cells = piece_cells(surface, samples_per_span);
   const double size_m = bounding_box(surface.net).size();
-  if (!has_extent(surface)) return {};
+  if (!(size_m > least_size_m)) return {};
   const auto extreme = [&](bool largest) -> std::optional<CurvatureExtreme> {
     const auto value = [&](double u, double v) {
       constexpr double none = std::numeric_limits<double>::infinity();
@@ -213,8 +201,8 @@ CurvatureRange find_curvature_range(const Surface& surface, const TrimmedArea& a
 
 double compute_bending_energy(const Surface& surface, const TrimmedArea& area) {
   SPOONBILL_ASSERT_DEBUG(is_valid(surface));
-  if (!has_extent(surface)) return 0.0;
   const double size_m = bounding_box(surface.net).size();
+  if (!(size_m > least_size_m)) return 0.0;
   double sum = 0.0;
   for (const PieceCell& cell : piece_cells(surface, 2 * samples_per_span)) {
     if (!area.contains(cell.centre_u(), cell.centre_v())) continue;

@@ -63,9 +63,6 @@ struct CurvatureRange {
 CurvatureRange find_curvature_range(const Surface& surface, const TrimmedArea& area = {},
                                     const Progress& progress = {});
 
-// Returns whether the surface has an extent beyond the rounding of its coordinates. If not, it is a point.
-bool has_extent(const Surface& surface);
-
 // Returns the integral of the squared principal curvatures over the area, a dimensionless measure that is
 // small for fair surfaces. It is 8 pi for a ball of any size.
 double compute_bending_energy(const Surface& surface, const TrimmedArea& area = {});

@@ -108,13 +108,6 @@ std::vector<std::uint8_t> find_fixed_columns(const KnotVector& v, const FixedStr
   return fixed_columns;
 }
 
-bool is_clamped(const KnotVector& knots, bool at_end) {
-  if (knots.is_periodic()) return false;
-  const std::vector<double>& all = knots.knots();
-  const auto degree = static_cast<std::size_t>(knots.degree());
-  return at_end ? all.back() == all[all.size() - 1 - degree] : all.front() == all[degree];
-}
-
 // Returns whether an end of v is a single point.
 bool is_pole(const Surface& surface, bool at_end) {
   constexpr double tolerance = 1e-6;  // fraction of the net's extent
@@ -220,8 +213,8 @@ Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& curren
   const KnotVector& v = mapping.rest_.v;
   RefitConstraints constraints{find_fixed_columns(v, fixed), true, true};
   if (lattice.mesh().thin || v.is_periodic()) {
-    constraints.keep_first = is_clamped(v, false);
-    constraints.keep_last = is_clamped(v, true);
+    constraints.keep_first = v.is_clamped(false);
+    constraints.keep_last = v.is_clamped(true);
     mapping.first_pole_ = is_pole(mapping.rest_, false);
     mapping.last_pole_ = is_pole(mapping.rest_, true);
   }

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "engine/base/assert.h"
-#include "engine/bspline/collapsed_edges.h"
 #include "engine/material/lattice/body_coordinates.h"
 #include "engine/simulation/body_state.h"
 
@@ -114,7 +113,6 @@ Result<RestShape> compute_rest_shape(const Scene& scene, int body, const Progres
   }
   state->update_skin();
   shape.surface = state->mapping().current();
-  join_collapsed_edges(shape.surface);
   return shape;
 }
 

@@ -44,7 +44,7 @@ double measure_size_m(const std::vector<BodyState>& bodies, std::size_t count) {
   for (std::size_t b = 0; b < count; ++b) {
     for (const Vector3& node : bodies[b].lattice.mesh().nodes) box.include(node);
   }
-  return (box.high - box.low).norm();
+  return box.size();
 }
 
 }  // namespace

@@ -125,7 +125,7 @@ TEST(StoppedProgram, LeavesARecordingWithItsTicks) {
 TEST(StoppedProgram, LeavesALiveRecordingUnpublished) {
   const Workplace place;
   const std::string script = long_script(place);
-  const auto bytes = header_bytes(place) + 1000;
+  const auto bytes = header_bytes(place) + 4000;
   RunningProgram recording({"record", script, "--live", "--out", place.text("l.jsonl")}, place.path("err"));
   recording.wait_for_size(place.path("l.jsonl.part"), bytes);
   EXPECT_LT(recording.stop(SIGTERM), stop_limit_s);

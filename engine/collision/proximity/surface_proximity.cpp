@@ -53,7 +53,7 @@ namespace {
 double distance_bound(const Vector3& point, const PatchCorners& at) {
   Box box;
   for (const Vector3& corner : at) box.include(corner);
-  return (point - point.cwiseMax(box.low).cwiseMin(box.high)).norm();
+  return std::sqrt(box.squared_distance(point));
 }
 
 constexpr std::size_t near_surface_capacity = 4096;

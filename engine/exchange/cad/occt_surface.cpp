@@ -65,8 +65,7 @@ Result<Surface> insert_full_seam(const Surface& surface, Direction direction) {
 }
 
 bool is_clamped(const KnotVector& knots) {
-  return !knots.is_periodic() && knots.knots().front() == knots.domain_start() &&
-         knots.knots().back() == knots.domain_end();
+  return knots.is_clamped(false) && knots.is_clamped(true);
 }
 
 bool has_unclamped_end(const KnotVector& knots) {

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "engine/exchange/document.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/exchange/sample_document.h"
 
 namespace spoonbill {
@@ -136,7 +137,7 @@ TEST(File, AKillDuringASaveLeavesAWholeDocument) {
       }
       _exit(1);
     }
-    usleep(static_cast<useconds_t>(500 + 700 * attempt));
+    usleep(static_cast<useconds_t>((500 + 700 * attempt) * (sanitized ? 20 : 1)));
     kill(saver, SIGKILL);
     int status = 0;
     waitpid(saver, &status, 0);

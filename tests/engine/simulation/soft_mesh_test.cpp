@@ -252,6 +252,7 @@ TEST(SoftMesh, IsTheSameOnEveryInstructionSet) {
 }
 
 TEST(SoftMesh, AllocatesNothingInATick) {
+  if (assertions_allocate) GTEST_SKIP() << only_without_debug_assertions;
   Simulation simulation = simulate(held_soft_handle(soft_tool(ball(), flesh(300))));
   Snapshot snapshot;
   simulation.advance(above(0.05, 0.0095));

@@ -270,6 +270,7 @@ TEST(SolidTool, IsRefusedWhereItCannotBe) {
 }
 
 TEST(SolidTool, AllocatesNothingInATick) {
+  if (assertions_allocate) GTEST_SKIP() << only_without_debug_assertions;
   for (const Tool& tool : {solid(SurfaceSolid{finger()}), solid(SurfaceSolid{finger()}, soft_flesh()),
                            solid(ImplicitShape(TorusShape{0.006, 0.002}))}) {
     Simulation simulation = simulate(held_handle(tool));

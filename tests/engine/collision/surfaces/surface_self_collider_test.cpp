@@ -181,6 +181,7 @@ TEST(SurfaceSelf, ACrossingInTheSeamIsOneContact) {
 }
 
 TEST(SurfaceSelf, AllocatesNothing) {
+  if (assertions_allocate) GTEST_SKIP() << only_without_debug_assertions;
   const Surface clear = pressed_tube(0.4), crossing = pressed_tube(-0.4);
   const NestedGrid nested = make_nested_grid(clear.u, clear.v, 2).value();
   SurfaceSelfCollider collider(nested);
