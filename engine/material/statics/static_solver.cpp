@@ -1,6 +1,5 @@
 #include "engine/material/statics/static_solver.h"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -8,6 +7,7 @@
 
 #include "engine/base/assert.h"
 #include "engine/material/statics/static_system.h"
+#include "engine/material/statics/stiffness_factors.h"
 
 namespace spoonbill {
 namespace {
@@ -25,13 +25,6 @@ constexpr double min_decrease = 1e-4;
 // Relative rounding error of an energy that is a sum over cells.
 constexpr double rounding = 1e-13;
 
-// Cholesky factors whose cost is known before the numerical factorisation.
-class StiffnessFactors : public Eigen::SimplicialLDLT<StaticSystem::Stiffness> {
- public:
-  // Returns the number of multiplications of a factorisation. Valid after analyzePattern().
-  double work() const { return m_nonZerosPerCol.cast<double>().squaredNorm(); }
-};
-
 class Equilibrium {
  public:
   Equilibrium(StaticSystem& system, const StaticLoads& loads, const StaticSettings& settings)
@@ -41,12 +34,10 @@ class Equilibrium {
 
   double work() const { return factors_.work(); }
 
-  // Returns whether the supports prevent every rigid motion of the rest shape.
+  // Returns whether the supports prevent every rigid motion of the rest shape. False if cancelled().
   bool is_fixed() {
     system_->respond(system_->rest(), Tangent::plain);
-    factors_.factorize(system_->stiffness());
-    return factors_.info() == Eigen::Success &&
-           factors_.vectorD().minCoeff() > min_pivot * factors_.vectorD().maxCoeff();
+    return factor() && factors_.has_pivots_above(min_pivot);
   }
 
   // Finds the equilibrium under this fraction of the loads, starting from `at`.
@@ -61,11 +52,8 @@ class Equilibrium {
       if (unbalanced.norm() <= settings_->tolerance * size) return true;
       ++steps_;
       first = std::max(first, unbalanced.norm() / size);
-      if (!report(fraction, unbalanced.norm() / size, first)) {
-        cancelled_ = true;
-        return false;
-      }
-      if (!factor(at)) return false;
+      set_done(fraction, unbalanced.norm() / size, first);
+      if (!factor_tangent(at)) return false;
       if (!descend(factors_.solve(unbalanced), loads, unbalanced, at)) return false;
     }
     return false;
@@ -76,27 +64,30 @@ class Equilibrium {
   bool cancelled() const { return cancelled_; }
 
  private:
-  // Reports the progress as the orders of magnitude by which the unbalanced force has fallen, relative to the
-  // number required: Newton's method gains more orders with each step. Returns false if the caller has
-  // cancelled.
-  bool report(double fraction, double unbalanced, double first) const {
-    if (!settings_->progress.is_watched()) return true;
+  // Measures the progress as the orders of magnitude by which the unbalanced force has fallen, relative to
+  // the number required: Newton's method gains more orders with each step.
+  void set_done(double fraction, double unbalanced, double first) {
     const double orders = std::log(first / settings_->tolerance);
-    return settings_->progress.report(orders > 0.0 ? fraction * std::log(first / unbalanced) / orders : 0.0);
+    done_ = orders > 0.0 ? fraction * std::log(first / unbalanced) / orders : 0.0;
   }
 
   StaticSystem::Forces respond(const Coordinates& at, Tangent tangent) {
     return system_->respond(at, tangent);
   }
 
+  // Factorises the current stiffness. Returns false if the caller has cancelled.
+  bool factor() {
+    cancelled_ = !factors_.factor(system_->stiffness(), [this] { return settings_->progress.report(done_); });
+    return !cancelled_;
+  }
+
   // Factorises the tangent. Where stress makes it indefinite, Newton's step may not descend; then the plain
   // tangent is used.
-  bool factor(const Coordinates& at) {
-    factors_.factorize(system_->stiffness());
-    if (factors_.info() == Eigen::Success && factors_.vectorD().minCoeff() > 0.0) return true;
+  bool factor_tangent(const Coordinates& at) {
+    if (!factor()) return false;
+    if (factors_.has_pivots_above(0.0)) return true;
     respond(at, Tangent::plain);
-    factors_.factorize(system_->stiffness());
-    return factors_.info() == Eigen::Success && factors_.vectorD().minCoeff() > 0.0;
+    return factor() && factors_.has_pivots_above(0.0);
   }
 
   bool descend(const Coordinates& step, const Coordinates& loads, const Coordinates& unbalanced,
@@ -123,6 +114,7 @@ class Equilibrium {
   const StaticSettings* settings_;
   StiffnessFactors factors_;
   int steps_ = 0;
+  double done_ = 0.0;  // progress of the whole solve
   bool cancelled_ = false;
 };
 
@@ -186,6 +178,7 @@ Result<StaticResult> rest_under_load(const StaticBody& body, const StaticLoads& 
     return too_large(body.mesh().node_count(), equilibrium.work(), settings.work_limit);
   }
   if (!equilibrium.is_fixed()) {
+    if (equilibrium.cancelled()) return Progress::stopped();
     return Error{ErrorCode::too_few,
                  "supports: the body can move or turn freely; fix at least three nodes that are not in line",
                  "supports"};

@@ -13,8 +13,8 @@ struct StaticSettings {
   // Largest number of multiplications for one factor of the stiffness matrix. A body that needs more is
   // refused beforehand. At the default, a factor takes a few seconds, and a body needs about five factors.
   double work_limit = 1e10;
-  // Progress, reported after each step. It may decrease where the loads must grow more slowly. Cancelling it
-  // makes rest_under_load() fail.
+  // Progress, reported several times a second, also within a factorisation. It may decrease where the loads
+  // must grow more slowly. Cancelling it makes rest_under_load() fail.
   Progress progress = {};
 };
 

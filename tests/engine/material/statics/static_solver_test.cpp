@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 
@@ -251,6 +252,33 @@ TEST(StaticSolver, RefusesMoreWorkThanItsLimit) {
   EXPECT_EQ(large.error().code, ErrorCode::too_many) << large.error().message;
   EXPECT_EQ(large.error().field, "lattice");
   EXPECT_TRUE(rest(4).ok());
+}
+
+// Stops a solve at each of its reports in turn. Some of them are within one factorisation.
+TEST(StaticSolver, StopsWithinAFactorisation) {
+  const LatticeMesh mesh = box_mesh({0.02, 0.02, 0.02}, {10, 10, 10});
+  const StaticBody body = body_of(mesh, elastic_material(1e5, 0.3, 1000.0), CellKind::hexahedra);
+  StaticLoads loads;
+  loads.gravity_m_per_s2 = {0.0, -9.81, 0.0};
+  std::vector<FixedAxis> held;
+  visit_face(mesh, 1, false, [&](int node, double) { fix_node(node, Vector3::Zero(), held); });
+  const auto rest_with = [&](int report_limit, int& reports) {
+    StaticSettings settings;
+    settings.progress = Progress([&reports, report_limit](double) { return ++reports <= report_limit; });
+    return rest_under_load(body, loads, held, settings);
+  };
+  int all = 0;
+  const Result<StaticResult> whole = rest_with(std::numeric_limits<int>::max(), all);
+  ASSERT_TRUE(whole.ok()) << whole.error().message;
+  const int factors = whole->newton_steps + 1;
+  EXPECT_GT(all, 5 * factors);
+  for (int limit = 0; limit < all; limit += 1 + all / 10) {
+    int reports = 0;
+    const Result<StaticResult> stopped = rest_with(limit, reports);
+    ASSERT_FALSE(stopped.ok()) << limit;
+    EXPECT_EQ(stopped.error().code, ErrorCode::cancelled) << limit << ": " << stopped.error().message;
+    EXPECT_EQ(reports, limit + 1);
+  }
 }
 
 }  // namespace
