@@ -72,6 +72,7 @@ Error CancellableJob::cancelled() {
 }
 
 Error stopped_before_writing(const std::filesystem::path& file) {
+  if (file.empty()) return Progress::stopped();
   return Error{ErrorCode::cancelled, "stopped; " + file.string() + " was not written"};
 }
 

@@ -71,7 +71,7 @@ class ProgressBar {
 // A long job of a command: it shows a progress bar, and Ctrl+C stops it. The console must outlive it.
 class CancellableJob {
  public:
-  // `out` is the file that is not written if the job is stopped.
+  // `out` is the file that is not written if the job is stopped; empty if the job writes none.
   CancellableJob(Console& console, std::string label, std::filesystem::path out)
       : out_(std::move(out)), bar_(console, std::move(label), false) {}
 
@@ -98,7 +98,7 @@ class CancellableJob {
   ProgressBar bar_;
 };
 
-// The error of a command that Ctrl+C stopped before it wrote the file.
+// The error of a command that Ctrl+C stopped before it wrote the file; empty if it writes none.
 Error stopped_before_writing(const std::filesystem::path& file);
 
 }  // namespace spoonbill

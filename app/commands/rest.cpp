@@ -92,18 +92,18 @@ Status rest(const RestOptions& options, Console& console) {
   std::vector<Surface> bent;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
-    ProgressBar bar(console, "Bending " + body.name, false);
-    bar.show(0.0);
-    const auto shape = compute_rest_shape(scene, static_cast<int>(b), Progress([&](double fraction) {
-                                            bar.show(fraction);
-                                            return true;
-                                          }));
+    const auto shape =
+        CancellableJob(console, "Bending " + body.name, options.out).run([&](const Progress& progress) {
+          return compute_rest_shape(scene, static_cast<int>(b), progress);
+        });
+    if (!shape && shape.error().code == ErrorCode::cancelled) return shape.error();
     if (!shape) return shape.error().in("body \"" + body.name + "\"").in(options.model.string());
     add_rest_body(facts, body, shape.value(), list);
     bent.push_back(shape->surface);
   }
   facts.add("", "", "bodies", list);
   if (!options.out.empty()) {
+    const InterruptWatch until_written;
     for (std::size_t b = 0; b < bent.size(); ++b) scene.bodies[b].surface = std::move(bent[b]);
     remove_loads(scene);
     if (Status written = write_document(document.value(), options.out, options.how); !written) return written;

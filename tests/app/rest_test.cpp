@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
+#include <ctime>
 
 #include "app/program.h"
 #include "engine/exchange/document.h"
@@ -145,6 +147,32 @@ TEST(Rest, AnswersForBallsThatAreFixedEverywhere) {
     EXPECT_EQ(body["fixed_everywhere"], true) << file;
     EXPECT_EQ(body["largest_displacement_m"], 0.0) << file;
   }
+}
+
+TEST(Rest, StopsWhenAskedTo) {
+  const Workplace place;
+  Document document = elastic_document(place);
+  document.scene.bodies[0].supports = {{{{0.0, 0.2}}, {}}};
+  place.write("bent.json", "mine");
+  sigset_t interrupt, before;
+  sigemptyset(&interrupt);
+  sigaddset(&interrupt, SIGINT);
+  for (const bool writes : {false, true}) {
+    pthread_sigmask(SIG_BLOCK, &interrupt, &before);
+    raise(SIGINT);
+    const Outcome outcome =
+        rest_of(place, document,
+                writes ? std::vector<std::string>{"--out", place.text("bent.json"), "--force"}
+                       : std::vector<std::string>{});
+    const timespec no_wait{};
+    sigtimedwait(&interrupt, nullptr, &no_wait);  // where the command has not
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    EXPECT_EQ(outcome.code, exit_failed);
+    EXPECT_EQ(outcome.err,
+              "spoonbill: stopped" +
+                  (writes ? "; " + place.text("bent.json") + " was not written" : std::string()) + "\n");
+  }
+  EXPECT_EQ(content_of(place.path("bent.json")), "mine");
 }
 
 TEST(Rest, TellsAPersonInLines) {
