@@ -3,11 +3,20 @@
 #include <gtest/gtest.h>
 #include <imgui_internal.h>
 
+#include <algorithm>
+#include <cctype>
+#include <map>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "app/panel/interface_context.h"
 #include "app/report/quantity_text.h"
+#include "app/session/session.h"
 #include "app/session/view_choice.h"
+#include "engine/exchange/document.h"
+#include "haptic/virtual_device.h"
+#include "tests/engine/simulation/handle.h"
 
 namespace spoonbill {
 namespace {
@@ -56,6 +65,16 @@ class Frame {
     return answer;
   }
 
+  // Returns all texts of the panel.
+  std::string draw_text(const PanelModel& model) {
+    context_.begin_frame(width_px_, height_px_);
+    ImGui::LogToClipboard();
+    draw_panel(model, context_.theme(), picture_panel_rectangle(width_px_, height_px_));
+    std::string text = ImGui::GetClipboardText();
+    context_.end_frame();
+    return text;
+  }
+
   void press_at(float x, float y) {
     ImGuiIO& io = ImGui::GetIO();
     io.MousePos = ImVec2(x, y);
@@ -77,6 +96,7 @@ TEST(Panel, ClipsNothingAtTheUsualSizes) {
     PanelModel model = full_model();
     model.tool.body = std::make_shared<ToolBody>();
     model.region_count = 16;
+    model.unheld_count = 1;
     model.force_on = true;
     frame.draw(model);
     frame.draw(model);
@@ -175,6 +195,32 @@ TEST(Panel, LetsBodiesSettleAndSwingAgain) {
   }
 }
 
+TEST(Panel, LetsUnfixedBodiesMoveAndKeepsThemAgain) {
+  // Returns the setting that is requested by clicks down the right edge of the panel.
+  const auto find_switch = [](const PanelModel& model) -> std::optional<Sculpting> {
+    for (float y = 330.0F; y < 480.0F; y += 10.0F) {
+      for (const Request& request : click_once(model, 275.0F, y)) {
+        const auto* command = std::get_if<Command>(&request);
+        const auto* set = command != nullptr ? std::get_if<SetSculpting>(command) : nullptr;
+        if (set != nullptr && set->sculpting.free != model.sculpting.free) return set->sculpting;
+      }
+    }
+    return {};
+  };
+  PanelModel model = full_model();
+  EXPECT_FALSE(find_switch(model)) << "every body is fixed";
+  model.unheld_count = 1;
+  for (const bool is_free : {true, false}) {
+    const auto sculpting = find_switch(model);
+    ASSERT_TRUE(sculpting);
+    EXPECT_EQ(sculpting->free, is_free);
+    EXPECT_EQ(sculpting->is_critically_damped, model.sculpting.is_critically_damped);
+    EXPECT_EQ(sculpting->damping_per_s, model.sculpting.damping_per_s);
+    EXPECT_EQ(sculpting->force_scale, model.sculpting.force_scale);
+    model.sculpting = *sculpting;
+  }
+}
+
 // Returns the answer after Ctrl+click on the slider at this height and typing of `text`.
 PanelAnswer type_over_slider(float y, const char* text) {
   Frame frame(1280, 720);
@@ -232,6 +278,131 @@ TEST(Panel, RefusesWrongMaterialsWithTheRange) {
   EXPECT_EQ(refusal(poisson_y, "0.1"),
             "material modelling-clay: poissons_ratio is 0.1, must be 0.2 or more for a material that is "
             "plastic, creeps or stiffens");
+}
+
+// A session whose panel a person types into.
+class TypedSession {
+ public:
+  PanelModel model() const {
+    Snapshot snapshot;
+    SessionFacts facts;
+    write_snapshot(session_, snapshot);
+    write_facts(session_, facts);
+    return make_panel_model(facts, snapshot, {});
+  }
+
+  // Applies what the panel requests, advances, and checks the document and every text that the panel shows.
+  void apply(const std::vector<Request>& requests) {
+    for (const Request& request : requests) {
+      const Status applied = apply_request(session_, request);
+      EXPECT_TRUE(applied) << applied.error().message;
+    }
+    Pose pose;
+    pose.position_m = Vector3(0.03, 0.2, 0.0);
+    for (int i = 0; i < 3; ++i) advance(session_, DeviceReading::from(pose, 0));
+    // Reading checks every number against its range.
+    const auto document =
+        document_from_json(document_to_json(make_session_document(session_)), "the document");
+    EXPECT_TRUE(document) << document.error().message;
+    expect_finite(shown_text());
+  }
+
+ private:
+  std::string shown_text() const {
+    Frame frame(1280, 720);
+    frame.draw(model());
+    return frame.draw_text(model());
+  }
+
+  static void expect_finite(const std::string& text) {
+    EXPECT_NE(text.find("Poisson"), std::string::npos) << text;
+    std::string word;
+    for (const char letter : text + " ") {
+      if (std::isalpha(static_cast<unsigned char>(letter)) != 0) {
+        word += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+        continue;
+      }
+      EXPECT_TRUE(word != "nan" && word != "inf") << text;
+      word.clear();
+    }
+  }
+
+  Session session_ = Session::make({"handle", small_handle(), Json::object()}, "test",
+                                   VirtualDevice::default_specification(), InstructionSet::baseline)
+                         .value();
+};
+
+// Opens the field at this height with Ctrl+click. Returns its identity, or 0 if there is none.
+ImGuiID open_field(Frame& frame, const PanelModel& model, float y) {
+  ImGuiIO& io = ImGui::GetIO();
+  frame.draw(model);
+  frame.draw(model);
+  io.MousePos = ImVec2(200.0F, y);
+  frame.draw(model);
+  io.KeyCtrl = true;
+  frame.press_at(200.0F, y);
+  frame.draw(model);
+  io.KeyCtrl = false;
+  frame.release();
+  for (int i = 0; i < 3; ++i) frame.draw(model);
+  return io.WantTextInput ? ImGui::GetActiveID() : 0;
+}
+
+// Returns the heights of all fields that accept a typed number.
+std::vector<float> find_fields(const PanelModel& model) {
+  std::map<ImGuiID, float> heights;
+  for (float y = 60.0F; y < 710.0F; y += 10.0F) {
+    Frame frame(1280, 720);
+    if (const ImGuiID field = open_field(frame, model, y); field != 0) heights.emplace(field, y);
+  }
+  std::vector<float> all;
+  for (const auto& [field, y] : heights) all.push_back(y);
+  return all;
+}
+
+// Types the text into the field at this height, in place of its value, and confirms it. Returns all requests.
+std::vector<Request> replace_field(const PanelModel& model, float y, const char* text) {
+  Frame frame(1280, 720);
+  constexpr int enter = 7, backspace = 8;
+  ImGuiIO& io = ImGui::GetIO();
+  io.KeyMap[ImGuiKey_Enter] = enter;
+  io.KeyMap[ImGuiKey_Backspace] = backspace;
+  EXPECT_NE(open_field(frame, model, y), 0U);
+  std::vector<Request> all;
+  const auto draw = [&] {
+    for (Request& request : frame.draw(model)) all.push_back(std::move(request));
+  };
+  const auto press = [&](int key) {
+    io.KeysDown[key] = true;
+    draw();
+    io.KeysDown[key] = false;
+    draw();
+  };
+  press(backspace);
+  io.AddInputCharactersUTF8(text);
+  draw();
+  press(enter);
+  draw();
+  return all;
+}
+
+TEST(Panel, ShowsAndAcceptsOnlyFiniteNumbersInRange) {
+  TypedSession session;
+  const auto count_sliders = [](const auto& fields) {
+    return std::count_if(fields.begin(), fields.end(),
+                         [](const auto& field) { return field.form.slider.label; });
+  };
+  const std::vector<float> fields = find_fields(session.model());
+  ASSERT_EQ(static_cast<std::ptrdiff_t>(fields.size()), count_sliders(fields_of<Tool>) +
+                                                            count_sliders(fields_of<Material>) +
+                                                            count_sliders(fields_of<Sculpting>));
+  for (const float y : fields) {
+    for (const char* text : {"nan", "-nan(1)", "inf", "-infinity", "1e300", "-1e300", "1e999", "1e-320", "",
+                             "text", "99999999999999999999", "-1", "0"}) {
+      SCOPED_TRACE(std::to_string(y) + ": \"" + text + "\"");
+      session.apply(replace_field(session.model(), y, text));
+    }
+  }
 }
 
 // Clicks ever farther down along the right edge until the button is hit. Other widgets make other requests.
