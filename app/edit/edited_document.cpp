@@ -29,14 +29,26 @@ Result<std::filesystem::path> EditedDocument::set_recovered_aside() const {
   return file->set_aside();
 }
 
-void EditedDocument::switch_to(std::filesystem::path file, LiveSession& live) {
+Result<std::optional<std::filesystem::path>> EditedDocument::discard_changes(LiveSession& live) {
+  using Kept = std::optional<std::filesystem::path>;
+  if (!std::exchange(is_recovered_, false) || !claim_) {
+    live.set_autosave(std::nullopt);
+    return Kept();
+  }
+  const auto kept = live.set_autosave_aside();
+  if (!kept) return kept.error();
+  return Kept(kept.value());
+}
+
+Result<std::optional<std::filesystem::path>> EditedDocument::switch_to(std::filesystem::path file,
+                                                                       LiveSession& live) {
+  auto kept = discard_changes(live);
   file_ = std::move(file);
   document_ = live.last_frame().document;
   saved_edit_count_ = live.last_frame().edit_count;
-  is_recovered_ = false;
-  live.set_autosave(std::nullopt);
   claim_.reset();  // released first, because the same file may be opened again
   claim_ = claim();
+  return kept;
 }
 
 void EditedDocument::begin(LiveSession& live) {

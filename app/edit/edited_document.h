@@ -29,9 +29,13 @@ class EditedDocument {
   // Returns true if another window had the file open when this one opened it.
   bool is_open_elsewhere() const { return claim_ && claim_->is_open_elsewhere(); }
 
-  // Switches to a file that the session has opened. Nothing is autosaved before begin(), because a recovered
-  // document must be kept until the user has decided about it.
-  void switch_to(std::filesystem::path file, LiveSession& live);
+  // Ends autosaving, because the user discards the unsaved changes. Work that was recovered and not saved
+  // since is kept as a document, whose name is returned.
+  Result<std::optional<std::filesystem::path>> discard_changes(LiveSession& live);
+
+  // Switches to a file that the session has opened, and discards the changes of the previous one. Nothing is
+  // autosaved before begin(), because a recovered document must be kept until the user has decided about it.
+  Result<std::optional<std::filesystem::path>> switch_to(std::filesystem::path file, LiveSession& live);
 
   // Marks the document as unchanged and starts to autosave.
   void begin(LiveSession& live);
@@ -40,6 +44,8 @@ class EditedDocument {
 
   // Updates file and changes after the session has saved a document.
   void note_saved(const SavedDocument& saved, LiveSession& live);
+  // Returns true if the document was recovered and has not been saved since.
+  bool is_recovered() const { return is_recovered_; }
   bool has_unsaved_changes(const LiveFrame& frame) const {
     return is_recovered_ || frame.edit_count != saved_edit_count_;
   }

@@ -176,8 +176,9 @@ Status Editor::run_frames() {
     budget_.add_frame(std::chrono::duration<double>(Clock::now() - now).count());
     std::this_thread::sleep_until(now + frame_time);
   }
-  live_->set_autosave(std::nullopt);
+  const auto kept = document_.discard_changes(*live_);
   live_->stop();
+  if (!kept) return kept.error();
   return {};
 }
 
@@ -270,7 +271,7 @@ void Editor::handle_completed_jobs(const LiveFrame& frame) {
     if (opened->recovered) {
       document_.begin_recovered(*live_);
     } else {
-      document_.switch_to(opened->file, *live_);
+      report_kept(document_.switch_to(opened->file, *live_));
       live_->set_known_content(opened->content);
       offer_recovery();
     }
@@ -617,7 +618,10 @@ void Editor::set_overlays(const MenuChoice& choice) {
 void Editor::finish_document(NextStep step) {
   next_step_ = step;
   if (!document_.has_unsaved_changes(live_->last_frame())) return start_next_step(step);
-  unsaved_.ask("Save the changes to " + document_stem(document_.file()) + "?");
+  unsaved_.ask("Save the changes to " + document_stem(document_.file()) + "?" +
+               (document_.is_recovered()
+                    ? "\nWithout saving, the recovered work stays in the folder of autosaves."
+                    : ""));
 }
 
 void Editor::start_next_step(NextStep step) {
@@ -680,8 +684,14 @@ void Editor::offer_recovery() {
 void Editor::begin_without_recovery() {
   const auto kept = document_.set_recovered_aside();
   if (!kept) return messages_.add_problem(kept.error().message);  // without autosaves, which would replace it
-  messages_.add({Notice::Kind::information, "the unsaved work is kept as " + kept->string()});
+  report_kept(std::optional(kept.value()));
   document_.begin(*live_);
+}
+
+void Editor::report_kept(const Result<std::optional<std::filesystem::path>>& kept) {
+  if (!kept) return messages_.add_problem(kept.error().message);
+  if (kept.value())
+    messages_.add({Notice::Kind::information, "the unsaved work is kept as " + kept.value()->string()});
 }
 
 void Editor::recover() {

@@ -104,6 +104,7 @@ class Editor {
   void write_screenshot();
   void offer_recovery();
   void begin_without_recovery();
+  void report_kept(const Result<std::optional<std::filesystem::path>>& kept);
 
   void send(Request request);
 

@@ -71,11 +71,20 @@ void Journal::set_view(Json view) {
   view_ = std::move(view);
 }
 
-void Journal::set_autosave(std::optional<Autosave> autosave) {
+void Journal::set_autosave(std::optional<Autosave> autosave, std::uint64_t document) {
   const std::lock_guard lock(mutex_);
   if (autosave_) autosave_->remove();
   autosave_ = std::move(autosave);
+  autosave_document_ = document;
   ++autosave_count_;
+}
+
+// A write in progress waits in was_superseded() until the file has its new name.
+Result<std::filesystem::path> Journal::set_autosave_aside() {
+  const std::lock_guard lock(mutex_);
+  if (!autosave_) return Error{ErrorCode::unavailable, "there is no autosave"};
+  ++autosave_count_;
+  return std::exchange(autosave_, std::nullopt)->set_aside();
 }
 
 void Journal::save(SaveRequest save) {
@@ -230,7 +239,7 @@ void Journal::autosave(const LiveScene& scene) {
   std::uint64_t count = 0;
   {
     const std::lock_guard lock(mutex_);
-    if (scene.change <= saved_change_) return;
+    if (scene.change <= saved_change_ || scene.document != autosave_document_) return;
     target = autosave_;
     count = autosave_count_;
   }

@@ -163,8 +163,12 @@ class Journal {
 
   // Sets the view that is saved with documents. Called by the main thread, as are the functions below.
   void set_view(Json view);
-  // Sets the autosave, or disables it if empty. The previous file is removed.
-  void set_autosave(std::optional<Autosave> autosave);
+  // Sets the autosave of a document, numbered as in LiveFrame, or disables it if empty. The previous file is
+  // removed.
+  void set_autosave(std::optional<Autosave> autosave, std::uint64_t document);
+  // Disables the autosave and keeps its content under another name, which is returned; see
+  // Autosave::set_aside(). Returns an error if there is no autosave.
+  Result<std::filesystem::path> set_autosave_aside();
   // Saves the scene that answers this request, or a newer one of the same document. A file with the extension
   // of an export format is exported; an export does not count as saving.
   void save(SaveRequest save);
@@ -193,15 +197,16 @@ class Journal {
   BoundedQueue<JournalEntry> entries_;
   TripleBuffer<LiveScene> scenes_;
 
-  std::mutex mutex_;  // guards the eight members below
+  std::mutex mutex_;  // guards the nine members below
   Json view_ = Json::object();
   std::optional<Autosave> autosave_;
   std::optional<SaveRequest> save_;
   std::optional<SavedDocument> saved_;
   std::optional<std::filesystem::path> save_conflict_;
   std::optional<std::uint64_t> known_content_;
-  std::uint64_t autosave_count_ = 0;  // number of set_autosave() calls
-  std::uint64_t saved_change_ = 0;    // last change that is already in the file
+  std::uint64_t autosave_count_ = 0;     // number of changes of autosave_
+  std::uint64_t autosave_document_ = 0;  // the document that it holds
+  std::uint64_t saved_change_ = 0;       // last change that is already in the file
 
   std::unique_ptr<RecordingWriter> recording_;  // used only by the journal's thread, like the members below
   std::uint64_t autosaved_change_ = 0;

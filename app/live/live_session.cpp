@@ -108,7 +108,7 @@ void LiveSession::stop() {
 }
 
 void LiveSession::set_autosave(std::optional<Autosave> autosave) {
-  journal_.set_autosave(std::move(autosave));
+  journal_.set_autosave(std::move(autosave), last_frame().document);
 }
 
 bool LiveSession::send(LiveCommand command) {

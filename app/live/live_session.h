@@ -56,9 +56,11 @@ class LiveSession {
   // Sets the content of the document's file as it was read, see Journal.
   void set_known_content(std::optional<std::uint64_t> content) { journal_.set_known_content(content); }
 
-  // Set the view that is saved with documents, and the autosave of unsaved work.
+  // Set the view that is saved with documents, and the autosave of the document of the last frame.
   void set_view(Json view) { journal_.set_view(std::move(view)); }
   void set_autosave(std::optional<Autosave> autosave);
+  // Ends the autosave and keeps its content, see Journal.
+  Result<std::filesystem::path> set_autosave_aside() { return journal_.set_autosave_aside(); }
 
   // Returns the newest tick.
   const LiveFrame& frame();
