@@ -96,6 +96,7 @@ void FrameLog::add(const ShownFrame& shown) {
                      {"pressing", shown.pressing},
                      {"prompt", shown.prompt},
                      {"typed", shown.typed},
+                     {"answers_px", shown.answers_px},
                      {"pointer_x_px", shown.pointer_x_px},
                      {"pointer_y_px", shown.pointer_y_px},
                      {"hand_lag_m", shown.hand_lag_m}};

@@ -2,6 +2,7 @@
 // shown.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -9,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "app/panel/interface_context.h"
 #include "engine/base/result.h"
@@ -67,9 +69,10 @@ struct ShownFrame {
   bool in_stroke = false;
   bool can_undo = false;
   bool can_redo = false;
-  bool pressing = false;  // the stroke button is down on the picture
-  std::string prompt;     // "file", "shape", "question", or empty
-  std::string typed;      // text of the file prompt
+  bool pressing = false;                          // the stroke button is down on the picture
+  std::string prompt;                             // "file", "shape", "question", or empty
+  std::string typed;                              // text of the file prompt
+  std::vector<std::array<double, 2>> answers_px;  // centres of the buttons of the question
   double pointer_x_px = 0.0;
   double pointer_y_px = 0.0;
   double hand_lag_m = 0.0;  // distance from the device to the target of the mouse

@@ -232,6 +232,9 @@ ShownFrame Editor::shown_frame(const LiveFrame& frame) const {
                  : is_question_open()      ? "question"
                                            : "";
   if (file_prompt_.is_open()) shown.typed = file_prompt_.typed();
+  for (const Question* question : {&unsaved_, &recovery_, &conflict_}) {
+    if (question->is_open()) shown.answers_px = question->button_centres_px();
+  }
   const ImVec2 pointer = ImGui::GetIO().MousePos;
   if (ImGui::IsMousePosValid(&pointer)) {
     shown.pointer_x_px = pointer.x;

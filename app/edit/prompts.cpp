@@ -10,6 +10,7 @@
 namespace spoonbill {
 
 std::optional<int> Question::draw() {
+  button_centres_px_.clear();
   if (!is_open_) return std::nullopt;
   if (appearing_) ImGui::OpenPopup(title_);
   appearing_ = false;
@@ -25,6 +26,8 @@ std::optional<int> Question::draw() {
     if (answers_[i] == nullptr) continue;
     if (i > 0) ImGui::SameLine();
     if (ImGui::Button(answers_[i])) answer = i;
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    button_centres_px_.push_back({0.5 * (low.x + high.x), 0.5 * (low.y + high.y)});
   }
   if (answer) is_open_ = false;
   if (!is_open_) ImGui::CloseCurrentPopup();

@@ -291,6 +291,93 @@ TEST_F(EditWindow, KilledInAStrokeItLosesASecondAtMost) {
   EXPECT_GT(largest_difference(*found.value(), held_model()), 1e-4);
 }
 
+// A crashed session has left a document that differs from the saved one.
+class RecoveryQuestion : public EditWindow {
+ protected:
+  void start_after_crash() {
+    ASSERT_TRUE(write_document(held_model(), file_));
+    std::filesystem::create_directories(folder());
+    Document left = held_model();
+    left.name = "left";
+    left.scene.planes.push_back({Vector3(0.03, 0, 0), Vector3::UnitX()});
+    ASSERT_TRUE(autosave().write(left));
+    start({file_.string()});
+    ASSERT_TRUE(wait_question());
+  }
+
+  // Clicks an answer of the question that is open.
+  void answer(std::size_t number) {
+    const Json centre = shown()["answers_px"].at(number);
+    const int x = static_cast<int>(centre[0].get<double>()), y = static_cast<int>(centre[1].get<double>());
+    EXPECT_TRUE(hands("mousemove " + std::to_string(x) + " " + std::to_string(y)));
+    EXPECT_TRUE(wait_shown(
+        [&](const Json& frame) { return frame["pointer_x_px"] == x && frame["pointer_y_px"] == y; }));
+    EXPECT_TRUE(hands("mousedown 1"));
+    EXPECT_TRUE(wait_frames(2));
+    EXPECT_TRUE(hands("mouseup 1"));
+  }
+  bool wait_question() const {
+    return wait_shown([](const Json& frame) {
+             return frame["prompt"] == "question" && !frame["answers_px"].empty();
+           }) &&
+           wait_frames(2);
+  }
+
+  std::filesystem::path folder() const { return place_.path("state") / "spoonbill"; }
+  Autosave autosave() const { return {folder(), file_}; }
+  // Returns the documents that are kept beside the autosave.
+  std::vector<Document> kept() const {
+    std::vector<Document> found;
+    for (const auto& entry : std::filesystem::directory_iterator(folder())) {
+      if (entry.path().string().find(".kept-") == std::string::npos) continue;
+      if (auto document = read_document(entry.path())) found.push_back(std::move(document).value());
+    }
+    return found;
+  }
+
+  std::filesystem::path file_ = place_.path("handle.json");
+};
+
+TEST_F(RecoveryQuestion, RecoverContinuesTheUnsavedWork) {
+  start_after_crash();
+  const int session = shown()["session"].get<int>();
+  answer(0);
+  ASSERT_TRUE(wait_shown(
+      [&](const Json& frame) { return frame["prompt"] == "" && frame["session"].get<int>() > session; }));
+  ASSERT_TRUE(wait_frames(2));
+  EXPECT_EQ(saved("handle.json", time_of("handle.json")).scene.planes.size(), 2U);
+  ASSERT_TRUE(wait_for([&] { return !std::filesystem::exists(autosave().file()); }));
+  ASSERT_TRUE(hands("key ctrl+q"));
+  EXPECT_EQ(wait_for_end(), exit_done);
+  EXPECT_TRUE(kept().empty());
+}
+
+TEST_F(RecoveryQuestion, RecoveredWorkIsKeptWhenItIsNotSaved) {
+  start_after_crash();
+  const int session = shown()["session"].get<int>();
+  answer(0);
+  ASSERT_TRUE(wait_shown(
+      [&](const Json& frame) { return frame["prompt"] == "" && frame["session"].get<int>() > session; }));
+  ASSERT_TRUE(wait_frames(2));
+  ASSERT_TRUE(hands("key ctrl+q"));
+  ASSERT_TRUE(wait_question());
+  answer(1);  // Don't save
+  EXPECT_EQ(wait_for_end(), exit_done);
+  EXPECT_EQ(read_document(file_)->scene.planes.size(), 1U);
+  ASSERT_EQ(kept().size(), 1U);
+  EXPECT_EQ(kept()[0].scene.planes.size(), 2U);
+}
+
+TEST_F(RecoveryQuestion, TheSavedVersionIsOpenedAndTheUnsavedWorkIsKept) {
+  start_after_crash();
+  answer(1);
+  ASSERT_TRUE(wait_shown([](const Json& frame) { return frame["prompt"] == ""; }));
+  ASSERT_EQ(kept().size(), 1U);
+  EXPECT_EQ(kept()[0].scene.planes.size(), 2U);
+  EXPECT_FALSE(std::filesystem::exists(autosave().file()));
+  EXPECT_EQ(saved("handle.json", time_of("handle.json")).scene.planes.size(), 1U);
+}
+
 TEST_F(EditWindow, AsksBeforeItReplacesAFileThatAnotherProgramChanged) {
   ASSERT_TRUE(write_document(held_model(), place_.path("handle.json")));
   start({place_.text("handle.json")});
