@@ -68,8 +68,8 @@ Box pose_box(const Box& box, const Pose& pose) {
   return {centre - half, centre + half};
 }
 
-// Combines the answers of pairs of bodies: the models touch if a pair does; otherwise the nearest pair
-// counts.
+// Combines the answers of pairs of bodies: the models touch if a pair of bodies does; otherwise the nearest
+// pair gives their distance.
 class CombinedAnswer {
  public:
   CombinedAnswer(std::vector<std::string> names_a, std::vector<std::string> names_b)

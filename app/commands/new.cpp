@@ -42,7 +42,7 @@ constexpr double fit_fraction = 0.8;
 
 struct NewShape {
   ExactShape shape;
-  std::optional<double> shell_thickness_m = {};  // of an open shape
+  std::optional<double> shell_thickness_m = {};  // for an open shape
   double reach_m = 0.0;                          // see reach_m() of a stock shape; 0 if unknown
   int degree = 3;
 };
@@ -344,9 +344,9 @@ Status check_self_intersection(const Surface& surface, bool closed, ShapeJob& jo
   if (collider.contacts().empty()) {
     return Error{ErrorCode::self_intersecting, "the shape passes through itself; make it thinner or wider"};
   }
-  return Error{ErrorCode::self_intersecting, "the shape passes through itself near " +
-                                                 position_text(collider.contacts()[0].pair.first_m) +
-                                                 "; make it thinner or its line wider there"};
+  return Error{ErrorCode::self_intersecting,
+               "the shape passes through itself near " + position_text(collider.contacts()[0].pair.first_m) +
+                   "; make it thinner, or move the parts that meet there farther apart"};
 }
 
 void add_shape_facts(FactSheet& facts, const ExactShape& shape, const FittedShape& fitted,
@@ -422,7 +422,7 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   add_radius_facts(facts, fitted->surface, made->reach_m);
   std::vector<std::string> notes;
   if (made->shape.is_closed() && made->shape.v.periodic) {
-    notes.emplace_back("a ring is sculpted in a box of cells: a lattice cannot follow it");
+    notes.emplace_back("a ring is sculpted in a box of cells, because a lattice cannot follow its shape");
   }
   add_notes(facts, notes);
   facts.print(console.out, options.json);

@@ -108,7 +108,8 @@ std::string document_stem(const std::filesystem::path& file) {
 
 Result<std::unique_ptr<Editor>> Editor::make(const EditSettings& settings) {
   const std::filesystem::path model = find_model(settings);
-  const auto content = file_content_hash(settings.model);  // before reading: a change meanwhile is noticed
+  // The hash is computed before the file is read, so that a change during reading is noticed.
+  const auto content = file_content_hash(settings.model);
   const auto document = read_document(model);
   if (!document) return document.error();
   auto view = view_from_json(document->view, model.string());

@@ -12,7 +12,7 @@ namespace spoonbill {
 namespace {
 
 constexpr std::size_t bytes_limit = std::size_t{65}
-                                    << 20;  // of the largest document and the fields of the autosave
+                                    << 20;  // the largest document and the fields of the autosave
 constexpr int autosave_version = 1;
 constexpr int windows_limit = 99;  // largest number of windows that show the same document
 

@@ -174,7 +174,7 @@ struct Content {
   LossCount losses = {};
   int external_files = 0;
   int unread_placements = 0;
-  double model_scale = 1.0;  // of IGES files only
+  double model_scale = 1.0;  // scale of the model in an IGES file
 };
 
 OcctDocument new_document() {
