@@ -132,7 +132,8 @@ class SafeDevice {
  public:
   // The device must outlive this object, and its specification, from which all limits come, must pass
   // check_specification(). The workspace has the radius of the specification and is centred on the first
-  // valid reading. read() returns `last` as long as the device has never answered; it must be valid.
+  // valid reading. read() returns `last`, which must be valid, until the device has answered for the first
+  // time.
   explicit SafeDevice(Device& device, const DeviceReading& last = {});
   ~SafeDevice();  // leaves the device without force
   SafeDevice(const SafeDevice&) = delete;

@@ -391,7 +391,7 @@ CommandEntry add_collide(OptionSet root) {
       "position, the depth, the direction in which A separates, and the parameters on both; otherwise the\n"
       "distance and the nearest points. A mesh is cleaned first; its closed parts are solid, its open\n"
       "parts are plates 1 mm thick. The depth of two meshes is that of their deepest corner or edge. All\n"
-      "bodies of a document count; a document alone is also tested between its bodies.\n"
+      "bodies of a document are tested; a document without B is tested against itself, body by body.\n"
       "Example: spoonbill collide assets/models/spoon-handle.json assets/models/spoon-handle.json "
       "--pose 0,5mm,0,1,0,0,0");
   parser.add_option("A", options->first, "Document (.json) or mesh (.obj, .stl, .ply)").require();

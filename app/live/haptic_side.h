@@ -91,9 +91,9 @@ class SessionWorker {
   explicit SessionWorker(Notices& notices);
   ~SessionWorker();  // finishes the current job first
 
-  // The haptic thread calls both; neither waits nor allocates. reclaim() returns true once per loan, after
-  // the job has ended; lend() must not be called again before that. `job` is the command, and `is_done` is
-  // true if it succeeded.
+  // lend() and reclaim() are called by the haptic thread; neither waits nor allocates. reclaim() returns true
+  // once per loan, after the job has ended; lend() must not be called again before that. `job` is the
+  // command, and `is_done` is true if it succeeded.
   void lend(LentSession lent, LiveCommand job);
   bool reclaim(LentSession& lent, LiveCommand& job, bool& is_done);
 

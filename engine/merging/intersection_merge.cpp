@@ -213,8 +213,8 @@ double line_length_m(const Surface& patch, double u, double from, double to) {
   return length;
 }
 
-// Crossings of a patch's lines with the other patch: their number, votes for keeping the part before, and
-// positions.
+// Crossings of a patch's lines with the other patch: the number of lines that cross, votes for keeping the
+// part before the crossing, and positions.
 struct Crossed {
   int lines = 0;
   double before_votes = 0.0;  // positive: keep the part before the crossing

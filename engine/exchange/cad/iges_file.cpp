@@ -63,8 +63,9 @@ struct LineCounts {
   std::string last;             // last line of the file, which states the number of lines of each section
   int null_entities = 0;
   long farthest = 0;  // last line of parameters that an entity refers to
-  std::optional<long>
-      parameters_of_next;  // first line of parameters, from the first of an entity's two lines
+  // Number of the first parameter line of the present entity, which the first of its two directory lines
+  // states.
+  std::optional<long> parameters_of_next;
 };
 
 void add_directory_line(const std::string& line, LineCounts& lines) {
