@@ -98,11 +98,11 @@ NewKind add_sphere(OptionSet root) {
 NewKind add_box(OptionSet root) {
   const OptionSet parser = root.add_command("box", "Box with rounded edges");
   const auto sides = add_size(parser, 3, "Lengths along x, y and z, such as 60x40x20mm");
-  const LengthOption rounding =
-      add_length(parser, "--rounding",
-                 "Radius of the edges around the two end faces, which are at the ends of the longest side "
-                 "unless slender; the four edges between have twice that. Default: a tenth of the shortest "
-                 "side, at most two fifths of it");
+  const LengthOption rounding = add_length(
+      parser, "--rounding",
+      "Radius of the edges around two opposite faces: those at the ends of the longest side, or squarer "
+      "ones if those are slender. The other four edges have twice the radius. Default: a tenth of the "
+      "shortest side; largest: two fifths of it");
   return {parser, [=] {
             BoxSize size{{(*sides)[0], (*sides)[1], (*sides)[2]}};
             size.rounding_m = rounding->value_or(default_rounding_m(size));

@@ -664,8 +664,8 @@ void Editor::open_shape(const StockShapeChoice& choice) {
 void Editor::offer_recovery() {
   if (document_.is_open_elsewhere()) {
     messages_.add_problem(document_.file().filename().string() +
-                          " is open in another window too: a save there or here asks before it replaces "
-                          "the other's");
+                          " is also open in another window: each window asks before it overwrites what the "
+                          "other saved");
   }
   const auto found = document_.recovered_document();
   if (!found) {

@@ -153,7 +153,8 @@ Result<int> count_null_entities(const std::filesystem::path& file) {
   std::size_t start = 0;
   for (const char section : {'S', 'G', 'D', 'P'}) {
     const auto count = parse_field(lines.last.substr(0, start + field_length), start + 1);
-    if (lines.last[start] != section || !count) return damaged("its last line does not count the others");
+    if (lines.last[start] != section || !count)
+      return damaged("its last line does not state the number of lines of each section");
     if (*count != lines.counts[section]) {
       return damaged("its last line counts " + std::to_string(*count) + " lines of section " + section +
                      ", and there are " + std::to_string(lines.counts[section]));

@@ -235,7 +235,7 @@ std::vector<std::string> describe_joining(const JoinedFaces& joined, const std::
   }
   if (!joined.loose.empty()) {
     notes.push_back(std::to_string(joined.loose.size()) + " of the " + std::to_string(parts.size()) +
-                    " faces of '" + name + "' enclose nothing together" + loose_outcome);
+                    " faces of '" + name + "' together enclose no volume" + loose_outcome);
   }
   return notes;
 }
