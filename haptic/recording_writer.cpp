@@ -24,7 +24,8 @@ struct RecordingWriter::State {
   Status failure;  // the first error, which persists
   bool finished = false;
   std::string notice;
-  std::timed_mutex mutex;     // held by every member, so that a signal's thread can write what is pending
+  // Locked by every member function, because the thread that handles signals may write `pending`.
+  std::timed_mutex mutex;
   UnfinishedFile unfinished;  // writes the pending readings when a signal ends the process
 
   Status fail(ErrorCode code, const std::string& message) {

@@ -52,7 +52,7 @@ enum SafetyFlag : std::uint32_t {
   safety_flag_jumped = 1u << 13,
   safety_flag_off = 1u << 14,
   safety_flag_slow = 1u << 15,
-  // Another condition: the stiffness of the coupling is reduced (haptic/tick.h).
+  // Condition of this tick: the stiffness of the coupling is reduced (haptic/tick.h).
   safety_flag_softened = 1u << 16,
 };
 
@@ -99,7 +99,7 @@ struct SafetyState {
   Vector3 force_n = Vector3::Zero();  // force of the last tick
   bool position_known = false;        // false without a valid position in the last tick
   Vector3 position_m = Vector3::Zero();
-  VibrationState vibration;  // of the requested force since the chain engaged
+  VibrationState vibration;  // history of the requested force since the chain engaged
   TickHistory ticks;         // since the last stall
 };
 
@@ -132,7 +132,8 @@ class SafeDevice {
  public:
   // The device must outlive this object, and its specification, from which all limits come, must pass
   // check_specification(). The workspace has the radius of the specification and is centred on the first
-  // valid reading. read() returns `last` as long as the device has never answered; it must be valid.
+  // valid reading. read() returns `last`, which must be valid, until the device has answered for the first
+  // time.
   explicit SafeDevice(Device& device, const DeviceReading& last = {});
   ~SafeDevice();  // leaves the device without force
   SafeDevice(const SafeDevice&) = delete;

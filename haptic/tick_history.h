@@ -13,12 +13,12 @@ namespace spoonbill {
 class TickHistory {
  public:
   static constexpr std::size_t window_ms = 100;
-  // Longest hold that is measured; longer ones are stalls.
+  // Longest hold (time between two ticks) that is measured; longer ones are stalls.
   static constexpr std::size_t longest_hold_ms = 10;
 
   TickHistory() { ticked_.set(); }
 
-  // Adds a tick, before which `missed` ticks were left out.
+  // Adds a tick that followed `missed` missed ticks.
   void add(std::uint64_t missed) {
     const auto elapsed = static_cast<std::size_t>(std::min<std::uint64_t>(missed, ticked_.size())) + 1;
     ticked_ <<= elapsed;
@@ -29,13 +29,13 @@ class TickHistory {
   // none was missed, at most longest_hold_ms.
   std::size_t find_longest_hold() const {
     std::size_t longest = 1;
-    std::size_t end = 0;  // age of the tick that ended the current hold
+    std::size_t end = 0;  // age, in milliseconds, of the tick at the end of the hold
     for (std::size_t age = 1; age < ticked_.size() && end < window_ms; ++age) {
       if (!ticked_[age]) continue;
       longest = std::max(longest, age - end);
       end = age;
     }
-    if (end < window_ms) longest = longest_hold_ms;  // a hold that began before the history
+    if (end < window_ms) longest = longest_hold_ms;  // the hold began before the history
     return std::min(longest, longest_hold_ms);
   }
 

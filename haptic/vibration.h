@@ -46,7 +46,7 @@ struct VibrationState {
 
 struct VibrationLimits {
   double quiet_force_n = 0.2;    // a weaker vibration is ignored
-  double maximum_force_n = 3.3;  // of the device
+  double maximum_force_n = 3.3;  // largest force of the device
 };
 
 // Adds the force that the coupling requests in this tick, before any limit, with the position of the hand,

@@ -1,6 +1,6 @@
-# cmake -P list_suites.cmake SETTINGS: writes the tests of a test program for ctest, one for each suite of it. SETTINGS is
+# cmake -P list_suites.cmake SETTINGS: writes the ctest tests of a test program, one for each of its suites. SETTINGS is
 # a file that sets name, program, runner, report_folder, list, labels, first (suites that start before the others, the
-# longest first) and left_out_list (a file of cases that are not run, or empty).
+# longest first) and left_out_list (a file that lists cases not to run, or empty).
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_ARGV3})
 execute_process(COMMAND ${program} --gtest_list_tests OUTPUT_VARIABLE output RESULT_VARIABLE result ERROR_VARIABLE error)

@@ -141,7 +141,7 @@ CommandEntry add_change(OptionSet root) {
   add_parsed_option(
       parser, "--continuity", "C0..C8", parse_continuity,
       [options](int order) { options->continuity = order; },
-      "Continuity of the seam that close makes; default: C2. C0 keeps an edge");
+      "Continuity of the seam that `close` makes; default: C2. C0 keeps an edge");
   // CHANGE and --continuity may be in any order, so this is checked after both.
   parser.set_final_check([options]() -> Status {
     if (options->continuity && options->change.kind != ChangeKind::close) {

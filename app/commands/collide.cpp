@@ -68,8 +68,8 @@ Box pose_box(const Box& box, const Pose& pose) {
   return {centre - half, centre + half};
 }
 
-// Combines the answers of pairs of bodies: the models touch if a pair does; otherwise the nearest pair
-// counts.
+// Combines the answers of pairs of bodies: the models touch if a pair of bodies does; otherwise the nearest
+// pair gives their distance.
 class CombinedAnswer {
  public:
   CombinedAnswer(std::vector<std::string> names_a, std::vector<std::string> names_b)
@@ -391,7 +391,7 @@ CommandEntry add_collide(OptionSet root) {
       "position, the depth, the direction in which A separates, and the parameters on both; otherwise the\n"
       "distance and the nearest points. A mesh is cleaned first; its closed parts are solid, its open\n"
       "parts are plates 1 mm thick. The depth of two meshes is that of their deepest corner or edge. All\n"
-      "bodies of a document count; a document alone is also tested between its bodies.\n"
+      "bodies of a document are tested; a document without B is tested against itself, body by body.\n"
       "Example: spoonbill collide assets/models/spoon-handle.json assets/models/spoon-handle.json "
       "--pose 0,5mm,0,1,0,0,0");
   parser.add_option("A", options->first, "Document (.json) or mesh (.obj, .stl, .ply)").require();

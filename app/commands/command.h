@@ -41,8 +41,8 @@ CommandEntry add_read_points(OptionSet root);
 // --json: prints one JSON object and nothing else on standard output.
 void add_json_option(OptionSet parser, bool& json);
 
-// --out: the document to write. Any other ending than .json is wrong use, because the file could be one of
-// another format.
+// --out: the document to write. Any other ending than .json is a usage error, because the file could be one
+// of another format.
 CommandOption add_document_output(OptionSet parser, std::filesystem::path& out,
                                   const std::string& help = "Document to write (.json)");
 
@@ -53,7 +53,7 @@ void add_force_option(OptionSet parser, OutputOptions& how);
 // file checks it again.
 Status check_output(const std::filesystem::path& out, const OutputOptions& how);
 
-// --instruction-set: one of the sets that this processor supports; any other is wrong use.
+// --instruction-set: one of the sets that this processor supports; any other is a usage error.
 void add_instruction_set_option(OptionSet parser, InstructionSet& set);
 
 }  // namespace spoonbill

@@ -42,7 +42,7 @@ constexpr double fit_fraction = 0.8;
 
 struct NewShape {
   ExactShape shape;
-  std::optional<double> shell_thickness_m = {};  // of an open shape
+  std::optional<double> shell_thickness_m = {};  // for an open shape
   double reach_m = 0.0;                          // see reach_m() of a stock shape; 0 if unknown
   int degree = 3;
 };
@@ -98,11 +98,11 @@ NewKind add_sphere(OptionSet root) {
 NewKind add_box(OptionSet root) {
   const OptionSet parser = root.add_command("box", "Box with rounded edges");
   const auto sides = add_size(parser, 3, "Lengths along x, y and z, such as 60x40x20mm");
-  const LengthOption rounding =
-      add_length(parser, "--rounding",
-                 "Radius of the edges around the two end faces, which are at the ends of the longest side "
-                 "unless slender; the four edges between have twice that. Default: a tenth of the shortest "
-                 "side, at most two fifths of it");
+  const LengthOption rounding = add_length(
+      parser, "--rounding",
+      "Radius of the edges around two opposite faces: those at the ends of the longest side, or squarer "
+      "ones if those are slender. The other four edges have twice the radius. Default: a tenth of the "
+      "shortest side; largest: two fifths of it");
   return {parser, [=] {
             BoxSize size{{(*sides)[0], (*sides)[1], (*sides)[2]}};
             size.rounding_m = rounding->value_or(default_rounding_m(size));
@@ -344,9 +344,9 @@ Status check_self_intersection(const Surface& surface, bool closed, ShapeJob& jo
   if (collider.contacts().empty()) {
     return Error{ErrorCode::self_intersecting, "the shape passes through itself; make it thinner or wider"};
   }
-  return Error{ErrorCode::self_intersecting, "the shape passes through itself near " +
-                                                 position_text(collider.contacts()[0].pair.first_m) +
-                                                 "; make it thinner or its line wider there"};
+  return Error{ErrorCode::self_intersecting,
+               "the shape passes through itself near " + position_text(collider.contacts()[0].pair.first_m) +
+                   "; make it thinner, or move the parts that meet there farther apart"};
 }
 
 void add_shape_facts(FactSheet& facts, const ExactShape& shape, const FittedShape& fitted,
@@ -422,7 +422,7 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   add_radius_facts(facts, fitted->surface, made->reach_m);
   std::vector<std::string> notes;
   if (made->shape.is_closed() && made->shape.v.periodic) {
-    notes.emplace_back("a ring is sculpted in a box of cells: a lattice cannot follow it");
+    notes.emplace_back("a ring is sculpted in a box of cells, because a lattice cannot follow its shape");
   }
   add_notes(facts, notes);
   facts.print(console.out, options.json);

@@ -35,17 +35,17 @@ class CommandOption {
  public:
   explicit CommandOption(CLI::Option* option) : option_(option) {}
 
-  // Requires this option: a command line without it is wrong use.
+  // Requires this option: a command line without it is a usage error.
   CommandOption require() const;
   // Sets the name that --help shows for the type of the value.
   CommandOption show_as(const std::string& form) const;
-  // Limits the value: a value outside the range is wrong use.
+  // Limits the value: a value outside the range is a usage error.
   CommandOption limit(Range<int> range) const;
   CommandOption limit(Range<double> range) const;
   CommandOption limit(Range<std::uint64_t> range) const;
-  // Requires another option: this option without the other is wrong use.
+  // Requires another option: this option without the other is a usage error.
   CommandOption need(CommandOption other) const;
-  // Forbids another option: both together are wrong use.
+  // Forbids another option: both together are a usage error.
   CommandOption exclude(CommandOption other) const;
 
  private:
@@ -56,7 +56,7 @@ class CommandOption {
 // is an option, any other a positional argument.
 class OptionSet {
  public:
-  // Parses one value. An error is wrong use; its message is shown after the option's name.
+  // Parses one value. An error is a usage error; its message is shown after the option's name.
   using Parse = std::function<Status(const std::string&)>;
   using ParseList = std::function<Status(const std::vector<std::string>&)>;
 
@@ -85,10 +85,10 @@ class OptionSet {
   void set_footer(const std::string& text) const;
   // Sets the heading under which --help lists this command; an empty one hides the command.
   void set_group(const std::string& heading) const;
-  // Requires a subcommand: a command line without one is wrong use.
+  // Requires a subcommand: a command line without one is a usage error.
   void require_command() const;
-  // Sets a check that runs after all options have been read, whatever their order. An error is wrong use, and
-  // its message is shown as it is.
+  // Sets a check that runs after all options have been read, whatever their order. A failed check is a usage
+  // error, and its message is shown as it is.
   void set_final_check(const std::function<Status()>& check) const;
 
   std::string name() const;

@@ -32,7 +32,7 @@ struct RecordOptions {
   bool json = false;
 };
 
-constexpr std::uint64_t ticks_between_checks = 10;  // of progress and Ctrl+C
+constexpr std::uint64_t ticks_between_checks = 10;  // checks of progress and Ctrl+C
 
 Error stopped_recording(std::uint64_t ticks, const std::filesystem::path& file) {
   return Error{ErrorCode::cancelled, "stopped after " + std::to_string(ticks) + " ticks; the recording is " +
@@ -45,7 +45,7 @@ Status run_recording(Lockstep& lockstep, Session& session, const std::filesystem
   ProgressBar progress(console, "Recording", false);
   while (lockstep.tick() < lockstep.tick_count()) {
     if (Status ran = lockstep.run_to(lockstep.tick() + ticks_between_checks); !ran) return ran;
-    session.marks.clear();  // the replay writes these files
+    session.marks.clear();  // requested files, which only the replay writes
     progress.show(lockstep.tick(), lockstep.tick_count());
     if (!interrupt.requested()) continue;
     interrupt.answer();

@@ -61,7 +61,7 @@ Error stopped_replay(const Replay& replay, InterruptWatch& interrupt) {
 }
 
 Status run_without_pictures(const Replay& replay) {
-  constexpr std::uint64_t ticks_between_checks = 10;  // of progress and Ctrl+C
+  constexpr std::uint64_t ticks_between_checks = 10;  // checks of progress and Ctrl+C
   replay.session.keeps_documents = false;
   InterruptWatch interrupt;
   ProgressBar progress(replay.console, "Replaying", replay.options.progress);
@@ -69,7 +69,7 @@ Status run_without_pictures(const Replay& replay) {
   while (lockstep.tick() < lockstep.tick_count()) {
     if (interrupt.requested()) return stopped_replay(replay, interrupt);
     if (Status ran = lockstep.run_to(lockstep.tick() + ticks_between_checks); !ran) return ran;
-    replay.session.marks.clear();  // there is no folder for these files
+    replay.session.marks.clear();  // requested files, for which there is no folder
     progress.show(lockstep.tick(), lockstep.tick_count());
   }
   return lockstep.finish();

@@ -108,7 +108,8 @@ std::string document_stem(const std::filesystem::path& file) {
 
 Result<std::unique_ptr<Editor>> Editor::make(const EditSettings& settings) {
   const std::filesystem::path model = find_model(settings);
-  const auto content = file_content_hash(settings.model);  // before reading: a change meanwhile is noticed
+  // The hash is computed before the file is read, so that a change during reading is noticed.
+  const auto content = file_content_hash(settings.model);
   const auto document = read_document(model);
   if (!document) return document.error();
   auto view = view_from_json(document->view, model.string());
@@ -670,8 +671,8 @@ void Editor::open_shape(const StockShapeChoice& choice) {
 void Editor::offer_recovery() {
   if (document_.is_open_elsewhere()) {
     messages_.add_problem(document_.file().filename().string() +
-                          " is open in another window too: a save there or here asks before it replaces "
-                          "the other's");
+                          " is also open in another window: each window asks before it overwrites what the "
+                          "other saved");
   }
   const auto found = document_.recovered_document();
   if (!found) {

@@ -55,7 +55,7 @@ class Editor {
     std::filesystem::path file;
     ViewChoice view;
     bool recovered = false;
-    std::optional<std::uint64_t> content = {};  // of the file when it was read, see content_hash()
+    std::optional<std::uint64_t> content = {};  // content_hash() of the file when it was read
   };
 
   Editor(const EditSettings& settings, EditWindow window, std::unique_ptr<LiveSession> live,

@@ -23,7 +23,7 @@ struct ConversionRequest {
   // written.
   std::optional<LengthUnit> unit;
   std::optional<double> chord_m;      // chord error of meshes; default: 0.05 mm
-  std::optional<double> tolerance_m;  // of CAD geometry that is not a B-spline; default: 0.01 mm
+  std::optional<double> tolerance_m;  // for fitting CAD geometry that is not a B-spline; default: 0.01 mm
   std::optional<StepSchema> schema;   // default: AP214
   std::vector<int> bodies;            // bodies to convert, numbered from 1; all if empty
   OutputOptions how;                  // to write `out`

@@ -140,7 +140,7 @@ std::optional<std::string> lattice_note(const Body& body) {
   const std::string name = "body \"" + body.name + "\" ";
   if (!lattice) return name + "cannot be simulated: " + lattice.error().message;
   if (lattice->along.empty()) return std::nullopt;
-  return name + "is sculpted in a box of cells: a lattice along it would fold";
+  return name + "is sculpted in a box of cells, because a lattice that follows its shape would fold";
 }
 
 }  // namespace

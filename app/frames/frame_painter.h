@@ -64,8 +64,8 @@ struct PaintingJob {
   Snapshot snapshot;
   ViewSettings view;
   PanelModel panel;
-  std::vector<std::string> extra_names;  // names of further files of this picture
-  bool is_frame = true;                  // false if it is only painted for those files
+  std::vector<std::string> extra_names;  // names of further files that get a copy of this picture
+  bool is_frame = true;                  // false if it is painted only for the files of `extra_names`
 };
 
 // A painted frame.

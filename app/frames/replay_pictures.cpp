@@ -286,7 +286,8 @@ Status VideoEncoder::add(const Image& frame) {
     if (count < 0) {
       return Error{
           ErrorCode::process_failed,
-          file_.string() + ": ffmpeg stopped: check that the folder is writable and the extension known"};
+          file_.string() +
+              ": ffmpeg stopped: check that the folder is writable and that ffmpeg knows the extension"};
     }
     sent += static_cast<std::size_t>(count);
   }
@@ -298,7 +299,7 @@ Status VideoEncoder::finish() {
     remove_unfinished();
     return Error{ErrorCode::process_failed,
                  file_.string() + ": ffmpeg failed with exit code " + std::to_string(code) +
-                     ": check that the folder is writable and the extension known"};
+                     ": check that the folder is writable and that ffmpeg knows the extension"};
   }
   if (unfinished_ == file_) return {};
   Status published = publish_file(unfinished_, file_);

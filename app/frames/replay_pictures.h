@@ -101,7 +101,7 @@ class VideoEncoder {
 struct PictureRequest {
   int width_px = 0;
   int height_px = 0;
-  std::uint64_t frame_count = 0;                // of the whole replay, 60 per second
+  std::uint64_t frame_count = 0;                // frames of the whole replay, 60 per second
   std::uint64_t every = 1;                      // interval between drawn frames
   std::optional<std::filesystem::path> folder;  // for frames and contact sheet
   std::optional<std::filesystem::path> video;

@@ -11,8 +11,8 @@
 namespace spoonbill {
 namespace {
 
-constexpr std::size_t bytes_limit = std::size_t{65}
-                                    << 20;  // of the largest document and the fields of the autosave
+// Largest size of an autosave: that of the largest document, and room for the autosave's own fields.
+constexpr std::size_t bytes_limit = std::size_t{65} << 20;
 constexpr int autosave_version = 1;
 constexpr int windows_limit = 99;  // largest number of windows that show the same document
 

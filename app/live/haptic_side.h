@@ -91,9 +91,9 @@ class SessionWorker {
   explicit SessionWorker(Notices& notices);
   ~SessionWorker();  // finishes the current job first
 
-  // The haptic thread calls both; neither waits nor allocates. reclaim() returns true once per loan, after
-  // the job has ended; lend() must not be called again before that. `job` is the command, and `is_done` is
-  // true if it succeeded.
+  // lend() and reclaim() are called by the haptic thread; neither waits nor allocates. reclaim() returns true
+  // once per loan, after the job has ended; lend() must not be called again before that. `job` is the
+  // command, and `is_done` is true if it succeeded.
   void lend(LentSession lent, LiveCommand job);
   bool reclaim(LentSession& lent, LiveCommand& job, bool& is_done);
 
@@ -185,7 +185,7 @@ class HapticSide {
   bool last_tick_failed_ = false;
   bool recording_ = false;
   std::uint64_t recorded_ticks_ = 0;
-  std::uint64_t recorded_missed_ = 0;  // periods without a tick since the recording's first
+  std::uint64_t recorded_missed_ = 0;  // periods without a tick since the first tick of the recording
   bool state_recorded_ = false;        // the state hash at recorded_ticks_ is recorded
 
   std::uint64_t session_count_ = 0;

@@ -93,7 +93,7 @@ struct RecordedState {
   std::uint64_t missed = 0;  // with `last`: periods without a tick during the recording
 };
 
-// Ticks of a recording, and periods of 1 ms without a tick meanwhile.
+// Number of ticks of a recording, and of periods of 1 ms without a tick during it.
 struct RecordedTicks {
   std::uint64_t ticks = 0;
   std::uint64_t missed = 0;

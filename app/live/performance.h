@@ -22,8 +22,8 @@ struct PerformanceSettings {
 
 // Results of a performance.
 struct PerformanceReport {
-  LoopFigures loop;        // of the whole session, so also before and after the recording
-  RecordedTicks recorded;  // of the recording alone, as its replay states them
+  LoopFigures loop;        // figures of the whole session, also before and after the recording
+  RecordedTicks recorded;  // ticks of the recording alone, as its replay states them
   std::uint64_t frames = 0;
   std::vector<Notice> notices;
 };

@@ -30,7 +30,7 @@ struct PanelModel {
 
   double effective_youngs_modulus_pa = 0.0;
   int implicit_nodes = 0;  // 0: explicit springs
-  double mass_kg = 0.0;    // of all bodies
+  double mass_kg = 0.0;    // mass of all bodies
   int plane_count = 0;
   int fixed_node_count = 0;
   int node_count = 0;

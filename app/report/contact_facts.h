@@ -18,7 +18,7 @@ namespace spoonbill {
 
 struct SurfaceParameters {
   double u, v;
-  std::optional<ParameterRange> range;  // of the contact region around the point
+  std::optional<ParameterRange> range;  // extent of the contact region around the point
 };
 
 // One model's side of a contact or of the nearest pair of points.

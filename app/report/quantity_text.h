@@ -1,5 +1,5 @@
-// Quantities, closings and regions as the panel and reports show them: about three digits, in the units that
-// a designer uses.
+// Texts for the panel and for reports: quantities with about three digits in the units that a designer uses,
+// whether a surface is closed, and regions.
 #pragma once
 
 #include <cstddef>

@@ -30,7 +30,7 @@ struct LockstepInput {
   // States to compare with before the commands of their tick, ascending; may be empty.
   std::vector<Checkpoint> expected;
   std::optional<Checkpoint> expected_end;
-  std::uint64_t missed = 0;  // of a live recording, passed on to the written one
+  std::uint64_t missed = 0;  // missed ticks of a replayed live recording, copied to the one that is written
   std::string source;        // names the input in messages
 };
 

@@ -75,7 +75,7 @@ struct Session {
   CouplingState coupling;
   StrokeHistory history;
   ViewChoice view;
-  std::vector<BodyMass> masses = {};  // of each body in the document; sculpting does not change a mass
+  std::vector<BodyMass> masses = {};  // masses of the document's bodies; sculpting does not change them
 
   DeviceSpecification device;
   DeviceReading reading;                 // from the last tick
@@ -123,8 +123,8 @@ struct SessionFacts {
   std::string title;
   Tool tool;
   Material material;
-  int region_count = 0;  // of the first body, like the material
-  double mass_kg = 0.0;  // of all bodies
+  int region_count = 0;  // regions of the first body, which also gives the material
+  double mass_kg = 0.0;  // mass of all bodies
   Sculpting sculpting;
   Symmetry symmetry;
   bool has_ground = false;

@@ -403,9 +403,10 @@ Result<Approximation> remove_knot(const Surface& surface, Direction direction, d
   if (!knots.is_periodic()) {
     for (const double end : {knots.domain_start(), knots.domain_end()}) {
       if (std::abs(end - wanted) <= near) {
-        return Error{ErrorCode::unsupported,
-                     number_text(end) +
-                         " is an end of the direction, whose knots cannot be removed; name a knot inside"};
+        return Error{
+            ErrorCode::unsupported,
+            number_text(end) +
+                " is an end of the domain, whose knots cannot be removed; choose a knot inside the domain"};
       }
     }
   }

@@ -82,7 +82,8 @@ std::vector<ControlLine> insert_into_periodic(const KnotVector& knots, const std
 int count_multiplicity(const KnotVector& knots, double knot) {
   const auto& all = knots.knots();
   int multiplicity = static_cast<int>(std::count(all.begin(), all.end(), knot));
-  // The seam's knots are listed at both ends of the period, one of them at both.
+  // Some of the seam's knots are listed at the start of the period and the others at the end; one is listed
+  // twice, at both.
   if (knots.is_periodic() && knot == all.front()) {
     multiplicity += static_cast<int>(std::count(all.begin(), all.end(), all.back())) - 1;
   }

@@ -8,9 +8,9 @@
 
 namespace spoonbill {
 
-// Inserts `knot` until it has the given multiplicity (1..degree) in that direction; does nothing if it
-// already has (Boehm 1980). The knot must be strictly inside the domain, or anywhere in the period of a
-// periodic direction.
+// Inserts `knot` until it has the given multiplicity (1..degree) in that direction; does nothing if it has at
+// least that multiplicity (Boehm 1980). The knot must be strictly inside the domain, or anywhere in the
+// period of a periodic direction.
 Result<Surface> insert_knot(const Surface& surface, Direction direction, double knot, int multiplicity);
 
 // Returns the surface with a direction reversed; its normals are flipped.

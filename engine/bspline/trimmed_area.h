@@ -88,7 +88,7 @@ class GridLines {
   int find_cell(double parameter) const;
   // Returns the line exactly at a parameter, or -1.
   int find_line(double parameter) const;
-  // Returns the same value for both sides of a seam whose second line is omitted, otherwise the parameter.
+  // Returns the parameter. Where the seam has a single line, both ends of the period give the same value.
   double merge_seam(double parameter) const;
 
  private:

@@ -33,7 +33,7 @@ struct CadSurface {
 
 struct CadModel {
   std::vector<CadSurface> surfaces;
-  std::string unit;  // of the file's numbers: "mm", "inch", or as the file names it
+  std::string unit;  // unit of the file's numbers: "mm", "inch", or as the file names it
   bool unit_declared = true;
   std::vector<std::string> notes;  // one line each
 };

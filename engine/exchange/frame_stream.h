@@ -26,7 +26,7 @@ enum class FrameKind : std::uint64_t {
   ending = 0x20646e656c6e7073,    // "spnlend ": facts about all surfaces together, as JSON
   mesh = 0x6873656d6c6e7073,      // "spnlmesh": MeshCounts, then vertices and triangles as in TriangleMesh
   cloud = 0x64756c636c6e7073,     // "spnlclud": CloudCounts, then points and normals as in PointCloud
-  faces = 0x656361666c6e7073,     // "spnlface": the OBJ file is a mesh instead of a cloud; no bytes
+  faces = 0x656361666c6e7073,     // "spnlface": an empty frame: the OBJ file is a mesh instead of a cloud
   failure = 0x6c6961666c6e7073    // "spnlfail": one line, an error's message with an optional code before it
 };
 

@@ -23,8 +23,8 @@ struct FitPoints {
   // holds the index of the scan point that represents it, or no_point if it was removed.
   std::vector<Vector3> given_m;
   std::vector<std::uint32_t> representative;
-  std::vector<double> weights;               // of each scan point: its area in a mesh, 1 in a cloud
-  PointGraph graph;                          // of the nodes, each of which represents nearby points
+  std::vector<double> weights;               // weight of each scan point: its area in a mesh, 1 in a cloud
+  PointGraph graph;                          // graph of the nodes, each of which represents nearby points
   std::vector<Vector3> node_normals;         // unit, or zero where unknown
   std::vector<std::uint32_t> node_index;     // node of each scan point
   std::vector<BoundaryLoop> boundary_loops;  // longest first

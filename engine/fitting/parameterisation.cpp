@@ -170,8 +170,8 @@ Result<Parameterisation> start_tube(FitPoints& island) {
   return Parameterisation{ShapeKind::tube, std::move(uv).value()};
 }
 
-// Returns the positions in the loop of the square's corners: the nodes that are farthest out along the
-// diagonals of the principal plane.
+// Returns the indices, within the boundary loop, of the nodes that become the corners of the parameter
+// domain: those farthest from the centre along the diagonals of the principal plane.
 std::array<std::size_t, 4> find_corners(const PointGraph& graph, const BoundaryLoop& loop) {
   const Axes axes = principal_axes(graph);
   std::array<std::size_t, 4> corners{};

@@ -59,8 +59,8 @@ ShellMass compute_shell_mass(const Surface& surface, double thickness_m, const T
 // Mass of a body made of several materials.
 struct MaterialMix {
   double density_kg_per_m3 = 0.0;           // mean over the body
-  double own_density_kg_per_m3 = 0.0;       // of the body's own material
-  double own_fraction = 1.0;                // of the volume: of the body's own material
+  double own_density_kg_per_m3 = 0.0;       // density of the body's own material
+  double own_fraction = 1.0;                // fraction of the volume that the body's own material fills
   Vector3 mass_offset_m = Vector3::Zero();  // from the centre of the volume to the centre of mass
   std::vector<std::string> materials;       // names of the materials in use, the body's own first
 };
@@ -73,7 +73,7 @@ Result<MaterialMix> compute_material_mix(const Body& body);
 // The mass of the body's lattice, on which forces act, differs by the error of the cells.
 struct BodyMass {
   double volume_m3 = 0.0;
-  Vector3 centre_m = Vector3::Zero();  // of mass
+  Vector3 centre_m = Vector3::Zero();  // centre of mass
   MaterialMix mix;
   std::string note;  // reason why the regions are ignored; empty if they count
 

@@ -37,9 +37,9 @@ class ThicknessSearch {
   // to rounding where Newton's method converges, and on a facet elsewhere.
   std::optional<SurfaceExit> exit(const Vector3& from, const Vector3& direction) const;
 
-  // Returns the thickness at a surface point. Returns nothing where the surface has no normal or the inward
-  // line meets no wall: it misses the surface between samples at an edge, or leaves beside an edge
-  // (exits_through_wall()).
+  // Returns the thickness at a surface point. Returns nothing where the surface has no normal, or where the
+  // inward line leaves through no wall (exits_through_wall()): near an edge it may leave too obliquely or
+  // pass between the samples.
   std::optional<Thickness> at(double u, double v) const;
 
   // Returns the smallest thickness at the samples, refined around the best of them. Finds a wall thinner

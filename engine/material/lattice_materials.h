@@ -23,8 +23,8 @@ struct LatticeMaterials {
   std::vector<std::uint8_t> material_index;  // index into `materials` by LatticeMesh::cell_index(); empty if
                                              // every cell has the first
   std::vector<double> frictions;             // the body's own coefficient, then those of its regions
-  std::vector<std::uint8_t>
-      friction_index;  // index into `frictions` by node; empty if every node has the first
+  // Index into `frictions` for each node; empty if every node has the first friction.
+  std::vector<std::uint8_t> friction_index;
 
   const Material& own() const {
     SPOONBILL_ASSERT(!materials.empty());

@@ -257,9 +257,9 @@ Result<std::vector<EdgeMatch>> find_edge_matches(const std::vector<Surface>& pat
     }
   }
   if (const int loose = groups.find_loose(); loose >= 0) {
-    return Error(ErrorCode::mismatch,
-                 "patch " + std::to_string(loose + 1) +
-                     " has no edge that fits one of the others; open it there, or name the edges");
+    return Error(ErrorCode::mismatch, "patch " + std::to_string(loose + 1) +
+                                          " has no edge that fits an edge of another patch; open it where it "
+                                          "should be joined, or name the edges");
   }
   return chosen;
 }

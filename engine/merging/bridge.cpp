@@ -56,8 +56,8 @@ bool agree_beyond_second(const Surface& before, const Surface& after, double str
   if (!last || !first) return false;
   const double length = breaks_before.back() - breaks_before[breaks_before.size() - 2];
   const double ratio = length / (stretch * (breaks_after[1] - breaks_after[0]));
-  double choices =
-      0.5 * before.v.degree() * (before.v.degree() - 1.0);  // binomial factor of the k-th difference
+  // Binomial factor of the k-th difference.
+  double choices = 0.5 * before.v.degree() * (before.v.degree() - 1.0);
   for (int k = 3; k <= std::min(continuity, before.v.degree()); ++k) {
     choices *= (before.v.degree() - k + 1.0) / k;
     for (int line = 0; line < last->net.rows; ++line) {
@@ -379,7 +379,7 @@ Result<BridgeLength> even_speed_length(const Surface& before, const Surface& aft
   }
   if (!(speed_before > 0.0) || !(speed_after > 0.0)) {
     return Error(ErrorCode::degenerate,
-                 "a patch has no direction at the edge to bridge from; cut a piece off there");
+                 "a patch's tangents across the edge to bridge are zero; cut a piece off there");
   }
   return BridgeLength{chord / speed_before, speed_after / speed_before, chord};
 }

@@ -19,7 +19,7 @@ struct JoinRequest {
   int largest_count = 200;    // most control points in each direction
   bool shared_parameters = false;  // edges are known to correspond; seams are not searched
   bool bridges_may_fold = false;   // for edges that the user pairs against their best fit
-  Progress progress = {};          // of all the work that the request covers
+  Progress progress = {};          // progress of the whole request
 };
 
 // Knots closer than this fraction of the domain are snapped together if that changes the surface little.

@@ -213,8 +213,8 @@ double line_length_m(const Surface& patch, double u, double from, double to) {
   return length;
 }
 
-// Crossings of a patch's lines with the other patch: their number, votes for keeping the part before, and
-// positions.
+// Crossings of a patch's lines with the other patch: the number of lines that cross, votes for keeping the
+// part before the crossing, and positions.
 struct Crossed {
   int lines = 0;
   double before_votes = 0.0;  // positive: keep the part before the crossing
@@ -261,9 +261,9 @@ Error not_crossed() {
 }
 
 Error periodic_in_both() {
-  return Error(
-      ErrorCode::unsupported,
-      "a patch is closed in both u and v, and cutting it gives no tube; split it open with change first");
+  return Error(ErrorCode::unsupported,
+               "a patch is closed in both u and v, and cutting it gives no tube; split it first with "
+               "`spoonbill change`");
 }
 
 Error goes_through(const Vector3& exit_m) {
@@ -298,7 +298,7 @@ Error not_side_by_side() {
   return Error(
       ErrorCode::mismatch,
       "lines of constant u of the two patches are not in the same order along the crossing, as where a "
-      "closed body meets a sheet; exchange u and v of one, or name closed bodies");
+      "closed body meets a sheet; exchange u and v of one patch, or merge closed bodies");
 }
 
 Error not_around_centre() {
@@ -349,7 +349,9 @@ std::vector<double> steps_between(std::vector<double> starts, bool closed, doubl
   return steps;
 }
 
-// Reverses the second patch if needed, so that its lines follow the first's, once around if closed.
+// Reverses u of the second patch if needed, so that its lines of constant u are in the same order along the
+// intersection as those of the first. Fails if they are not in one order or, for a closed patch, do not run
+// around it exactly once.
 Result<Surface> align_along(const CrossingPatches& patches, const std::vector<LineCrossing>& crossings) {
   const Surface &first = patches.first, &second = patches.second;
   const double length = patches.beside_pole ? 1.0 : second.u.domain_length();
@@ -462,11 +464,11 @@ double interpolate(double from, double to, double fraction) {
 
 using LineShape = std::function<Vector3(double u, const CornerLine& line, double s)>;
 
-// Part of a patch as a function of the first patch's u and the fraction along its lines.
+// Remaining part of a patch as a function of u of the first patch and of the fraction along the part's lines.
 struct PartShape {
   LineShape at;
   bool pole_at_start = false, pole_at_end = false;
-  // Fraction at which lines that start beside a pole become the patch's own.
+  // Fraction from which lines that start beside a pole follow the lines of the patch.
   std::optional<double> bend = {};
 };
 
@@ -580,9 +582,9 @@ Result<Parts> fit_parts(const CrossingPatches& patches, const IntersectionReques
 
 Error edges_apart(double apart_m, double tolerance_m) {
   return Error(ErrorCode::not_converged,
-               "the remaining parts end up to " + short_length_text(apart_m) +
-                   " apart where they should meet, too far for the tolerance of " +
-                   short_length_text(tolerance_m) + "; allow a larger one",
+               "the remaining parts should meet but are up to " + short_length_text(apart_m) +
+                   " apart, too far for the tolerance of " + short_length_text(tolerance_m) +
+                   "; choose a larger one",
                "tolerance");
 }
 

@@ -304,8 +304,8 @@ Status check_left_open(const Arrangement& arrangement, const std::vector<ChosenE
   return Error(
       ErrorCode::inconsistent,
       edge_name(match.a) + " and " + edge_name(match.b) +
-          " cannot be joined, as the other pairs of edges place these patches elsewhere; leave that pair "
-          "out, and close the merged surface with change if it is a ring");
+          " cannot be joined, as the other pairs of edges place these patches elsewhere; omit this pair, "
+          "and if the patches form a ring, close the merged surface with `spoonbill change`");
 }
 
 Error cannot_close(const OpenEdges& edges) {

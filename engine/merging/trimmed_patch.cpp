@@ -290,8 +290,9 @@ class KeptPart {
 Error no_single_pieces() {
   return Error(
       ErrorCode::unsupported,
-      "its part within the trims is not met in one piece by each line of constant u (or of constant v), and "
-      "is no disc or ring with smooth edges; fill its holes, and cut it off where it ends in a point");
+      "some lines of constant u, and some of constant v, meet its part within the trims in several pieces or "
+      "not at all, and the part is no disc or ring with smooth edges; fill its holes, and cut it off where "
+      "it ends in a point");
 }
 
 Result<FittedShape> resample_piece(const Surface& surface, const KeptPart& part, const Interval& piece,

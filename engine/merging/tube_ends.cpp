@@ -110,10 +110,12 @@ Result<Surface> make_cap(const Surface& tube, double height_m) {
   }
   if (!(speed > 0.0))
     return Error(ErrorCode::degenerate,
-                 "the tube's sides have no direction at the end to cap; cut a piece off");
+                 "the tube's tangents along its sides are zero at the end to cap; cut a piece off there");
   const bool round = height_m > 0.0;
   if (round && ring.outward.isZero()) {
-    return Error(ErrorCode::degenerate, "the tube's sides have no common direction at its end; cap it flat");
+    return Error(
+        ErrorCode::degenerate,
+        "the directions of the tube's sides at its end cancel out, so a round cap has no axis; cap it flat");
   }
   const double length = (round ? 3.0 * quarter_circle * height_m : ring.radius_m) / speed;
   const auto knots = KnotVector::open(3, {0, 0, 0, 0, length, length, length, length});

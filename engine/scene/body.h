@@ -75,8 +75,8 @@ struct Body {
   std::vector<Load> loads = {};
   std::vector<Support> supports = {};
   std::optional<double> shell_thickness_m = {};
-  std::vector<TrimLoop> trims =
-      {};  // bound the part of the surface that is drawn and touched (trimmed_area.h)
+  // Trim loops around the part of the surface that is drawn and touched (trimmed_area.h).
+  std::vector<TrimLoop> trims = {};
   // Name of the CAD solid that has this body as a face; empty if the body is not a face of a solid.
   std::string solid = {};
 };

@@ -60,9 +60,10 @@ enum class MotionKind { ramp, oscillation };
 // the same polynomial over the first period.
 struct SupportMotion {
   MotionKind kind = MotionKind::ramp;
-  Vector3 displacement_m = Vector3::Zero();  // of a ramp; amplitude of an oscillation
-  double duration_s = 1.0;                   // ramps only
-  double frequency_hz = 1.0;                 // oscillations only
+  // Whole displacement of a ramp, or amplitude of an oscillation.
+  Vector3 displacement_m = Vector3::Zero();
+  double duration_s = 1.0;    // ramps only
+  double frequency_hz = 1.0;  // oscillations only
 };
 
 // Fixes the nodes of a region, or moves them if a motion is given. Fixing planes take precedence over

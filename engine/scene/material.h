@@ -45,8 +45,8 @@ inline constexpr double min_spring_poissons_ratio = 0.2;
 inline constexpr Range<double> density_range_kg_per_m3{1.0, 30000.0};
 inline constexpr Range<double> damping_ratio_range{0.0, 2.0};
 inline constexpr Range<double> yield_strain_range{1e-4, 0.5};  // plastic materials
-inline constexpr Range<double> elastic_yield_strain_range{0.0,
-                                                          0.5};  // other materials, which ignore the value
+// Materials that are not plastic ignore the value.
+inline constexpr Range<double> elastic_yield_strain_range{0.0, 0.5};
 inline constexpr Range<double> flow_rate_range_per_s{0.0, 1000.0};
 // With a hardening above the upper limit, clay would spring back.
 inline constexpr Range<double> hardening_range{0.0, 1.0};
@@ -121,8 +121,9 @@ Status check_region(const BodyRegion& region);
 struct MaterialRegion {
   BodyRegion region;
   std::optional<Material> material = {};  // empty: the material that the region has without this entry
-  std::optional<double> friction =
-      {};  // empty: the friction of `material`, or unchanged if that is empty too
+  // Friction of the region. If empty, the friction of `material`; if that is empty too, the friction stays
+  // unchanged.
+  std::optional<double> friction = {};
 };
 
 inline constexpr Range<int> material_region_count_range{0, 16};

@@ -42,8 +42,8 @@ Vector3 mirror_point(const Symmetry& symmetry, const Vector3& point_m);
 Pose mirror_pose(const Symmetry& symmetry, const Pose& pose);
 
 struct Scene {
-  std::vector<Body>
-      bodies;  // touching bodies push each other; a document may have more than can be simulated
+  // Touching bodies push each other; a document may have more than can be simulated.
+  std::vector<Body> bodies;
   std::vector<FixingPlane> planes;  // each fixes nodes of every body
   Tool tool;
   Sculpting sculpting;

@@ -29,8 +29,8 @@ struct ExactShape {
   ShapeDirection u, v;
   // whether the shape has a pole (one point for all u) at that end of v
   bool pole_at_start = false, pole_at_end = false;
-  // End of the first part and start of the last part along v in which the shape is in the plane of its pole;
-  // each is one of the breaks. Empty if there is no such part.
+  // Flat ends of a shape with poles: v from the start of the domain to `flat_to` and from `flat_from` to its
+  // end. Each is one of `breaks`; empty if that end is not flat.
   std::optional<double> flat_to = {}, flat_from = {};
   std::function<Vector3(double u, double v)> at;
 

@@ -42,7 +42,7 @@ Result<ExactShape> sphere_shape(double radius_m);
 // A cylinder along y.
 struct CylinderSize {
   double radius_m = 0.02, height_m = 0.06;
-  double rounding_m = 0.002;  // of both edges, at most the radius and half the height
+  double rounding_m = 0.002;  // radius of both edges, at most the radius and half the height of the cylinder
 };
 // Makes a cylinder along y.
 Result<ExactShape> cylinder_shape(const CylinderSize& size);

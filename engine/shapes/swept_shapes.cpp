@@ -113,7 +113,7 @@ Result<ExactShape> tube_shape(const TubeSize& size) {
   }
   if (worst > max_bend_fraction) {
     return Error{ErrorCode::self_intersecting,
-                 "the tube folds where its line bends most sharply, at " +
+                 "the tube folds where its centre line bends most sharply, at " +
                      position_text(size.centre_line.at(sharpest)) + ": make its section at most " +
                      number_text(std::max(1.0, std::floor(100.0 * max_bend_fraction / worst))) +
                      " % as wide, or the bend wider"};

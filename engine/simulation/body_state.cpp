@@ -58,7 +58,7 @@ Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& 
 std::string describe_lattice_warning(const BodyState& body) {
   const std::string slender = describe_slender_cells(body);
   if (body.lattice.mesh().along.empty()) return slender.empty() ? slender : "lattice: " + slender;
-  return "lattice: the body is in a box of cells, because no block of cells fits along it; nodes are counted "
+  return "lattice: the body is in a box of cells, because no lattice can follow its shape; nodes are counted "
          "along x, y and z, feature_map is ignored, and parts thinner than a cell are too stiff in bending" +
          (slender.empty() ? slender : "; " + slender);
 }

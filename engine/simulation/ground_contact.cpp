@@ -134,8 +134,8 @@ bool is_boxed(const LatticeMesh& mesh) {
   return !mesh.along.empty();
 }
 
-// Returns the node with the largest weight in a sample among those that the filter accepts; -1 if there is
-// none.
+// Returns the node with the largest weight in a sample among those that the filter accepts; -1 if the filter
+// accepts no node.
 template <class Filter>
 int find_heaviest_node(const EmbeddedPoint& sample, const Filter& accepts) {
   int node = -1;
@@ -148,8 +148,9 @@ int find_heaviest_node(const EmbeddedPoint& sample, const Filter& accepts) {
   return node;
 }
 
-// Returns the node to which a sample is attached: the heaviest of its nodes on the shell or, in a box and if
-// it has none there, the heaviest of all.
+// Returns the node to which a sample is attached: among its nodes on the shell, the one with the largest
+// weight. In a box of cells, a sample without such nodes is attached to the largest weight of all its nodes.
+// Returns -1 otherwise.
 int find_footing_node(const LatticeMesh& mesh, const EmbeddedPoint& sample) {
   const int node = find_heaviest_node(sample, [&](int candidate) { return on_shell(mesh, candidate); });
   return node < 0 && is_boxed(mesh) ? find_heaviest_node(sample, [](int) { return true; }) : node;

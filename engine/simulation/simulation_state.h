@@ -40,13 +40,13 @@ struct Simulation::State {
   Scene scene;
   InstructionSet set;
   std::vector<BodyState> bodies;  // bodies of the scene in its order, then a soft tool
-  ToolModel model;                // of the last solid tool
+  ToolModel model;                // model of the last solid tool
   HeldTool tool;
   HeldTool mirrored;
   BodyContacts between;
   std::vector<BodyPairContact> pairs;  // (0, 1), (0, 2), (1, 2), ...: see make_pairs()
   std::vector<BodySelfContact> self;   // by body
-  BodyGroundContact ground_contact;    // of the scene's bodies; of none without a ground
+  BodyGroundContact ground_contact;    // contacts of the scene's bodies; without a ground, of no body
   bool pairs_overflow = false;
   double tool_gap_m = 0.0;      // smallest gap of a soft tool to a body; infinite if it is not near
   double scene_size_m = 0.0;    // diagonal of the box around the bodies at rest

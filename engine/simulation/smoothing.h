@@ -63,7 +63,7 @@ class Smoothing {
   Vector3 measure_bump(const SpringLattice& lattice, int node) const;
   // Position of an inner node relative to its six neighbours.
   struct NeighbourCentre {
-    Vector3 offset;          // of the node from the neighbours' centre
+    Vector3 offset;          // offset of the node from the centre of its neighbours
     Eigen::Matrix3d across;  // columns: from each neighbour to the opposite one
   };
   template <class PositionOf>

@@ -46,7 +46,7 @@ struct ToolSnapshot {
   ToolAction action = ToolAction::push;
   int iterations = 0;
   double radius_m = 0.0;
-  std::shared_ptr<const ToolBody> body;  // of a solid; a soft one is drawn as the last body
+  std::shared_ptr<const ToolBody> body;  // body of a rigid solid; a soft tool is drawn as the last body
   Pose device;                           // pose of the hand
   Pose proxy;                            // pose at which the material stops the tool, which is drawn
   bool button = false;
@@ -123,7 +123,7 @@ struct Snapshot {
   std::vector<PlaneSnapshot> planes;
   bool symmetric = false;  // a second tool mirrors the first
   PlaneSnapshot symmetry;
-  Pose mirrored_proxy;  // of the second tool, if symmetric
+  Pose mirrored_proxy;  // proxy of the second tool, if symmetric
   std::vector<ContactSnapshot> contacts;
   Vector3 force_n = Vector3::Zero();  // on the hand, after force scale and limit
   DeviceSnapshot device;

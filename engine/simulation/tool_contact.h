@@ -65,7 +65,7 @@ class ToolContact {
   ToolContact(std::span<const BodyState> bodies, const ToolModel& model);
 
   // Finds the tool's contacts and lets the kernel of its action (ToolKernel) add the constraints of this
-  // tick. Once it hovers, the tool does not act until it is outside the bodies and hovers no longer.
+  // tick. A tool that has hovered does not act again until it has stopped hovering and is outside the bodies.
   void prepare(std::span<const BodyState> bodies, const Tool& tool, const ToolModel& model,
                const ToolHold& hold);
   // Prepares a soft tool, which touches the bodies as a body itself.

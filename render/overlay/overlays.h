@@ -78,8 +78,8 @@ void append_lattice_lines(const LatticeSnapshot& lattice, bool inner, std::vecto
 // The boundaries of the lattice's hexahedra on the surface of the body (Fig. 11 of Pungotra et al. 2013).
 struct CellLines {
   std::vector<OverlayLine> near;  // edges of faces toward the eye, thick
-  std::vector<OverlayLine>
-      far;  // edges of faces away from the eye, thin and pale; drawn before a translucent body
+  // Edges of faces away from the eye, thin and pale; drawn before a translucent body.
+  std::vector<OverlayLine> far;
 };
 
 // Appends each edge of the outer faces once. All edges are near if the lattice is a box around a triangle

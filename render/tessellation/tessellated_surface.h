@@ -134,7 +134,7 @@ class TessellatedSurface {
   GridSamples<float> samples_;
   std::vector<std::uint32_t> indices_;
   std::shared_ptr<const TrimmedArea> trim_;
-  std::vector<CutVertex> cut_vertices_;  // sources of the samples after those of the grid
+  std::vector<CutVertex> cut_vertices_;  // of trimmed cells; their samples follow those of the grid
 };
 
 // Returns the box around all surfaces of a snapshot. The surfaces are evaluated, because boxes around control

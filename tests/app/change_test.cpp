@@ -124,7 +124,7 @@ TEST(ChangeCommand, RefusesInOneLine) {
       {{"insert", "v=50", "9"}, exit_failed, "multiplicity 9"},
       {{"insert", "v=1e-300"}, exit_failed, "too near the one at 0"},
       {{"remove", "v=50.01"}, exit_failed, "there is no knot at 50.01; the nearest is at"},
-      {{"remove", "v=0"}, exit_failed, "is an end of the direction"},
+      {{"remove", "v=0"}, exit_failed, "is an end of the domain"},
       {{"remove", "u=0"}, exit_failed, "the seam needs a knot"},
       {{"remove", "u=0.5"}, exit_failed, "leaves a deviation of"},
       {{"remove"}, exit_wrong_use, "must have the form: remove v=0.5"},

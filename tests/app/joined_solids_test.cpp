@@ -134,7 +134,7 @@ TEST_F(JoinedSolids, FacesThatDoNotCloseAreMeshesEachWithANote) {
   const Json facts = convert("open.json", "open.stl");
   EXPECT_EQ(facts["meshes"], 5);
   EXPECT_EQ(facts["closed_meshes"], 0);
-  EXPECT_EQ(facts["notes"], Json::array({"5 of the 5 faces of 'bracket' enclose nothing together",
+  EXPECT_EQ(facts["notes"], Json::array({"5 of the 5 faces of 'bracket' together enclose no volume",
                                          "faces that are not part of a solid: 5, each a separate mesh"}));
 }
 
@@ -228,7 +228,7 @@ TEST_F(JoinedSolids, ThatDoNotCloseAreNotSound) {
   EXPECT_EQ(facts["sound"], false);
   ASSERT_EQ(facts["solids"].size(), 1u);
   EXPECT_EQ(facts["solids"][0]["closed"], false);
-  EXPECT_EQ(facts["notes"], Json::array({"5 of the 5 faces of 'bracket' enclose nothing together"}));
+  EXPECT_EQ(facts["notes"], Json::array({"5 of the 5 faces of 'bracket' together enclose no volume"}));
   EXPECT_FALSE(facts["solids"][0].contains("volume_m3"));
   EXPECT_EQ(facts["bodies"][0]["sound"], false);
 }

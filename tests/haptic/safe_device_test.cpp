@@ -178,7 +178,7 @@ TEST(SafeDevice, TheSwitchCutsTheForceAtOnceAndLetsItRampInAgain) {
     engage(safe);
     EXPECT_EQ(stub.given_n, Vector3(1, 0, 0));
   }
-  EXPECT_EQ(stub.given_n, Vector3::Zero());  // the chain has ended
+  EXPECT_EQ(stub.given_n, Vector3::Zero());  // the destructor of SafeDevice sent zero force
 }
 
 TEST(SafeDevice, TheWorkspaceIsWhereTheHandBeginsOrWhereItIsPut) {

@@ -67,7 +67,7 @@ TEST(Vibration, OfFullForceIsCutWithin150Milliseconds) {
       for (int run = 0; run < random_cases(6, 60); ++run) {
         const Vector3 offset_n = (random.once_in(2) ? 0.0 : random.uniform(0.0, 3.0)) * random.direction();
         const ForceSource force_n = random_vibration(random, waveform, frequency_hz, 3.3, offset_n);
-        // The hand may move meanwhile.
+        // In half of the runs the hand moves at a constant velocity.
         const Vector3 speed_m_per_s = (random.once_in(2) ? 0.0 : 0.2) * random.direction();
         const int cut =
             find_cut(force_n, 150, offset_n, [&](int t) { return Vector3(t * tick_s * speed_m_per_s); });

@@ -264,7 +264,7 @@ TEST_F(LatticePictures, CellsOfJelly) {
   compare("jelly-cells", paint(stage, {}));
 }
 
-// Draws figure 9 of the paper: two patches with different counts and knots, and the merged patch.
+// Draws two patches with different counts of control points and different knots, and the merged patch.
 class MergePictures : public MomentPictures {
  protected:
   static Document parts() {

@@ -199,8 +199,8 @@ class SurfaceLevels {
   std::vector<std::uint32_t> element_at_;  // generation in which all samples of an element were evaluated
   std::vector<Vector3> lines_;             // working memory: sums of one column along v, one per control row
   std::vector<std::uint32_t> sampled_at_;  // generation in which a sample was evaluated
-  std::vector<std::uint32_t>
-      column_at_;                    // generation in which the coarsest samples of a column were evaluated
+  // Generation in which the coarsest samples of each column were evaluated.
+  std::vector<std::uint32_t> column_at_;
   std::vector<CoverSphere> covers_;  // by cell_index()
   std::vector<std::uint32_t> covered_at_;
   std::vector<int> first_cell_;  // index of the first cell of each level

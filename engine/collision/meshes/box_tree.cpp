@@ -129,8 +129,8 @@ std::optional<LineExit> LineExits::first(const Vector3& from, const Vector3& dir
   };
   const auto test_triangle = [&](std::uint32_t position) {
     const Triangle& triangle = triangles_[position];
-    constexpr double tolerance =
-        1e-6;  // tolerance by which a line along an edge still hits one of its triangles
+    // Tolerance by which a line along an edge still hits one of its triangles.
+    constexpr double tolerance = 1e-6;
     const auto hit =
         intersect_line_triangle(from, direction, triangle[0], triangle[1], triangle[2], tolerance);
     if (!hit || !(hit->facing < 0.0) || !(hit->along > 0.0) || !(hit->along < farthest())) return;

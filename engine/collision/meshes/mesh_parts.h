@@ -11,8 +11,8 @@ namespace spoonbill {
 struct MeshParts {
   TriangleMesh mesh;  // sorted by part; parts have no vertex in common
   std::vector<MeshPart> parts;
-  std::vector<bool>
-      orientable;  // per part: its triangles can be oriented consistently, unlike those of a Moebius strip
+  // For each part, true if its triangles can be oriented consistently, unlike those of a Moebius strip.
+  std::vector<bool> orientable;
   std::size_t triangles_flipped = 0;
 };
 

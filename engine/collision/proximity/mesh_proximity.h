@@ -86,10 +86,10 @@ class MeshProximity {
   std::vector<std::uint32_t> first_vertex_;  // per patch, start in patch_vertices_; one more entry at the end
   std::vector<std::uint32_t> patch_vertices_;  // grouped by patch
   std::vector<std::uint32_t> sampled_at_;      // find() in which a sample was visited
-  std::vector<std::uint32_t>
-      patch_at_;  // find() in which a patch was added to candidates_, at candidate_index_
-  std::vector<std::uint32_t>
-      offered_at_;  // element to which a patch was last offered, counted through all searches
+  // Number of the find() call that last added a patch to candidates_, at candidate_index_.
+  std::vector<std::uint32_t> patch_at_;
+  // Element to which a patch was last offered, counted through all searches.
+  std::vector<std::uint32_t> offered_at_;
   std::vector<int> candidate_index_;
   std::vector<Candidate> candidates_;
   std::vector<SampleNearMesh> samples_;

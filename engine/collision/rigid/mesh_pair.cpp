@@ -129,8 +129,9 @@ void MeshDepths::visit_edge(std::uint32_t from, std::uint32_t to, double least_m
   }
 }
 
-// Replaces `best` if a point on the stretch is deeper. Moves repeatedly to the intersection of the depth's
-// tangents at both ends. Finds the maximum if the depth is concave, as in a convex mesh.
+// Replaces `best` if a point between `low` and `high` is deeper. Moves repeatedly to the intersection of the
+// depth's tangents at both ends of the interval. Finds the maximum if the depth is concave, as in a convex
+// mesh.
 void MeshDepths::climb(DeepPoint low, DeepPoint high, double half_thickness_m, DeepPoint& best) const {
   const Vector3 between = high.point_m - low.point_m;
   const double whole_m = between.norm(), tolerance_m = climb_tolerance * other_box_.size();

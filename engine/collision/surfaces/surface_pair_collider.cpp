@@ -122,8 +122,8 @@ SurfacePairCollider::Seed SurfacePairCollider::resolve_contact(const RegionCells
                                                                PairContact& contact) const {
   Seed found{contact.pair.at, {}};
   contact.normal = unit_normal(second_.surface(), found.touch.s, found.touch.t);
-  // An open surface has no inside, so the side towards which the exit is shorter counts. The search begins
-  // with the side on which the centre of the region is.
+  // An open surface has no inside, so both sides are tried, and the depth is that of the shorter exit. The
+  // search begins with the side on which the centre of the region is.
   Seeds seeds = find_seeds(cells, last);
   const double first_side = query.second_closed || seeds.centre_depth > 0.0 ? 1.0 : -1.0;
   double shortest = infinity;
@@ -191,7 +191,7 @@ SurfacePairCollider::Seeds SurfacePairCollider::find_seeds(const RegionCells& ce
 }
 
 // Computes the depth where the surfaces touch with both interiors on the same side, that is, where one body
-// is inside the other. Of a few such points, the one with the shortest exit counts.
+// is inside the other. Uses the point with the shortest exit among a few candidates.
 void SurfacePairCollider::find_inner_touch(const RegionCells& cells, PairContact& contact) const {
   const Surface& first = first_.surface();
   const Surface& second = second_.surface();

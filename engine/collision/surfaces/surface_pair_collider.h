@@ -15,8 +15,8 @@ namespace spoonbill {
 
 // Options of SurfacePairCollider::collide().
 struct PairQuery {
-  // True if the surface bounds a body: du x dv then points outward, and one body may be inside the other. An
-  // open surface has two sides, and the side with the shorter exit counts.
+  // True if the surface bounds a body: du x dv then points outward, and one body may be inside the other. For
+  // an open surface, the depth is measured towards the side with the shorter exit.
   bool first_closed = false, second_closed = false;
   // Distance up to which the nearest points of surfaces that do not touch are searched, in metres.
   double reach_m = 0.0;

@@ -69,8 +69,8 @@ class PatchFolds {
 
 // Options of SurfaceSelfCollider::collide().
 struct SelfQuery {
-  // True if the surface bounds a body: du x dv then points outward. An open surface has two sides, and the
-  // side with the shorter exit counts.
+  // True if the surface bounds a body: du x dv then points outward. For an open surface, the depth is
+  // measured towards the side with the shorter exit.
   bool closed = false;
   Progress progress = {};  // receives the fraction searched; may stop the search
 };

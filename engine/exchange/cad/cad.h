@@ -18,7 +18,8 @@ namespace spoonbill {
 // once.
 void prepare_occt();
 
-// Set options of OpenCASCADE for later files; write_cad() calls both. `unit` is mm, cm, m or in.
+// set_step_schema() and set_file_unit() set options of OpenCASCADE for later files; write_cad() calls both.
+// `unit` is mm, cm, m or in.
 void set_step_schema(StepSchema schema);
 void set_file_unit(std::string_view unit);
 

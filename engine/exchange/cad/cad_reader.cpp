@@ -174,7 +174,7 @@ struct Content {
   LossCount losses = {};
   int external_files = 0;
   int unread_placements = 0;
-  double model_scale = 1.0;  // of IGES files only
+  double model_scale = 1.0;  // scale of the model in an IGES file
 };
 
 OcctDocument new_document() {
@@ -238,7 +238,8 @@ Error no_surface_error(const Content& content) {
                                            " faces, none of which can be read; export it again"};
   }
   if (content.external_files > 0) {
-    return Error{ErrorCode::missing, "contains no surface but names other files; export all as one"};
+    return Error{ErrorCode::missing,
+                 "contains no surface but names other files; export all parts as one file"};
   }
   return Error{ErrorCode::missing, "contains no surface"};
 }
@@ -260,8 +261,8 @@ void add_loss_notes(const Content& content, CadModel& model) {
   if (content.unread_placements > 0) {
     model.notes.push_back(
         "placements that scale, stretch or mirror: " + std::to_string(content.unread_placements) +
-        ", which are not read; what they place has its own size and shape; export it "
-        "without them");
+        ", which are not read; the parts keep their original size and shape; export them without such "
+        "placements");
   }
   if (content.model_scale != 1.0) {
     model.notes.push_back("the file states that it is a model of scale " + number_text(content.model_scale) +

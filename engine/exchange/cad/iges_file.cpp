@@ -63,8 +63,9 @@ struct LineCounts {
   std::string last;             // last line of the file, which states the number of lines of each section
   int null_entities = 0;
   long farthest = 0;  // last line of parameters that an entity refers to
-  std::optional<long>
-      parameters_of_next;  // first line of parameters, from the first of an entity's two lines
+  // Number of the first parameter line of the present entity, which the first of its two directory lines
+  // states.
+  std::optional<long> parameters_of_next;
 };
 
 void add_directory_line(const std::string& line, LineCounts& lines) {
@@ -152,7 +153,8 @@ Result<int> count_null_entities(const std::filesystem::path& file) {
   std::size_t start = 0;
   for (const char section : {'S', 'G', 'D', 'P'}) {
     const auto count = parse_field(lines.last.substr(0, start + field_length), start + 1);
-    if (lines.last[start] != section || !count) return damaged("its last line does not count the others");
+    if (lines.last[start] != section || !count)
+      return damaged("its last line does not state the number of lines of each section");
     if (*count != lines.counts[section]) {
       return damaged("its last line counts " + std::to_string(*count) + " lines of section " + section +
                      ", and there are " + std::to_string(lines.counts[section]));

@@ -189,8 +189,8 @@ Result<AllFaces> collect_all_faces(const std::vector<const CadSurface*>& parts) 
   return all;
 }
 
-// Returns true if `found` contains all faces of each of its parts: a part that also has a face outside a
-// solid does not belong to the solid.
+// Returns true if every part that has a face in `found` has all its faces there. A part with a face outside
+// the solids belongs to no solid.
 bool are_complete(const FaceCounts& found, const FaceCounts& all) {
   return std::all_of(found.begin(), found.end(),
                      [&](const auto& count) { return count.second == all.at(count.first); });
@@ -235,7 +235,7 @@ std::vector<std::string> describe_joining(const JoinedFaces& joined, const std::
   }
   if (!joined.loose.empty()) {
     notes.push_back(std::to_string(joined.loose.size()) + " of the " + std::to_string(parts.size()) +
-                    " faces of '" + name + "' enclose nothing together" + loose_outcome);
+                    " faces of '" + name + "' together enclose no volume" + loose_outcome);
   }
   return notes;
 }

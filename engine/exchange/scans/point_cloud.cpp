@@ -155,8 +155,9 @@ Status PointCollector::add(const Vector3& point, const Vector3& normal) {
 Result<PointCloud> PointCollector::finish() && {
   if (!cloud_.points.empty()) return std::move(cloud_);
   if (cloud_.skipped > 0) {
-    return Error{ErrorCode::too_few, "all of its " + std::to_string(cloud_.skipped) +
-                                         " points have a coordinate that is not a number; scan it again"};
+    return Error{ErrorCode::too_few,
+                 "all of its " + std::to_string(cloud_.skipped) +
+                     " points have a coordinate that is not a number; export the scan again"};
   }
   return Error{ErrorCode::too_few, "has no points"};
 }

@@ -129,7 +129,7 @@ class GroundContacts {
 
  private:
   std::size_t capacity_;
-  std::vector<GroundContact> contacts_, last_;  // of this tick and of the last one
+  std::vector<GroundContact> contacts_, last_;  // contacts of this tick, and of the last one
   std::size_t search_position_ = 0;             // search position in last_
   double last_time_s_ = 0.0, time_s_ = 0.0;     // material time of the last tick and of this one
   Vector3 normal_ = Vector3::UnitY();

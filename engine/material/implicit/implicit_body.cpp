@@ -293,8 +293,8 @@ void ImplicitBody::fix_nodes(std::span<const std::uint8_t> fixed) {
   SPOONBILL_ASSERT(fixed.size() == static_cast<std::size_t>(node_count()));
   has_fixed_nodes_ = std::find(fixed.begin(), fixed.end(), std::uint8_t{1}) != fixed.end();
   for (int n = 0; n < node_count(); ++n) {
-    const bool is_first =
-        mesh_.joined(n) == n;  // the second of two joined nodes has no coordinates of its own
+    // The second of two joined nodes has no coordinates of its own.
+    const bool is_first = mesh_.joined(n) == n;
     const bool is_free = fixed[static_cast<std::size_t>(n)] == 0 && is_first;
     for (int axis = 0; axis < 3; ++axis) {
       const auto at = static_cast<std::size_t>(3 * n + axis);

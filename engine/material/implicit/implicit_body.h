@@ -82,7 +82,7 @@ struct ImplicitStep {
 };
 
 struct ImplicitReport {
-  int iterations = 0;     // of the conjugate gradients
+  int iterations = 0;     // iterations of the conjugate gradients
   double residual = 0.0;  // final residual divided by the initial one, in the norm of the preconditioner
 };
 
@@ -225,7 +225,7 @@ class ImplicitBody {
   double damping_time_ = 0.0, cell_size_;
   int size_;  // number of coordinates
   bool has_fixed_nodes_ = false, fixed_moves_ = false;
-  Vector3 momentum_ = Vector3::Zero();  // of a free body at the end of the step
+  Vector3 momentum_ = Vector3::Zero();  // momentum of a free body at the end of the step
   RollingFactor factor_;
   CellBlock block_;
   Doubles mass_, mass3_, free_;  // by node; by coordinate, 0 if fixed; 1 or, if fixed, 0

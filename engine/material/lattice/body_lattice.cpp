@@ -388,7 +388,7 @@ Result<TubeBlock> make_block(const Surface& surface, const Profile& profile, con
     return Error{ErrorCode::degenerate,
                  "surface: " + number_text(section.thickness * 1e3) +
                      " mm thick at half its length where it is " + number_text(section.width * 1e3) +
-                     " mm wide: too flat for a lattice; make it at least a ten-thousandth as thick",
+                     " mm wide: too flat for a lattice; make the thickness at least 1/10000 of the width",
                  "surface"};
   }
   const Extents extents = lattice_extents(surface, profile, rims, section);

@@ -88,7 +88,7 @@ Result<LatticeMesh> box_lattice(const ShellDistance& inside, double volume_m3,
     return Error{ErrorCode::degenerate,
                  "mesh: " + number_text(size.minCoeff() * 1e3) + " mm thick where it is " +
                      number_text(size.maxCoeff() * 1e3) +
-                     " mm long: too flat for a lattice; make it at least a ten-thousandth as thick",
+                     " mm long: too flat for a lattice; make the thickness at least 1/10000 of the length",
                  "mesh"};
   }
   LatticeMesh box = box_mesh(size, counts);
@@ -220,7 +220,7 @@ Status check_thick(const ClosedSkin& skin, double volume_m3, double size_m) {
   return Error{ErrorCode::degenerate,
                "surface: " + number_text(thickness * 1e3) + " mm thick where it is " +
                    number_text(size_m * 1e3) +
-                   " mm long: too flat for a lattice; make it at least a ten-thousandth as thick",
+                   " mm long: too flat for a lattice; make the thickness at least 1/10000 of the length",
                "surface"};
 }
 

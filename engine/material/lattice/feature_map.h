@@ -20,8 +20,8 @@ CellQuality measure_cell_quality(const LatticeMesh& mesh);
 
 struct FeatureMapReport {
   CellQuality before, after;
-  double applied_fraction =
-      0.0;  // fraction of the map's moves that was applied, limited so that the worst cell gets no worse
+  // Fraction of the map's moves that was applied, limited so that the worst cell gets no worse.
+  double applied_fraction = 0.0;
 };
 
 // Observer of a feature map computation.

@@ -221,8 +221,8 @@ void average_dilations(const LatticeView& view);
 // Adds each cell's contribution to the row sums, N/m.
 void add_volume_row_sums(const LatticeView& view, float* sum_n_per_m);
 
-// Subtracts the product of the volume stiffness, at the extrapolated positions, and the power vector from
-// the forces.
+// Subtracts K w from the forces: K is the volume stiffness, linearised at the extrapolated positions, and w
+// the vector of the power iteration.
 void subtract_volume_stiffness(const LatticeView& view);
 
 // See LatticeKernels::measure_rest_volumes.

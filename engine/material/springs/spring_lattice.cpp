@@ -111,8 +111,8 @@ struct SpringLattice::Assembly {
   std::vector<Stiffness> materials;
   std::vector<double> mass, cell_count;  // per node
   BySpring stiffness;
-  std::vector<BySpring>
-      by_material;  // contribution of each material to the stiffness; empty for a single material
+  // Contribution of each material to the stiffness; empty for a single material.
+  std::vector<BySpring> by_material;
 };
 
 Result<SpringLattice> SpringLattice::make(const LatticeMesh& mesh, const LatticeMaterials& materials,

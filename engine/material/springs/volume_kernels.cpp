@@ -29,11 +29,11 @@ inline float dot(Vector a, Vector b) {
 // (Grandy, "Efficient computation of volume of hexahedral cells", UCRL-ID-128886, 1997).
 struct FaceDiagonals {
   Vector a;  // from corner 4 to 7
-  Vector b;  // 0 to 3
-  Vector c;  // 2 to 7
-  Vector d;  // 0 to 6
-  Vector e;  // 0 to 5
-  Vector f;  // 1 to 7
+  Vector b;  // from corner 0 to 3
+  Vector c;  // from corner 2 to 7
+  Vector d;  // from corner 0 to 6
+  Vector e;  // from corner 0 to 5
+  Vector f;  // from corner 1 to 7
 };
 
 inline Vector difference(const float* x, const float* y, const float* z, int from, int to) {

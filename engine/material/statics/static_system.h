@@ -27,8 +27,7 @@ class StaticSystem {
   void move(const Coordinates& free_step, double fraction, Coordinates& at) const;
 
   double energy_j(const Coordinates& at) const;
-  // Forces that keep the cells in their shape, by coordinate. `size` is the root of the sum of squares over
-  // the cells.
+  // Elastic restoring forces by coordinate. `size` is the root of the sum of squares over the cells.
   struct Forces {
     Coordinates restoring;
     double size = 0.0;

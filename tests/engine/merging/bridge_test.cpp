@@ -19,7 +19,7 @@ TEST(Bridge, AGapIsBridgedSmoothly) {
   // The chords across the gap of 10 mm have a slope of 0.1.
   EXPECT_NEAR(merged->joints[0].joint.gap_m, 0.01 * std::hypot(1.0, 0.1), 1e-5);
   EXPECT_LT(merged->deviation_m, 1e-9);
-  // A straight continuation of both is the cone itself.
+  // Both strips are parts of one cone, so the bridge that continues them straight is on the cone, too.
   const Surface& surface = merged->surface;
   for (double share = 0.0; share <= 1.0; share += 0.02) {
     const Vector3 p = position(surface, 0.7, share * surface.v.domain_end());

@@ -115,8 +115,8 @@ TEST(TubeEnds, OpensAPoleWhereTheSidesRunStraight) {
   const auto opened = open_pole(capsule(0.01, 0.03, 0.0), Side::v_end, 1.0);
   ASSERT_TRUE(opened.ok()) << opened.error().message;
   const TubeEnd ring = tube_end(opened.value(), Side::v_end);
-  // On the hemisphere, the radius grows by 0.1 of the axial distance where the tangent of its angle to the
-  // axis is 1 / 0.1.
+  // The pole is opened where the radius of the hemisphere grows by 0.1 of the axial distance, that is, where
+  // the angle from the axis has the tangent 1 / 0.1.
   EXPECT_NEAR(ring.radius_m, 0.01 * std::sin(std::atan(1.0 / 0.1)), 2e-4);
   EXPECT_TRUE(is_pole(opened.value(), Side::v_start));
   const auto narrow = open_pole(capsule(0.01, 0.03, 0.0), Side::v_end, 0.005);

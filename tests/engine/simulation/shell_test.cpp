@@ -28,7 +28,7 @@ Material shell_material(double youngs_modulus_pa) {
   return material;
 }
 
-// Clay bowl about the origin, open upwards, with its surface outside, fixed at the rim.
+// Clay bowl about the origin, open upwards and fixed at the rim. Its surface is the outer face of the shell.
 Scene clay_bowl() {
   Scene scene = small_handle();
   Body& body = scene.bodies[0];

@@ -24,7 +24,7 @@ Material stiff_material(double youngs_modulus_pa) {
   return material;
 }
 
-// Handle that is fixed behind x = 10 mm.
+// Handle whose nodes below x = 10 mm are fixed.
 Scene held_stiff_handle(double youngs_modulus_pa) {
   Scene scene = small_handle();
   scene.bodies[0].material = stiff_material(youngs_modulus_pa);

@@ -122,7 +122,8 @@ TEST(SurfaceSelf, ALoopCrossesWhereTheClosedFormSays) {
   const bool swapped = contact.first.u0 > 0.0;
   const ParameterRange& low = swapped ? contact.second : contact.first;
   const ParameterRange& high = swapped ? contact.first : contact.second;
-  // The sides of a cell are a quarter of 0.3, and a region may extend up to one cell beyond the crossing.
+  // A cell is a quarter of a knot span of 0.3 wide, and a region may extend up to one cell beyond the
+  // crossing.
   constexpr double cell = 0.075;
   EXPECT_LE(low.u0, -1.0);
   EXPECT_GE(low.u1, -1.0);

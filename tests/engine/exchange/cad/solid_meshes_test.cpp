@@ -141,7 +141,7 @@ TEST_F(SolidMeshes, WhatDoesNotCloseIsLoose) {
   EXPECT_TRUE(solids->solids.empty());
   EXPECT_EQ(solids->loose.size(), faces);
   ASSERT_EQ(solids->notes.size(), 1u);
-  EXPECT_NE(solids->notes[0].find("enclose nothing together"), std::string::npos);
+  EXPECT_NE(solids->notes[0].find("together enclose no volume"), std::string::npos);
 }
 
 TEST_F(SolidMeshes, NoMoreTrianglesThanTheLimit) {

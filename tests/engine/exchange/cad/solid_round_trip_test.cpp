@@ -103,7 +103,7 @@ TEST_F(SolidRoundTrip, FacesThatDoNotCloseKeepTheirNames) {
   EXPECT_EQ(content.open_shells, 5);
   EXPECT_EQ(content.notes,
             std::vector<std::string>{
-                "5 of the 5 faces of 'solid' enclose nothing together; they are written one by one"});
+                "5 of the 5 faces of 'solid' together enclose no volume; they are written one by one"});
   for (const CadSurface& part : model.surfaces) {
     EXPECT_NE(content.text.find("'" + part.name + "'"), std::string::npos);
   }

@@ -18,7 +18,7 @@ struct Beam {
   double force_n;  // acts at the far end of x, towards -z
 };
 
-// Returns how far the far end sinks, as a mean, if the near end is fixed in all directions.
+// Returns the mean deflection of the far end of a cantilever whose near end is fixed in all directions.
 double sinking_m(const Beam& beam, const Material& material, CellKind kind) {
   const LatticeMesh mesh = box_mesh(beam.size_m, beam.counts);
   std::vector<FixedAxis> held;
@@ -50,7 +50,8 @@ CellSprings cube_without_body_diagonals(double edge_m, double youngs_modulus_pa)
   return springs;
 }
 
-// Returns sinking_m() to first order, for a beam whose cells all have this stiffness.
+// Returns the deflection, as sinking_m() does, but to first order and for a beam whose cells all have this
+// stiffness.
 double linear_sinking_m(const Beam& beam, const CellMatrix& stiffness) {
   const LatticeMesh mesh = box_mesh(beam.size_m, beam.counts);
   const Eigen::Index size = 3 * static_cast<Eigen::Index>(mesh.node_count());
@@ -80,8 +81,8 @@ double linear_sinking_m(const Beam& beam, const CellMatrix& stiffness) {
   return sum;
 }
 
-// Ratio of the sinking with shear to that by Euler and Bernoulli: 1 + 0.75 (h / L)^2 at nu = 1/4 and L = 10
-// h.
+// Ratio of the deflection with shear to that by Euler and Bernoulli: 1 + 0.75 (h / L)^2 at nu = 1/4 and L =
+// 10 h.
 constexpr double timoshenko_ratio = 1.0075;
 
 // Springs need many cells through the thickness, hexahedra need one. The beam is ten times as long as high,

@@ -113,9 +113,9 @@ struct Sandwich {
                      elastic_material(faces_pa, poisson, 1000.0), in_faces);
   }
 
-  // Returns the sinking of the composite section: its bending stiffness is the sum of E I, and its shear
-  // flexibility follows from the energy of the stress t(y), which is V / (E I) times the first moment of E
-  // beyond y (Jourawski).
+  // Returns the deflection of the composite cantilever: its bending stiffness is the sum of E I, and its
+  // shear flexibility follows from the energy of the stress t(y), which is V / (E I) times the first moment
+  // of E beyond y (Jourawski).
   static double sinking_m() {
     constexpr int slices = 20000;
     const double thick = height_m / slices;
@@ -172,8 +172,8 @@ TEST(CompositeStatics, OneCellOfABlockBendsAsItsLayersDo) {
   ImplicitStep step;
   step.damping_per_s = 40.0;
   for (int tick = 0; tick < 1500; ++tick) body.step(step);
-  // The cell treats the shear as uniform through the thickness, in faces and core: it shows 1 % of sinking
-  // from shear instead of 2.7 %.
+  // The cell treats the shear as uniform through the thickness, in faces and core: it shows 1 % of the
+  // deflection from shear instead of 2.7 %.
   EXPECT_NEAR(-body.displacement(block.node_count() - 1).y() / Sandwich::sinking_m(), 1.0, 0.025);
 }
 
