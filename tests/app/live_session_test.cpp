@@ -2,10 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <fstream>
+#include <limits>
 
 #include "app/files/content_hash.h"
+#include "app/files/documents.h"
 #include "app/program.h"
+#include "engine/material/lattice_solver.h"
 #include "haptic/recording.h"
 #include "haptic/safe_device.h"
 #include "haptic/virtual_device.h"
@@ -349,6 +354,63 @@ TEST(LiveSession, TheForceIsCutAtOnceUntilItIsSwitchedOn) {
   EXPECT_EQ(switches, (std::vector{false, true}));
   const Outcome replayed = run({"replay", place.text("off.jsonl"), "--no-frames"});
   EXPECT_EQ(replayed.code, exit_done) << replayed.err;
+}
+
+// Returns the largest distance of a lattice's node from a point; infinite if a coordinate is not finite.
+double farthest_node_m(const LatticeSnapshot& lattice, const Vector3& from) {
+  double farthest = 0.0;
+  for (std::size_t n = 0; n < lattice.x.size(); ++n) {
+    const Vector3 node(lattice.x[n], lattice.y[n], lattice.z[n]);
+    if (!node.allFinite()) return std::numeric_limits<double>::infinity();
+    farthest = std::max(farthest, (node - from).norm());
+  }
+  return farthest;
+}
+
+TEST(LiveSession, AHandleOfBeechThatIsPulledStaysInTheScene) {
+  for (const bool is_fixed : {true, false}) {
+    SCOPED_TRACE(is_fixed);
+    Document document = held_handle();
+    document.scene.bodies[0].material = shipped_material("beech").value();
+    if (!is_fixed) document.scene.planes.clear();
+    document.scene.tool.action = ToolAction::pull;
+    const Box box = bounding_box(document.scene.bodies[0].surface.net);
+    const int substep_limit = document.scene.tool.iterations * substep_ceiling;
+    Live live(document);
+    double farthest_m = 0.0;
+    int substeps = 0;
+    std::uint32_t flags = 0;
+    const auto watch = [&](const LiveFrame& frame) {
+      farthest_m = std::max(farthest_m, farthest_node_m(frame.snapshot.bodies[0].lattice, box.centre()));
+      substeps = std::max(substeps, frame.snapshot.substeps);
+      flags |= frame.snapshot.flags;
+    };
+    const auto watch_ticks = [&](std::uint64_t ticks) {
+      const std::uint64_t from = live->frame().snapshot.tick;
+      ASSERT_TRUE(wait_for(*live, [&](const LiveFrame& frame) {
+        watch(frame);
+        return frame.snapshot.tick >= from + ticks;
+      }));
+    };
+    HandTarget hand = at(0.05, 0.005);
+    hand.buttons = button_main;
+    live.aim(hand);
+    ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.facts.in_stroke; }));
+    hand.pose.position_m.y() = live->last_frame().snapshot.tool.proxy.position_m.y() + 0.005;
+    live.aim(hand);
+    watch_ticks(800);
+    live.aim(at(0.05, 0.04));
+    watch_ticks(800);
+    EXPECT_LT(farthest_m, box.size());
+    EXPECT_GT(substeps, 0);
+    EXPECT_LE(substeps, substep_limit);
+    EXPECT_EQ(flags & tick_flag_failed, 0U);
+    const Workplace place;
+    ASSERT_TRUE(live->save(place.path("pulled.json")));
+    EXPECT_TRUE(waits_for_save(*live));
+    const auto saved = read_document(place.path("pulled.json"));
+    EXPECT_TRUE(saved) << saved.error().message;
+  }
 }
 
 TEST(LiveSession, CancellingWithoutAStrokeChangesNothing) {

@@ -3,14 +3,17 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <thread>
 
 #include "app/program.h"
+#include "engine/exchange/document.h"
 #include "tests/app/process.h"
 #include "tests/engine/effort.h"
 
@@ -55,6 +58,19 @@ class RunningProgram {
     while (!has_ended() && StopClock::now() < give_up) {
       const auto size = std::filesystem::file_size(file, ignored);
       if (!ignored && size >= bytes) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  }
+  // Waits until the progress on standard error has reached a percentage.
+  void wait_for_percent(int percent) {
+    const auto give_up = StopClock::now() + std::chrono::seconds(20);
+    while (!has_ended() && StopClock::now() < give_up) {
+      const std::string text = err();
+      const std::size_t end = text.rfind(" %"), start = text.rfind("] ", end);
+      if (end != std::string::npos && start != std::string::npos &&
+          std::stoi(text.substr(start + 2, end - start - 2)) >= percent) {
+        return;
+      }
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
   }
@@ -185,6 +201,56 @@ TEST(StoppedProgram, LeavesNoTemporaryFile) {
   EXPECT_LT(sampling.stop(SIGHUP), stop_limit_s);
   // The three new entries are the folder of frames and the two files with standard error.
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(place.path("")), {}), before + 3);
+}
+
+// Waits until this process has no child. Children of children that have ended count as children.
+bool has_lost_all_children() {
+  const auto give_up = StopClock::now() + std::chrono::seconds(1);
+  while (StopClock::now() < give_up) {
+    const pid_t ended = waitpid(-1, nullptr, WNOHANG);
+    if (ended < 0) return errno == ECHILD;
+    if (ended == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return false;
+}
+
+// Returns a STEP file of so many bodies that it takes seconds to convert.
+std::string assembly_of(const Workplace& place) {
+  Document document = read_document(place.path("model.json")).value();
+  const Body first = document.scene.bodies[0];
+  for (int k = 1; k < 300; ++k) {
+    Body body = first;
+    body.name = "body " + std::to_string(k + 1);
+    for (double& y : body.surface.net.y) y += 0.03 * k;
+    document.scene.bodies.push_back(std::move(body));
+  }
+  const std::string many = place.write("many.json", json_to_page(document_to_json(document))).string();
+  const Outcome written = run_process(stopped_program, {"convert", many, place.text("many.step")});
+  EXPECT_EQ(written.code, exit_done) << written.err;
+  return place.text("many.step");
+}
+
+TEST(StoppedProgram, EndsAConversionWithItsReader) {
+  const Workplace place;
+  const std::string assembly = assembly_of(place);
+  ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
+  const auto before = std::distance(std::filesystem::directory_iterator(place.path("")), {});
+  // While the reader parses the file, and while surfaces are meshed.
+  for (const int percent : {0, 40}) {
+    for (const int signal : {SIGINT, SIGTERM}) {
+      SCOPED_TRACE(std::to_string(percent) + " %, signal " + std::to_string(signal));
+      RunningProgram converting(
+          {"convert", assembly, place.text("out.stl"), "--chord", "0.01mm", "--progress"}, place.path("err"));
+      converting.wait_for_percent(percent);
+      EXPECT_LT(converting.stop(signal), stop_limit_s);
+      EXPECT_TRUE(converting.failed());
+      EXPECT_NE(converting.err().find("stopped"), std::string::npos) << converting.err();
+      EXPECT_TRUE(has_lost_all_children());
+      std::filesystem::remove(place.path("err"));
+      EXPECT_EQ(std::distance(std::filesystem::directory_iterator(place.path("")), {}), before);
+    }
+  }
+  prctl(PR_SET_CHILD_SUBREAPER, 0);
 }
 
 TEST(StoppedProgram, GoesOnWhereTheSignalWasIgnoredAtItsStart) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "engine/simulation/simulation.h"
 #include "haptic/safe_device.h"
@@ -24,25 +25,41 @@ class FaultyDevice : public Device {
   const DeviceSpecification& specification() const override { return limits_; }
 
   std::optional<DeviceReading> read() override {
-    Pose pose{position_m_, Quaternion::Identity()};
+    // Nobody can tell a jump from a hand that moved while it was not seen.
+    const bool was_known = std::exchange(known_, true), has_jumped = std::exchange(jumped_, false);
     fails_ = true;
+    Pose pose{position_m_ + slip_m_, Quaternion::Identity()};
     switch (random_.bits() % 2000) {
       case 0:
         pose.position_m[1] = std::numeric_limits<double>::quiet_NaN();
+        known_ = false;
         break;
       case 1:
         pose.orientation.w() = std::numeric_limits<double>::infinity();
+        known_ = false;
         break;
       case 2:
-        pose.position_m += random_.uniform(0.045, 1.0) * random_.direction();
+        pose.position_m += random_.uniform(0.05, 1.0) * random_.direction();
+        jumped_ = true;
+        fails_ = was_known;
         break;
       case 3:
+        known_ = false;
         return {};
+      case 4:
+        // The sensor loses counts: the position jumps, and stays where it is.
+        if (slip_m_.isZero(0.0)) {
+          slip_m_ = random_.uniform(0.05, 0.1) * random_.direction();
+        } else {
+          slip_m_.setZero();
+        }
+        pose.position_m = position_m_ + slip_m_;
+        fails_ = was_known;
+        break;
       default:
         // The way back from a jump is as fast as the jump.
-        fails_ = jumped_;
+        fails_ = has_jumped;
     }
-    jumped_ = (pose.position_m - position_m_).norm() > 0.0;
     return DeviceReading::from(pose, button_main);
   }
 
@@ -62,7 +79,8 @@ class FaultyDevice : public Device {
   DeviceSpecification limits_;
   Vector3 position_m_ = Vector3(0.0, 0.004, 0.0);
   double target_y_m_ = 0.004;
-  bool fails_ = false, jumped_ = false;
+  Vector3 slip_m_ = Vector3::Zero();
+  bool fails_ = false, jumped_ = false, known_ = false;
   Vector3 force_n_ = Vector3::Zero();
 };
 
@@ -76,8 +94,9 @@ struct FaultyRun {
   SafeDevice safe;
   CouplingState coupling;
   std::int64_t now_ns = 0;
-  std::uint64_t idle_ticks = 0;  // milliseconds without a tick of the loop
-  std::uint64_t beyond_limit = 0, not_cut = 0, held = 0;
+  std::uint64_t idle_ticks = 0;   // milliseconds without a tick of the loop
+  std::uint64_t quiet_ticks = 0;  // ticks of the loop since a fault
+  std::uint64_t beyond_limit = 0, not_cut = 0, held = 0, pressed = 0, early = 0;
   std::uint64_t faults = 0, stops = 0, with_force = 0;
 
   void judge() {
@@ -96,10 +115,14 @@ struct FaultyRun {
     const Vector3 depth_m(0.0, touches ? std::max(0.0, -position_m.y()) : 0.0, 0.0);
     const TickResult result = couple(coupling, device.specification(), position_m, depth_m, reading.missed);
     safe.give(random.once_in(3000) ? Vector3(Vector3::Constant(std::nan(""))) : result.force_n);
-    const bool is_fault = device.fails() || is_late;
+    const bool is_fault = device.fails() || is_late, has_force = !device.force_n().isZero(0.0);
+    quiet_ticks = is_fault ? 0 : quiet_ticks + 1;
     faults += is_fault;
-    not_cut += is_fault && !device.force_n().isZero(0.0);
-    with_force += !device.force_n().isZero(0.0);
+    not_cut += is_fault && has_force;
+    // After a stall a jump may be a motion of the hand.
+    pressed += device.fails() && !is_late && (reading.buttons & button_hover) == 0;
+    early += quiet_ticks <= 10 && has_force;
+    with_force += has_force;
   }
 
   // Runs a millisecond of the device.
@@ -141,6 +164,8 @@ TEST(FaultyDevice, NeverPassesTheLimitAndGetsNoForceAfterAnyFault) {
   EXPECT_EQ(run.beyond_limit, 0U);
   EXPECT_EQ(run.not_cut, 0U);
   EXPECT_EQ(run.held, 0U);
+  EXPECT_EQ(run.pressed, 0U) << "a reading that is at fault must not press";
+  EXPECT_EQ(run.early, 0U) << "the force returns only after ten quiet ticks";
   // Each case occurred often enough.
   EXPECT_GT(run.faults, ticks / 2000);
   EXPECT_GT(run.stops, ticks / 2000);

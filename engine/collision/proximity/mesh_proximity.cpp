@@ -12,10 +12,6 @@
 namespace spoonbill {
 namespace {
 
-constexpr std::size_t near_mesh_capacity = 4096;
-// Limit on the number of surface points evaluated for vertices in one search, which take about 50 ms.
-constexpr int vertex_evaluation_capacity = 1 << 17;
-
 // Box of the control net, which contains the surface.
 Box net_box(const ControlNet& net) {
   Box box{net.point(0, 0), net.point(0, 0)};
@@ -47,8 +43,8 @@ MeshProximity::MeshProximity(const NestedGrid& surface, std::vector<int> patches
   offered_at_.assign(patch_count, 0);
   candidate_index_.assign(patch_count, 0);
   candidates_.reserve(patch_count);
-  samples_.reserve(near_mesh_capacity);
-  vertices_.reserve(near_mesh_capacity);
+  samples_.reserve(near_point_limit);
+  vertices_.reserve(near_point_limit);
   // A descent of the binary tree leaves one node on the stack at every step.
   pending_.reserve(64);
 }
@@ -58,7 +54,7 @@ void MeshProximity::find(const Surface& surface, const DeformingMesh& mesh, doub
   SPOONBILL_ASSERT(margin_m >= 0.0);
   ++search_;
   least_gap_m_ = infinity;
-  budget_.evaluations_left = vertex_evaluation_capacity;
+  budget_.evaluations_left = proximity_evaluation_limit;
   overflow_ = false;
   candidates_.clear();
   samples_.clear();
@@ -133,7 +129,7 @@ void MeshProximity::collect_samples(const ElementTree::Node& element, const Defo
       sampled_at_[sample] = search_;
       const auto nearest = mesh.nearest(levels_.sample(sample), margin);
       if (!nearest) continue;
-      if (samples_.size() == near_mesh_capacity) {
+      if (samples_.size() == near_point_limit) {
         overflow_ = true;
         return;
       }
@@ -188,7 +184,7 @@ void MeshProximity::resolve_patches(const DeformingMesh& mesh, double margin) {
       if (other.gap_m < near.gap_m) near = other;
     }
     if (near.gap_m > margin) continue;
-    if (vertices_.size() == near_mesh_capacity) {
+    if (vertices_.size() == near_point_limit) {
       overflow_ = true;
       return;
     }

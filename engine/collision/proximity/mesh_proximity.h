@@ -61,6 +61,8 @@ class MeshProximity {
   // Returns true if a capacity was exceeded, so that points may be missing. Remedy: fewer control points or a
   // smaller margin.
   bool overflow() const { return overflow_ || budget_.is_spent(); }
+  // Number of surface points that the last find() evaluated for vertices.
+  int evaluations() const { return proximity_evaluation_limit - budget_.evaluations_left; }
 
  private:
   // One near vertex of a patch and the point nearest to it on the surface's sample triangles.

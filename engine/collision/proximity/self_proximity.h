@@ -113,6 +113,8 @@ class SelfProximity {
 
   // Points of the last find().
   const std::vector<NearPoint>& points() const { return near_.points(); }
+  // Number of surface points that the last find() evaluated.
+  int evaluations() const { return near_.evaluations(); }
   // True if nothing was near in the last find(), so that the next one takes almost no time.
   bool is_clear() const { return clear_; }
   // Returns true if a capacity was exceeded, so that points may be missing. Remedy: fewer control points or a

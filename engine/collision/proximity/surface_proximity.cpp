@@ -56,23 +56,18 @@ double distance_bound(const Vector3& point, const PatchCorners& at) {
   return std::sqrt(box.squared_distance(point));
 }
 
-constexpr std::size_t near_surface_capacity = 4096;
-// Limit on the number of surface points evaluated in one search, which take about 50 ms. Samples near a
-// smooth body need about five each; those near a crumpled one would need thousands.
-constexpr int evaluation_capacity = 1 << 17;
-
 }  // namespace
 
 NearPoints::NearPoints(const NestedGrid& nested) : levels_(nested) {
   const auto samples = static_cast<std::size_t>(nested.grid.rows() * nested.grid.columns());
   index_.assign(samples, 0);
   indexed_at_.assign(samples, 0);
-  near_.reserve(near_surface_capacity);
+  near_.reserve(near_point_limit);
 }
 
 bool NearPoints::begin(const Surface& surface) {
   ++generation_;
-  budget_.evaluations_left = evaluation_capacity;
+  budget_.evaluations_left = proximity_evaluation_limit;
   least_gap_m_ = infinity;
   overflow_ = false;
   near_.clear();
@@ -98,7 +93,7 @@ void NearPoints::offer(int i, int j, const SurfaceLevels& other, const LevelCell
   if (known && distance_bound(point, corners) >= near_[index_[sample]].gap_m) return;
   const NearestOnCell on = nearest_on_cell(point, corners);
   if (!known) {
-    if (near_.size() == near_surface_capacity) {
+    if (near_.size() == near_point_limit) {
       overflow_ = true;
       return;
     }
@@ -163,7 +158,7 @@ void NearPoints::add_between_samples(const SurfaceLevels& other, double outside)
     const NearPoint& near = near_[s];
     if (!is_local_deepest(near)) continue;
     if (budget_.is_spent()) return;
-    if (near_.size() == near_surface_capacity) {
+    if (near_.size() == near_point_limit) {
       overflow_ = true;
       return;
     }

@@ -74,6 +74,8 @@ class NearPoints {
   double least_gap_m() const { return least_gap_m_; }  // infinite if nothing is near
   // Returns true if a capacity was exceeded, so that points may be missing or not yet the nearest.
   bool overflow() const { return overflow_ || budget_.is_spent(); }
+  // Number of surface points evaluated since begin().
+  int evaluations() const { return proximity_evaluation_limit - budget_.evaluations_left; }
 
  private:
   bool is_local_deepest(const NearPoint& near) const;
@@ -114,6 +116,9 @@ class SurfaceProximity {
   // Returns true if a capacity was exceeded, so that points may be missing. Remedy: fewer control points or a
   // smaller margin.
   bool overflow() const { return missing_cells_ || first_.overflow() || second_.overflow(); }
+  // Numbers of surface points that the last find() evaluated for the points of each surface.
+  int first_evaluations() const { return first_.evaluations(); }
+  int second_evaluations() const { return second_.evaluations(); }
 
  private:
   NearPoints first_, second_;

@@ -55,9 +55,6 @@ constexpr double nearest_tolerance_m = 2e-5;
 // Proven accuracy in metres for a solid of unknown concavity, against which patches must be cut down to the
 // size of the tolerance.
 constexpr double unbent_tolerance_m = 5e-5;
-// Limit of the patches cut in one search, which bounds the time of a tick. A crumpled surface would otherwise
-// be cut down everywhere to the size of the tolerance.
-constexpr int cut_capacity = 20000;
 constexpr double clearance_fraction = 0.75;
 // Smallest gain in metres of a Newton step that is more than rounding.
 constexpr double least_gain_m = 1e-15;
@@ -124,12 +121,13 @@ void SurfaceCollider::find_nearest(const Surface& surface, const ToolShape& tool
   offer_last(surface, tool);
   proof_ = proof;
   tolerance_ = search_tolerance(tool);
-  cuts_left_ = cut_capacity;
+  cuts_left_ = surface_cut_limit;
   descend(tool, margin, result);
   if (trimmed_) offer_trim_loops(surface, tool);
   polish(surface, tool);
   result.samples_evaluated = levels_.samples_evaluated();
   for (const LevelCell& cell : finest_) search_between_samples(surface, tool, cell, result.overflow);
+  result.cuts = surface_cut_limit - cuts_left_;
   last_ = best_;
 }
 

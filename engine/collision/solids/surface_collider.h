@@ -50,6 +50,10 @@ struct NearSample {
   double distance_m = 0.0;  // signed distance to the tool; negative inside it
 };
 
+// Largest number of patches that one search cuts between samples, which bounds the time of a tick. A crumpled
+// surface would otherwise be cut down everywhere to the size of the tolerance.
+inline constexpr int surface_cut_limit = 20000;
+
 // Result of SurfaceCollider::collide().
 struct CollisionResult {
   bool found = false;  // the surface is within the margin or encloses the tool, with a tolerance of 1e-6 m
@@ -58,6 +62,7 @@ struct CollisionResult {
   SurfaceContact nearest;
   bool overflow = false;  // a capacity was exceeded; `nearest` is the best of the part that was searched
   int samples_evaluated = 0;
+  int cuts = 0;  // patches cut between samples, at most surface_cut_limit
 };
 
 // Guaranteed distance between a tool and the surface: three quarters of the nearest distance, or 0 if they

@@ -3,6 +3,8 @@
 // nothing.
 #pragma once
 
+#include <cstddef>
+
 #include "engine/bspline/piece_basis.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/levels/surface_levels.h"
@@ -33,6 +35,13 @@ struct PolishBudget {
 
   bool is_spent() const { return evaluations_left <= 0; }
 };
+
+// Limit of that number for one side of a proximity search, which takes about 50 ms. Samples near a smooth
+// body need about five each; those near a crumpled one would need thousands. Once it is used up, each point
+// that is left costs one evaluation.
+inline constexpr int proximity_evaluation_limit = 1 << 17;
+// Largest number of points on one side that a proximity search finds.
+inline constexpr std::size_t near_point_limit = 4096;
 
 // A point on a surface with its parameters.
 struct NearestPoint {
