@@ -52,8 +52,8 @@ using Load = std::variant<PressureLoad, ForceLoad, PointLoad>;
 
 enum class MotionKind { ramp, oscillation };
 
-// Prescribed motion of a support from the first tick on. It runs on the hand's clock: one tick is one
-// millisecond, whatever the number of iterations.
+// Prescribed motion of a support from the first tick on. One tick is one
+// millisecond.
 //
 // A ramp moves once over the displacement, as 10 t^3 - 15 t^4 + 6 t^5 of t = time / duration. Its speed
 // and acceleration vanish at both ends. An oscillation is a sine about the start; its amplitude grows by

@@ -20,11 +20,12 @@ struct Material {
   double youngs_modulus_pa = 0.0;
   double poissons_ratio = 0.0;
   double density_kg_per_m3 = 0.0;
-  // Voigt damping along each spring, as the damping ratio of the lattice's fastest mode.
-  double damping_ratio = 0.0;
+  // Voigt damping of changes of shape, not of volume: the stress follows the strain rate with this time. A
+  // vibration of frequency f has the loss factor 2 pi f times the damping time.
+  double damping_time_s = 0.0;
   bool plastic = false;
   double yield_strain = 0.0;     // deviatoric strain of a spring above which its rest length flows
-  double flow_rate_per_s = 0.0;  // rate of the rest length per unit of strain beyond yield
+  double flow_rate_per_s = 0.0;  // rate of the rest length per unit of strain beyond yield, in real time
   double hardening = 0.0;        // growth of the yield strain per unit of permanent strain
   // Stiffening b of the springs with their strain e: the factor 1 + b e^2, at most 2, for b > 0; the factor
   // (1 - b e^2)^(-1/2) for b < 0, which softens.
@@ -43,11 +44,12 @@ inline constexpr Range<double> poissons_ratio_range{0.0, 0.49};
 // springs. The volume force that springs need below it is unstable under contact.
 inline constexpr double min_spring_poissons_ratio = 0.2;
 inline constexpr Range<double> density_range_kg_per_m3{1.0, 30000.0};
-inline constexpr Range<double> damping_ratio_range{0.0, 2.0};
+// A longer damping time would cost more substeps than a tick may take.
+inline constexpr Range<double> damping_time_range_s{0.0, 0.005};
 inline constexpr Range<double> yield_strain_range{1e-4, 0.5};  // plastic materials
 // Materials that are not plastic ignore the value.
 inline constexpr Range<double> elastic_yield_strain_range{0.0, 0.5};
-inline constexpr Range<double> flow_rate_range_per_s{0.0, 1000.0};
+inline constexpr Range<double> flow_rate_range_per_s{0.0, 8000.0};
 // With a hardening above the upper limit, clay would spring back.
 inline constexpr Range<double> hardening_range{0.0, 1.0};
 inline constexpr Range<double> stiffening_range{-1000.0, 1000.0};
@@ -71,9 +73,7 @@ inline constexpr auto fields_of<Material> = std::to_array<Field<Material>>({
     number_field("density_kg_per_m3", &Material::density_kg_per_m3, density_range_kg_per_m3,
                  FieldUnit::kilogram_per_m3)
         .with_slider({"Density", {50.0, 20000.0}, true}),
-    // The loss factor of a Voigt element's mode is twice its damping ratio.
-    number_field("damping_ratio", &Material::damping_ratio, damping_ratio_range)
-        .with_alias({"loss_factor", 2.0, "Twice the damping ratio"}),
+    number_field("damping_time_s", &Material::damping_time_s, damping_time_range_s, FieldUnit::second),
     switch_field("plastic", &Material::plastic),
     number_field("yield_strain", &Material::yield_strain, elastic_yield_strain_range, FieldUnit::none,
                  "At least 1e-4 for a plastic material")

@@ -16,10 +16,10 @@
 
 namespace spoonbill {
 
-// Settings by which sculpting deviates from real behaviour: damping, no gravity by default, and scaled
-// forces.
+// Settings by which sculpting deviates from real behaviour: drag, slower responses, no gravity by default, and
+// scaled forces.
 struct Sculpting {
-  double damping_per_s = 4.0;  // mass-proportional
+  double drag_per_s = 24.0;  // damping of all motion, proportional to mass; leaves static forces unchanged
   Vector3 gravity_m_per_s2 = Vector3::Zero();
   double force_scale = 1.0;  // newtons at the hand per newton of contact
   // Damps each body critically as well, so that it comes to rest without ringing
@@ -28,6 +28,9 @@ struct Sculpting {
   // Lets a body that nothing fixes move away. Without it, and without gravity and ground, the body keeps its
   // mean position and orientation, as in a gentle hand (keeps_place()).
   bool free = false;
+  // Gives every body its true inertia and takes as many substeps as that needs. Without it, inertia is scaled
+  // up until the tool's substeps suffice (SpringLattice::set_inertia()).
+  bool real_time = false;
 };
 
 // Symmetric sculpting: a second tool is the mirror image of the hand's tool in a plane.
@@ -62,21 +65,21 @@ inline bool keeps_place(const Scene& scene) {
 // Limits of files, commands and the panel's sliders, within which every solver stays finite.
 inline constexpr Range<int> body_count_range{1, 1000};        // in a document
 inline constexpr Range<int> sculpted_body_count_range{1, 8};  // in a simulation
-inline constexpr Range<double> sculpting_damping_range_per_s{0.0, 1000.0};
+inline constexpr Range<double> drag_range_per_s{0.0, 8000.0};
 inline constexpr double gravity_limit_m_per_s2 = 100.0;  // length of the vector
 inline constexpr Range<double> force_scale_range{0.0, 1e6};
 
 template <>
 inline constexpr auto fields_of<Sculpting> = std::to_array<Field<Sculpting>>({
-    number_field("damping_per_s", &Sculpting::damping_per_s, sculpting_damping_range_per_s,
-                 FieldUnit::per_second)
-        .with_slider({"Damping", {0.0, 100.0}, false}),
+    number_field("drag_per_s", &Sculpting::drag_per_s, drag_range_per_s, FieldUnit::per_second)
+        .with_slider({"Drag", {0.0, 600.0}, false}),
     vector_field("gravity_m_per_s2", &Sculpting::gravity_m_per_s2, gravity_limit_m_per_s2,
                  FieldUnit::metre_per_s2),
     number_field("force_scale", &Sculpting::force_scale, force_scale_range, FieldUnit::times)
         .with_slider({"Force scale", {0.01, 100.0}, true}),
     switch_field("settles", &Sculpting::is_critically_damped).optional(),
     switch_field("free", &Sculpting::free).optional(),
+    switch_field("real_time", &Sculpting::real_time).optional(),
 });
 
 template <>

@@ -30,7 +30,7 @@ enum class ToolAction { push, pull, smooth };
 inline constexpr const char* tool_kind_names[] = {"point", "sphere", "solid"};
 
 inline constexpr Range<double> tool_radius_range_m{0.0, 0.5};
-inline constexpr Range<int> tool_iterations_range{1, 8};
+inline constexpr Range<int> tool_substeps_range{1, 8};
 
 // A field of Tool that an action uses, by its name in files, and the range that the action accepts, in SI
 // units.
@@ -61,7 +61,7 @@ struct ToolActionRow {
 };
 
 inline constexpr ToolParameter radius_parameter{"radius_mm", tool_radius_range_m};
-inline constexpr ToolParameter iterations_parameter{"iterations", {1.0, 8.0}};
+inline constexpr ToolParameter substeps_parameter{"substeps", {1.0, 8.0}};
 
 // Rows in the order of the enumeration.
 inline constexpr auto tool_actions = std::to_array<ToolActionRow>({
@@ -72,7 +72,7 @@ inline constexpr auto tool_actions = std::to_array<ToolActionRow>({
      .grips = false,
      .allows_soft_tool = true,
      .inverse = ToolAction::pull,
-     .parameters = {radius_parameter, iterations_parameter},
+     .parameters = {radius_parameter, substeps_parameter},
      .keys = {{{"1", ToolKind::sphere, "Sphere that pushes"}, {"3", ToolKind::point, "Point that pushes"}}}},
     {.action = ToolAction::pull,
      .name = "pull",
@@ -81,7 +81,7 @@ inline constexpr auto tool_actions = std::to_array<ToolActionRow>({
      .grips = true,
      .allows_soft_tool = false,
      .inverse = ToolAction::push,
-     .parameters = {radius_parameter, iterations_parameter},
+     .parameters = {radius_parameter, substeps_parameter},
      .keys = {{{"2", ToolKind::sphere, "Sphere that pulls"}, {"4", ToolKind::point, "Point that pulls"}}}},
     {.action = ToolAction::smooth,
      .name = "smooth",
@@ -90,7 +90,7 @@ inline constexpr auto tool_actions = std::to_array<ToolActionRow>({
      .grips = false,
      .allows_soft_tool = false,
      .inverse = ToolAction::smooth,
-     .parameters = {radius_parameter, iterations_parameter},
+     .parameters = {radius_parameter, substeps_parameter},
      .keys = {{{"5", ToolKind::sphere, "Sphere that smooths"}}}},
 });
 
@@ -173,7 +173,7 @@ struct Tool {
   ToolKind kind = ToolKind::sphere;
   ToolAction action = ToolAction::push;
   double radius_m = 0.008;  // radius of a sphere; 0 for a point; smoothing reach of a solid
-  int iterations = 6;       // relaxation steps per tick, 1 to 8: few act locally, many globally
+  int substeps = 6;         // steps of the springs per tick, 1 to 8: with more, bodies respond faster
   std::shared_ptr<const ToolBody> body = {};  // required for a solid; may stay while another kind is in use
 };
 
@@ -194,10 +194,10 @@ inline constexpr auto fields_of<Tool> = std::to_array<Field<Tool>>({
         .with_range_by([](const Tool& tool) {
           return range_in_action(tool, "radius_mm", tool_radius_range_m);
         }),
-    whole_number_field("iterations", &Tool::iterations, tool_iterations_range, FieldUnit::per_tick)
-        .with_slider({"Iterations", {1.0, 8.0}, false})
+    whole_number_field("substeps", &Tool::substeps, tool_substeps_range, FieldUnit::per_tick)
+        .with_slider({"Substeps", {1.0, 8.0}, false})
         .with_range_by([](const Tool& tool) {
-          return range_in_action(tool, "iterations", {1.0, 8.0});
+          return range_in_action(tool, "substeps", {1.0, 8.0});
         }),
 });
 
