@@ -68,14 +68,10 @@ void set_support_velocities(std::span<const SupportedNodes> supports, const Latt
 
 // Adds the reaction of the supports over a substep of h_s to their impulses. Call after the forces are
 // computed.
-void add_support_impulses(std::span<SupportedNodes> supports, const SpringLattice& lattice,
-                          const LatticeView& view, const Vector3& gravity_m_per_s2, double h_s) {
+void add_support_impulses(std::span<SupportedNodes> supports, const LatticeView& view, double h_s) {
   for (SupportedNodes& support : supports) {
     Vector3 force = Vector3::Zero();
-    for (const int n : support.nodes) {
-      force -= Vector3(view.fx[n], view.fy[n], view.fz[n]);
-      force -= static_cast<double>(lattice.mass(n)) * gravity_m_per_s2;
-    }
+    for (const int n : support.nodes) force -= Vector3(view.fx[n], view.fy[n], view.fz[n]);
     support.impulse_ns += h_s * force;
   }
 }
@@ -102,25 +98,34 @@ constexpr std::uint64_t creep_pause = 8;
 
 struct Substeps {
   int count;
-  double h;
   bool slowed;
 };
 
-Substeps choose_substeps(const SpringLattice& lattice, double step_s) {
-  const double omega = lattice.fastest_frequency();
-  const double limit = stability_fraction * stable_step_s(omega, lattice.damping_ratio());
-  const double required = std::ceil(step_s / limit);
-  if (!(required <= substep_ceiling)) return {substep_ceiling, step_s / substep_ceiling, true};
-  const int count = std::max(1, static_cast<int>(required));
-  return {count, step_s / count, false};
+Substeps choose_substeps(const SpringLattice& lattice, const RelaxSettings& settings) {
+  const int most = substep_ceiling * settings.substeps;
+  const double required = std::ceil(settings.time_s / lattice.stable_step_s(stability_fraction));
+  if (!(required <= most)) return {most, true};
+  return {std::max(settings.substeps, static_cast<int>(required)), false};
 }
 
-void apply_node_forces(const SpringLattice& lattice, const LatticeView& view) {
+void add_loads(const SpringLattice& lattice, const LatticeView& view) {
   if (!lattice.has_applied_force()) return;
   for (int i = 0; i < view.padded_count; ++i) {
     view.fx[i] += lattice.applied_force(0)[i];
     view.fy[i] += lattice.applied_force(1)[i];
     view.fz[i] += lattice.applied_force(2)[i];
+  }
+}
+
+void add_weights(const SpringLattice& lattice, const LatticeView& view, const Vector3& gravity_m_per_s2) {
+  if (gravity_m_per_s2.isZero(0.0)) return;
+  const float g[3] = {static_cast<float>(gravity_m_per_s2.x()), static_cast<float>(gravity_m_per_s2.y()),
+                      static_cast<float>(gravity_m_per_s2.z())};
+  const float* const mass = lattice.masses();
+  for (int i = 0; i < view.padded_count; ++i) {
+    view.fx[i] += mass[i] * g[0];
+    view.fy[i] += mass[i] * g[1];
+    view.fz[i] += mass[i] * g[2];
   }
 }
 
@@ -134,7 +139,7 @@ void linearise(const SpringLattice& lattice, const LatticeView& view, Linearised
 void linearise_and_follow(SpringLattice& lattice, const LatticeView& view, Linearised stored) {
   lattice.kernels().look_ahead(view, lattice.damping_time_s());
   const float square = lattice.kernels().linearise_with_power_step(view, stored, lattice.free_mass());
-  if (square > 0.0f && std::isfinite(square)) lattice.set_fastest_frequency(std::sqrt(square));
+  if (square > 0.0f && std::isfinite(square)) lattice.set_fastest_square(static_cast<double>(square));
 }
 
 // Returns the speed cap that speed_cap_cells sets, m/s, for substeps of `h`.
@@ -157,7 +162,8 @@ Drifted drift(const SpringLattice& lattice, const LatticeView& view, float h, fl
 }
 
 // Computes all forces. `moved_square` is the largest squared distance of a node from the linearisation.
-void compute_forces(const SpringLattice& lattice, const LatticeView& view, float moved_square) {
+void compute_forces(const SpringLattice& lattice, const LatticeView& view, float moved_square,
+                    const Vector3& gravity_m_per_s2) {
   const LatticeKernels& kernels = lattice.kernels();
   const float limit = static_cast<float>(linear_cells) * lattice.cell_size_m();
   const bool linear = moved_square <= limit * limit;
@@ -166,7 +172,8 @@ void compute_forces(const SpringLattice& lattice, const LatticeView& view, float
   if (linear && moved_square > 0.0f) kernels.spring_forces(view);
   kernels.volume_forces(view);
   if (lattice.is_damped_further()) kernels.damp_further(view);
-  apply_node_forces(lattice, view);
+  add_loads(lattice, view);
+  add_weights(lattice, view, gravity_m_per_s2);
 }
 
 // Lattices of one tick and the settings in which they differ.
@@ -175,8 +182,8 @@ struct Relaxation {
   std::array<LatticeView, lattice_capacity> view;
   std::array<float, lattice_capacity> cap{};  // m/s
   std::array<Drifted, lattice_capacity> drifted{};
-  std::array<double, lattice_capacity> damping_per_s{};
-  double time_s = 0.0;  // material time of the tick
+  std::array<double, lattice_capacity> drag_per_s{};
+  double time_s = 0.0;  // of the tick
 
   std::size_t count() const { return lattices.size(); }
   bool has_springs(std::size_t at) const { return lattices[at].implicit_solver == nullptr; }
@@ -188,27 +195,47 @@ void kick(Relaxation& relaxation, float h) {
     if (!relaxation.has_springs(at)) continue;
     const SpringLattice& lattice = relaxation.lattice(at);
     const LatticeView& view = relaxation.view[at];
-    const Vector3& g = relaxation.lattices[at].gravity_m_per_s2;
-    const float decay = 1.0f / (1.0f + h * static_cast<float>(relaxation.damping_per_s[at]));
-    compute_forces(lattice, view, relaxation.drifted[at].moved_square);
-    add_support_impulses(relaxation.lattices[at].supports, lattice, view, g, static_cast<double>(h));
-    lattice.kernels().kick(view, h, decay, static_cast<float>(g.x()), static_cast<float>(g.y()),
-                           static_cast<float>(g.z()));
+    const float decay = 1.0f / (1.0f + h * static_cast<float>(relaxation.drag_per_s[at]));
+    compute_forces(lattice, view, relaxation.drifted[at].moved_square,
+                   relaxation.lattices[at].gravity_m_per_s2);
+    add_support_impulses(relaxation.lattices[at].supports, view, static_cast<double>(h));
+    lattice.kernels().kick(view, h, decay);
     set_support_velocities(relaxation.lattices[at].supports, view, relaxation.time_s);
   }
 }
 
-void solve_contacts(const Relaxation& relaxation, float h, double fraction,
-                    std::span<const TouchingTool> tools, BodyContacts* between, GroundContacts* ground) {
+// A substep of a tick: number `index` of `count`, each of h.
+struct Substep {
+  int index, count;
+  float h;
+};
+
+bool touches_springs(const Relaxation& relaxation, const TouchingTool& tool) {
+  if (tool.motion.carried.body >= 0) return true;
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    if (relaxation.has_springs(at) && tool.contacts->has_constraint_on(static_cast<int>(at))) return true;
+  }
+  return false;
+}
+
+void solve_contacts(const Relaxation& relaxation, const Substep& substep, std::span<const TouchingTool> tools,
+                    BodyContacts* between, GroundContacts* ground) {
   const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
   std::array<float, lattice_capacity> push_caps{};
   for (std::size_t at = 0; at < relaxation.count(); ++at) push_caps[at] = 0.5f * relaxation.cap[at];
-  for (const TouchingTool& tool : tools) tool.contacts->solve(views, *tool.state, h, fraction, push_caps);
-  if (between) between->solve(views, h, push_caps);
+  for (const TouchingTool& tool : tools) {
+    if (touches_springs(relaxation, tool)) {
+      tool.contacts->solve(views, *tool.state, substep.h, static_cast<double>(substep.index) / substep.count,
+                           push_caps);
+    } else if (substep.index == 0) {
+      tool.contacts->solve(views, *tool.state, static_cast<float>(relaxation.time_s), 0.0, push_caps);
+    }
+  }
+  if (between) between->solve(views, substep.h, push_caps);
   if (!ground) return;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) continue;
-    ground->solve(static_cast<int>(at), relaxation.view[at], static_cast<double>(h),
+    ground->solve(static_cast<int>(at), relaxation.view[at], static_cast<double>(substep.h),
                   static_cast<double>(push_caps[at]));
   }
 }
@@ -302,11 +329,24 @@ void restore_momentum(const SpringLattice& lattice, const LatticeView& view, con
   }
 }
 
+// Moves an implicitly stepped lattice at its present velocities, so that contacts in later substeps meet it
+// where it will be.
+void drift_with_solver(const LatticeView& view, float h) {
+  for (int i = 0; i < view.padded_count; ++i) {
+    view.dx[i] += h * view.vx[i] * view.free_node[i];
+    view.dy[i] += h * view.vy[i] * view.free_node[i];
+    view.dz[i] += h * view.vz[i] * view.free_node[i];
+  }
+}
+
 // Returns whether a node reached the speed cap.
 bool drift(Relaxation& relaxation, float h, std::span<const TouchingTool> tools) {
   bool capped = false;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
-    if (!relaxation.has_springs(at)) continue;
+    if (!relaxation.has_springs(at)) {
+      drift_with_solver(relaxation.view[at], h);
+      continue;
+    }
     const Vector3 frame = frame_velocity(relaxation, at, tools);
     relaxation.drifted[at] = drift(relaxation.lattice(at), relaxation.view[at], h, relaxation.cap[at], frame);
     if (!(relaxation.drifted[at].speed_square > 1.0f)) continue;
@@ -318,13 +358,12 @@ bool drift(Relaxation& relaxation, float h, std::span<const TouchingTool> tools)
   return capped;
 }
 
-Substeps choose_substeps(const Relaxation& relaxation, double step_s) {
-  Substeps most{1, step_s, false};
+Substeps choose_substeps(const Relaxation& relaxation, const RelaxSettings& settings) {
+  Substeps most{1, false};
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) continue;
-    const Substeps required = choose_substeps(relaxation.lattice(at), step_s);
-    most.slowed |= required.slowed;
-    if (required.count > most.count) most = {required.count, required.h, most.slowed};
+    const Substeps required = choose_substeps(relaxation.lattice(at), settings);
+    most = {std::max(most.count, required.count), most.slowed || required.slowed};
   }
   return most;
 }
@@ -339,17 +378,16 @@ void stabilise_strained_nodes(Relaxation& relaxation, float h) {
   }
 }
 
-// Returns which results of a lattice's linearisation a tick needs if each of its relaxation steps takes this
-// many substeps.
+// Returns which results of a lattice's linearisation a tick of this many substeps needs.
 Linearised choose_linearisation(const SpringLattice& lattice, const RelaxSettings& settings, int substeps) {
-  const bool one = settings.iterations * substeps == 1;
-  return one && !settings.is_critically_damped && !lattice.is_damped_further() ? Linearised::forces
-                                                                               : Linearised::tangents;
+  return substeps == 1 && !settings.is_critically_damped && !lattice.is_damped_further()
+             ? Linearised::forces
+             : Linearised::tangents;
 }
 
 // Linearises all springs at the start of a tick and chooses its substeps.
 Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, bool follows) {
-  const int expected = choose_substeps(relaxation, settings.step_s).count;
+  const int expected = choose_substeps(relaxation, settings).count;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) continue;
     SpringLattice& lattice = relaxation.lattice(at);
@@ -360,7 +398,7 @@ Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, bo
       linearise(lattice, relaxation.view[at], stored);
     }
   }
-  const Substeps substeps = choose_substeps(relaxation, settings.step_s);
+  const Substeps substeps = choose_substeps(relaxation, settings);
   for (std::size_t at = 0; at < relaxation.count() && substeps.count > expected; ++at) {
     if (!relaxation.has_springs(at)) continue;
     linearise(relaxation.lattice(at), relaxation.view[at], Linearised::tangents);
@@ -368,25 +406,23 @@ Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, bo
   return substeps;
 }
 
-void flow(Relaxation& relaxation, double material_time_s) {
+void flow(Relaxation& relaxation) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const SpringLattice& lattice = relaxation.lattice(at);
     const Material& material = lattice.material();
     if (!lattice.flows() || !relaxation.has_springs(at)) continue;
-    const double time_s = 2.0 * material_time_s;
-    const double step = std::min(largest_flow_step, 2.0 * material.flow_rate_per_s * material_time_s);
+    const double time_s = 2.0 * relaxation.time_s;
+    const double step = std::min(largest_flow_step, material.flow_rate_per_s * time_s);
     lattice.kernels().flow(relaxation.view[at],
                            {static_cast<float>(material.yield_strain), static_cast<float>(material.hardening),
                             static_cast<float>(step), static_cast<float>(time_s)});
   }
 }
 
-// Creeps the springs of one direction per call, for the time until that direction's next turn. The time is
-// that of ticks, not of relaxation steps: a material creeps while the user waits, however many relaxation
-// steps a tick takes.
-void creep(Relaxation& relaxation, std::uint64_t turn, double tick_time_s) {
+// Creeps the springs of one direction per call, for the time until that direction's next turn.
+void creep(Relaxation& relaxation, std::uint64_t turn) {
   const int direction = static_cast<int>(turn % lattice_direction_count);
-  const double time_s = tick_time_s * static_cast<double>(creep_pause * lattice_direction_count);
+  const double time_s = relaxation.time_s * static_cast<double>(creep_pause * lattice_direction_count);
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const SpringLattice& lattice = relaxation.lattice(at);
     const Material& material = lattice.material();
@@ -398,16 +434,16 @@ void creep(Relaxation& relaxation, std::uint64_t turn, double tick_time_s) {
   }
 }
 
-// Sets the mass damping of each lattice. The springs must be linearised.
-void choose_damping(Relaxation& relaxation, const RelaxSettings& settings) {
+// Sets the drag of each lattice. The springs must be linearised.
+void choose_drag(Relaxation& relaxation, const RelaxSettings& settings) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
-    double& damping = relaxation.damping_per_s[at];
-    damping = settings.damping_per_s;
+    double& drag = relaxation.drag_per_s[at];
+    drag = settings.drag_per_s;
     if (!settings.is_critically_damped) continue;
     const double quotient = relaxation.has_springs(at)
                                 ? rayleigh_quotient(relaxation.lattice(at), relaxation.view[at])
                                 : relaxation.lattices[at].implicit_solver->rayleigh_quotient();
-    damping = std::max(damping, critical_damping_per_s(quotient));
+    drag = std::max(drag, critical_damping_per_s(quotient));
   }
 }
 
@@ -420,7 +456,7 @@ void begin_implicit_steps(const Relaxation& relaxation, GroundContacts* ground) 
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const RelaxedLattice& relaxed = relaxation.lattices[at];
     if (!relaxed.implicit_solver) continue;
-    const ImplicitStep step{time_s, relaxation.damping_per_s[at], relaxed.gravity_m_per_s2};
+    const ImplicitStep step{time_s, relaxation.drag_per_s[at], relaxed.gravity_m_per_s2};
     for (const SupportedNodes& support : relaxed.supports) {
       if (support.moves)
         relaxed.implicit_solver->move_fixed(support.nodes, (support.end_m - support.start_m) / time_s);
@@ -444,55 +480,38 @@ void end_implicit_steps(const Relaxation& relaxation, GroundContacts* ground) {
 
 }  // namespace
 
-double stable_step_s(double angular_frequency, double damping_ratio) {
-  SPOONBILL_ASSERT_DEBUG(angular_frequency > 0.0 && damping_ratio >= 0.0);
-  return 2.0 / angular_frequency * (std::sqrt(1.0 + damping_ratio * damping_ratio) - damping_ratio);
-}
-
-double effective_modulus_limit_pa(double unit_frequency, double damping_ratio) {
-  SPOONBILL_ASSERT(unit_frequency > 0.0 && damping_ratio >= 0.0);
-  const double root =
-      effective_modulus_stability_fraction * stable_step_s(unit_frequency, damping_ratio) / relaxation_step_s;
-  return root * root;
-}
-
 RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,
                   std::span<const TouchingTool> tools, BodyContacts* between, GroundContacts* ground) {
   SPOONBILL_ASSERT(!lattices.empty() && lattices.size() <= static_cast<std::size_t>(lattice_capacity));
-  SPOONBILL_ASSERT(settings.iterations >= 1 && settings.step_s > 0.0);
-  SPOONBILL_ASSERT(settings.damping_per_s >= 0.0);
-  Relaxation relaxation{lattices, {}, {}, {}, {}, 0.0};
+  SPOONBILL_ASSERT(settings.substeps >= 1 && settings.time_s > 0.0);
+  SPOONBILL_ASSERT(settings.drag_per_s >= 0.0);
+  Relaxation relaxation{lattices, {}, {}, {}, {}, settings.time_s};
   const bool flows = settings.tick % 2 == 1;
   for (std::size_t at = 0; at < lattices.size(); ++at) relaxation.view[at] = lattices[at].lattice->view();
   const Substeps substeps = begin_springs(relaxation, settings, !flows);
-  choose_damping(relaxation, settings);
+  choose_drag(relaxation, settings);
   RelaxReport report;
   report.substeps = substeps.count;
   report.nodes_slowed = substeps.slowed;
-  report.material_time_s = settings.iterations * substeps.count * substeps.h;
-  relaxation.time_s = report.material_time_s;
-  const float h = static_cast<float>(substeps.h);
+  const float h = static_cast<float>(settings.time_s / substeps.count);
   for (std::size_t at = 0; at < lattices.size(); ++at) {
     relaxation.cap[at] = speed_cap(relaxation.lattice(at), h);
   }
   report.speed_capped = begin_supports(relaxation);
   begin_implicit_steps(relaxation, ground);
-  for (const TouchingTool& tool : tools) tool.contacts->begin(tool.motion, report.material_time_s);
+  for (const TouchingTool& tool : tools) tool.contacts->begin(tool.motion, settings.time_s);
   if (substeps.slowed) stabilise_strained_nodes(relaxation, h);
-  const int total = settings.iterations * substeps.count;
-  for (int s = 0; s < total; ++s) {
+  for (int s = 0; s < substeps.count; ++s) {
     kick(relaxation, h);
     collect_carried_forces(relaxation, tools);
-    solve_contacts(relaxation, h, static_cast<double>(s) / total, tools, between, ground);
+    solve_contacts(relaxation, {s, substeps.count, h}, tools, between, ground);
     report.speed_capped |= drift(relaxation, h, tools);
     move_carried_nodes(relaxation, tools);
-    move_supported_nodes(relaxation, static_cast<double>(s + 1) / total);
+    move_supported_nodes(relaxation, static_cast<double>(s + 1) / substeps.count);
   }
   end_implicit_steps(relaxation, ground);
-  if (flows) flow(relaxation, report.material_time_s);
-  if (settings.tick % creep_pause == 0) {
-    creep(relaxation, settings.tick / creep_pause, settings.step_s);
-  }
+  if (flows) flow(relaxation);
+  if (settings.tick % creep_pause == 0) creep(relaxation, settings.tick / creep_pause);
   return report;
 }
 
@@ -502,6 +521,7 @@ double critical_damping_per_s(double quotient) {
 
 double rayleigh_quotient(const SpringLattice& lattice, const LatticeView& view) {
   LatticeView along = view;
+  along.spring_weight = 1.0f;
   along.power_x = view.moved_x;
   along.power_y = view.moved_y;
   along.power_z = view.moved_z;

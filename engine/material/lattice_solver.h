@@ -1,6 +1,5 @@
-// Steps lattices through one tick together. Relaxation steps of fixed material time are divided into
-// symplectic Euler substeps by the stability limit; the constraints of tools and between bodies act in each
-// substep. Allocates nothing.
+// Steps lattices through one tick together, in symplectic Euler substeps. The constraints of tools and
+// between bodies act in each substep. Allocates nothing.
 #pragma once
 
 #include <cstdint>
@@ -28,21 +27,14 @@ struct SupportedNodes {
   Vector3 impulse_ns = Vector3::Zero();  // impulse on the body in the tick, N s
 };
 
-// Material time of a relaxation step: one haptic tick.
-inline constexpr double relaxation_step_s = 1e-3;
-
-// Largest number of substeps in a relaxation step. If strain requires more, the masses of the strained
-// nodes are raised just enough for stability. These nodes respond more slowly, which hardly shows in a
-// damped, quasi-static body.
+// Largest factor by which strain may raise the number of substeps. If it requires more, the inertia of the
+// strained nodes is raised just enough for stability. These nodes respond more slowly, which hardly shows in
+// a damped, quasi-static body.
 inline constexpr int substep_ceiling = 4;
 
 // Fraction of the measured stability limit that a substep uses. The running estimate of the fastest
 // frequency lags a sudden contact by tens of ticks.
 inline constexpr double stability_fraction = 0.85;
-
-// Fraction of the stability limit that an effective Young's modulus may use with one substep. Strain and
-// flow raise the fastest frequency by 1.2 to 1.6 times; a relaxation step then takes a second substep.
-inline constexpr double effective_modulus_stability_fraction = 0.75;
 
 // Distance, in cells, that sets the speed cap: a node moves at most this far in a substep or, if 2 / w is
 // longer, in 2 / w, the longest undamped step that the lattice alone could take. Speeds are relative to the
@@ -57,23 +49,13 @@ inline constexpr double speed_cap_cells = 0.1;
 // strain. A sculpting hand moves nodes by about a hundredth of a cell per tick.
 inline constexpr double linear_cells = 0.1;
 
-// Returns the largest stable symplectic Euler step, s, for an angular frequency and a damping ratio: h < (2
-// / w) (sqrt(1 + z^2) - z), from |trace| <= 1 + determinant of the update matrix of x'' + 2 z w x' + w^2 x
-// = 0.
-double stable_step_s(double angular_frequency, double damping_ratio);
-
-// Returns the largest effective Young's modulus, Pa, at which a relaxation step takes one substep.
-// `unit_frequency` is the lattice's fastest frequency at 1 Pa; frequencies grow with the square root of the
-// modulus.
-double effective_modulus_limit_pa(double unit_frequency, double damping_ratio);
-
 // Settings of relax(). Tracking the fastest frequency and plastic flow each cost about as much as a substep.
-// The two alternate: even ticks track the frequency, odd ticks flow for the material time of two ticks.
+// The two alternate: even ticks track the frequency, odd ticks flow for the time of two ticks.
 struct RelaxSettings {
   std::uint64_t tick = 0;             // tick number
-  int iterations = 1;                 // relaxation steps
-  double step_s = relaxation_step_s;  // material time of each step
-  double damping_per_s = 0.0;         // mass-proportional; the minimum if `is_critically_damped`
+  int substeps = 1;                   // at rest; strain may raise the number by substep_ceiling
+  double time_s = 1e-3;               // time of the tick
+  double drag_per_s = 0.0;            // mass-proportional; the minimum if `is_critically_damped`
   bool is_critically_damped = false;  // true: each body is critically damped, see critical_damping_per_s()
 };
 
@@ -89,9 +71,8 @@ struct RelaxedLattice {
 
 // Results of relax() for one tick.
 struct RelaxReport {
-  int substeps = 0;              // in each relaxation step
-  double material_time_s = 0.0;  // elapsed in the tick
-  bool nodes_slowed = false;     // true if the substep ceiling was reached
+  int substeps = 0;           // in the tick
+  bool nodes_slowed = false;  // true if the substep ceiling was reached
   bool speed_capped = false;
 };
 
@@ -104,8 +85,10 @@ struct TouchingTool {
 };
 
 // Advances at most lattice_capacity lattices by as many substeps as the stiffest one needs. Lattices with an
-// implicit solver advance by one implicit step: its velocities are computed before the contacts and respond
-// to them afterwards. Tools act in their order, then bodies on each other, then the ground. The caller must
+// implicit solver advance by one implicit step: its velocities are computed before the contacts, move the
+// lattice from substep to substep, and respond to the contacts afterwards. If only such lattices are present,
+// a tick takes one substep. Tools act in their order, then bodies on each other, then the ground. A tool that
+// touches only implicitly stepped lattices acts once, at the start. The caller must
 // flush denormals for speed (see DenormalsFlushed).
 RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,
                   std::span<const TouchingTool> tools, BodyContacts* between = nullptr,

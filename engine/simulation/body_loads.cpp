@@ -160,22 +160,20 @@ Result<BodyLoads> BodyLoads::make(const std::vector<Load>& loads, const LatticeM
   return result;
 }
 
-void BodyLoads::apply(double fraction, SpringLattice& lattice, ImplicitSolver* solver) {
-  SPOONBILL_ASSERT(fraction >= 0.0);
+void BodyLoads::apply(SpringLattice& lattice, ImplicitSolver* solver) {
   if (empty()) return;
   for (const int n : nodes_) force_n_[static_cast<std::size_t>(n)].setZero();
   for (const NodeForce& force : forces_) {
-    force_n_[static_cast<std::size_t>(force.node)] += fraction * force.force_n;
+    force_n_[static_cast<std::size_t>(force.node)] += force.force_n;
   }
   for (const PressedFace& face : pressures_) {
     const auto at = [&](std::size_t c) { return lattice.position(face.nodes[c]); };
-    const Vector3 force = -0.25 * fraction * face.pressure_pa * vector_area(at(0), at(1), at(2), at(3));
+    const Vector3 force = -0.25 * face.pressure_pa * vector_area(at(0), at(1), at(2), at(3));
     for (const int node : face.nodes) force_n_[static_cast<std::size_t>(node)] += force;
   }
-  pressed_skin_.find_forces([&](int node) { return lattice.position(node); },
-                            [&](int node, const Vector3& force_n) {
-                              force_n_[static_cast<std::size_t>(node)] += fraction * force_n;
-                            });
+  pressed_skin_.find_forces(
+      [&](int node) { return lattice.position(node); },
+      [&](int node, const Vector3& force_n) { force_n_[static_cast<std::size_t>(node)] += force_n; });
   for (const int n : nodes_) lattice.set_node_force(n, force_n_[static_cast<std::size_t>(n)]);
   if (solver) solver->set_node_forces(lattice, nodes_);
 }

@@ -30,9 +30,9 @@ class BodyLoads {
   const std::vector<PressedFace>& pressures() const { return pressures_; }
   const PressedSkin& pressed_skin() const { return pressed_skin_; }  // used by a body in a box of cells
 
-  // Sets the node forces of the lattice, and of the implicit solver if not null, to a fraction (at least 0)
-  // of the loads on the current shape.
-  void apply(double fraction, SpringLattice& lattice, ImplicitSolver* solver);
+  // Sets the node forces of the lattice, and of the implicit solver if not null, to the loads on the current
+  // shape.
+  void apply(SpringLattice& lattice, ImplicitSolver* solver);
 
  private:
   struct Builder;
@@ -59,7 +59,7 @@ class BodySupports {
   // Keeps the supports' displacements when the rest shape of the lattice changes from `before` to `after`.
   void rebase(const SpringLattice& before, const SpringLattice& after);
 
-  // Updates the motions for a tick of `tick_s` that ends at `end_s`, both on the hand's clock.
+  // Updates the motions for a tick of `tick_s` that ends at `end_s`.
   std::span<SupportedNodes> begin_tick(const SpringLattice& lattice, double end_s, double tick_s);
 
   std::span<const SupportedNodes> supports() const { return supported_; }

@@ -31,18 +31,6 @@ std::string describe_slender_cells(const BodyState& body) {
 
 }  // namespace
 
-Result<SpringLattice> make_sculpting_lattice(const LatticeMesh& mesh, const LatticeMaterials& materials,
-                                             InstructionSet set) {
-  // The frequency is measured at 1 Pa. It scales with the square root of the modulus; the stiffness of the
-  // springs scales with the modulus.
-  Result<SpringLattice> unit = SpringLattice::make(mesh, materials, 1.0, set);
-  if (!unit.ok()) return unit;
-  const Material& own = materials.own();
-  const double damping_ratio = materials.has_several_materials() ? unit->damping_ratio() : own.damping_ratio;
-  const double unit_limit = effective_modulus_limit_pa(unit->fastest_frequency(), damping_ratio);
-  return SpringLattice::make(mesh, materials, std::min(own.youngs_modulus_pa, unit_limit), set);
-}
-
 Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& lattice,
                                                            const std::vector<Vector3>& rest_m,
                                                            InstructionSet set) {
@@ -89,7 +77,7 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
   if (!mesh.ok()) return mesh.error();
   const Result<LatticeMaterials> materials = lattice_materials(mesh.value(), body.material, body.regions);
   if (!materials.ok()) return materials.error();
-  Result<SpringLattice> lattice = make_sculpting_lattice(mesh.value(), materials.value(), set);
+  Result<SpringLattice> lattice = SpringLattice::make(mesh.value(), materials.value(), set);
   if (!lattice.ok()) return lattice.error();
   Result<std::optional<ImplicitSolver>> solver = make_implicit_solver(lattice.value(), mesh->nodes, set);
   if (!solver.ok()) return solver.error();

@@ -31,8 +31,7 @@ struct BodyState {
   Smoothing smoothing;
   std::vector<std::uint8_t> fixed, touched;            // one byte per node
   std::optional<ImplicitSolver> implicit_solver = {};  // for materials too stiff for the lattice's springs
-  bool implicit_suspended = false;
-  BodyHold hold = BodyHold(1);  // replaced by one with the lattice's number of nodes
+  BodyHold hold = BodyHold(1);                         // replaced by one with the lattice's number of nodes
   BodyLoads loads = {};
   BodySupports supports = {};
   double shell_thickness_m = 0.0;                // 0 for a solid
@@ -49,32 +48,24 @@ struct BodyState {
   }
   void set_implicit_solver(std::optional<ImplicitSolver> solver) {
     implicit_solver = std::move(solver);
-    if (implicit_solver) implicit_solver->fix_nodes(fixed);
-    suspend_implicit(implicit_suspended);
-  }
-  // Lets the springs step the body while a tool grips. Grips act in both directions, and the grips of a tool
-  // much heavier than a stiff body would shake the body.
-  void suspend_implicit(bool suspended) {
-    implicit_suspended = suspended;
-    lattice.set_contact_inverse_mass(active_solver() ? implicit_solver->contact_inverse_mass() : 0.0);
-    lattice.fix_nodes(fixed);
-    if (active_solver()) implicit_solver->adopt_shape(lattice);
+    if (implicit_solver) {
+      implicit_solver->fix_nodes(fixed);
+      implicit_solver->adopt_shape(lattice);
+    }
+    lattice.set_contact_inverse_mass(implicit_solver ? implicit_solver->contact_inverse_mass() : 0.0);
   }
   // Returns the implicit solver if it steps the body; null if the springs do.
-  ImplicitSolver* active_solver() {
-    return implicit_solver && !implicit_suspended ? &*implicit_solver : nullptr;
-  }
-  const ImplicitSolver* active_solver() const {
-    return implicit_solver && !implicit_suspended ? &*implicit_solver : nullptr;
-  }
-  // Young's modulus with which the body is stepped.
-  double effective_youngs_modulus_pa() const {
-    return active_solver() ? lattice.material().youngs_modulus_pa : lattice.youngs_modulus_pa();
+  ImplicitSolver* solver() { return implicit_solver ? &*implicit_solver : nullptr; }
+  const ImplicitSolver* solver() const { return implicit_solver ? &*implicit_solver : nullptr; }
+  // Sets the inertia scale for substeps of about step_s.
+  void set_inertia(double scale, double step_s) {
+    lattice.set_inertia(scale, step_s);
+    if (!implicit_solver) return;
+    implicit_solver->set_inertia_scale(scale);
+    lattice.set_contact_inverse_mass(implicit_solver->contact_inverse_mass());
   }
 
-  const LatticeReport& report() const {
-    return active_solver() ? active_solver()->report() : lattice.report();
-  }
+  const LatticeReport& report() const { return solver() ? solver()->report() : lattice.report(); }
 
   // Mapping to the surface of any body except a soft mesh tool.
   BodyMapping& mapping() {
@@ -97,11 +88,6 @@ struct BodyState {
 // Refuses a body that cannot be simulated; the error names the field.
 Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlane>& planes,
                                   InstructionSet set, const FeatureMapWatch& watch = {});
-
-// Makes the spring lattice of a body. All its materials are softened by one factor to the stiffness that
-// sculpting can step.
-Result<SpringLattice> make_sculpting_lattice(const LatticeMesh& mesh, const LatticeMaterials& materials,
-                                             InstructionSet set);
 
 // Young's modulus from which elastic bodies are stepped implicitly at their true stiffness. The few newtons
 // of a hand dent them by less than a third of a millimetre; they bend. Softer bodies are dented, which

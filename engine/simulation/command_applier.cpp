@@ -61,10 +61,7 @@ Status CommandApplier::operator()(const SetTool& command) {
     adopt_model(std::move(model).value());
   }
   state.scene.tool = tool;
-  const bool grips = row_of(tool.action).grips;
-  for (BodyState& body : state.scene_bodies()) {
-    if (body.implicit_suspended != grips) body.suspend_implicit(grips);
-  }
+  update_inertia(state);
   if (state.tool_is_soft()) state.tool.placed = false;
   release();
   return {};
@@ -95,6 +92,7 @@ Status CommandApplier::operator()(const LiftTool&) {
 Status CommandApplier::operator()(const SetSculpting& command) {
   if (Status status = check_sculpting(command.sculpting); !status.ok()) return status;
   state.scene.sculpting = command.sculpting;
+  update_inertia(state);
   return {};
 }
 
@@ -104,7 +102,7 @@ Status CommandApplier::operator()(const SetMaterial& command) {
   BodyState& body = state.bodies[index];
   LatticeMaterials materials = body.lattice.materials();
   materials.set_own(command.material);
-  Result<SpringLattice> lattice = make_sculpting_lattice(body.lattice.mesh(), materials, state.set);
+  Result<SpringLattice> lattice = SpringLattice::make(body.lattice.mesh(), materials, state.set);
   if (!lattice.ok()) return lattice.error();
   lattice->set_shape(body.lattice.shape());
   // A body that becomes stiff keeps its current shape as the rest shape. A body that was stiff keeps its rest
@@ -116,6 +114,7 @@ Status CommandApplier::operator()(const SetMaterial& command) {
   body.lattice = std::move(lattice).value();
   body.set_implicit_solver(std::move(solver).value());
   state.scene.bodies[index].material = command.material;
+  update_inertia(state);
   release();
   return {};
 }
@@ -128,7 +127,7 @@ Status CommandApplier::operator()(const KeepShape&) {
     const BodyState& body = state.bodies[b];
     LatticeMesh mesh = body.lattice.mesh();
     mesh.nodes = body.lattice.positions();
-    Result<SpringLattice> lattice = make_sculpting_lattice(mesh, body.lattice.materials(), state.set);
+    Result<SpringLattice> lattice = SpringLattice::make(mesh, body.lattice.materials(), state.set);
     if (!lattice.ok()) return lattice.error();
     lattice->fix_nodes(body.fixed);
     const Surface& surface = body.mapping().current();
@@ -148,6 +147,7 @@ Status CommandApplier::operator()(const KeepShape&) {
     state.bodies[b].lattice = std::move(lattices[b]);
     state.bodies[b].set_implicit_solver(std::move(solvers[b]));
   }
+  update_inertia(state);
   set_mappings(std::move(mappings));
   return {};
 }
@@ -200,6 +200,7 @@ Status CommandApplier::set_planes(std::vector<FixingPlane> planes) {
     body.fix_nodes_behind(planes);
   }
   state.scene.planes = std::move(planes);
+  update_inertia(state);
   set_mappings(std::move(mappings));
   return {};
 }

@@ -120,9 +120,9 @@ namespace {
 // Reach beyond the movement of a tick, in lattice cells.
 constexpr double ground_margin_cells = 0.25;
 
-// Time constant of the filter on a footing's skin height, longer than a round body takes to roll over.
-// Without it a node would push its neighbours' skin at once, and round bodies would roll for ever.
-constexpr double skin_time_constant_s = 0.3;
+// Time constant of the filter on a footing's skin height in real time, longer than a round body takes to roll
+// over. Without it a node would push its neighbours' skin at once, and round bodies would roll for ever.
+constexpr double skin_time_constant_s = 0.07;
 
 bool on_shell(const LatticeMesh& mesh, int node) {
   const std::array<int, 3> at = mesh.grid_index(node);
@@ -247,14 +247,16 @@ void BodyGroundContact::find(std::span<const BodyState> bodies, const Ground& gr
 }
 
 void BodyGroundContact::update_skin_offset(const BodyFootings& footings, double followed_m, double time_s,
-                                           Footing& footing) const {
+                                           double inertia_scale, Footing& footing) const {
   double skin_m = std::numeric_limits<double>::infinity();
   for (int s = footing.first; s < footing.first + footing.count; ++s) {
     const Sample& sample = footings.samples[static_cast<std::size_t>(s)];
     skin_m = std::min(skin_m, footings.heights.lowest_m(sample.row, sample.column));
   }
   if (!std::isfinite(skin_m)) skin_m = followed_m;
-  const double fraction = footing.is_near ? time_s / (skin_time_constant_s + time_s) : 1.0;
+  // Bodies of scaled inertia respond more slowly.
+  const double constant_s = skin_time_constant_s * std::sqrt(inertia_scale);
+  const double fraction = footing.is_near ? time_s / (constant_s + time_s) : 1.0;
   footing.skin_m += fraction * (skin_m - followed_m - footing.skin_m);
 }
 
@@ -280,7 +282,7 @@ void BodyGroundContact::find(int index, const BodyState& body, const Ground& gro
       const EmbeddedPoint& sample = body.mapping().sample(footings.followed[static_cast<std::size_t>(s)]);
       gap_m = std::min(gap_m, ground.normal.dot(sample.position_m(body.lattice) - ground.point_m));
     }
-    if (!thin) update_skin_offset(footings, gap_m, time_s, footing);
+    if (!thin) update_skin_offset(footings, gap_m, time_s, body.lattice.inertia_scale(), footing);
     footing.is_near = true;
     gap_m += footing.skin_m;
     if (gap_m > reach_m) continue;

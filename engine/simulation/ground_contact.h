@@ -107,7 +107,9 @@ class BodyGroundContact {
   static std::vector<AttachedSamples> attach_samples(const BodyState& body, const SkinHeights& heights);
   static BodyFootings make_footings(const BodyState& body);
   void find(int index, const BodyState& body, const Ground& ground, double reach_m, double time_s);
-  void update_skin_offset(const BodyFootings& body, double followed_m, double time_s, Footing& footing) const;
+  // Filters the height of the skin above the followed samples. `inertia_scale` is that of the body.
+  void update_skin_offset(const BodyFootings& body, double followed_m, double time_s, double inertia_scale,
+                          Footing& footing) const;
 
   std::vector<BodyFootings> bodies_;
   GroundContacts contacts_;

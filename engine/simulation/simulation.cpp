@@ -55,7 +55,6 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
   for (const Body& body : scene.bodies) {
     Result<BodyState> state = make_body_state(body, scene.planes, set, watch);
     if (!state.ok()) return name_body(body, scene, state.error());
-    state->suspend_implicit(row_of(scene.tool.action).grips);
     bodies.push_back(std::move(state).value());
   }
   Result<ToolModel> model = make_tool_model(scene.tool, set);
@@ -68,28 +67,51 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
   BodyGroundContact ground_contact({bodies.data(), scene.ground ? scene.bodies.size() : 0});
   std::vector<std::shared_ptr<const ToolBody>> retired_bodies = {find_model_body(scene.tool)};
   const double scene_size_m = measure_size_m(bodies, scene.bodies.size());
-  return Simulation(std::make_unique<State>(State{std::move(scene),
-                                                  set,
-                                                  std::move(bodies),
-                                                  std::move(model).value(),
-                                                  std::move(tool),
-                                                  std::move(mirrored),
-                                                  make_contact_buffer(),
-                                                  std::move(pairs),
-                                                  std::move(self),
-                                                  std::move(ground_contact),
-                                                  false,
-                                                  0.0,
-                                                  scene_size_m,
-                                                  false,
-                                                  std::move(retired_bodies),
-                                                  {}}));
+  auto made = std::make_unique<State>(State{std::move(scene),
+                                            set,
+                                            std::move(bodies),
+                                            std::move(model).value(),
+                                            std::move(tool),
+                                            std::move(mirrored),
+                                            make_contact_buffer(),
+                                            std::move(pairs),
+                                            std::move(self),
+                                            std::move(ground_contact),
+                                            false,
+                                            0.0,
+                                            scene_size_m,
+                                            false,
+                                            std::move(retired_bodies),
+                                            {}});
+  update_inertia(*made);
+  return Simulation(std::move(made));
 }
 
 Simulation::Simulation(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
+
+void update_inertia(Simulation::State& s) {
+  const auto is_fixed = [](const BodyState& body) { return body.lattice.has_fixed_nodes(); };
+  const std::span<BodyState> bodies(s.bodies.data(), s.stepped_count());
+  const int wanted = s.scene.tool.substeps;
+  double real_time_step_s = tick_s / wanted;
+  for (BodyState& body : bodies) {
+    if (!body.solver()) real_time_step_s = body.lattice.find_real_time_step_s(real_time_step_s);
+  }
+  s.real_time_substeps = static_cast<int>(std::lround(tick_s / real_time_step_s));
+  s.substeps = s.scene.sculpting.real_time ? s.real_time_substeps : wanted;
+  const double step_s = tick_s / s.substeps;
+  const auto own_scale = [&](BodyState& body) {
+    return body.solver() ? 1.0 : body.lattice.find_inertia_scale(step_s);
+  };
+  double shared = 1.0;
+  for (BodyState& body : bodies) {
+    if (!is_fixed(body)) shared = std::max(shared, own_scale(body));
+  }
+  for (BodyState& body : bodies) body.set_inertia(is_fixed(body) ? own_scale(body) : shared, step_s);
+}
 
 Status Simulation::apply(const Command& command) {
   const DenormalsFlushed flushed;  // gives the same bits on every thread
@@ -136,24 +158,20 @@ void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
 }
 
 void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
-  const int iterations = s.scene.tool.iterations;
+  const Sculpting& sculpting = s.scene.sculpting;
   if (s.scene.ground) {
-    s.ground_contact.find(s.scene_bodies(), *s.scene.ground, s.scene.sculpting.gravity_m_per_s2,
-                          iterations * relaxation_step_s);
+    s.ground_contact.find(s.scene_bodies(), *s.scene.ground, sculpting.gravity_m_per_s2, tick_s);
   }
   std::array<RelaxedLattice, lattice_capacity> lattices{};
   for (std::size_t b = 0; b < s.stepped_count(); ++b) {
-    // Sag is weight divided by stiffness: a softened body gets proportionally less weight and load, so it
-    // sags as much as the real one.
     BodyState& body = s.bodies[b];
-    const double ratio = stiffness_ratio(s, b);
-    body.loads.apply(1.0 / ratio, body.lattice, body.active_solver());
+    body.loads.apply(body.lattice, body.solver());
     const double end_s = static_cast<double>(s.tick + 1) * tick_s;
-    lattices[b] = {&body.lattice, s.scene.sculpting.gravity_m_per_s2 / ratio, body.active_solver(),
+    lattices[b] = {&body.lattice, sculpting.gravity_m_per_s2, body.solver(),
                    body.supports.begin_tick(body.lattice, end_s, tick_s)};
   }
-  const RelaxSettings settings{s.tick, iterations, relaxation_step_s, s.scene.sculpting.damping_per_s,
-                               s.scene.sculpting.is_critically_damped};
+  const RelaxSettings settings{s.tick, s.substeps, tick_s, sculpting.drag_per_s,
+                               sculpting.is_critically_damped};
   s.relaxed = relax({lattices.data(), s.stepped_count()}, settings, tools, &s.between,
                     s.scene.ground ? &s.ground_contact.contacts() : nullptr);
 }
@@ -168,7 +186,7 @@ void hold_bodies(Simulation::State& s) {
   const double reach_m = reach_fraction * s.scene_size_m;
   for (std::size_t b = 0; b < s.scene.bodies.size(); ++b) {
     BodyState& body = s.bodies[b];
-    ImplicitSolver* const solver = body.active_solver();
+    ImplicitSolver* const solver = body.solver();
     s.bodies_limited |= body.hold.limit(body.lattice, solver, reach_m);
     if (keeps_place(s.scene) && !body.lattice.has_fixed_nodes()) body.hold.keep_pose(body.lattice, solver);
   }
@@ -267,16 +285,18 @@ const SpringLattice& Simulation::lattice(int body) const {
 Vector3 Simulation::support_force_n(int support, int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
   const auto at = static_cast<std::size_t>(body);
-  const SupportedNodes& nodes = state_->bodies[at].supports.supports()[static_cast<std::size_t>(support)];
-  return nodes.impulse_ns *
-         (stiffness_ratio(*state_, at) / std::max(state_->relaxed.material_time_s, tick_s));
+  return state_->bodies[at].supports.supports()[static_cast<std::size_t>(support)].impulse_ns / tick_s;
 }
 Vector3 Simulation::ground_force_n(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
   if (!state_->scene.ground) return Vector3::Zero();
-  const double ratio = stiffness_ratio(*state_, static_cast<std::size_t>(body));
-  return state_->ground_contact.contacts().impulse_ns(body) *
-         (ratio / std::max(state_->relaxed.material_time_s, tick_s));
+  return state_->ground_contact.contacts().impulse_ns(body) / tick_s;
+}
+int Simulation::substeps() const {
+  return state_->substeps;
+}
+int Simulation::real_time_substeps() const {
+  return state_->real_time_substeps;
 }
 const LatticeReport& Simulation::report(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
@@ -299,6 +319,8 @@ void add_to_hash(const HeldTool& held, StateHash& hash) {
   if (held.touched) {
     for (int axis = 0; axis < 3; ++axis) hash.add(held.touch_m[axis]);
   }
+  held.contact.constraints().visit_state(
+      [&](const double* data, std::size_t count) { hash.add(data, count); });
   hash.add(lifted | hovered | static_cast<std::uint64_t>(held.contact.constraints().count()));
 }
 
@@ -357,7 +379,7 @@ Status Simulation::restore(const ShapeState& shape) {
   for (std::size_t b = 0; b < shape.lattices.size(); ++b) {
     BodyState& body = state_->bodies[b];
     body.lattice.set_shape(shape.lattices[b]);
-    if (body.active_solver()) body.active_solver()->adopt_shape(body.lattice);
+    if (body.solver()) body.solver()->adopt_shape(body.lattice);
     body.update_skin();
   }
   state_->ground_contact.contacts().forget();
@@ -384,7 +406,7 @@ void Simulation::write_snapshot(Snapshot& snapshot) const {
   write_bodies({s.bodies.data(), drawn}, s.scene, snapshot.bodies);
   snapshot.tool.kind = s.scene.tool.kind;
   snapshot.tool.action = s.scene.tool.action;
-  snapshot.tool.iterations = s.scene.tool.iterations;
+  snapshot.tool.substeps = s.scene.tool.substeps;
   snapshot.tool.radius_m = s.scene.tool.kind == ToolKind::point ? 0.0 : s.scene.tool.radius_m;
   snapshot.tool.body = s.scene.tool.body;
   snapshot.tool.device = s.tool.hand;
@@ -394,7 +416,8 @@ void Simulation::write_snapshot(Snapshot& snapshot) const {
   for (const FixingPlane& plane : s.scene.planes) snapshot.planes.push_back({plane.point_m, plane.normal});
   write_contacts(s, snapshot.contacts);
   snapshot.device.force_scale = s.scene.sculpting.force_scale;
-  snapshot.substeps = s.relaxed.substeps * s.scene.tool.iterations;
+  snapshot.substeps = s.relaxed.substeps;
+  snapshot.real_time_substeps = s.real_time_substeps;
   snapshot.flags = s.reaction.flags;
 }
 

@@ -25,16 +25,14 @@ inline constexpr double tick_s = 1e-3;
 struct ToolInput {
   Pose pose;
   bool gripping = false;  // the button is down, which keeps a pull gripping
-  // Stiffness of the spring between hand and tool, N/m, as felt with the material's real stiffness. 0: the
-  // tool is held rigidly.
+  // Stiffness of the spring between hand and tool, N/m. 0: the tool is held rigidly.
   double coupling_n_per_m = 0.0;
   bool hovering = false;  // points without touching: the tool does not act until it is outside the bodies
 };
 
-// Response of the bodies to one tick. Sculpting computes with an effective modulus, and scales the
-// quasi-static force to the real stiffness.
+// Response of the bodies to one tick.
 struct Reaction {
-  Vector3 force_n = Vector3::Zero();  // on the tool, averaged over the tick's material time
+  Vector3 force_n = Vector3::Zero();  // on the tool, averaged over the tick
   Pose proxy;                         // pose at which the material stops the tool
   bool touching = false;
   bool mirror_touching = false;  // for the mirrored tool, whose force does not reach the hand
@@ -122,10 +120,14 @@ class Simulation {
   // Lattice and current surface of a body of the scene, for studies and tests.
   const SpringLattice& lattice(int body = 0) const;
   const Surface& surface(int body = 0) const;
+  // Inertia scale of a body, and the substeps of a tick at rest, as set and as real time would need.
+  double inertia_scale(int body = 0) const { return lattice(body).inertia_scale(); }
+  int substeps() const;
+  int real_time_substeps() const;
   // Achieved elasticity of the solver that steps the body.
   const LatticeReport& report(int body = 0) const;
 
-  // Mean force of a support or of the ground on a body over the last tick, at the real stiffness.
+  // Mean force of a support or of the ground on a body over the last tick.
   Vector3 support_force_n(int support, int body = 0) const;
   Vector3 ground_force_n(int body = 0) const;
 

@@ -55,6 +55,8 @@ struct Simulation::State {
   std::vector<std::shared_ptr<const ToolBody>> retired_bodies;
   std::vector<std::shared_ptr<const std::vector<TriangleCorners>>> retired_triangles;
   std::uint64_t tick = 0;
+  int substeps = 1;            // in a tick, at rest
+  int real_time_substeps = 1;  // in a tick of real time, at rest
   RelaxReport relaxed{};
   Reaction reaction{};
 
@@ -74,8 +76,10 @@ std::vector<BodySelfContact> make_self_contacts(const std::vector<BodyState>& bo
 // Makes the memory for the constraints of all bodies.
 BodyContacts make_contact_buffer();
 
-// Returns the real Young's modulus of a body's material divided by the effective one.
-double stiffness_ratio(const Simulation::State& state, std::size_t body);
+// Chooses the substeps of a tick and the inertia scale of each body. A body that something fixes has its own
+// scale, or 1 if it is stepped implicitly. All others share the largest of theirs, so that momentum and
+// falling mean something. Call after a change of bodies, fixed nodes, tool or settings; may allocate.
+void update_inertia(Simulation::State& state);
 
 // Contact of a tool that acts in this tick, as its kernel receives it.
 struct ToolTouch {

@@ -78,11 +78,11 @@ void write_material(const Material& material, const Sculpting& sculpting, const 
                     MaterialSnapshot& out) {
   out.name = material.name;
   out.youngs_modulus_pa = material.youngs_modulus_pa;
-  out.effective_youngs_modulus_pa = body.effective_youngs_modulus_pa();
-  out.implicit_nodes = body.active_solver() ? body.active_solver()->mesh().node_count() : 0;
+  out.inertia_scale = body.lattice.inertia_scale();
+  out.implicit_nodes = body.solver() ? body.solver()->mesh().node_count() : 0;
   out.poissons_ratio = material.poissons_ratio;
   out.density_kg_per_m3 = material.density_kg_per_m3;
-  out.damping_per_s = sculpting.damping_per_s;
+  out.drag_per_s = sculpting.drag_per_s;
   out.plastic = material.plastic;
   out.lattice_mass_kg = body.lattice.mass_kg();
 }

@@ -44,7 +44,7 @@ struct LatticeSnapshot {
 struct ToolSnapshot {
   ToolKind kind = ToolKind::sphere;
   ToolAction action = ToolAction::push;
-  int iterations = 0;
+  int substeps = 0;  // in a tick, as set
   double radius_m = 0.0;
   std::shared_ptr<const ToolBody> body;  // body of a rigid solid; a soft tool is drawn as the last body
   Pose device;                           // pose of the hand
@@ -71,12 +71,12 @@ struct ContactSnapshot {
 
 struct MaterialSnapshot {
   std::string name;
-  double youngs_modulus_pa = 0.0;            // true value of the material
-  double effective_youngs_modulus_pa = 0.0;  // value that is stepped at 1 kHz
-  int implicit_nodes = 0;  // nodes of the implicit solver; 0: springs step the body explicitly
+  double youngs_modulus_pa = 0.0;
+  double inertia_scale = 1.0;  // r: the body responds sqrt(r) times slower than the real one
+  int implicit_nodes = 0;      // nodes of the implicit solver; 0: springs step the body explicitly
   double poissons_ratio = 0.0;
   double density_kg_per_m3 = 0.0;
-  double damping_per_s = 0.0;  // mass-proportional
+  double drag_per_s = 0.0;  // mass-proportional
   bool plastic = false;
   double lattice_mass_kg = 0.0;  // differs from the body's by the cells' error
 };
@@ -127,7 +127,8 @@ struct Snapshot {
   std::vector<ContactSnapshot> contacts;
   Vector3 force_n = Vector3::Zero();  // on the hand, after force scale and limit
   DeviceSnapshot device;
-  int substeps = 0;  // in the last tick
+  int substeps = 0;            // in the last tick
+  int real_time_substeps = 0;  // that a tick would take in real time, at rest
   std::uint32_t flags = tick_flag_none;
 
   double time_s() const { return static_cast<double>(tick) * 1e-3; }

@@ -47,7 +47,7 @@ Result<BodyState> make_soft_mesh(const MeshSolid& solid, const SoftTool& soft, I
   }
   Result<LatticeMesh> box = box_lattice(inside, compute_volume(solid.mesh), skin->vertices_m, counts.value());
   if (!box.ok()) return box.error();
-  Result<SpringLattice> lattice = make_sculpting_lattice(box.value(), soft.material, set);
+  Result<SpringLattice> lattice = SpringLattice::make(box.value(), soft.material, set);
   if (!lattice.ok()) return lattice.error();
   MeshMapping mapping(skin.value(), lattice.value());
   const std::vector<std::uint8_t> none(static_cast<std::size_t>(box->node_count()), 0);
@@ -184,7 +184,7 @@ ToolContact::ToolContact(std::span<const BodyState> bodies, const ToolModel& mod
 }
 
 void ToolContact::release() {
-  constraints_.clear();
+  constraints_.forget();
   gripped_ = false;
 }
 
@@ -329,16 +329,18 @@ template <class Visit>
 void ToolContact::visit_near(BodyContact& contact, const BodyState& state, const Visit& visit) {
   if (is_surface()) {
     for (const NearPoint& near : contact.proximity->first_points()) {
-      visit(Pushed{find_embedding(state.mapping(), near), near.normal, near.gap_m});
+      const int key = near.sample >= 0 ? near.sample : changing_point_key;
+      visit(Pushed{find_embedding(state.mapping(), near), near.normal, near.gap_m, key});
     }
     for (const NearPoint& near : contact.proximity->second_points()) {
-      visit(Pushed{state.mapping().at(near.other_u, near.other_v), -near.normal, near.gap_m});
+      visit(Pushed{state.mapping().at(near.other_u, near.other_v), -near.normal, near.gap_m,
+                   changing_point_key});
     }
     return;
   }
   for (const NearSample& sample : contact.collider.near_samples()) {
     const DistanceSample distance = shape_.at(contact.collider.levels().sample(sample.index));
-    visit(Pushed{state.mapping().sample(sample.index), distance.gradient, distance.distance_m});
+    visit(Pushed{state.mapping().sample(sample.index), distance.gradient, distance.distance_m, sample.index});
   }
 }
 
@@ -347,8 +349,9 @@ void ToolContact::add_pushes(int body, const BodyState& state, const ToolHold& h
   const SurfaceContact& nearest = contact.collision.nearest;
   if (state.shell_thickness_m > 0.0 && !is_surface()) return add_shell_pushes(body, state, hold);
   if (!is_solid_) return add_sphere_pushes(body, state);
-  add_plane_push(body, state, {state.mapping().at(nearest.u, nearest.v), -nearest.normal, -nearest.depth_m},
-                 hold);
+  add_plane_push(
+      body, state,
+      {state.mapping().at(nearest.u, nearest.v), -nearest.normal, -nearest.depth_m, nearest_point_key}, hold);
   visit_near(contact, state, [&](const Pushed& pushed) { add_plane_push(body, state, pushed, hold); });
 }
 
@@ -367,15 +370,17 @@ void ToolContact::add_shell_pushes(int body, const BodyState& state, const ToolH
   BodyContact& contact = contacts_[body];
   const SurfaceContact& nearest = contact.collision.nearest;
   const EmbeddedPoint deepest = state.mapping().at(nearest.u, nearest.v);
-  if (is_small(state)) return add_plane_push(body, state, {deepest, -nearest.normal, -nearest.depth_m}, hold);
+  if (is_small(state)) {
+    return add_plane_push(body, state, {deepest, -nearest.normal, -nearest.depth_m, nearest_point_key}, hold);
+  }
   const Vector3 push = push_direction_at(shape_, position(state.mapping().current(), nearest.u, nearest.v));
-  add_plane_push(body, state, {deepest, push, -nearest.depth_m}, hold);
+  add_plane_push(body, state, {deepest, push, -nearest.depth_m, nearest_point_key}, hold);
   const double margin = std::max(find_margin_m(state), hold.reach_m);
   for (const NearSample& sample : contact.collider.near_samples()) {
     const double gap = find_gap(state, sample);
     if (gap > margin) continue;
     const Vector3 away = push_direction_at(shape_, contact.collider.levels().sample(sample.index));
-    add_plane_push(body, state, {state.mapping().sample(sample.index), away, gap}, hold);
+    add_plane_push(body, state, {state.mapping().sample(sample.index), away, gap, sample.index}, hold);
   }
 }
 
@@ -388,10 +393,11 @@ void ToolContact::add_sphere_pushes(int body, const BodyState& state) {
   const double cell = static_cast<double>(state.lattice.cell_size_m());
   if (-nearest.depth_m <= find_margin_m(state) || shape_.radius_m < cell) {
     overflow_ |= !constraints_.add_plane_push(body, state.lattice, state.mapping().at(nearest.u, nearest.v),
-                                              -nearest.normal, shape_.radius_m);
+                                              -nearest.normal, shape_.radius_m, nearest_point_key);
   }
   for (const NearSample& sample : contact.collider.near_samples()) {
-    overflow_ |= !constraints_.add_push(body, state.lattice, state.mapping().sample(sample.index));
+    overflow_ |=
+        !constraints_.add_push(body, state.lattice, state.mapping().sample(sample.index), sample.index);
   }
 }
 
@@ -401,7 +407,7 @@ void ToolContact::add_plane_push(int body, const BodyState& state, const Pushed&
                                  const ToolHold& hold) {
   const Vector3 from_centre = pushed.point.position_m(state.lattice) - hold.pose.position_m;
   overflow_ |= !constraints_.add_plane_push(body, state.lattice, pushed.point, pushed.normal,
-                                            from_centre.dot(pushed.normal) - pushed.gap_m);
+                                            from_centre.dot(pushed.normal) - pushed.gap_m, pushed.key);
 }
 
 void ToolContact::add_grips(int body, const BodyState& state, const Pose& pose) {

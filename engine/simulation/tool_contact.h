@@ -107,6 +107,7 @@ class ToolContact {
     EmbeddedPoint point;
     Vector3 normal;  // unit, away from the tool
     double gap_m;
+    int key;  // see nearest_point_key
   };
 
   void find(BodyContact& contact, const BodyState& body, const Tool& tool, const ToolModel& model,

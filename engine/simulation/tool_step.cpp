@@ -35,7 +35,7 @@ void smooth(Simulation::State& s, const HeldTool& held) {
   const double radius = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
   const double least = least_reach_cells * static_cast<double>(body.lattice.cell_size_m());
   body.smoothing.apply(body.lattice, {collision.nearest.point_m, std::max(radius, least)}, s.tick);
-  if (body.active_solver()) body.active_solver()->adopt_moved_nodes(body.lattice);
+  if (body.solver()) body.solver()->adopt_moved_nodes(body.lattice);
 }
 
 // Kernels in the order of the actions. A kernel without constrain() does not compile.
@@ -54,26 +54,13 @@ const ToolKernel& find_kernel(ToolAction action) {
   return kernels[static_cast<std::size_t>(action)];
 }
 
-double stiffness_ratio(const Simulation::State& s, std::size_t body) {
-  return s.material(body).youngs_modulus_pa / s.bodies[body].effective_youngs_modulus_pa();
-}
-
 namespace {
-
-// Returns the largest ratio of real to effective Young's modulus among the bodies. The coupling is divided by
-// it.
-double find_largest_stiffness_ratio(const Simulation::State& s) {
-  double ratio = stiffness_ratio(s, 0);
-  for (std::size_t body = 1; body < s.stepped_count(); ++body)
-    ratio = std::max(ratio, stiffness_ratio(s, body));
-  return ratio;
-}
 
 // Returns the coupling stiffness. With an implicitly solved body, even a hand without coupling gets a
 // coupling spring, because a stiff body does not yield to a rigidly held tool.
 double choose_coupling(const Simulation::State& s, double wanted_n_per_m) {
   constexpr double hold_n_per_m = 1000.0;
-  const auto is_stiff = [](const BodyState& body) { return body.active_solver() != nullptr; };
+  const auto is_stiff = [](const BodyState& body) { return body.solver() != nullptr; };
   if (wanted_n_per_m > 0.0) return wanted_n_per_m;
   return std::any_of(s.bodies.begin(), s.bodies.end(), is_stiff) ? hold_n_per_m : 0.0;
 }
@@ -86,7 +73,7 @@ ToolMotion make_motion(const Simulation::State& s, const Pose& from, const Pose&
   motion.end_m = to.position_m;
   motion.orientation = to.orientation;
   motion.radius_m = tool.kind == ToolKind::point ? 0.0 : tool.radius_m;
-  motion.coupling_n_per_m = choose_coupling(s, coupling_n_per_m) / find_largest_stiffness_ratio(s);
+  motion.coupling_n_per_m = choose_coupling(s, coupling_n_per_m);
   motion.body_yields = find_kernel(tool.action).body_yields;
   return motion;
 }
@@ -103,9 +90,8 @@ void place_soft_tool(BodyState& tool, const Pose& pose) {
 
 // Returns the largest movement of any part of the tool in this tick, in metres.
 double measure_reach(const Simulation::State& s, const HeldTool& held, const Pose& hand) {
-  const double time_s = s.scene.tool.iterations * tick_s;
   const double distance_m =
-      std::max((hand.position_m - held.hand.position_m).norm(), time_s * held.state.velocity_m_per_s.norm());
+      std::max((hand.position_m - held.hand.position_m).norm(), tick_s * held.state.velocity_m_per_s.norm());
   if (s.scene.tool.kind != ToolKind::solid) return distance_m;
   return distance_m + held.hand.orientation.angularDistance(hand.orientation) * s.model.extent_m;
 }
@@ -146,24 +132,13 @@ ToolHold make_mirrored_hold(const Symmetry& symmetry, const ToolInput& input) {
 
 namespace {
 
-// Returns the force on the hand at the real stiffnesses.
+// Returns the mean force of all bodies on the tool over the tick. The body of a soft tool is one of them.
 Vector3 compute_force(const Simulation::State& s) {
-  Vector3 force = Vector3::Zero();
+  Vector3 impulse = Vector3::Zero();
   for (std::size_t b = 0; b < s.stepped_count(); ++b) {
-    force += s.tool.contact.constraints().tool_impulse(static_cast<int>(b)) *
-             (stiffness_ratio(s, b) / s.relaxed.material_time_s);
+    impulse += s.tool.contact.constraints().tool_impulse(static_cast<int>(b));
   }
-  return force;
-}
-
-// Returns the force on the hand through a soft tool. Tool and bodies are softened by different factors; since
-// both act in series, the softer one determines the real force.
-Vector3 compute_soft_tool_force(const Simulation::State& s) {
-  const std::size_t tool = s.bodies.size() - 1;
-  double ratio = stiffness_ratio(s, tool);
-  for (std::size_t b = 0; b < tool; ++b) ratio = std::min(ratio, stiffness_ratio(s, b));
-  return s.tool.contact.constraints().tool_impulse(static_cast<int>(tool)) *
-         (ratio / s.relaxed.material_time_s);
+  return impulse / tick_s;
 }
 
 // Updates the touching state of the soft tool and returns it. The tool touches from the first contact that
@@ -182,7 +157,7 @@ bool update_soft_touch(Simulation::State& s) {
 // hand rises no faster than with the spring, and the proxy is where the spring would hold the tool.
 void react_with_soft_tool(Simulation::State& s, double coupling_n_per_m) {
   s.reaction.touching = update_soft_touch(s);
-  Vector3 force = s.reaction.touching ? compute_soft_tool_force(s) : Vector3::Zero();
+  Vector3 force = s.reaction.touching ? compute_force(s) : Vector3::Zero();
   const double size = force.norm();
   if (coupling_n_per_m > 0.0 && size > 0.0) {
     const double travel = std::max(0.0, force.dot(s.tool.touch_m - s.tool.hand.position_m) / size);

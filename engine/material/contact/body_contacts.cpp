@@ -13,7 +13,7 @@ namespace {
 
 // The surfaces follow their nodes through the refit and may move slightly more or less than the constrained
 // points. Closing at most half of a gap leaves a margin for this difference.
-constexpr ContactPace body_pace{0.5, 0.7};
+constexpr ContactPace body_pace{0.5, 700.0};
 
 Vector3 current_displacement(const BodyPoint& side) {
   Vector3 sum = Vector3::Zero();
@@ -144,14 +144,14 @@ GroundContacts::GroundContacts(int capacity) : capacity_(static_cast<std::size_t
   last_.reserve(capacity_);
 }
 
-void GroundContacts::begin(const Vector3& normal, double material_time_s) {
-  SPOONBILL_ASSERT(material_time_s > 0.0);
+void GroundContacts::begin(const Vector3& normal, double time_s) {
+  SPOONBILL_ASSERT(time_s > 0.0);
   SPOONBILL_ASSERT(std::abs(normal.squaredNorm() - 1.0) < 1e-5);
   std::swap(contacts_, last_);
   contacts_.clear();
   search_position_ = 0;
   last_time_s_ = time_s_;
-  time_s_ = material_time_s;
+  time_s_ = time_s;
   normal_ = normal;
 }
 

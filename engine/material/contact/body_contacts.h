@@ -81,8 +81,8 @@ struct GroundContact {
   double time_s = 0.0;
 };
 
-// Averaging time of the push, in material time. In this time, a soft body of a centimetre oscillates a few
-// times and slides imperceptibly.
+// Averaging time of the push. In this time, a soft body of a centimetre oscillates a few times and slides
+// imperceptibly.
 inline constexpr double friction_memory_s = 0.01;
 
 // Rigid ground under bodies: velocity constraints on their nodes. Lattices with springs solve them in each
@@ -95,8 +95,8 @@ class GroundContacts {
  public:
   explicit GroundContacts(int capacity);
 
-  // Starts a tick of `material_time_s`; the unit vector `normal` points out of the ground.
-  void begin(const Vector3& normal, double material_time_s);
+  // Starts a tick of `time_s`; the unit vector `normal` points out of the ground.
+  void begin(const Vector3& normal, double time_s);
   // Adds a node whose attached surface is `gap_m` above the ground, negative if below it. `body` is the index
   // of the lattice in the views passed to solve(). Call in ascending order of bodies and nodes; a contact of
   // the last tick keeps its friction state. Fixed nodes are ignored. Returns false when full.
@@ -131,7 +131,7 @@ class GroundContacts {
   std::size_t capacity_;
   std::vector<GroundContact> contacts_, last_;  // contacts of this tick, and of the last one
   std::size_t search_position_ = 0;             // search position in last_
-  double last_time_s_ = 0.0, time_s_ = 0.0;     // material time of the last tick and of this one
+  double last_time_s_ = 0.0, time_s_ = 0.0;     // time of the last tick and of this one
   Vector3 normal_ = Vector3::UnitY();
 };
 

@@ -1,65 +1,108 @@
 #include "engine/material/contact/contact_constraints.h"
 
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "engine/base/assert.h"
 
 namespace spoonbill {
 namespace {
 
-// The correction is below 1, so that neighbouring points that push the same node do not overshoot together.
-constexpr ContactPace tool_pace{1.0, 0.3};
+// A push starts from the force of the last substep, so a slow correction suffices; a fast one would shake the
+// force.
+constexpr ContactPace tool_pace{0.5, 10.0};
+// Pace on implicitly stepped lattices, whose pushes start from zero.
+constexpr ContactPace stiff_body_pace{1.0, 300.0};
+// Rates at which gripped points return to the tool, 1/s.
+constexpr double grip_correction_per_s = 1800.0, stiff_grip_correction_per_s = 300.0;
 
-// Frequency at which a coupled tool follows the hand, rad/s of material time. It determines the tool's mass,
-// which is about that of a few nodes of clay, so that neither tool nor clay dominates.
-constexpr double coupling_frequency = 60.0;
+// Frequency at which a coupled tool follows the hand, rad/s. It determines the tool's mass, which is about
+// that of a few nodes of clay, so that neither tool nor clay dominates.
+constexpr double coupling_frequency = 360.0;
 
 }  // namespace
 
 ContactConstraints::ContactConstraints(int capacity) : constraints_(static_cast<std::size_t>(capacity)) {
   SPOONBILL_ASSERT(capacity >= 0);
+  kept_.reserve(constraints_.size());
 }
 
 void ContactConstraints::clear() {
+  kept_.clear();
+  for (int c = 0; c < count_; ++c) {
+    const Constraint& constraint = constraints_[c];
+    if (constraint.keeps_force && constraint.force_n > 0.0) {
+      kept_.push_back({constraint.body, constraint.key, constraint.force_n});
+    }
+  }
+  std::sort(kept_.begin(), kept_.end(), [](const KeptForce& a, const KeptForce& b) {
+    return std::tie(a.body, a.key) < std::tie(b.body, b.key);
+  });
   count_ = 0;
 }
 
-bool ContactConstraints::add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point) {
-  return add(Kind::sphere_push, body, lattice, point, Vector3::Zero(), 0.0);
+void ContactConstraints::forget() {
+  kept_.clear();
+  count_ = 0;
+}
+
+double ContactConstraints::find_kept_force(int body, int key) const {
+  const auto at =
+      std::lower_bound(kept_.begin(), kept_.end(), std::tie(body, key),
+                       [](const KeptForce& kept, const std::tuple<const int&, const int&>& wanted) {
+                         return std::tie(kept.body, kept.key) < wanted;
+                       });
+  return at != kept_.end() && at->body == body && at->key == key ? at->force_n : 0.0;
+}
+
+bool ContactConstraints::add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
+                                  int key) {
+  return add({.kind = Kind::sphere_push, .body = body, .point = point, .key = key}, lattice);
 }
 
 bool ContactConstraints::add_plane_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
-                                        const Vector3& normal, double offset_m) {
+                                        const Vector3& normal, double offset_m, int key) {
   SPOONBILL_ASSERT_DEBUG(std::abs(normal.squaredNorm() - 1.0) < 1e-5);
-  return add(Kind::plane_push, body, lattice, point, normal, offset_m);
+  return add({.kind = Kind::plane_push,
+              .body = body,
+              .point = point,
+              .direction = normal,
+              .offset_m = offset_m,
+              .key = key},
+             lattice);
 }
 
 bool ContactConstraints::add_grip(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
                                   const Vector3& offset_m) {
-  return add(Kind::grip, body, lattice, point, offset_m, 0.0);
+  return add({.kind = Kind::grip, .body = body, .point = point, .direction = offset_m}, lattice);
 }
 
-bool ContactConstraints::add(Kind kind, int body, const SpringLattice& lattice, const EmbeddedPoint& point,
-                             const Vector3& direction, double offset_m) {
-  SPOONBILL_ASSERT_DEBUG(body >= 0 && body < lattice_capacity);
+bool ContactConstraints::add(const Constraint& constraint, const SpringLattice& lattice) {
+  SPOONBILL_ASSERT_DEBUG(constraint.body >= 0 && constraint.body < lattice_capacity);
   if (count_ == static_cast<int>(constraints_.size())) return false;
-  constraints_[count_++] = {kind,
-                            body,
-                            point,
-                            point.rest_m(lattice),
-                            direction,
-                            offset_m,
-                            point.compliance(lattice),
-                            point.friction(lattice),
-                            false};
+  Constraint& added = constraints_[count_++];
+  added = constraint;
+  added.rest_m = constraint.point.rest_m(lattice);
+  added.compliance = constraint.point.compliance(lattice);
+  added.friction = constraint.point.friction(lattice);
+  added.is_implicit = lattice.moved_by_solver();
+  added.keeps_force =
+      !added.is_implicit && constraint.kind != Kind::grip && constraint.key >= nearest_point_key;
+  if (added.keeps_force) added.force_n = find_kept_force(added.body, added.key);
   return true;
 }
 
-void ContactConstraints::begin(const ToolMotion& motion, double material_time_s) {
-  SPOONBILL_ASSERT(material_time_s > 0.0);
+bool ContactConstraints::has_constraint_on(int body) const {
+  return std::any_of(constraints_.begin(), constraints_.begin() + count_,
+                     [&](const Constraint& constraint) { return constraint.body == body; });
+}
+
+void ContactConstraints::begin(const ToolMotion& motion, double time_s) {
+  SPOONBILL_ASSERT(time_s > 0.0);
   SPOONBILL_ASSERT(motion.radius_m >= 0.0 && motion.coupling_n_per_m >= 0.0);
   motion_ = motion;
-  hand_velocity_ = (motion.end_m - motion.start_m) / material_time_s;
+  hand_velocity_ = (motion.end_m - motion.start_m) / time_s;
   carried_force_.setZero();
   const bool coupled = motion.coupling_n_per_m > 0.0;
   tool_compliance_ = coupled ? coupling_frequency * coupling_frequency / motion.coupling_n_per_m : 0.0;
@@ -76,6 +119,10 @@ void ContactConstraints::solve(std::span<const LatticeView> lattices, ToolState&
   follow_hand(tool, h, fraction);
   if (motion_.carried.body >= 0) {
     tool_impulse_[motion_.carried.body] += static_cast<double>(h) * carried_force_;
+  }
+  for (int c = 0; c < count_; ++c) {
+    Constraint& constraint = constraints_[c];
+    if (constraint.force_n > 0.0) start_push(lattices[constraint.body], constraint, tool, h);
   }
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[c];
@@ -119,32 +166,55 @@ void ContactConstraints::exchange(const LatticeView& lattice, Constraint& constr
   acted_ = true;
 }
 
-void ContactConstraints::solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
-                                    double h, double cap) {
+std::optional<ContactPush> ContactConstraints::find_push(const LatticeView& lattice,
+                                                         const Constraint& constraint,
+                                                         const ToolState& tool) const {
   const Vector3 position = constraint.rest_m + constraint.point.displacement_m(lattice);
   const Vector3 from_centre = position - tool.position_m;
-  Vector3 normal = constraint.direction;
-  double gap = 0.0;
+  ContactPush push{0.0, constraint.direction,
+                   constraint.point.velocity_m_per_s(lattice) - tool.velocity_m_per_s,
+                   1.0 / (effective_compliance(constraint) + response_compliance_)};
   if (constraint.kind == Kind::plane_push) {
-    gap = from_centre.dot(normal) - constraint.offset_m;
-  } else {
-    const double distance = from_centre.norm();
-    if (!(distance > 0.0)) return;
-    normal = from_centre / distance;
-    gap = distance - motion_.radius_m;
+    push.gap_m = from_centre.dot(push.normal) - constraint.offset_m;
+    return push;
   }
-  const ContactPush push{gap, normal, constraint.point.velocity_m_per_s(lattice) - tool.velocity_m_per_s,
-                         1.0 / (effective_compliance(constraint) + response_compliance_)};
-  if (const auto impulse = push.impulse(h, tool_pace, cap, constraint.friction)) {
-    exchange(lattice, constraint, tool, *impulse);
+  const double distance = from_centre.norm();
+  if (!(distance > 0.0)) return std::nullopt;
+  push.normal = from_centre / distance;
+  push.gap_m = distance - motion_.radius_m;
+  return push;
+}
+
+// Pushes with the force of the last substep.
+void ContactConstraints::start_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
+                                    double h) {
+  const std::optional<ContactPush> push = find_push(lattice, constraint, tool);
+  if (!push) {
+    constraint.force_n = 0.0;
+    return;
   }
+  exchange(lattice, constraint, tool, h * constraint.force_n * push->normal);
+}
+
+void ContactConstraints::solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
+                                    double h, double cap) {
+  const std::optional<ContactPush> push = find_push(lattice, constraint, tool);
+  if (!push) return;
+  const double target = push->target_m_per_s(h, constraint.is_implicit ? stiff_body_pace : tool_pace, cap);
+  const double started = h * constraint.force_n;
+  const double pushed = std::max(0.0, started + (target - push->relative.dot(push->normal)) * push->mass_kg);
+  if (constraint.keeps_force) constraint.force_n = pushed / h;
+  if (pushed == 0.0 && started == 0.0) return;
+  exchange(lattice, constraint, tool,
+           (pushed - started) * push->normal - push->drag(constraint.friction * pushed));
 }
 
 void ContactConstraints::solve_grip(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
                                     double h, double cap) {
   const Vector3 position = constraint.rest_m + constraint.point.displacement_m(lattice);
   const Vector3 miss = tool.position_m + motion_.orientation * constraint.direction - position;
-  Vector3 target = miss * (tool_pace.correction / h);
+  const double rate = constraint.is_implicit ? stiff_grip_correction_per_s : grip_correction_per_s;
+  Vector3 target = miss * std::min(rate, max_correction / h);
   const double speed = target.norm();
   if (speed > cap) target *= cap / speed;
   const Vector3 velocity = constraint.point.velocity_m_per_s(lattice);

@@ -14,14 +14,18 @@
 
 namespace spoonbill {
 
-// Limits on the change of a gap in one substep, as fractions of the gap.
+// Limits on the change of a gap.
 struct ContactPace {
-  double closing;     // largest fraction of a gap that may close
-  double correction;  // fraction of a penetration that is corrected
+  double closing;           // largest fraction of a gap that may close in a substep
+  double correction_per_s;  // rate at which a penetration is corrected, at most max_correction in a substep
 };
 
+// Largest fraction of a penetration that a substep corrects. It is below 1, so that neighbouring points that
+// push the same node do not overshoot together.
+inline constexpr double max_correction = 0.7;
+
 // Pace of ground contacts. Each node on the ground has its own contact and closes its gap within a substep.
-inline constexpr ContactPace ground_pace{1.0, 0.7};
+inline constexpr ContactPace ground_pace{1.0, 4200.0};
 
 // State of a contact between two points before the drift of a substep, and the impulse that keeps the points
 // from passing each other.
@@ -34,7 +38,8 @@ struct ContactPush {
   // Returns the smallest admissible separation speed, m/s. Points with a gap may approach but must not pass
   // each other. A penetration is partly corrected, at `cap_m_per_s` at most.
   double target_m_per_s(double h_s, const ContactPace& pace, double cap_m_per_s) const {
-    return gap_m > 0.0 ? -gap_m * pace.closing / h_s : std::min(-gap_m * pace.correction / h_s, cap_m_per_s);
+    if (gap_m > 0.0) return -gap_m * pace.closing / h_s;
+    return std::min(-gap_m * std::min(pace.correction_per_s, max_correction / h_s), cap_m_per_s);
   }
   // Returns the impulse along the normal that reaches the admissible speed, N s; never negative.
   double normal_impulse(double h_s, const ContactPace& pace, double cap_m_per_s) const {
@@ -68,7 +73,7 @@ inline constexpr int lattice_capacity = 9;
 // tick.
 struct ToolState {
   Vector3 position_m = Vector3::Zero();
-  Vector3 velocity_m_per_s = Vector3::Zero();  // metres per second of material time
+  Vector3 velocity_m_per_s = Vector3::Zero();
 };
 
 // Fixed nodes of a lattice that moves rigidly with the tool. Their rest positions are in the tool's frame.
@@ -90,27 +95,36 @@ struct ToolMotion {
   CarriedNodes carried;
 };
 
-// Working memory for the contacts of one tick. One owner, one thread; allocates only in its constructor.
+// Identifies a pushed point from tick to tick, so that its push starts from the force of the last substep.
+// Points of samples are numbered by sample.
+inline constexpr int nearest_point_key = -1;   // the point nearest to the tool
+inline constexpr int changing_point_key = -2;  // another point in every tick, whose push starts from zero
+
+// Contacts of one tick, and the forces of the last one. One owner, one thread; allocates only in its
+// constructor.
 class ContactConstraints {
  public:
   explicit ContactConstraints(int capacity);
 
+  // Removes the constraints, and remembers their forces for those that are added next.
   void clear();
+  // Removes the constraints and their forces.
+  void forget();
   // Each add function returns false when full. `body` is the index of the lattice in the views passed to
   // solve().
   //
   // Adds a point that the tool's sphere may push outward but never pulls.
-  bool add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point);
+  bool add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point, int key);
   // Adds a point that must stay beyond a plane that moves with the tool. The unit vector `normal` points to
   // the admissible side; `offset_m` is the plane's distance from the tool's centre along `normal`. For tools
   // smaller than a cell, and for tools whose surface is flat over the distance moved in a tick.
   bool add_plane_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
-                      const Vector3& normal, double offset_m);
+                      const Vector3& normal, double offset_m, int key);
   // Adds a point gripped by the tool, at `offset_m` from its centre in the tool's frame.
   bool add_grip(int body, const SpringLattice& lattice, const EmbeddedPoint& point, const Vector3& offset_m);
 
-  // Starts a tick of `material_time_s`.
-  void begin(const ToolMotion& motion, double material_time_s);
+  // Starts a tick of `time_s`.
+  void begin(const ToolMotion& motion, double time_s);
 
   const ToolMotion& motion() const { return motion_; }
   // Sets the force of the carried nodes on the tool in the coming substep, N.
@@ -122,11 +136,18 @@ class ContactConstraints {
              std::span<const float> push_speed_caps_m_per_s);
 
   int count() const { return count_; }
+  bool has_constraint_on(int body) const;
   // Sum of the impulses of a body on the tool since begin(), N s.
   const Vector3& tool_impulse(int body) const { return tool_impulse_[body]; }
   bool acted() const { return acted_; }
   // Sets to 1 the bytes in `touched` of the nodes of a body on which a constraint has acted.
   void mark_touched(int body, std::uint8_t* touched) const;
+
+  // Visits what the next tick depends on.
+  template <class Visitor>
+  void visit_state(Visitor&& visit) const {
+    for (int c = 0; c < count_; ++c) visit(&constraints_[static_cast<std::size_t>(c)].force_n, 1);
+  }
 
  private:
   enum class Kind { sphere_push, plane_push, grip };
@@ -139,20 +160,34 @@ class ContactConstraints {
     double offset_m = 0.0;                // plane push only
     double compliance = 0.0;              // velocity change per impulse, 1/kg; 0 if all nodes are fixed
     double friction = 0.0;                // coefficient of the body's surface; tools have none
+    int key = changing_point_key;
+    bool is_implicit = false;  // on a lattice that the implicit solver moves
+    // False on such a lattice, whose contact mass is an estimate: a kept force would amplify its error.
+    bool keeps_force = false;
+    double force_n = 0.0;  // push in the last substep
     bool acted = false;
   };
-  bool add(Kind kind, int body, const SpringLattice& lattice, const EmbeddedPoint& point,
-           const Vector3& direction, double offset_m);
+  struct KeptForce {
+    int body, key;
+    double force_n;
+  };
+  bool add(const Constraint& constraint, const SpringLattice& lattice);
+  double find_kept_force(int body, int key) const;
   double effective_compliance(const Constraint& constraint) const;
   void follow_hand(ToolState& tool, double h, double fraction) const;
   void solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
   void solve_grip(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
+  // Gap and normal of a pushed point; empty at a sphere's centre, where no normal exists.
+  std::optional<ContactPush> find_push(const LatticeView& lattice, const Constraint& constraint,
+                                       const ToolState& tool) const;
+  void start_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h);
   void exchange(const LatticeView& lattice, Constraint& constraint, ToolState& tool, const Vector3& impulse);
 
   std::vector<Constraint> constraints_;
+  std::vector<KeptForce> kept_;  // forces of the last tick, by body and key
   int count_ = 0;
   ToolMotion motion_;
-  Vector3 hand_velocity_ = Vector3::Zero();  // metres per second of material time
+  Vector3 hand_velocity_ = Vector3::Zero();  // m/s
   Vector3 carried_force_ = Vector3::Zero();
   double tool_compliance_ = 0.0;  // 1/kg; 0 if the hand holds the tool rigidly
   // Velocity change of the tool per impulse by the end of a substep, including the response of its spring

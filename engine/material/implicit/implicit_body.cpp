@@ -135,7 +135,6 @@ constexpr int iteration_limit = 4;
 // Residual at which the velocities are accepted, relative to the initial one, in the norm of the
 // preconditioner.
 constexpr double accepted_residual = 1e-4;
-constexpr int power_steps = 200;
 // Largest displacement of a node in a step, in cells.
 constexpr double speed_cap_cells = 0.5;
 
@@ -194,7 +193,7 @@ Result<ImplicitBody> ImplicitBody::make(const LatticeMesh& mesh, const BlockMate
                     choose_kernels(set, kernels_baseline::cell_kernels, kernels_avx2::cell_kernels,
                                    kernels_avx512::cell_kernels));
   body.add_cells(materials);
-  body.set_damping(materials);
+  body.set_damping_time(materials);
   body.fix_nodes(std::vector<std::uint8_t>(static_cast<std::size_t>(mesh.node_count()), 0));
   return body;
 }
@@ -251,42 +250,21 @@ void ImplicitBody::add_cells(const BlockMaterials& materials) {
   report_.divide_by(volume_m3);
 }
 
-// Returns the largest eigenvalue of M^-1 K by power iteration, rad^2/s^2.
-double ImplicitBody::fastest_square() {
-  std::uint32_t random = 1;
-  for (int n = 0; n < size_; ++n) {
-    random = random * 1664525u + 1013904223u;
-    direction_[static_cast<std::size_t>(n)] = static_cast<double>(random >> 16) / 32768.0 - 1.0;
-  }
-  double square = 0.0;
-  for (int step = 0; step < power_steps; ++step) {
-    std::fill(image_.begin(), image_.end(), 0.0);
-    cells_->apply(block_.batches.data(), static_cast<int>(block_.batches.size()), 1.0, direction_.data(),
-                  image_.data());
-    for (int n = 0; n < size_; ++n) {
-      const double mass = mass_[static_cast<std::size_t>(n / 3)];
-      image_[static_cast<std::size_t>(n)] *= mass > 0.0 ? 1.0 / mass : 0.0;
-    }
-    const double length = std::sqrt(band_->dot(image_.data(), image_.data(), rounded_up(size_, band_block)));
-    square =
-        length / std::sqrt(band_->dot(direction_.data(), direction_.data(), rounded_up(size_, band_block)));
-    for (int n = 0; n < size_; ++n) {
-      direction_[static_cast<std::size_t>(n)] = image_[static_cast<std::size_t>(n)] / length;
-    }
-  }
-  return square;
-}
-
-// Sets the damping time from the stiffest material's damping ratio, which applies at the fastest mode, as
-// for springs.
-void ImplicitBody::set_damping(const BlockMaterials& materials) {
+void ImplicitBody::set_damping_time(const BlockMaterials& materials) {
   const Material& stiffest = *std::max_element(
       materials.materials.begin(), materials.materials.end(),
       [](const Material& a, const Material& b) { return a.youngs_modulus_pa < b.youngs_modulus_pa; });
-  std::fill(force_.begin(), force_.end(), 0.0);
+  damping_time_ = stiffest.damping_time_s;
+  // Computes the derivatives of the cells' rotations, which a Rayleigh quotient before the first step needs.
   cells_->compute_forces(block_.batches.data(), static_cast<int>(block_.batches.size()), moved_.data(),
                          force_.data());
-  damping_time_ = 2.0 * stiffest.damping_ratio / std::sqrt(fastest_square());
+}
+
+void ImplicitBody::set_inertia_scale(double scale) {
+  SPOONBILL_ASSERT(scale >= 1.0);
+  if (scale == inertia_scale_) return;
+  inertia_scale_ = scale;
+  factor_.forget();
 }
 
 void ImplicitBody::fix_nodes(std::span<const std::uint8_t> fixed) {
@@ -332,9 +310,9 @@ void ImplicitBody::apply_fixed_motion(double stiffness, double h) {
 void ImplicitBody::begin_solve(double inertia, double stiffness, double h) {
   apply_matrix(inertia, stiffness, velocity_, image_);
   for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) {
-    residual_[n] = free_[n] * (mass3_[n] * velocity_[n] + h * force_[n]);
+    residual_[n] = free_[n] * (inertia * mass3_[n] * velocity_[n] + h * force_[n]);
   }
-  // The internal forces sum to zero, so the residual sums to the momentum times `inertia`.
+  // The internal forces sum to zero, so the residual sums to the momentum with the scaled inertia.
   momentum_ = sum_over_nodes(residual_) / inertia;
   const int blocks = rounded_up(size_, band_block);
   const double along_velocity = band_->dot(residual_.data(), velocity_.data(), blocks),
@@ -462,12 +440,14 @@ double ImplicitBody::rayleigh_quotient() {
   const double strained = band_->dot(direction_.data(), image_.data(), blocks);
   apply_matrix(1.0, 0.0, direction_, image_);
   const double moved = band_->dot(direction_.data(), image_.data(), blocks);
-  return moved > 0.0 ? strained / moved : 0.0;
+  return moved > 0.0 ? strained / (inertia_scale_ * moved) : 0.0;
 }
 
 ImplicitReport ImplicitBody::solve_velocities(const ImplicitStep& step, std::span<const double> known_ns) {
-  SPOONBILL_ASSERT(step.step_s > 0.0 && step.damping_per_s >= 0.0);
-  const double h = step.step_s, inertia = 1.0 + h * step.damping_per_s, stiffness = h * (h + damping_time_);
+  SPOONBILL_ASSERT(step.step_s > 0.0 && step.drag_per_s >= 0.0);
+  const double h = step.step_s, inertia = inertia_scale_, stiffness = h * (h + damping_time_);
+  const double decay = 1.0 / (1.0 + h * step.drag_per_s);
+  for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) velocity_[n] *= decay;
   for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) {
     force_[n] = applied_[n] + mass3_[n] * step.gravity_m_per_s2[static_cast<Eigen::Index>(n % 3)];
   }

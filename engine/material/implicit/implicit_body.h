@@ -77,7 +77,7 @@ std::vector<BlockMaterials::Part> cell_parts(const BlockMaterials& materials, st
 
 struct ImplicitStep {
   double step_s = 1e-3;
-  double damping_per_s = 0.0;  // mass-proportional
+  double drag_per_s = 0.0;  // mass-proportional
   Vector3 gravity_m_per_s2 = Vector3::Zero();
 };
 
@@ -88,10 +88,12 @@ struct ImplicitReport {
 
 // Implicit Euler method for a block of hexahedra. The velocities w at the end of a step h solve
 //
-//   (M (1 + h a) + (h^2 + h t) K) w = M v + h (f - f_el(x)),  x <- x + h w,
+//   (r M + (h^2 + h t) K) w = r M v / (1 + h a) + h (f - f_el(x)),  x <- x + h w,
 //
-// with the damping a by mass and t by stiffness. This is one step of Newton's method. K is the plain
-// tangent at x, which is never indefinite, so the matrix is positive definite.
+// with the inertia scale r, the drag a and the damping time t. Drag acts on the old velocity alone, so that a
+// body at rest balances its true forces. This is one step of Newton's method. K is the plain tangent at x,
+// which is never indefinite, so the matrix is positive definite. The method itself damps every mode like a
+// further damping time of h; t damps changes of volume as well.
 //
 // The conjugate gradients may stop early: at every iteration the quadratic form that they minimise is at
 // most its value at w = 0. Their preconditioner is the Cholesky factor of the same matrix a few ticks
@@ -107,9 +109,9 @@ struct ImplicitReport {
 // One owner; built outside the tick, allocates nothing afterwards.
 class ImplicitBody {
  public:
-  // Builds the body at rest. With several materials, the damping ratio is that of the stiffest one, which
-  // has the fastest mode; all other properties apply by part. Fails on fewer than 2 nodes in a direction,
-  // folded cells and materials outside their ranges.
+  // Builds the body at rest, with an inertia scale of 1. With several materials, the damping time is that of
+  // the stiffest one; all other properties apply by part. Fails on fewer than 2 nodes in a direction, folded
+  // cells and materials outside their ranges.
   static Result<ImplicitBody> make(const LatticeMesh& mesh, const BlockMaterials& materials,
                                    InstructionSet set);
   ImplicitBody(ImplicitBody&&) = default;
@@ -122,6 +124,8 @@ class ImplicitBody {
   // Mass of a node, kg; 0 for the second of two joined nodes.
   double mass_kg(int node) const { return mass_[static_cast<std::size_t>(node)]; }
   double damping_time_s() const { return damping_time_; }
+  // Inertia of the nodes divided by their mass, at least 1 (SpringLattice::inertia_scale()).
+  void set_inertia_scale(double scale);
   const LatticeReport& report() const { return report_; }
 
   // Fixes the nodes whose byte is 1, one byte per node, and discards the factor.
@@ -194,9 +198,8 @@ class ImplicitBody {
     for (int axis = 0; axis < 3; ++axis) of[3 * static_cast<std::size_t>(node) + axis] = v[axis];
   }
   void add_cells(const BlockMaterials& materials);
-  void set_damping(const BlockMaterials& materials);
+  void set_damping_time(const BlockMaterials& materials);
   void free_only(Doubles& of) const;
-  double fastest_square();
 
   struct RigidMotion {
     Vector3 centre_m = Vector3::Zero(), velocity_m_per_s = Vector3::Zero(), spin_rad_per_s = Vector3::Zero();
@@ -222,7 +225,7 @@ class ImplicitBody {
   LatticeReport report_;
   const BandKernels* band_;
   const CellKernels* cells_;
-  double damping_time_ = 0.0, cell_size_;
+  double damping_time_ = 0.0, inertia_scale_ = 1.0, cell_size_;
   int size_;  // number of coordinates
   bool has_fixed_nodes_ = false, fixed_moves_ = false;
   Vector3 momentum_ = Vector3::Zero();  // momentum of a free body at the end of the step

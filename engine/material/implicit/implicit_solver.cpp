@@ -49,6 +49,10 @@ ImplicitGroundContacts::ImplicitGroundContacts(int points, double mass_kg)
   impulse_changes_.assign(static_cast<std::size_t>(points), Vector3::Zero());
 }
 
+void ImplicitGroundContacts::scale_inertia(double factor) {
+  for (double* mass : {&mass_, &min_mass_, &max_mass_}) *mass *= factor;
+}
+
 void ImplicitGroundContacts::restore_last_impulses(std::span<GroundContact> contacts,
                                                    std::span<const GridPoint> points, double time_s,
                                                    std::vector<double>& impulses_ns) {
@@ -298,6 +302,15 @@ Result<ImplicitSolver> ImplicitSolver::make(const LatticeMesh& mesh, const std::
   }
   solver.fixing_node_.assign(solver.nearest_.size(), -1);
   return solver;
+}
+
+void ImplicitSolver::set_inertia_scale(double scale) {
+  body_.set_inertia_scale(scale);
+  const double factor = scale / inertia_scale_;
+  inertia_scale_ = scale;
+  ground_contacts_.scale_inertia(factor);
+  contact_inverse_mass_ /= factor;
+  min_inverse_mass_ /= factor;
 }
 
 void ImplicitSolver::fix_nodes(std::span<const std::uint8_t> fixed) {

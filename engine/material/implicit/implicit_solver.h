@@ -59,6 +59,8 @@ struct GridPoint {
 class ImplicitGroundContacts {
  public:
   ImplicitGroundContacts(int points, double mass_kg);
+  // Adapts to a body whose inertia has changed by this factor.
+  void scale_inertia(double factor);
 
   // Gives the contacts their impulses of the last tick, from which the step starts, and sums these impulses
   // by coordinate of the body, N s.
@@ -122,6 +124,9 @@ class ImplicitSolver {
   const LatticeMesh& mesh() const { return body_.mesh(); }
   const LatticeReport& report() const { return body_.report(); }
   const std::vector<Vector3>& rest_m() const { return rest_m_; }
+  // Sets the body's inertia divided by its mass, at least 1. Tell the lattice the new contact_inverse_mass().
+  void set_inertia_scale(double scale);
+
   // Velocity change of a lattice node per impulse in contacts, 1/kg.
   double contact_inverse_mass() const { return contact_inverse_mass_; }
 
@@ -166,7 +171,7 @@ class ImplicitSolver {
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
     body_.visit_state(visit);
-    visit(&contact_inverse_mass_, 1);
+    for (const double* value : {&contact_inverse_mass_, &inertia_scale_}) visit(value, 1);
     for (const Vector3& rest : rest_m_) visit(rest.data(), 3);
   }
   // Visits the additional state of a body on the ground.
@@ -194,7 +199,8 @@ class ImplicitSolver {
   std::vector<double> impulse_;                 // by coordinate of the block, N s: working memory
   ImplicitGroundContacts ground_contacts_;
   double step_s_ = 0.0;
-  double contact_inverse_mass_ = 0.0, min_inverse_mass_ = 0.0;
+  double inertia_scale_ = 1.0;
+  double contact_inverse_mass_ = 0.0, min_inverse_mass_ = 0.0;  // with the scaled inertia
 };
 
 }  // namespace spoonbill

@@ -264,13 +264,12 @@ void damp_further(const LatticeView& view) {
   over_springs(view, forces, [&](const SpringArrays& s, int start, BlockForces(&near)[1]) {
     damp_block(view, s, start, near[0]);
   });
-  damp_volume_further(view);
 }
 
 void row_sums(const LatticeView& view, float* sum) {
   for (int i = 0; i < view.padded_count; ++i) sum[i] = 0.0f;
   // The tangent of a stiffening spring is at most four times its stiffness.
-  const float twice = view.stiffening > 0.0f ? 8.0f : 2.0f;
+  const float twice = view.spring_weight * (view.stiffening > 0.0f ? 8.0f : 2.0f);
   for (const SpringArrays& s : view.springs) {
     const float* __restrict k = s.stiffness;
     for (int start = 0; start < view.padded_count; start += block) {
@@ -301,6 +300,10 @@ inline void update_power_vector(float* __restrict w, const float* __restrict f, 
   for (int i = 0; i < count; ++i) w[i] = (f[i] * scale + sign * noise[i]) * free[i];
 }
 
+inline void multiply(float* __restrict f, float factor, int count) {
+  for (int i = 0; i < count; ++i) f[i] *= factor;
+}
+
 inline void divide_by_mass(float* __restrict f, const float* __restrict inverse_mass, int count) {
   for (int i = 0; i < count; ++i) f[i] *= inverse_mass[i];
 }
@@ -308,6 +311,9 @@ inline void divide_by_mass(float* __restrict f, const float* __restrict inverse_
 // Finishes a power step after the springs have added their part of -K w to the forces.
 float finish_power_step(const LatticeView& view, const float* mass) {
   const int count = view.padded_count;
+  multiply(view.fx, view.spring_weight, count);
+  multiply(view.fy, view.spring_weight, count);
+  multiply(view.fz, view.spring_weight, count);
   subtract_volume_stiffness(view);
   join_seam_forces(view);
   const float before = mass_norm(mass, view.power_x, view.power_y, view.power_z, count);

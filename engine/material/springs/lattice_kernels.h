@@ -71,16 +71,19 @@ struct LatticeView {
   float *dx = nullptr, *dy = nullptr, *dz = nullptr;  // displacement from the rest shape, m
   float *vx = nullptr, *vy = nullptr, *vz = nullptr;  // m/s
   float *fx = nullptr, *fy = nullptr, *fz = nullptr;  // N
-  // Node displacements extrapolated by the damping time at the present velocity: d + tau v, m. Forces
-  // evaluated there are damped: f(x + tau v) is f(x) + tau df/dt, a Voigt element for each spring and cell.
+  // Node displacements extrapolated by the damping time at the present velocity: d + tau v, m. Spring forces
+  // evaluated there are damped: f(x + tau v) is f(x) + tau df/dt, a Voigt element for each spring.
   float *ahead_x = nullptr, *ahead_y = nullptr, *ahead_z = nullptr;
   float *reference_x = nullptr, *reference_y = nullptr,
         *reference_z = nullptr;  // extrapolated displacements at the linearisation, m
   float *moved_x = nullptr, *moved_y = nullptr, *moved_z = nullptr;  // change since the linearisation, m
   float *spring_x = nullptr, *spring_y = nullptr,
         *spring_z = nullptr;            // spring forces at the linearisation, N
-  const float* inverse_mass = nullptr;  // 1/kg; 0 for fixed nodes
-  const float* free_node = nullptr;     // 1 for free nodes, 0 for fixed nodes and padding
+  const float* inverse_mass = nullptr;  // 1 / inertia, 1/kg; 0 for fixed nodes
+  // Weight of the springs' stiffness in power steps and row sums: 1 + 2 tau / h for substeps of h, because
+  // h^2 K + 2 h tau K limits the stable substep of damped springs.
+  float spring_weight = 1.0f;
+  const float* free_node = nullptr;  // 1 for free nodes, 0 for fixed nodes and padding
   // Pairs of nodes that coincide (LatticeMesh::closed). The first of a pair is the representative. Forces
   // on either act on both, and both move together.
   const int* seam = nullptr;
@@ -97,11 +100,10 @@ struct LatticeView {
   const float* inverse_volume = nullptr;     // 1/V0, 1/m^3
   float* rest_volume_sum = nullptr;  // 12 V0 as volume_forces() computes it, so that the rest shape has
                                      // exactly zero strain; changed by reforming
-  const float* further_bulk_damping = nullptr;  // per cell, J s, see damp_further(); null if unused
-  const float* has_cell = nullptr;              // 1 or 0
-  const float* inverse_cell_count = nullptr;    // 1 / the number of cells around a node
-  float* node_dilation = nullptr;               // working memory of flow(): mean J of the cells around a node
-  float* power_x = nullptr;                     // vector of the power iteration
+  const float* has_cell = nullptr;   // 1 or 0
+  const float* inverse_cell_count = nullptr;  // 1 / the number of cells around a node
+  float* node_dilation = nullptr;             // working memory of flow(): mean J of the cells around a node
+  float* power_x = nullptr;                   // vector of the power iteration
   float* power_y = nullptr;
   float* power_z = nullptr;
   const float* power_noise = nullptr;  // added at each step so that no mode vanishes from the vector
@@ -142,17 +144,18 @@ struct LatticeKernels {
   // Adds the first-order change of the spring forces since the linearisation. This function, damp_further()
   // and power_step() need Linearised::tangents.
   void (*spring_forces)(const LatticeView&);
-  // Adds f = -p dV/dx with p = K_v x, x = J - 1, at the extrapolated positions, with the exact volume of
-  // each trilinear cell. For Poisson's ratios below 1/4, K_v is negative and this energy unbounded below;
-  // then p = K_v x / (1 + (x / 0.1)^2), which the springs outweigh. A cell below 0.3 of its volume also
-  // pushes back with crushed_stiffness, because springs cannot tell an inverted cell from a regular one.
+  // Adds f = -p dV/dx with p = K_v x, x = J - 1, with the exact volume of each trilinear cell. Changes of
+  // volume are not damped: the damping of these fast modes would cost ten times the substeps. For Poisson's
+  // ratios below 1/4, K_v is negative and this energy unbounded below; then p = K_v x / (1 + (x / 0.1)^2),
+  // which the springs outweigh. A cell below 0.3 of its volume also pushes back with crushed_stiffness,
+  // because springs cannot tell an inverted cell from a regular one.
   void (*volume_forces)(const LatticeView&);
-  // Adds the damping of springs and cells beyond the damping time of look_ahead(): the force c ((v' - v).n)
-  // n of a spring along n at the linearisation, and the pressure c dJ/dt of a cell at its present volume
-  // rate.
+  // Adds the damping of springs beyond the damping time of look_ahead(): the force c ((v' - v).n) n of a
+  // spring along n at the linearisation.
   void (*damp_further)(const LatticeView&);
-  // Sets v = (v + h (f/m + g)) * decay, after adding the forces of each seam pair.
-  void (*kick)(const LatticeView&, float h_s, float decay, float gx, float gy, float gz);
+  // Sets v = v * decay + h f / m, after adding the forces of each seam pair. The decay does not apply to the
+  // new impulse, so that a body at rest balances its true forces.
+  void (*kick)(const LatticeView&, float h_s, float decay);
   // Caps speeds relative to the mean velocity, sets d += h v and extrapolates. The second node of a seam
   // pair gets the velocity of the first.
   Drifted (*drift)(const LatticeView&, const Drift&);
@@ -167,14 +170,15 @@ struct LatticeKernels {
   // rest length L0 = L00 (1 + q), with e = L / (L00 J^(1/3)) - 1, within the bounds of flow(). At constant
   // strain the stress falls by `fraction` of itself, as in a standard linear solid.
   void (*creep)(const LatticeView&, int direction, const CreepRule&);
-  // Computes Gershgorin's row sums of the stiffness by node: 2 k for a spring, K_v/V0 |g_i| sum |g_j| for a
-  // cell. The largest sum bounds the largest eigenvalue from above; for a whole lattice it is 1.4 to 1.9
-  // times as large.
+  // Computes Gershgorin's row sums of the weighted stiffness by node: 2 k for a spring, K_v/V0 |g_i| sum
+  // |g_j| for a cell. The largest sum bounds the largest eigenvalue from above; for a whole lattice it is 1.4
+  // to 1.9 times as large.
   void (*row_sums)(const LatticeView&, float* sum_n_per_m);
   // Sets rest_volume_sum from the present shape.
   void (*measure_rest_volumes)(const LatticeView&);
-  // Performs one normalised step w <- M^-1 K w of the power iteration, with the linearised K. Returns |M^-1
-  // K w| / |w| in the mass norm, an estimate of the largest omega^2. Overwrites the forces.
+  // Performs one normalised step w <- M^-1 K w of the power iteration, with the linearised K, in which the
+  // springs count spring_weight times. M is the inertia. Returns |M^-1 K w| / |w| in the norm of `mass`, an
+  // estimate of the largest omega^2. Overwrites the forces.
   float (*power_step)(const LatticeView&, const float* mass);
   // Performs linearise_springs() and then power_step() in one pass over the springs, with the same results.
   float (*linearise_with_power_step)(const LatticeView&, Linearised stored, const float* mass);
@@ -202,7 +206,7 @@ void join_seam(const LatticeView& view, float* field);
 void join_seam_forces(const LatticeView& view);
 
 void look_ahead(const LatticeView& view, float tau_s);
-void kick(const LatticeView& view, float h_s, float decay, float gx, float gy, float gz);
+void kick(const LatticeView& view, float h_s, float decay);
 Drifted drift(const LatticeView& view, const Drift& drift);
 void momentum(const LatticeView& view, const float* mass, float sum[4]);
 
@@ -212,17 +216,14 @@ void creep(const LatticeView& view, int direction, const CreepRule& rule);
 // See LatticeKernels::volume_forces.
 void volume_forces(const LatticeView& view);
 
-// Adds the cells' part of LatticeKernels::damp_further.
-void damp_volume_further(const LatticeView& view);
-
 // Sets node_dilation to the mean J of the cells around each node.
 void average_dilations(const LatticeView& view);
 
 // Adds each cell's contribution to the row sums, N/m.
 void add_volume_row_sums(const LatticeView& view, float* sum_n_per_m);
 
-// Subtracts K w from the forces: K is the volume stiffness, linearised at the extrapolated positions, and w
-// the vector of the power iteration.
+// Subtracts K w from the forces: K is the volume stiffness at the present positions, and w the vector of the
+// power iteration.
 void subtract_volume_stiffness(const LatticeView& view);
 
 // See LatticeKernels::measure_rest_volumes.

@@ -10,8 +10,8 @@ inline float max(float a, float b) {
 }
 
 inline void kick_block(float* __restrict v, const float* __restrict f, const float* __restrict inverse_mass,
-                       const float* __restrict free, float h, float decay, float g) {
-  for (int l = 0; l < block; ++l) v[l] = (v[l] + h * (f[l] * inverse_mass[l] + g)) * decay * free[l];
+                       const float* __restrict free, float h, float decay) {
+  for (int l = 0; l < block; ++l) v[l] = (v[l] * decay + h * (f[l] * inverse_mass[l])) * free[l];
 }
 
 // Copies the value of the first node of each seam pair to the second.
@@ -38,14 +38,14 @@ void look_ahead(const LatticeView& view, float tau) {
   for (int i = 0; i < view.padded_count; ++i) view.ahead_z[i] = view.dz[i] + tau * view.vz[i];
 }
 
-void kick(const LatticeView& view, float h, float decay, float gx, float gy, float gz) {
+void kick(const LatticeView& view, float h, float decay) {
   join_seam_forces(view);
   for (int i = 0; i < view.padded_count; i += block) {
     if (view.free_block[i / block] == 0) continue;
     const float *inverse_mass = view.inverse_mass + i, *free = view.free_node + i;
-    kick_block(view.vx + i, view.fx + i, inverse_mass, free, h, decay, gx);
-    kick_block(view.vy + i, view.fy + i, inverse_mass, free, h, decay, gy);
-    kick_block(view.vz + i, view.fz + i, inverse_mass, free, h, decay, gz);
+    kick_block(view.vx + i, view.fx + i, inverse_mass, free, h, decay);
+    kick_block(view.vy + i, view.fy + i, inverse_mass, free, h, decay);
+    kick_block(view.vz + i, view.fz + i, inverse_mass, free, h, decay);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -58,35 +59,11 @@ constexpr int frequency_steps = 300;
 constexpr double crushed_ratio = 8.0;
 constexpr float noise_fraction = 1e-4f;
 
-// Relative difference below which two damping times count as equal.
-constexpr double time_tolerance = 1e-6;
-
 template <class Property>
 bool differ(const LatticeMaterials& materials, const Property& property) {
   return std::any_of(materials.materials.begin(), materials.materials.end(), [&](const Material& material) {
     return property(material) != property(materials.own());
   });
-}
-
-// Returns the square of the pressure wave speed, m^2/s^2: E (1 - nu) / ((1 + nu) (1 - 2 nu)) divided by the
-// density.
-double wave_speed_square(const Material& material) {
-  const double poisson = std::max(material.poissons_ratio, min_spring_poissons_ratio);
-  return material.youngs_modulus_pa * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson)) /
-         material.density_kg_per_m3;
-}
-
-std::vector<double> damping_times_s(const LatticeMaterials& materials, double fastest_frequency) {
-  double fastest_square = 0.0;
-  for (const Material& material : materials.materials) {
-    fastest_square = std::max(fastest_square, wave_speed_square(material));
-  }
-  std::vector<double> times;
-  for (const Material& material : materials.materials) {
-    const double own = fastest_frequency * std::sqrt(wave_speed_square(material) / fastest_square);
-    times.push_back(2.0 * material.damping_ratio / own);
-  }
-  return times;
 }
 
 }  // namespace
@@ -97,7 +74,7 @@ struct SpringLattice::Assembly {
   // One value per node for each direction; it belongs to the spring that starts at the node.
   using BySpring = std::array<std::vector<double>, lattice_direction_count>;
 
-  // Moduli of one material after scaling by the effective Young's modulus.
+  // Moduli of one material.
   struct Stiffness {
     double youngs_modulus_pa, shear_pa, bulk_pa;
   };
@@ -116,7 +93,7 @@ struct SpringLattice::Assembly {
 };
 
 Result<SpringLattice> SpringLattice::make(const LatticeMesh& mesh, const LatticeMaterials& materials,
-                                          double youngs_modulus_pa, InstructionSet set) {
+                                          InstructionSet set) {
   if (const Status status = check_materials(materials); !status.ok()) return status.error();
   for (int axis = 0; axis < 3; ++axis) {
     if (mesh.count[axis] < 2)
@@ -127,14 +104,13 @@ Result<SpringLattice> SpringLattice::make(const LatticeMesh& mesh, const Lattice
   SpringLattice lattice;
   lattice.kernels_ = &kernels_for(set);
   lattice.materials_ = materials;
-  lattice.youngs_modulus_ = youngs_modulus_pa;
   lattice.allocate(mesh);
   Assembly sum(lattice);
   lattice.assemble(sum);
   lattice.kernels_->measure_rest_volumes(lattice.view());
   lattice.fix_nodes(std::vector<std::uint8_t>(static_cast<std::size_t>(mesh.node_count()), 0));
-  lattice.fastest_frequency_ = lattice.measure_frequency();
   lattice.set_damping(sum);
+  lattice.measure_fastest_square();
   return lattice;
 }
 
@@ -197,8 +173,8 @@ void SpringLattice::allocate(const LatticeMesh& mesh) {
   }
 }
 
-// Measures the fastest angular frequency by power iteration at rest.
-float SpringLattice::measure_frequency() {
+// Measures the largest square of a frequency by power iteration at the present shape.
+void SpringLattice::measure_fastest_square() {
   const LatticeView lattice = view();
   for (int n = 0; n < mesh_.node_count(); ++n) {
     const int representative = mesh_.joined(n);
@@ -208,11 +184,94 @@ float SpringLattice::measure_frequency() {
   }
   kernels_->look_ahead(lattice, 0.0f);
   kernels_->linearise_springs(lattice, Linearised::tangents);
-  float square = 0.0f;
   for (int step = 0; step < frequency_steps; ++step) {
-    square = kernels_->power_step(lattice, node_mass_.data());
+    fastest_square_ = kernels_->power_step(lattice, node_mass_.data());
   }
-  return std::sqrt(square);
+}
+
+// Returns a copy with every node free, in the rest shape as it was built, in real time.
+SpringLattice SpringLattice::at_rest() const {
+  SpringLattice copy = *this;
+  for (Floats* a : {&copy.dx_, &copy.dy_, &copy.dz_, &copy.vx_, &copy.vy_, &copy.vz_}) {
+    std::fill(a->begin(), a->end(), 0.0f);
+  }
+  for (std::size_t d = 0; d < lattice_direction_count; ++d) {
+    copy.rest_length_[d] = copy.first_rest_length_[d];
+    std::fill(copy.square_difference_[d].begin(), copy.square_difference_[d].end(), 0.0f);
+  }
+  copy.inertia_scale_ = 1.0f;
+  copy.contact_inverse_mass_ = 0.0f;
+  copy.fix_nodes(std::vector<std::uint8_t>(static_cast<std::size_t>(mesh_.node_count()), 0));
+  return copy;
+}
+
+// Returns the fastest square at rest in real time, with springs weighted for substeps of step_s.
+double SpringLattice::rest_square(double step_s) {
+  const double weight = spring_weight(step_s);
+  for (const auto& [measured_weight, square] : rest_squares_) {
+    if (measured_weight == weight) return square;
+  }
+  SpringLattice copy = at_rest();
+  copy.spring_weight_ = static_cast<float>(weight);
+  copy.measure_fastest_square();
+  rest_squares_.emplace_back(weight, copy.fastest_square());
+  return rest_squares_.back().second;
+}
+
+double SpringLattice::find_inertia_scale(double step_s) {
+  SPOONBILL_ASSERT(step_s > 0.0);
+  const double used = step_s / (2.0 * rest_stability_fraction);
+  return std::max(1.0, used * used * rest_square(step_s));
+}
+
+double SpringLattice::find_real_time_step_s(double longest_s) {
+  SPOONBILL_ASSERT(longest_s > 0.0);
+  // Damping lets the square grow with the number of substeps, so that several attempts may be necessary. Each
+  // assumes that it does not grow, and therefore never takes more substeps than are necessary.
+  constexpr double most_substeps = 1e9;
+  double count = 1.0;
+  while (count < most_substeps) {
+    const double scale = find_inertia_scale(longest_s / count);
+    if (!(scale > 1.0)) break;
+    count = std::max(count + 1.0, std::ceil(count * std::sqrt(scale)));
+  }
+  return longest_s / count;
+}
+
+void SpringLattice::set_inertia(double scale, double step_s) {
+  SPOONBILL_ASSERT(scale >= 1.0 && step_s > 0.0);
+  const auto weight = static_cast<float>(spring_weight(step_s));
+  if (weight != spring_weight_) {
+    SpringLattice copy = at_rest();
+    copy.spring_weight_ = weight;
+    copy.measure_fastest_square();
+    spring_weight_ = weight;
+    fastest_square_ = copy.fastest_square_ / inertia_scale_;
+    power_x_ = copy.power_x_;
+    power_y_ = copy.power_y_;
+    power_z_ = copy.power_z_;
+  }
+  const auto rounded = static_cast<float>(scale);
+  fastest_square_ *= inertia_scale_ / rounded;
+  inertia_scale_ = rounded;
+  for (int n = 0; n < mesh_.node_count(); ++n) {
+    if (inverse_mass_[n] > 0.0f) inverse_mass_[n] = free_inverse_mass(n);
+  }
+}
+
+double SpringLattice::fastest_frequency() const {
+  return std::sqrt(fastest_square());
+}
+
+// A substep h is stable while h^2 (K_v + K_s) + 2 h tau K_s is below 4 M for every mode, with the parts K_v
+// of the cells and K_s of the springs. Of the square q = K_v + (1 + 2 tau / h0) K_s, the springs may have any
+// part; the two cases are q = K_v and q = (1 + 2 tau / h0) K_s.
+double SpringLattice::stable_step_s(double fraction) const {
+  if (!(fastest_square() > 0.0)) return std::numeric_limits<double>::infinity();
+  const double tau = static_cast<double>(step_damping_time_);
+  const double of_cells = 4.0 * fraction * fraction / fastest_square();
+  const double of_springs = of_cells * static_cast<double>(spring_weight_);
+  return std::min(std::sqrt(of_cells), std::sqrt(tau * tau + of_springs) - tau);
 }
 
 LatticeView SpringLattice::view() {
@@ -245,6 +304,7 @@ LatticeView SpringLattice::view() {
   v.spring_y = spring_force_[1].data();
   v.spring_z = spring_force_[2].data();
   v.inverse_mass = inverse_mass_.data();
+  v.spring_weight = spring_weight_;
   v.free_node = free_node_.data();
   v.seam = seam_.data();
   v.seam_count = static_cast<int>(seam_.size() / 2);
@@ -277,7 +337,6 @@ LatticeView SpringLattice::view() {
   v.crushed_stiffness = crushed_.data();
   v.inverse_volume = inverse_volume_.data();
   v.rest_volume_sum = rest_volume_sum_.data();
-  v.further_bulk_damping = data_or_null(further_bulk_damping_);
   v.has_cell = has_cell_.data();
   v.inverse_cell_count = inverse_cell_count_.data();
   v.node_dilation = node_dilation_.data();
@@ -326,16 +385,16 @@ void SpringLattice::set_node_force(int node, const Vector3& force_n) {
 }
 
 const float* SpringLattice::stabilise_strained_nodes(float h_s, float fraction) {
-  kernels_->row_sums(view(), row_sum_.data());
-  // w^2 (h^2 + 2 tau h) <= 4 is equivalent to h <= (2 / w) (sqrt(1 + z^2) - z) with z = tau w / 2.
-  const float by_all = h_s * h_s + 2.0f * damping_time_ * h_s, limit = 4.0f * fraction * fraction / by_all;
+  LatticeView weighted = view();
+  weighted.spring_weight = static_cast<float>(spring_weight(static_cast<double>(h_s)));
+  kernels_->row_sums(weighted, row_sum_.data());
+  const float limit = 4.0f * fraction * fraction / (h_s * h_s);
   for (int i = 0; i < padded_count_; ++i) {
-    float stable = limit / std::max(row_sum_[i], 1e-30f);
-    if (is_damped_further()) stable *= by_all / (by_all + 2.0f * slowest_damping_[i] * h_s);
+    const float stable = limit / std::max(row_sum_[i], 1e-30f);
     stable_inverse_mass_[i] = std::min(inverse_mass_[i], stable);
     if (!(stable < inverse_mass_[i])) continue;
     // The velocity falls so that the momentum stays the same: at the old velocity, the forces could not stop
-    // the larger mass.
+    // the larger inertia.
     const float slower = stable / inverse_mass_[i];
     for (Floats* v : {&vx_, &vy_, &vz_}) (*v)[i] *= slower;
   }
@@ -345,13 +404,10 @@ const float* SpringLattice::stabilise_strained_nodes(float h_s, float fraction) 
 SpringLattice::Assembly::Assembly(const SpringLattice& lattice) {
   const LatticeMaterials& composition = lattice.materials();
   for (const Material& material : composition.materials) {
-    const bool is_own = &material == &composition.own();
-    const double youngs = is_own ? lattice.youngs_modulus_pa()
-                                 : material.youngs_modulus_pa * lattice.youngs_modulus_pa() /
-                                       composition.own().youngs_modulus_pa;
     // Bodies with a Poisson's ratio below this bound are stepped by the implicit solver; their springs are
     // inactive.
     const double poisson = std::max(material.poissons_ratio, min_spring_poissons_ratio);
+    const double youngs = material.youngs_modulus_pa;
     materials.push_back({youngs, shear_modulus(youngs, poisson), bulk_stiffness(youngs, poisson)});
   }
   const std::vector<double> none(static_cast<std::size_t>(lattice.mesh().node_count()), 0.0);
@@ -528,78 +584,29 @@ void SpringLattice::store_flow_and_creep(const Assembly& sum) {
 }
 
 void SpringLattice::set_damping(const Assembly& sum) {
-  if (!materials_.has_several_materials()) {
-    damping_time_ = step_damping_time_ =
-        static_cast<float>(2.0 * material().damping_ratio / fastest_frequency_);
-    return;
-  }
-  const std::vector<double> times_s = damping_times_s(materials_, fastest_frequency());
-  const auto [least, most] = std::minmax_element(times_s.begin(), times_s.end());
-  damping_time_ = step_damping_time_ = static_cast<float>(*least);
-  if (*most - *least > time_tolerance * *most) set_further_damping(sum, times_s);
-}
-
-void SpringLattice::set_further_damping(const Assembly& sum, const std::vector<double>& times_s) {
-  const double least = *std::min_element(times_s.begin(), times_s.end());
+  const auto [least, most] = std::minmax_element(
+      materials_.materials.begin(), materials_.materials.end(),
+      [](const Material& a, const Material& b) { return a.damping_time_s < b.damping_time_s; });
+  damping_time_ = static_cast<float>(least->damping_time_s);
+  step_damping_time_ = static_cast<float>(most->damping_time_s);
+  is_damped_further_ = step_damping_time_ > damping_time_;
+  if (!is_damped_further_) return;
   for (std::size_t d = 0; d < lattice_direction_count; ++d) {
     further_damping_[d].assign(stiffness_[d].size(), 0.0f);
     for (std::size_t n = 0; n < sum.mass.size(); ++n) {
       double damping = 0.0;
-      for (std::size_t m = 0; m < times_s.size(); ++m) {
-        damping += sum.by_material[m][d][n] * (times_s[m] - least);
+      for (std::size_t m = 0; m < sum.by_material.size(); ++m) {
+        damping +=
+            sum.by_material[m][d][n] * (materials_.materials[m].damping_time_s - least->damping_time_s);
       }
       further_damping_[d][n] = static_cast<float>(damping);
     }
   }
-  further_bulk_damping_.assign(bulk_.size(), 0.0f);
-  slowest_damping_.assign(node_mass_.size(), 0.0f);
-  for (int i = 0; i + 1 < mesh_.count[0]; ++i) {
-    for (int j = 0; j + 1 < mesh_.count[1]; ++j) {
-      for (int k = 0; k + 1 < mesh_.count[2]; ++k) {
-        const auto further =
-            static_cast<float>(times_s[materials_.index_of(mesh_.cell_index(i, j, k))] - least);
-        const int first = mesh_.index(i, j, k);
-        // A negative stiffness would drive the motion instead of damping it.
-        further_bulk_damping_[first] = further * std::max(bulk_[first], 0.0f);
-        for (int c = 0; c < 8; ++c) {
-          float& slowest = slowest_damping_[mesh_.index(i + (c >> 2 & 1), j + (c >> 1 & 1), k + (c & 1))];
-          slowest = std::max(slowest, further);
-        }
-      }
-    }
-  }
-  for (std::size_t s = 0; s < seam_.size(); s += 2) {
-    float &first = slowest_damping_[seam_[s]], &second = slowest_damping_[seam_[s + 1]];
-    first = second = std::max(first, second);
-  }
-  step_damping_time_ =
-      static_cast<float>(measure_damping_eigenvalue() / (fastest_frequency() * fastest_frequency()));
-}
-
-// Returns the largest eigenvalue of the damping matrix over the mass, 1/s. A step h is stable while h^2 w^2
-// plus 2 h times this eigenvalue stays below 4. It is measured like the frequency, with the damping of every
-// spring and cell in place of its stiffness.
-double SpringLattice::measure_damping_eigenvalue() {
-  const Floats vector[3] = {power_x_, power_y_, power_z_}, bulk = bulk_;
-  Floats stiffness[lattice_direction_count];
-  for (std::size_t d = 0; d < lattice_direction_count; ++d) {
-    stiffness[d] = stiffness_[d];
-    for (std::size_t n = 0; n < stiffness[d].size(); ++n) {
-      stiffness_[d][n] = damping_time_ * stiffness[d][n] + further_damping_[d][n];
-    }
-  }
-  for (std::size_t n = 0; n < bulk.size(); ++n) bulk_[n] = damping_time_ * bulk[n] + further_bulk_damping_[n];
-  const double root = measure_frequency();
-  bulk_ = bulk;
-  for (std::size_t d = 0; d < lattice_direction_count; ++d) stiffness_[d] = stiffness[d];
-  power_x_ = vector[0];
-  power_y_ = vector[1];
-  power_z_ = vector[2];
-  return root * root;
 }
 
 float SpringLattice::free_inverse_mass(int node) const {
-  return contact_inverse_mass_ > 0.0f ? contact_inverse_mass_ : 1.0f / node_mass_[mesh_.joined(node)];
+  if (contact_inverse_mass_ > 0.0f) return contact_inverse_mass_;
+  return 1.0f / (inertia_scale_ * node_mass_[mesh_.joined(node)]);
 }
 
 void SpringLattice::set_contact_inverse_mass(double inverse_mass_per_kg) {

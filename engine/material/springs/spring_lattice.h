@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/base/containers.h"
@@ -18,16 +19,19 @@
 
 namespace spoonbill {
 
+// Fraction of the stability limit that a substep uses at rest. Strain and flow raise the fastest frequency by
+// 1.2 to 1.6 times; a tick then takes more substeps.
+inline constexpr double rest_stability_fraction = 0.75;
+
 class SpringLattice {
  public:
-  // Builds the lattice at rest. `youngs_modulus_pa` is the effective Young's modulus of the body's own
-  // material, which sculpting may lower; the moduli of its regions scale by the same ratio. Fails on fewer
-  // than 2 nodes in a direction, folded cells and materials outside their ranges.
+  // Builds the lattice at rest, in real time: the inertia of each node is its mass. Fails on fewer than 2
+  // nodes in a direction, folded cells and materials outside their ranges.
   //
   // Cells that share a spring add their stiffness, damping and stiffening to it. The spring flows and
   // creeps as the material that contributes most of its stiffness does.
   static Result<SpringLattice> make(const LatticeMesh& mesh, const LatticeMaterials& materials,
-                                    double youngs_modulus_pa, InstructionSet set);
+                                    InstructionSet set);
 
   const LatticeMesh& mesh() const { return mesh_; }
   const LatticeReport& report() const { return report_; }
@@ -35,19 +39,37 @@ class SpringLattice {
   // Volume of the deformed body, m^3.
   double volume_m3() const;
   double rest_volume_m3() const { return rest_volume_; }
-  double youngs_modulus_pa() const { return youngs_modulus_; }
 
-  // Fastest angular frequency, rad/s: measured at construction and tracked while the lattice deforms.
-  double fastest_frequency() const { return fastest_frequency_; }
-  void set_fastest_frequency(double omega) { fastest_frequency_ = static_cast<float>(omega); }
-  // Voigt damping time of every spring and cell, s. In a body of several materials this is the smallest of
-  // their times; LatticeKernels::damp_further() adds the rest. A material's own time is 2 z / w, where the
-  // frequency w is the lattice's fastest one, scaled by the ratio of the material's pressure wave speed to
-  // the fastest such speed.
+  // Inertia of the nodes divided by their mass, at least 1. A larger inertia lets a tick take fewer substeps.
+  // At rest, every force is the true one; a motion takes sqrt(scale) times as long as the real one ("mass
+  // scaling" in explicit finite element codes, see Olovsson et al. 2005).
+  double inertia_scale() const { return inertia_scale_; }
+  // Sets the inertia scale for substeps of about step_s. Allocates if step_s changes.
+  void set_inertia(double scale, double step_s);
+  // Returns the smallest inertia scale with which a substep of step_s is stable at rest, with a reserve
+  // (rest_stability_fraction). Allocates.
+  double find_inertia_scale(double step_s);
+  // Returns the largest whole fraction of longest_s that is stable in real time, with the same reserve.
+  // Allocates.
+  double find_real_time_step_s(double longest_s);
+
+  // Largest square of an angular frequency, rad^2/s^2, of the lattice with its inertia and its springs
+  // weighted for the step of set_inertia(): measured at rest and tracked while the lattice deforms.
+  double fastest_square() const { return static_cast<double>(fastest_square_); }
+  void set_fastest_square(double square) { fastest_square_ = static_cast<float>(square); }
+  // Bound of the fastest angular frequency of the undamped lattice, rad/s.
+  double fastest_frequency() const;
+  // Returns the largest stable substep, s, at the present strain; `fraction` is the fraction of the stability
+  // limit to use.
+  double stable_step_s(double fraction) const;
+  // Weight of the springs in power steps and row sums for substeps of step_s (LatticeView::spring_weight).
+  double spring_weight(double step_s) const {
+    return 1.0 + 2.0 * static_cast<double>(step_damping_time_) / step_s;
+  }
+  // Damping time of every spring, s. In a body of several materials this is the smallest of their times;
+  // LatticeKernels::damp_further() adds the rest.
   float damping_time_s() const { return damping_time_; }
-  bool is_damped_further() const { return !slowest_damping_.empty(); }
-  // Damping ratio at the fastest frequency that limits the stable step.
-  double damping_ratio() const { return 0.5 * static_cast<double>(step_damping_time_) * fastest_frequency(); }
+  bool is_damped_further() const { return is_damped_further_; }
   const LatticeMaterials& materials() const { return materials_; }
   // Returns the body's own material, without its regions.
   const Material& material() const { return materials_.own(); }
@@ -56,14 +78,16 @@ class SpringLattice {
   bool creeps() const { return creeps_; }
   float cell_size_m() const { return cell_size_; }
 
-  // Sets the inverse mass of every free node in contacts, 1/kg, for a lattice that the implicit solver
-  // moves. 0 restores each node's own mass.
+  // Sets the inverse inertia of every free node in contacts, 1/kg, for a lattice that the implicit solver
+  // moves. 0 restores each node's own inertia.
   void set_contact_inverse_mass(double inverse_mass_per_kg);
+  bool moved_by_solver() const { return contact_inverse_mass_ > 0.0f; }
   // Fixes the nodes whose byte is 1 at their present displacements; one byte per node.
   void fix_nodes(std::span<const std::uint8_t> fixed);
   bool is_fixed(int node) const { return inverse_mass_[node] == 0.0f; }
   bool has_fixed_nodes() const { return fixed_count_ > 0; }
   int fixed_count() const { return fixed_count_; }
+  // 1 / inertia of a node, 1/kg; 0 for a fixed node.
   float inverse_mass(int node) const { return inverse_mass_[node]; }
   // Mass of a node, kg; 0 for the second of two nodes that are joined at the seam.
   float mass(int node) const { return node_mass_[node]; }
@@ -88,10 +112,12 @@ class SpringLattice {
   // Returns a view of the state. Its pointers stay valid until the lattice is moved or destroyed.
   LatticeView view();
   const LatticeKernels& kernels() const { return *kernels_; }
+  // Masses of the nodes, kg, as mass(); of the free nodes only, 0 for fixed ones.
+  const float* masses() const { return node_mass_.data(); }
   const float* free_mass() const { return free_mass_.data(); }
   // Makes a substep of h_s stable at any strain: a node that is too light for its present stiffness gets a
-  // larger mass at the same momentum. Returns the inverse masses to step with, valid until the next call.
-  // `fraction` is the fraction of the stability limit to use.
+  // larger inertia at the same momentum. Returns the inverse inertias to step with, valid until the next
+  // call. `fraction` is the fraction of the stability limit to use.
   const float* stabilise_strained_nodes(float h_s, float fraction);
   const float* applied_force(int axis) const { return applied_[axis].data(); }
   bool has_applied_force() const { return has_applied_force_; }
@@ -111,7 +137,7 @@ class SpringLattice {
   void visit_state(Visitor&& visit) const {
     visit_shape(visit);
     for (const auto* a : {&power_x_, &power_y_, &power_z_}) visit(a->data(), a->size());
-    visit(&fastest_frequency_, 1);
+    for (const float* value : {&fastest_square_, &inertia_scale_}) visit(value, 1);
   }
   std::vector<float> shape() const;
   // Copies the shape into `shape`. Allocates only if the vector has less capacity than a shape of this
@@ -133,9 +159,9 @@ class SpringLattice {
   void store_stiffening(const Assembly& sum);
   void store_flow_and_creep(const Assembly& sum);
   void set_damping(const Assembly& sum);
-  void set_further_damping(const Assembly& sum, const std::vector<double>& times_s);
-  double measure_damping_eigenvalue();
-  float measure_frequency();
+  void measure_fastest_square();
+  double rest_square(double step_s);
+  SpringLattice at_rest() const;
   void find_active_blocks();
   float free_inverse_mass(int node) const;
   // Rest lengths and volumes around a node that reform() is about to set.
@@ -149,11 +175,14 @@ class SpringLattice {
   LatticeMesh mesh_;
   LatticeReport report_;
   const LatticeKernels* kernels_ = nullptr;
-  double total_mass_ = 0.0, rest_volume_ = 0.0, youngs_modulus_ = 0.0;
+  double total_mass_ = 0.0, rest_volume_ = 0.0;
   LatticeMaterials materials_{Material{}};
-  float fastest_frequency_ = 0.0f, damping_time_ = 0.0f, step_damping_time_ = 0.0f, cell_size_ = 0.0f;
+  float fastest_square_ = 0.0f, inertia_scale_ = 1.0f, spring_weight_ = 1.0f, cell_size_ = 0.0f;
+  float damping_time_ = 0.0f, step_damping_time_ = 0.0f;  // shortest and longest damping time, s
   float contact_inverse_mass_ = 0.0f;
-  bool has_applied_force_ = false, flows_ = false, creeps_ = false;
+  bool has_applied_force_ = false, flows_ = false, creeps_ = false, is_damped_further_ = false;
+  std::vector<std::pair<double, double>>
+      rest_squares_;  // spring weight and fastest square at rest, in real time
   int fixed_count_ = 0, padded_count_ = 0;
   std::vector<int> seam_;  // pairs of joined nodes, see LatticeView::seam
   int offset_[lattice_direction_count] = {};
@@ -172,8 +201,6 @@ class SpringLattice {
   Floats yield_[lattice_direction_count], hardening_[lattice_direction_count];
   Floats flow_rate_[lattice_direction_count], relaxing_fraction_[lattice_direction_count];
   Floats relaxation_time_[lattice_direction_count];
-  Floats further_bulk_damping_;
-  Floats slowest_damping_;  // per node: longest damping time of the cells around it, beyond damping_time_, s
   Floats bulk_, crushed_, inverse_volume_, rest_volume_sum_, has_cell_, inverse_cell_count_, node_dilation_;
   Floats row_sum_, stable_inverse_mass_;
   Floats power_x_, power_y_, power_z_, power_noise_;

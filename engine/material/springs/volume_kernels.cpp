@@ -53,25 +53,16 @@ inline Vector rest_vector(const SpringArrays& s, int n) {
   return {s.rest_x[n], s.rest_y[n], s.rest_z[n]};
 }
 
-// Face diagonals at the given displacements; their rest vectors are those of springs.
-inline FaceDiagonals diagonals_at(const LatticeView& view, const float* dx, const float* dy, const float* dz,
-                                  int n) {
+// Present face diagonals; their rest vectors are those of springs.
+inline FaceDiagonals present_diagonals(const LatticeView& view, int n) {
   const SpringArrays& jk = view.springs[view.corner_direction[3]];
   const SpringArrays& ik = view.springs[view.corner_direction[5]];
   const SpringArrays& ij = view.springs[view.corner_direction[6]];
   const int* o = view.corner_offset;
-  const FaceDiagonals moved = field_diagonals(view, dx, dy, dz, n);
+  const FaceDiagonals moved = field_diagonals(view, view.dx, view.dy, view.dz, n);
   return {rest_vector(jk, n + o[4]) + moved.a, rest_vector(jk, n) + moved.b,
           rest_vector(ik, n + o[2]) + moved.c, rest_vector(ij, n) + moved.d,
           rest_vector(ik, n) + moved.e,        rest_vector(ij, n + o[1]) + moved.f};
-}
-
-inline FaceDiagonals present_diagonals(const LatticeView& view, int n) {
-  return diagonals_at(view, view.dx, view.dy, view.dz, n);
-}
-
-inline FaceDiagonals diagonals_ahead(const LatticeView& view, int n) {
-  return diagonals_at(view, view.ahead_x, view.ahead_y, view.ahead_z, n);
 }
 
 // Returns 12 V.
@@ -174,7 +165,7 @@ void add_volume_forces(const LatticeView& view) {
     if (view.active_block[start / block] == 0) continue;
     for (int l = 0; l < block; ++l) {
       const int n = start + l;
-      const FaceDiagonals p = diagonals_ahead(view, n);
+      const FaceDiagonals p = present_diagonals(view, n);
       float dilation = cell_dilation(view, p, n);
       const float beyond = dilation - crushed_dilation, crushed = beyond < 0.0f ? beyond : 0.0f;
       if (softens) {
@@ -196,21 +187,6 @@ void volume_forces(const LatticeView& view) {
     add_volume_forces<true>(view);
   } else {
     add_volume_forces<false>(view);
-  }
-}
-
-void damp_volume_further(const LatticeView& view) {
-  BlockCells cells;
-  for (int start = 0; start < view.padded_count; start += block) {
-    if (view.active_block[start / block] == 0) continue;
-    for (int l = 0; l < block; ++l) {
-      const int n = start + l;
-      const FaceDiagonals gradient = volume_gradient(present_diagonals(view, n));
-      const float rate = volume_rate(view, gradient, view.vx, view.vy, view.vz, n);
-      const float inverse = view.inverse_volume[n] * (1.0f / 12.0f);
-      cells.set(l, -view.further_bulk_damping[n] * inverse * inverse * rate, gradient);
-    }
-    add_corner_forces(view, start, cells);
   }
 }
 
@@ -263,7 +239,7 @@ void subtract_volume_stiffness(const LatticeView& view) {
     if (view.active_block[start / block] == 0) continue;
     for (int l = 0; l < block; ++l) {
       const int n = start + l;
-      const FaceDiagonals p = diagonals_ahead(view, n);
+      const FaceDiagonals p = present_diagonals(view, n);
       const float inverse = view.inverse_volume[n] * (1.0f / 12.0f);
       factor[l] = -volume_tangent(view, p, n) * inverse * inverse;
       gradients.set(l, volume_gradient(p));
