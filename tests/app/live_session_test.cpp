@@ -375,7 +375,7 @@ TEST(LiveSession, AHandleOfBeechThatIsPulledStaysInTheScene) {
     if (!is_fixed) document.scene.planes.clear();
     document.scene.tool.action = ToolAction::pull;
     const Box box = bounding_box(document.scene.bodies[0].surface.net);
-    const int substep_limit = document.scene.tool.iterations * substep_ceiling;
+    const int substep_limit = document.scene.tool.substeps * substep_ceiling;
     Live live(document);
     double farthest_m = 0.0;
     int substeps = 0;
@@ -433,7 +433,7 @@ class LiveRecording : public testing::Test {
         {"command": "place_plane", "point_mm": [20, 0, 0], "normal": [1, 0, 0]},
         {"hold_s": 0.1},
         {"move_to_mm": [50, 6, 0], "over_s": 0.2},
-        {"command": "set_tool", "kind": "sphere", "action": "push", "radius_mm": 7, "iterations": 3},
+        {"command": "set_tool", "kind": "sphere", "action": "push", "radius_mm": 7, "substeps": 3},
         {"hold_s": 0.1},
         {"command": "cancel_stroke"},
         {"move_to_mm": [50, 14, 0], "over_s": 0.2},
