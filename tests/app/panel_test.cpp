@@ -195,6 +195,30 @@ TEST(Panel, LetsBodiesSettleAndSwingAgain) {
   }
 }
 
+TEST(Panel, SaysHowMuchSlowerABodyResponds) {
+  Frame frame(1280, 720);
+  PanelModel model = full_model();
+  frame.draw(model);
+  EXPECT_NE(frame.draw_text(model).find("35 times slower"), std::string::npos);
+  model.inertia_scale = 1.0;
+  model.implicit_nodes = 100;
+  EXPECT_NE(frame.draw_text(model).find("real time, implicit"), std::string::npos);
+}
+
+TEST(Panel, SwitchesRealTime) {
+  PanelModel model = full_model();
+  for (const bool real_time : {true, false}) {
+    const auto requests = click_once(model, 275.0F, 285.0F);
+    ASSERT_EQ(requests.size(), 1U);
+    const auto* command = std::get_if<Command>(&requests[0]);
+    ASSERT_NE(command, nullptr);
+    const auto* set = std::get_if<SetSculpting>(command);
+    ASSERT_NE(set, nullptr);
+    EXPECT_EQ(set->sculpting.real_time, real_time);
+    model.sculpting = set->sculpting;
+  }
+}
+
 TEST(Panel, LetsUnfixedBodiesMoveAndKeepsThemAgain) {
   // Returns the setting that is requested by clicks down the right edge of the panel.
   const auto find_switch = [](const PanelModel& model) -> std::optional<Sculpting> {
