@@ -17,11 +17,11 @@
 namespace spoonbill {
 namespace {
 
-constexpr int block_count = 12, block_iterations = 6;
+constexpr int block_count = 12, block_substeps = 6;
 
 // Repeats the press endlessly.
 struct Hand {
-  Press press = block_press(block_count, block_iterations);
+  Press press = block_press(block_count, block_substeps);
   Simulation simulation = Simulation::make(press.scene, best_instruction_set()).value();
   CouplingState coupling;
   std::size_t next = 0;

@@ -37,10 +37,10 @@ Material clay() {
   clay.youngs_modulus_pa = 1e5;
   clay.poissons_ratio = 0.45;
   clay.density_kg_per_m3 = 1700.0;
-  clay.damping_ratio = 0.05;
+  clay.damping_time_s = 1.1e-5;
   clay.plastic = true;
   clay.yield_strain = 0.005;
-  clay.flow_rate_per_s = 50.0;
+  clay.flow_rate_per_s = 300.0;
   return clay;
 }
 
@@ -50,7 +50,7 @@ Material abs() {
   abs.youngs_modulus_pa = 2e9;
   abs.poissons_ratio = 0.39;
   abs.density_kg_per_m3 = 1040.0;
-  abs.damping_ratio = 0.05;
+  abs.damping_time_s = 1.1e-5;
   return abs;
 }
 
@@ -82,7 +82,7 @@ Result<Press> stiff_press(const std::filesystem::path& recording) {
   return press;
 }
 
-Press block_press(int count, int iterations) {
+Press block_press(int count, int substeps) {
   Press press{Scene{{Body{"block", box_like_tube(), clay(), LatticeRequest{40000, {{count, count, count}}}}},
                     {},
                     Tool{},
@@ -91,7 +91,7 @@ Press block_press(int count, int iterations) {
               {},
               {}};
   press.scene.tool.radius_m = 0.012;
-  press.scene.tool.iterations = iterations;
+  press.scene.tool.substeps = substeps;
   press.scene.sculpting.force_scale = 20.0;
   press.scene.planes.push_back({Vector3(0.15 * edge_m, 0, 0), Vector3::UnitX()});
   press.readings = readings_of_press(0.5 * edge_m, press.scene.tool.radius_m, 0.1 * edge_m);

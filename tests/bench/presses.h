@@ -25,7 +25,7 @@ Result<Press> recorded_press(const std::filesystem::path& recording);
 Result<Press> stiff_press(const std::filesystem::path& recording);
 
 // A block of clay with 60 mm edges and count^3 nodes, fixed at one end. A sphere presses it from above within
-// a second and releases it; each tick takes `iterations` relaxation steps.
-Press block_press(int count, int iterations);
+// a second and releases it; each tick takes `substeps` substeps, unless strain requires more.
+Press block_press(int count, int substeps);
 
 }  // namespace spoonbill

@@ -130,7 +130,7 @@ def live_script(seconds):
         for step in range(10):
             radius = 8 + 0.1 * ((stroke + step) % 3)
             steps.append({"command": "set_tool", "kind": "sphere", "action": "push", "radius_mm": radius,
-                          "iterations": 6})
+                          "substeps": 6})
             steps.append({"move_to_mm": [88, 11.5 - step, 0], "over_s": 0.1})
         steps += [{"move_to_mm": [88, 26, 0], "over_s": 0.5}, {"command": "undo"}, {"hold_s": 0.5}]
     return {"spoonbill_script": 1, "model": str(ROOT / "assets/models/spoon-handle.json"), "steps": steps}

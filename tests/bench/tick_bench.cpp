@@ -1,5 +1,5 @@
 // tick_bench ROUNDS CASE...: plays presses and prints as JSON how long each whole tick with contact took, as
-// the median of the rounds. A case is the file of a recording, stiff:FILE, or block:COUNT:ITERATIONS. Every
+// the median of the rounds. A case is the file of a recording, stiff:FILE, or block:COUNT:SUBSTEPS. Every
 // tick is timed with the steady clock and with the thread's own clock, which stops while another program has
 // the processor.
 #include <time.h>
@@ -71,9 +71,9 @@ bool play(const Press& press, Times& times) {
 }
 
 Result<Press> press_of(const std::string& name) {
-  int count = 0, iterations = 0;
-  if (std::sscanf(name.c_str(), "block:%d:%d", &count, &iterations) == 2) {
-    return block_press(count, iterations);
+  int count = 0, substeps = 0;
+  if (std::sscanf(name.c_str(), "block:%d:%d", &count, &substeps) == 2) {
+    return block_press(count, substeps);
   }
   constexpr std::string_view stiff = "stiff:";
   if (name.starts_with(stiff)) return stiff_press(name.substr(stiff.size()));

@@ -17,8 +17,7 @@ Material elastic_material(double youngs_modulus_pa, double poissons_ratio, doubl
 
 SpringLattice block(const Vector3& size_m, std::array<int, 3> counts, const Material& material,
                     InstructionSet set) {
-  Result<SpringLattice> lattice =
-      SpringLattice::make(box_mesh(size_m, counts), material, material.youngs_modulus_pa, set);
+  Result<SpringLattice> lattice = SpringLattice::make(box_mesh(size_m, counts), material, set);
   EXPECT_TRUE(lattice.ok()) << lattice.error().message;
   return std::move(lattice).value();
 }
@@ -32,12 +31,11 @@ void take_forces(SpringLattice& lattice, float tau_s) {
   kernels.volume_forces(view);
 }
 
-void plain_substep(SpringLattice& lattice, float h_s, const Vector3& g) {
+void plain_substep(SpringLattice& lattice, float h_s) {
   const LatticeView view = lattice.view();
   const LatticeKernels& kernels = lattice.kernels();
   take_forces(lattice, lattice.damping_time_s());
-  kernels.kick(view, h_s, 1.0f, static_cast<float>(g.x()), static_cast<float>(g.y()),
-               static_cast<float>(g.z()));
+  kernels.kick(view, h_s, 1.0f);
   Drift drift;
   drift.h_s = h_s;
   drift.cap_m_per_s = 1e6f;

@@ -16,7 +16,7 @@ SpringLattice block(const Vector3& size_m, std::array<int, 3> counts, const Mate
 void take_forces(SpringLattice& lattice, float tau_s);
 
 // Makes one substep without any tool: forces, kick, drift.
-void plain_substep(SpringLattice& lattice, float h_s, const Vector3& gravity_m_per_s2 = Vector3::Zero());
+void plain_substep(SpringLattice& lattice, float h_s);
 
 struct Momentum {
   Vector3 sum = Vector3::Zero();

@@ -17,7 +17,7 @@ namespace {
 
 Material rubber(double youngs_modulus_pa, double poissons_ratio) {
   Material material = elastic_material(youngs_modulus_pa, poissons_ratio, 1000.0);
-  material.damping_ratio = 0.3;
+  material.damping_time_s = 1e-4;
   return material;
 }
 

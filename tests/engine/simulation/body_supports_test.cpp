@@ -65,7 +65,7 @@ TEST(BodySupports, APulledEndBearsWhatABarSays) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     const double youngs = stepping == Stepping::springs ? 2e4 : 5e6, area = 1e-4, length = 0.06, way = 6e-5;
     Material material = elastic_material(youngs, 0.0, 1000.0);
-    material.damping_ratio = 0.3;
+    material.damping_time_s = 1e-4;
     LoadedBlock bar({0.01, 0.01, length}, {4, 4, 19}, material, stepping);
     bar.support({{block_start, {}}, ramp(block_end, Vector3(0, 0, way), 0.3)});
     for (int tick = 0; tick < 1500; ++tick) bar.tick(100.0);
@@ -86,7 +86,7 @@ TEST(BodySupports, APulledEndBearsWhatABarSays) {
 TEST(BodySupports, MovesItsNodesExactly) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     Material material = elastic_material(stepping == Stepping::springs ? 2e4 : 5e6, 0.3, 1000.0);
-    material.damping_ratio = 0.1;
+    material.damping_time_s = 5e-5;
     LoadedBlock body({0.012, 0.012, 0.04}, {4, 4, 11}, material, stepping);
     const Support shaken = oscillation({{0.0, 0.3}}, Vector3(0.003, 0, 0.001), 8.0);
     body.support({shaken});
@@ -151,7 +151,7 @@ Scene moved_handle() {
   Scene scene = small_handle();
   scene.bodies[0].material = silicone();
   scene.bodies[0].supports = {{{{0.0, 0.1}}, {}}, oscillation({{0.9, 1.0}}, Vector3(0, 0.002, 0), 2.0)};
-  scene.tool.iterations = 2;
+  scene.tool.substeps = 2;
   return scene;
 }
 

@@ -148,7 +148,7 @@ TEST(BoxedBody, RestsOnTheGround) {
     scene.bodies[0].material.plastic = false;
     scene.bodies[0].material.youngs_modulus_pa = youngs_modulus_pa;
     scene.sculpting.gravity_m_per_s2 = {0.0, -9.81, 0.0};
-    scene.sculpting.damping_per_s = 20.0;
+    scene.sculpting.drag_per_s = 120.0;
     scene.ground = Ground{{0.0, -body_tube_m, 0.0}, Vector3::UnitY(), 0.5};
     Simulation simulation = simulate(scene);
     for (int tick = 0; tick < 500; ++tick) simulation.advance(above(0.0, 0.1));
@@ -169,7 +169,7 @@ TEST(BoxedBody, TouchesTheGroundWithItsSkinHoweverItLies) {
     scene.bodies[0].lattice.node_budget = each.nodes;
     scene.bodies[0].material.plastic = false;
     scene.bodies[0].material.youngs_modulus_pa = each.youngs_modulus_pa;
-    scene.sculpting.damping_per_s = 20.0;
+    scene.sculpting.drag_per_s = 120.0;
     scene.ground = Ground{Vector3::Zero(), Vector3(0.6, 0.8, 0.0), 0.5};
     scene.sculpting.gravity_m_per_s2 = -9.81 * scene.ground->normal;
     scene.ground->point_m = gap_m(simulate(scene)) * scene.ground->normal;

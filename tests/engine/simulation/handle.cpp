@@ -40,10 +40,10 @@ Scene small_handle() {
   clay.youngs_modulus_pa = 1e5;
   clay.poissons_ratio = 0.45;
   clay.density_kg_per_m3 = 1700.0;
-  clay.damping_ratio = 0.05;
+  clay.damping_time_s = 1.1e-5;
   clay.plastic = true;
   clay.yield_strain = 0.005;
-  clay.flow_rate_per_s = 50.0;
+  clay.flow_rate_per_s = 300.0;
   scene.tool.radius_m = 0.006;
   return scene;
 }

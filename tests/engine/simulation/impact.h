@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -12,11 +13,17 @@
 
 namespace spoonbill {
 
-// Collision of two bodies without any other influence.
+// Collision of two bodies without any other influence. Both share one inertia scale, with which a substep of
+// a millisecond is stable, so that the masses of both are scaled alike.
 class Impact {
  public:
   Impact(BodyState first, BodyState second)
-      : bodies_{std::move(first), std::move(second)}, pair_(bodies_[0], bodies_[1]) {}
+      : bodies_{std::move(first), std::move(second)}, pair_(bodies_[0], bodies_[1]) {
+    const double step_s = RelaxSettings().time_s;
+    const double scale = std::max(bodies_[0].lattice.find_inertia_scale(step_s),
+                                  bodies_[1].lattice.find_inertia_scale(step_s));
+    for (BodyState& body : bodies_) body.set_inertia(scale, step_s);
+  }
 
   void throw_at(int body, const Vector3& velocity) {
     SpringLattice& lattice = bodies_[body].lattice;

@@ -36,16 +36,16 @@ void LoadedBlock::support(const std::vector<Support>& list) {
   if (core) core->fix_nodes(held);
 }
 
-void LoadedBlock::tick(double damping_per_s, const Vector3& gravity_m_per_s2, GroundContacts* ground) {
+void LoadedBlock::tick(double drag_per_s, const Vector3& gravity_m_per_s2, GroundContacts* ground) {
   const DenormalsFlushed flushed;
-  ImplicitSolver* const active_solver = core ? &*core : nullptr;
-  loads.apply(load_share, lattice, active_solver);
+  ImplicitSolver* const solver = core ? &*core : nullptr;
+  loads.apply(lattice, solver);
   time_s += tick_s;
-  const RelaxedLattice relaxed{&lattice, gravity_m_per_s2, active_solver,
+  const RelaxedLattice relaxed{&lattice, gravity_m_per_s2, solver,
                                supports.begin_tick(lattice, time_s, tick_s)};
   RelaxSettings settings;
   settings.tick = static_cast<std::uint64_t>(std::lround(time_s / tick_s));
-  settings.damping_per_s = damping_per_s;
+  settings.drag_per_s = drag_per_s;
   settings.is_critically_damped = is_critically_damped;
   relax(std::array{relaxed}, settings, {}, nullptr, ground);
 }

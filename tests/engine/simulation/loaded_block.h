@@ -17,20 +17,19 @@ inline const BodyRegion block_start{{0.0, 0.0}}, block_end{{1.0, 1.0}};
 
 class LoadedBlock {
  public:
-  // Puts a corner at the origin; a region's `along` runs along z. Damping lets the block come to rest.
+  // Puts a corner at the origin; a region's `along` runs along z. Drag lets the block come to rest.
   LoadedBlock(const Vector3& size_m, std::array<int, 3> counts, const Material& material, Stepping stepping);
 
   void load(const std::vector<Load>& loads);
   void support(const std::vector<Support>& supports);
 
-  void tick(double damping_per_s, const Vector3& gravity_m_per_s2 = Vector3::Zero(),
+  void tick(double drag_per_s, const Vector3& gravity_m_per_s2 = Vector3::Zero(),
             GroundContacts* ground = nullptr);
 
   SpringLattice lattice;
   std::optional<ImplicitSolver> core;
   BodySupports supports;
   BodyLoads loads;
-  double load_share = 1.0;
   bool is_critically_damped = false;
   double time_s = 0.0;
 

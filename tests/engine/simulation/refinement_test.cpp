@@ -20,8 +20,7 @@ struct Mapped {
 Mapped mapped_handle() {
   const Simulation simulation = simulate(small_handle());
   const SpringLattice& of = simulation.lattice();
-  SpringLattice lattice =
-      SpringLattice::make(of.mesh(), of.material(), of.youngs_modulus_pa(), InstructionSet::baseline).value();
+  SpringLattice lattice = SpringLattice::make(of.mesh(), of.material(), InstructionSet::baseline).value();
   BodyMapping mapping =
       BodyMapping::make(simulation.surface(), simulation.surface(), lattice, {}, InstructionSet::baseline)
           .value();
@@ -69,7 +68,7 @@ void press_slowly(Simulation& simulation, double to_y_m, int ticks) {
 Scene pointed_scene() {
   Scene scene = small_handle();
   scene.tool.kind = ToolKind::point;
-  scene.tool.iterations = 1;
+  scene.tool.substeps = 1;
   return scene;
 }
 

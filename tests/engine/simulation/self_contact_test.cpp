@@ -74,11 +74,16 @@ class Folding {
   Folding(const Body& body, bool is_self_intersecting)
       : body_(make_body_state(body, {}, InstructionSet::baseline).value()),
         self_(body_),
-        meets_itself_(is_self_intersecting) {}
+        meets_itself_(is_self_intersecting) {
+    const double step_s = RelaxSettings().time_s;
+    body_.set_inertia(body_.lattice.find_inertia_scale(step_s), step_s);
+  }
 
-  // Opposite forces along y pull both ends slowly, because of strong damping.
-  void pull_ends_together(double force_n) {
-    damping_per_s_ = 300.0;
+  // Opposite forces along y pull both ends slowly, because of strong drag. They grow with the inertia, so
+  // that the ends always meet after the same time.
+  void pull_ends_together(double force_per_inertia_n) {
+    drag_per_s_ = 300.0;
+    const double force_n = force_per_inertia_n * body_.lattice.inertia_scale();
     visit_ends([&](int node, double side, int nodes) {
       body_.lattice.set_node_force(node, Vector3(0, side * force_n / nodes, 0));
     });
@@ -93,7 +98,7 @@ class Folding {
     contacts_.clear();
     EXPECT_TRUE(!meets_itself_ || self_.add_contacts({0, &body_}, contacts_));
     contacts_.begin();
-    relax(std::array{RelaxedLattice{&body_.lattice}}, {tick_++, 1, 1e-3, damping_per_s_}, {}, &contacts_);
+    relax(std::array{RelaxedLattice{&body_.lattice}}, {tick_++, 1, 1e-3, drag_per_s_}, {}, &contacts_);
     body_.mapping().update(body_.lattice);
     return contacts_.acted(0);
   }
@@ -137,7 +142,7 @@ class Folding {
   BodySelfContact self_;
   BodyContacts contacts_{8192};
   bool meets_itself_;
-  double damping_per_s_ = 0.0;
+  double drag_per_s_ = 0.0;
   std::uint64_t tick_ = 0;
 };
 

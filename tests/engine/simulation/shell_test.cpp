@@ -24,7 +24,7 @@ Material shell_material(double youngs_modulus_pa) {
   material.youngs_modulus_pa = youngs_modulus_pa;
   material.poissons_ratio = 0.35;
   material.density_kg_per_m3 = 1100.0;
-  material.damping_ratio = 0.05;
+  material.damping_time_s = 1.1e-5;
   return material;
 }
 
@@ -108,8 +108,8 @@ TEST(Shell, OfASteadierMaterialBendsAndComesBack) {
   for (const double youngs : {2e5, 2e9}) {
     Scene scene = clay_bowl();
     scene.bodies[0].material = shell_material(youngs);
-    scene.sculpting.damping_per_s = 40.0;
-    scene.tool.iterations = 1;
+    scene.sculpting.drag_per_s = 40.0;
+    scene.tool.substeps = 1;
     Simulation simulation = simulate(scene);
     const double before = bottom_m(simulation);
     double highest = before;
@@ -206,9 +206,9 @@ TEST(Shell, BearsAnotherBody) {
     for (double& y : pillow.net.y) y += floor_m + sign * 0.0045;
     scene.bodies.push_back({"pillow", pillow, shell_material(1e4), {300, {}}});
     scene.sculpting.gravity_m_per_s2 = {0.0, -9.81 * sign, 0.0};
-    scene.sculpting.damping_per_s = 20.0;
+    scene.sculpting.drag_per_s = 20.0;
     Simulation simulation = simulate(scene);
-    for (int tick = 0; tick < 500; ++tick) simulation.advance(at_height(0.3));
+    for (int tick = 0; tick < 1000; ++tick) simulation.advance(at_height(0.3));
     double lowest = 1.0;
     for (const Vector3& node : simulation.lattice(1).positions()) {
       lowest = std::min(lowest, sign * node.y());
@@ -227,11 +227,11 @@ TEST(Shell, RingWeighsOnItsSupportOnce) {
   body.lattice.counts = {25, 2, 5};
   body.supports = {{{{0.0, 0.3}}, {}}};
   scene.sculpting.gravity_m_per_s2 = Vector3(0.0, -9.81, 0.0);
-  scene.sculpting.damping_per_s = 100.0;
+  scene.sculpting.drag_per_s = 60.0;
   for (const double youngs_modulus_pa : {1e5, 2e9}) {
     body.material = shell_material(youngs_modulus_pa);
     Simulation simulation = simulate(scene);
-    for (int tick = 0; tick < 800; ++tick) simulation.advance(at_height(0.1));
+    for (int tick = 0; tick < 1500; ++tick) simulation.advance(at_height(0.1));
     const double weight_n = 9.81 * simulation.lattice().mass_kg();
     // The tolerance covers the remaining motion.
     EXPECT_NEAR(simulation.support_force_n(0).y() / weight_n, 1.0, 0.005) << youngs_modulus_pa;

@@ -78,13 +78,14 @@ TEST(Simulation, ThePolesStayClosed) {
   }
 }
 
-// Few iterations act locally and hardly move the far end; many let the whole body follow.
-TEST(Simulation, IterationsReachFromLocalToGlobal) {
+// With few substeps the inertia is large: a stroke acts locally and hardly moves the far end. With many, the
+// whole body follows.
+TEST(Simulation, SubstepsReachFromLocalToGlobal) {
   double share[2];
   for (const int which : {0, 1}) {
     Scene scene = small_handle();
     scene.planes.push_back({Vector3(0.008, 0, 0), Vector3::UnitX()});
-    scene.tool.iterations = which == 0 ? 1 : 8;
+    scene.tool.substeps = which == 0 ? 1 : 8;
     Simulation simulation = simulate(scene);
     const Surface before = simulation.surface();
     for (int tick = 0; tick < 250; ++tick) simulation.advance(above(0.035, 0.009 - 1.6e-5 * tick));
@@ -98,7 +99,7 @@ TEST(Simulation, IterationsReachFromLocalToGlobal) {
 TEST(Simulation, PullRaisesWhatItGripsUntilReleased) {
   Scene scene = small_handle();
   scene.tool.action = ToolAction::pull;
-  scene.tool.iterations = 1;
+  scene.tool.substeps = 1;
   Simulation simulation = simulate(scene);
   const Surface before = simulation.surface();
   const double touch = 0.0025 + 0.006 - 0.0003;
@@ -119,7 +120,7 @@ TEST(Simulation, PullRaisesWhatItGripsUntilReleased) {
 TEST(Simulation, APointToolPressesADent) {
   Scene scene = small_handle();
   scene.tool.kind = ToolKind::point;
-  scene.tool.iterations = 1;
+  scene.tool.substeps = 1;
   Simulation simulation = simulate(scene);
   Reaction reaction;
   for (int tick = 0; tick < 300; ++tick) reaction = simulation.advance(above(0.03, 0.004 - 1e-5 * tick));
@@ -128,14 +129,14 @@ TEST(Simulation, APointToolPressesADent) {
   EXPECT_LT(evaluate(simulation.surface(), 0.75, 0.03).position_m.y(), 0.0022);
 }
 
-TEST(Simulation, ForceIsThatOfTheRealStiffness) {
+TEST(Simulation, ForceGrowsWithTheStiffness) {
   Scene scene = small_handle();
   scene.bodies[0].material.plastic = false;
   double force[2];
   for (const int which : {0, 1}) {
     scene.bodies[0].material.youngs_modulus_pa = which == 0 ? 1e5 : 2e5;
     Simulation simulation = simulate(scene);
-    EXPECT_LT(simulation.lattice().youngs_modulus_pa(), 1e4);
+    EXPECT_GT(simulation.inertia_scale(), 1.0);
     Reaction reaction;
     for (int tick = 0; tick < 200; ++tick) reaction = simulation.advance(above(0.03, 0.0095 - 1e-5 * tick));
     force[which] = reaction.force_n.y();
@@ -240,16 +241,16 @@ TEST(Simulation, NoSettingBlowsItUp) {
     material.youngs_modulus_pa = std::pow(10.0, random.uniform(0.5, 11.5));
     material.friction = random.uniform(0.0, 1.0);
     material.density_kg_per_m3 = std::pow(10.0, random.uniform(1.0, 4.0));
-    material.damping_ratio = random.uniform(0.0, 2.0);
+    material.damping_time_s = random.uniform(damping_time_range_s.low, damping_time_range_s.high);
     material.plastic = random.integer(0, 1) == 1;
     material.yield_strain = std::pow(10.0, random.uniform(-4.0, -0.5));
-    material.flow_rate_per_s = random.uniform(0.0, 1000.0);
+    material.flow_rate_per_s = random.uniform(0.0, flow_rate_range_per_s.high);
     material.hardening = random.uniform(0.0, 1.0);
     material.stiffening = random.integer(0, 1) == 0 ? 0.0 : random.uniform(-1000.0, 1000.0);
     material.relaxing_fraction = material.plastic ? 0.0 : random.uniform(0.0, 1.0);
     material.relaxation_time_s = std::pow(10.0, random.uniform(-1.0, 3.0));
     material.poissons_ratio = random.uniform(is_linear_elastic(material) ? 0.0 : 0.2, 0.49);
-    scene.sculpting.damping_per_s = random.integer(0, 1) == 0 ? 0.0 : random.uniform(0.0, 1000.0);
+    scene.sculpting.drag_per_s = random.integer(0, 1) == 0 ? 0.0 : random.uniform(0.0, drag_range_per_s.high);
     // Gravity is limited to what the material can bear: a body of a few Pa stretches without end under full
     // gravity.
     const double carried = 0.1 * material.youngs_modulus_pa / (material.density_kg_per_m3 * 0.06);
@@ -257,7 +258,7 @@ TEST(Simulation, NoSettingBlowsItUp) {
     scene.tool.kind = random.integer(0, 3) == 0 ? ToolKind::point : ToolKind::sphere;
     scene.tool.action = static_cast<ToolAction>(random.integer(0, static_cast<int>(tool_actions.size()) - 1));
     scene.tool.radius_m = random.uniform(0.0, 0.03);
-    scene.tool.iterations = random.integer(1, 8);
+    scene.tool.substeps = random.integer(1, 8);
     scene.planes.push_back({Vector3(0.015, 0, 0), Vector3::UnitX()});
     Simulation simulation = simulate(scene);
     const double coupling = random.integer(0, 1) == 0 ? 0.0 : std::pow(10.0, random.uniform(-3.0, 4.0));
@@ -286,12 +287,12 @@ TEST(Simulation, AnUndampedGelStaysNearWhateverHitsIt) {
     material.youngs_modulus_pa = std::pow(10.0, random.uniform(0.0, 3.5));
     material.poissons_ratio = random.uniform(0.25, 0.35);
     material.density_kg_per_m3 = std::pow(10.0, random.uniform(1.0, 4.0));
-    material.damping_ratio = 0.0;
+    material.damping_time_s = 0.0;
     material.plastic = random.integer(0, 1) == 1;
-    scene.sculpting.damping_per_s = 0.0;
+    scene.sculpting.drag_per_s = 0.0;
     scene.tool.action = random.integer(0, 1) == 0 ? ToolAction::push : ToolAction::pull;
     scene.tool.radius_m = random.uniform(0.01, 0.03);
-    scene.tool.iterations = random.integer(1, 8);
+    scene.tool.substeps = random.integer(1, 8);
     scene.planes.push_back({Vector3(0.015, 0, 0), Vector3::UnitX()});
     Simulation simulation = simulate(scene);
     RandomStroke stroke{random};

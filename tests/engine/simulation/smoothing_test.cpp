@@ -52,7 +52,7 @@ double dent_m(const Simulation& simulation, double v) {
 Simulation dented(double v) {
   Scene scene = small_handle();
   scene.tool.kind = ToolKind::point;
-  scene.tool.iterations = 1;
+  scene.tool.substeps = 1;
   const FixingPlane left{Vector3(0.012, 0, 0), Vector3::UnitX()};
   scene.planes = {left, {Vector3(0.048, 0, 0), -Vector3::UnitX()}};
   Simulation simulation = simulate(scene);
@@ -136,9 +136,15 @@ TEST(Smoothing, TheBodyIsAWallToTheToolAndARodStaysARod) {
 class Reform : public ::testing::Test {
  protected:
   Reform()
-      : lattice_(SpringLattice::make(box_mesh({0.012, 0.012, 0.03}, {5, 5, 11}),
-                                     small_handle().bodies[0].material, 100.0, InstructionSet::baseline)
+      : lattice_(SpringLattice::make(box_mesh({0.012, 0.012, 0.03}, {5, 5, 11}), soft_clay(),
+                                     InstructionSet::baseline)
                      .value()) {}
+  // A material so soft that a tick takes a single substep.
+  static Material soft_clay() {
+    Material material = small_handle().bodies[0].material;
+    material.youngs_modulus_pa = 100.0;
+    return material;
+  }
   SpringLattice lattice_;
 };
 

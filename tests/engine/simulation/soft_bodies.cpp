@@ -13,7 +13,7 @@ Material silicone() {
   Material material = small_handle().bodies[0].material;
   material.name = "silicone";
   material.plastic = false;
-  material.damping_ratio = 0.2;
+  material.damping_time_s = 4.4e-5;
   return material;
 }
 

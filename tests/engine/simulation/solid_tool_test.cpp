@@ -193,14 +193,14 @@ TEST(SolidTool, IsExchangedWhileTheSimulationRuns) {
 TEST(SolidTool, ABodyThatIsHeldIsNotMeshedAgainForAnotherSetting) {
   Tool tool = solid(SurfaceSolid{finger()});
   Simulation simulation = simulate(held_handle(tool));
-  tool.iterations = 7;
+  tool.substeps = 7;
   tool.action = ToolAction::pull;
   const Command change = SetTool{tool};
   const std::size_t before = allocation_count();
   EXPECT_TRUE(simulation.apply(change).ok());
   EXPECT_EQ(allocation_count(), before);
-  EXPECT_EQ(simulation.scene().tool.iterations, 7);
-  tool.iterations = 0;
+  EXPECT_EQ(simulation.scene().tool.substeps, 7);
+  tool.substeps = 0;
   EXPECT_FALSE(simulation.apply(SetTool{tool}).ok());
   Tool empty;
   empty.kind = ToolKind::solid;

@@ -20,7 +20,7 @@ Material stiff_material(double youngs_modulus_pa) {
   material.youngs_modulus_pa = youngs_modulus_pa;
   material.poissons_ratio = 0.35;
   material.density_kg_per_m3 = 1020.0;
-  material.damping_ratio = 0.05;
+  material.damping_time_s = 1.1e-5;
   return material;
 }
 
@@ -29,8 +29,8 @@ Scene held_stiff_handle(double youngs_modulus_pa) {
   Scene scene = small_handle();
   scene.bodies[0].material = stiff_material(youngs_modulus_pa);
   scene.planes.push_back({Vector3(plane_x_m, 0, 0), Vector3::UnitX()});
-  scene.tool.iterations = 1;
-  scene.sculpting.damping_per_s = 40.0;
+  scene.tool.substeps = 1;
+  scene.sculpting.drag_per_s = 40.0;
   return scene;
 }
 

@@ -11,7 +11,7 @@ namespace {
 TEST(Tool, SymmetryMirrorsTheStroke) {
   for (const bool symmetric : {true, false}) {
     Scene scene = small_handle();
-    scene.tool.iterations = 1;
+    scene.tool.substeps = 1;
     scene.sculpting.free = true;  // so that a one-sided stroke turns the handle
     scene.tool.radius_m = 0.0015;
     scene.symmetry.on = symmetric;  // about z = 0

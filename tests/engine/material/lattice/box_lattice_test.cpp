@@ -22,7 +22,7 @@ ShellDistance shell_of(const TriangleMesh& mesh) {
 }
 
 SpringLattice make_springs(const LatticeMesh& mesh) {
-  return SpringLattice::make(mesh, material, material.youngs_modulus_pa, InstructionSet::baseline).value();
+  return SpringLattice::make(mesh, material, InstructionSet::baseline).value();
 }
 
 TEST(BoxLattice, OfABoxIsAWholeBlock) {

@@ -170,7 +170,7 @@ TEST(CompositeStatics, OneCellOfABlockBendsAsItsLayersDo) {
     body.set_node_force(block.node_count() - 1 - n, {0.0, -Sandwich::load_n / 4.0, 0.0});
   }
   ImplicitStep step;
-  step.damping_per_s = 40.0;
+  step.drag_per_s = 40.0;
   for (int tick = 0; tick < 1500; ++tick) body.step(step);
   // The cell treats the shear as uniform through the thickness, in faces and core: it shows 1 % of the
   // deflection from shear instead of 2.7 %.
@@ -187,8 +187,7 @@ TEST(CompositeStatics, MassesAreThoseOfTheParts) {
       ImplicitBody::make(block, make_block_materials(materials, fine.count, block.count),
                          InstructionSet::baseline)
           .value();
-  const SpringLattice lattice =
-      SpringLattice::make(fine, materials, light.youngs_modulus_pa, InstructionSet::baseline).value();
+  const SpringLattice lattice = SpringLattice::make(fine, materials, InstructionSet::baseline).value();
   double mass_kg = 0.0, moment = 0.0, lattice_moment = 0.0;
   for (int n = 0; n < body.node_count(); ++n) {
     mass_kg += body.mass_kg(n);
