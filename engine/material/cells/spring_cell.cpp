@@ -180,6 +180,49 @@ AchievedElasticity achieved_elasticity(const CellCorners& corners, const CellSpr
   return compute_elasticity(normal);
 }
 
+double modulus_along(const Vector3& direction, const CellCorners& corners, const CellSprings& springs,
+                     double bulk_stiffness_pa) {
+  constexpr std::array<std::array<int, 2>, 6> pairs = {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}}};
+  const Components tensor = spring_components(corners, springs.volume_m3) * as_vector(springs);
+  const Vector3 unit = direction.normalized();
+  Eigen::Matrix<double, 6, 6> stiffness;  // maps engineering strains to stresses
+  Eigen::Matrix<double, 6, 1> tension;    // uniaxial stress of 1
+  for (int row = 0; row < 6; ++row) {
+    const auto [i, j] = pairs[static_cast<std::size_t>(row)];
+    tension[row] = unit[i] * unit[j];
+    for (int column = 0; column < 6; ++column) {
+      std::array<int, 3> exponent{};
+      for (const int axis : {i, j}) ++exponent[static_cast<std::size_t>(axis)];
+      for (const int axis : pairs[static_cast<std::size_t>(column)])
+        ++exponent[static_cast<std::size_t>(axis)];
+      stiffness(row, column) = tensor_component(tensor, exponent[0], exponent[1], exponent[2]);
+      if (row < 3 && column < 3) stiffness(row, column) += bulk_stiffness_pa;
+    }
+  }
+  return 1.0 / tension.dot(stiffness.ldlt().solve(tension));
+}
+
+CellSprings material_springs(const CellCorners& corners, double youngs_modulus_pa, double poissons_ratio) {
+  constexpr int rounds = 4;
+  constexpr double exact = 1e-9;
+  const double bulk_pa = bulk_stiffness(youngs_modulus_pa, poissons_ratio);
+  const CellSprings fitted = cell_springs(corners, shear_modulus(youngs_modulus_pa, poissons_ratio));
+  if (fitted.misfit < exact) return fitted;
+  Vector3 along_k = Vector3::Zero();
+  for (std::size_t c = 0; c < 8; c += 2) along_k += corners[c + 1] - corners[c];
+  CellSprings scaled = fitted;
+  double factor = 1.0;
+  // The modulus is nearly proportional to the springs, so that the factor converges in few rounds.
+  for (int round = 0; round < rounds; ++round) {
+    factor *= youngs_modulus_pa / modulus_along(along_k, corners, scaled, bulk_pa);
+    if (!(std::abs(factor - 1.0) <= max_spring_correction)) return fitted;
+    for (std::size_t s = 0; s < cell_spring_count; ++s) {
+      scaled.stiffness_n_per_m[s] = factor * fitted.stiffness_n_per_m[s];
+    }
+  }
+  return scaled;
+}
+
 namespace {
 
 // Returns the gradient of cell_volume() with respect to the corners.

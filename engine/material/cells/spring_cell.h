@@ -38,6 +38,17 @@ struct CellSprings {
 // spring, it makes a lattice 2.09 to 2.25 times too stiff.
 CellSprings cell_springs(const CellCorners& corners, double shear_modulus_pa);
 
+// Returns the springs of a cell of a material, as cell_springs() with its shear modulus. Where they miss the
+// elasticity of a distorted cell, all are scaled until the cell, with the volume force, has the material's
+// Young's modulus in tension along k. Cells that need a larger correction than max_spring_correction are too
+// slender, and are left as they are.
+CellSprings material_springs(const CellCorners& corners, double youngs_modulus_pa, double poissons_ratio);
+inline constexpr double max_spring_correction = 0.2;
+
+// Returns Young's modulus of a cell in tension along a direction, Pa.
+double modulus_along(const Vector3& direction, const CellCorners& corners, const CellSprings& springs,
+                     double bulk_stiffness_pa);
+
 // Returns K_v = mu (4 nu - 1) / (1 - 2 nu), Pa: the stiffness of the volume force that changes Poisson's
 // ratio from the springs' 1/4 to nu. Negative for nu < 1/4.
 double bulk_stiffness(double youngs_modulus_pa, double poissons_ratio);

@@ -283,16 +283,40 @@ void row_sums(const LatticeView& view, float* sum) {
   join_seam(view, sum);
 }
 
-inline float mass_norm(const float* mass, const float* x, const float* y, const float* z, int count) {
+// Returns the power of two that brings the largest component to between 1 and 2; 1 if that component is zero
+// or not finite. Products with it are exact, unless they are too small to matter.
+inline float find_norm_scale(const float* x, const float* y, const float* z, int count) {
   alignas(64) float lanes[16] = {};
   for (int start = 0; start < count; start += 16) {
     for (int l = 0; l < 16; ++l) {
       const int i = start + l;
-      lanes[l] += mass[i] * (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
+      const float ax = __builtin_fabsf(x[i]), ay = __builtin_fabsf(y[i]), az = __builtin_fabsf(z[i]);
+      const float xy = ax > ay ? ax : ay, largest = xy > az ? xy : az;
+      lanes[l] = largest > lanes[l] ? largest : lanes[l];
+    }
+  }
+  for (int l = 1; l < 16; ++l) lanes[0] = lanes[l] > lanes[0] ? lanes[l] : lanes[0];
+  constexpr unsigned exponent_bits = 23, largest_exponent = 254;
+  const unsigned exponent = __builtin_bit_cast(unsigned, lanes[0]) >> exponent_bits;
+  if (exponent == 0 || exponent > largest_exponent) return 1.0f;
+  const unsigned inverse = exponent == largest_exponent ? 1 : largest_exponent - exponent;
+  return __builtin_bit_cast(float, inverse << exponent_bits);
+}
+
+// Returns the square root of the sum of mass times square. Squares of the fastest lattices' accelerations
+// would overflow without the scale.
+inline float mass_norm(const float* mass, const float* x, const float* y, const float* z, int count) {
+  const float scale = find_norm_scale(x, y, z, count);
+  alignas(64) float lanes[16] = {};
+  for (int start = 0; start < count; start += 16) {
+    for (int l = 0; l < 16; ++l) {
+      const int i = start + l;
+      const float sx = x[i] * scale, sy = y[i] * scale, sz = z[i] * scale;
+      lanes[l] += mass[i] * (sx * sx + sy * sy + sz * sz);
     }
   }
   for (int l = 1; l < 16; ++l) lanes[0] += lanes[l];
-  return __builtin_sqrtf(lanes[0]);
+  return __builtin_sqrtf(lanes[0]) / scale;
 }
 
 inline void update_power_vector(float* __restrict w, const float* __restrict f, const float* __restrict noise,

@@ -76,7 +76,7 @@ struct SpringLattice::Assembly {
 
   // Moduli of one material.
   struct Stiffness {
-    double youngs_modulus_pa, shear_pa, bulk_pa;
+    double youngs_modulus_pa, poissons_ratio, shear_pa, bulk_pa;
   };
 
   explicit Assembly(const SpringLattice& lattice);
@@ -408,7 +408,7 @@ SpringLattice::Assembly::Assembly(const SpringLattice& lattice) {
     // inactive.
     const double poisson = std::max(material.poissons_ratio, min_spring_poissons_ratio);
     const double youngs = material.youngs_modulus_pa;
-    materials.push_back({youngs, shear_modulus(youngs, poisson), bulk_stiffness(youngs, poisson)});
+    materials.push_back({youngs, poisson, shear_modulus(youngs, poisson), bulk_stiffness(youngs, poisson)});
   }
   const std::vector<double> none(static_cast<std::size_t>(lattice.mesh().node_count()), 0.0);
   mass = cell_count = none;
@@ -449,7 +449,7 @@ void SpringLattice::add_cell(int i, int j, int k, Assembly& sum) {
   const std::size_t composition = materials_.index_of(mesh_.cell_index(i, j, k));
   const Assembly::Stiffness& material = sum.materials[composition];
   const double density = materials_.materials[composition].density_kg_per_m3;
-  const CellSprings springs = cell_springs(corners, material.shear_pa);
+  const CellSprings springs = material_springs(corners, material.youngs_modulus_pa, material.poissons_ratio);
   // Mass and stiffness scale with the same fraction, so a partly filled cell vibrates no faster than a
   // whole one.
   const double fraction = mesh_.cell_fraction(i, j, k), volume_m3 = fraction * springs.volume_m3;

@@ -50,8 +50,8 @@ std::variant<SpringCell, CorotatedCell> make_cell(const CellCorners& corners, co
   if (kind == CellKind::hexahedra) {
     return CorotatedCell(corners, fraction * hexahedron_stiffness(corners, youngs, poisson));
   }
-  return SpringCell(corners, cell_springs(corners, shear_modulus(youngs, poisson)),
-                    bulk_stiffness(youngs, poisson), fraction);
+  return SpringCell(corners, material_springs(corners, youngs, poisson), bulk_stiffness(youngs, poisson),
+                    fraction);
 }
 
 }  // namespace

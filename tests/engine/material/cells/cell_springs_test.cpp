@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
 
 #include "engine/material/cells/spring_cell.h"
 
@@ -55,6 +56,44 @@ TEST(CellSprings, SlenderCellsKeepPositiveSpringsAndReportTheirMisfit) {
   for (const double k : slender.stiffness_n_per_m) EXPECT_GT(k, 0.0);
   EXPECT_GT(slender.misfit, 0.05);
   EXPECT_LT(cell_springs(brick(1e-3, 1e-3, 1e-3), 700.0).misfit, 1e-9);
+}
+
+// A cell at the corner of a square grid that is bent into a circle: its outer corner is nearly flat.
+CellCorners corner_of_round_section() {
+  CellCorners corners = brick(1e-3, 1e-3, 1.5e-3);
+  for (const int c : {6, 7}) {
+    corners[static_cast<std::size_t>(c)].x() -= 0.35e-3;
+    corners[static_cast<std::size_t>(c)].y() -= 0.35e-3;
+  }
+  return corners;
+}
+
+TEST(CellSprings, OfADistortedCellHaveTheMaterialsModulusAlongIt) {
+  const CellCorners corners = corner_of_round_section();
+  for (const double nu : {0.29, 0.37, 0.48, 0.49}) {
+    const double bulk = bulk_stiffness(1e5, nu);
+    const CellSprings fitted = cell_springs(corners, shear_modulus(1e5, nu));
+    EXPECT_GT(fitted.misfit, 0.01);
+    EXPECT_GT(std::abs(modulus_along(Vector3::UnitZ(), corners, fitted, bulk) / 1e5 - 1.0), 1e-3) << nu;
+    const CellSprings scaled = material_springs(corners, 1e5, nu);
+    EXPECT_NEAR(modulus_along(Vector3::UnitZ(), corners, scaled, bulk) / 1e5, 1.0, 1e-3) << nu;
+  }
+}
+
+TEST(CellSprings, OfTooSlenderACellAreNotScaled) {
+  const CellCorners corners = brick(4e-3, 1e-3, 1e-3);
+  EXPECT_EQ(material_springs(corners, 1e5, 0.4).stiffness_n_per_m,
+            cell_springs(corners, shear_modulus(1e5, 0.4)).stiffness_n_per_m);
+}
+
+TEST(CellSprings, TheModulusAlongAnAxisIsTheAchievedOne) {
+  const CellCorners corners = brick(1e-3, 1.4e-3, 1e-3);
+  const CellSprings springs = cell_springs(corners, 700.0);
+  const AchievedElasticity achieved = achieved_elasticity(corners, springs, 500.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double modulus_pa = modulus_along(Vector3::Unit(axis), corners, springs, 500.0);
+    EXPECT_NEAR(modulus_pa / achieved.youngs_modulus_pa[axis], 1.0, 1e-9);
+  }
 }
 
 // The stiffness matrix of one cell, with springs and volume force, has the six rigid motions as its only zero

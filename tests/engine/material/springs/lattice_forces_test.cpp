@@ -249,5 +249,17 @@ TEST(LatticeForces, EveryInstructionSetGivesTheSameBits) {
   }
 }
 
+// The squares of the accelerations of the stiffest, lightest and smallest lattice exceed single precision.
+TEST(LatticeForces, TheFastestLatticeHasAFrequency) {
+  for (const InstructionSet set : available_instruction_sets()) {
+    const auto frequency = [&](double size_m, double youngs_modulus_pa, double density_kg_per_m3) {
+      const Material material = elastic_material(youngs_modulus_pa, 0.3, density_kg_per_m3);
+      return block(Vector3::Constant(size_m), {5, 5, 5}, material, set).fastest_frequency();
+    };
+    const double usual = frequency(4e-3, 1e6, 1e3), fastest = frequency(1e-4, 1e12, 1.0);
+    EXPECT_NEAR(fastest / usual / (40.0 * std::sqrt(1e9)), 1.0, 1e-3) << name_of(set);
+  }
+}
+
 }  // namespace
 }  // namespace spoonbill
