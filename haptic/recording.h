@@ -17,15 +17,16 @@
 // to its own states: without a valid reading the tool only points (button_hover), and a reset of the proxy
 // and the switch of the force are commands.
 //
-// Version 1. Lines are in the order of their ticks. Within a tick the order is: state hash, commands, motion.
-// The state hash is that of the simulation after ticks 0 to tick - 1, before any command of this tick. A
-// motion line covers `ticks` readings from `tick` on. It ends at the next multiple of 100, or earlier before
-// a command or the end, so that the same recording always has the same lines. dx_nm, dy_nm and dz_nm are the
-// differences of DeviceReading::position_nm to the previous reading (before tick 0: the default reading),
-// dq_e9 those of orientation_e9 (x, y, z, w). Each is omitted if all its numbers are zero. `buttons` lists
-// the buttons themselves and is omitted while they do not change. `missed` lists DeviceReading::missed and is
-// omitted if all are zero, as in lock-step and in recordings from before it existed. The hash of the last
-// line is that of the final state.
+// Version 1. In a recording whose document has an old version, the commands are converted with it
+// (old_documents.h); its state hashes are those of the former steps. Lines are in the order of their ticks.
+// Within a tick the order is: state hash, commands, motion. The state hash is that of the simulation after
+// ticks 0 to tick - 1, before any command of this tick. A motion line covers `ticks` readings from `tick` on.
+// It ends at the next multiple of 100, or earlier before a command or the end, so that the same recording
+// always has the same lines. dx_nm, dy_nm and dz_nm are the differences of DeviceReading::position_nm to the
+// previous reading (before tick 0: the default reading), dq_e9 those of orientation_e9 (x, y, z, w). Each is
+// omitted if all its numbers are zero. `buttons` lists the buttons themselves and is omitted while they do
+// not change. `missed` lists DeviceReading::missed and is omitted if all are zero, as in lock-step and in
+// recordings from before it existed. The hash of the last line is that of the final state.
 //
 // device: name, maximum_force_n, maximum_stiffness_n_per_m, maximum_damping_n_s_per_m, workspace_radius_m,
 // position_resolution_m, senses_orientation, actuates_torque. Optional, with the defaults of

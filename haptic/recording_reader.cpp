@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/base/file.h"
+#include "engine/exchange/old_documents.h"
 #include "haptic/recording.h"
 #include "haptic/recording_lines.h"
 
@@ -103,8 +104,9 @@ Result<std::optional<Line>> LineReader::next(std::size_t line_bytes_limit) {
 // Adds the lines after the header to a recording, in order.
 class RecordingBuilder {
  public:
-  RecordingBuilder(Recording& recording, const std::string& source)
-      : recording_(recording), source_(source) {}
+  // `old_commands` converts the commands of a recording whose document is old.
+  RecordingBuilder(Recording& recording, const std::string& source, std::optional<OldCommands> old_commands)
+      : recording_(recording), source_(source), old_commands_(old_commands) {}
 
   Status add_line(const Json& json, std::size_t bytes, std::size_t line_number) {
     FieldReader reader(json, source_ + ": line " + std::to_string(line_number));
@@ -172,6 +174,10 @@ class RecordingBuilder {
     if (!reader.status().ok()) return reader.status();
     TimedCommand command{next_tick(), json, source_ + ": line " + std::to_string(line_number)};
     command.command.erase("tick");
+    if (old_commands_) {
+      if (Status status = old_commands_->convert(command.command, command.origin); !status.ok())
+        return status;
+    }
     if (Status status = check_command(command.command, command.origin); !status.ok()) return status;
     recording_.commands.push_back(std::move(command));
     return {};
@@ -179,17 +185,30 @@ class RecordingBuilder {
 
   Recording& recording_;
   const std::string& source_;
+  std::optional<OldCommands> old_commands_;
   std::size_t command_bytes_ = 0;
 };
 
-Result<RecordingHeader> read_header(const Line& line, const std::string& source) {
+struct ReadHeader {
+  RecordingHeader header;
+  std::optional<OldCommands> old_commands;  // present if the header's document is old
+};
+
+Result<ReadHeader> read_header(const Line& line, const std::string& source) {
   const std::string location = source + ": line 1";
   auto json = parse_json(line.text, location);
   if (!json.ok() && !line.terminated) {
     return Error{json.error().code, location + ": is truncated or not a recording: " + json.error().message};
   }
   if (!json.ok()) return json.error();
-  return header_from_json(json.value(), location);
+  auto header = header_from_json(json.value(), location);
+  if (!header.ok()) return header.error();
+  ReadHeader read{std::move(header).value(), {}};
+  // The conversion of an old document gives the tool as many substeps as it had iterations.
+  if (is_old_document(json.value()["document"])) {
+    read.old_commands.emplace(read.header.document.scene.tool.substeps);
+  }
+  return read;
 }
 
 std::string make_truncation_notice(const std::string& source, const Recording& recording, bool partial_line) {
@@ -207,8 +226,8 @@ Result<Recording> read_recording(std::istream& in, const std::string& source) {
   auto header = read_header(*first.value(), source);
   if (!header.ok()) return header.error();
 
-  Recording recording{std::move(header).value(), {}, {}, {}, {}, 0, {}};
-  RecordingBuilder builder(recording, source);
+  Recording recording{std::move(header->header), {}, {}, {}, {}, 0, {}};
+  RecordingBuilder builder(recording, source, header->old_commands);
   bool partial_line = false;
   for (;;) {
     auto line = lines.next(recording_line_bytes_limit);

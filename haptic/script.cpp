@@ -8,6 +8,7 @@
 #include "engine/base/file.h"
 #include "engine/base/text.h"
 #include "engine/exchange/field_reader.h"
+#include "engine/exchange/old_documents.h"
 #include "engine/simulation/simulation.h"
 
 namespace spoonbill {
@@ -123,6 +124,8 @@ class StepCompiler {
     TimedCommand command{script_.tick_count(), json, source_ + ": steps[" + std::to_string(index) + "]"};
     command.command.erase("note");
     command.command.erase("at_s");
+    failure_ = old_commands_.convert(command.command, command.origin);
+    if (!failure_.ok()) return;
     FieldReader reader(command.command, command.origin);
     reader.text("command");
     failure_ = reader.status();
@@ -137,6 +140,7 @@ class StepCompiler {
   std::string source_;
   HandTarget current_;
   bool started_ = false;
+  OldCommands old_commands_;
   Status failure_;  // first error of a command
 };
 

@@ -17,7 +17,8 @@
 // Steps run one after another; start_mm must be the first motion. Commands and grips take no time and happen
 // at the end of the step before them. A step with "at_s" waits until that time. A move starts and ends at
 // rest (minimum jerk). "turn" and "turn_to" are rotations from the world axes, not from the previous
-// orientation. Times are whole milliseconds.
+// orientation. Times are whole milliseconds. Commands with former fields are converted (old_documents.h), for
+// the iterations of the script's own tool.
 #pragma once
 
 #include <cstdint>

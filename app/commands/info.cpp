@@ -175,8 +175,9 @@ CommandEntry add_info(OptionSet root) {
       root.add_command("info", "Describe a model, recording, script, material or CAD file");
   parser.set_footer(
       "For a model: its size; the degrees, control points and knots of its surfaces; and the lattice of its\n"
-      "simulation: nodes, quality of the cells, mass, effective Young's modulus while sculpting, and the\n"
-      "fraction of the material's elasticity that the lattice achieves along each axis.\n"
+      "simulation: nodes, quality of the cells, mass, how much slower than the real body it responds while\n"
+      "sculpting, the substeps of a tick in real time, and the fraction of the material's elasticity that\n"
+      "the lattice achieves along each axis.\n"
       "Example: spoonbill info assets/models/spoon-handle.json");
   parser
       .add_option("FILE", options->file, "Document, script or material (.json), recording, STEP or IGES file")

@@ -25,6 +25,34 @@ Result<std::unique_ptr<Session>> make_session(const Document& document, const st
   return std::make_unique<Session>(std::move(session).value());
 }
 
+std::string describe_real_time_limit(int substeps) {
+  return "this material needs " + std::to_string(substeps) +
+         " substeps a tick in real time; a live session can take " + std::to_string(live_substeps_limit) +
+         "; replay runs it";
+}
+
+// Switches real time off if a live session cannot run it. Returns the reason, or an empty text.
+std::string limit_real_time(Simulation& simulation) {
+  Sculpting sculpting = simulation.scene().sculpting;
+  const int substeps = simulation.real_time_substeps();
+  if (!sculpting.real_time || substeps <= live_substeps_limit) return {};
+  sculpting.real_time = false;
+  if (Status applied = simulation.apply(SetSculpting{sculpting}); !applied) return applied.error().message;
+  return "real time is off: " + describe_real_time_limit(substeps);
+}
+
+// Returns true for a change that leaves real time on but may need more substeps than the last frame reports.
+bool changes_material_in_real_time(const Request& request, const Sculpting& sculpting) {
+  const auto* command = std::get_if<Command>(&request);
+  return command != nullptr && std::holds_alternative<SetMaterial>(*command) && sculpting.real_time;
+}
+
+bool switches_real_time_on(const Request& request) {
+  const auto* command = std::get_if<Command>(&request);
+  const auto* set = command == nullptr ? nullptr : std::get_if<SetSculpting>(command);
+  return set != nullptr && set->sculpting.real_time;
+}
+
 // Restarts the session from the current shape of its bodies.
 Status restart_session(LentSession& lent, const DeviceSpecification& device, InstructionSet set) {
   auto session = make_session(make_session_document(*lent.session), "the current shape", device, set);
@@ -64,6 +92,7 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const Document& document
   if (!session) return session.error();
   Session& made = *session.value();
   made.reading = *reading;
+  const std::string limit = limit_real_time(made.simulation);
   LiveFrame first;
   write_snapshot(made, first.snapshot);
   write_facts(made, first.facts);
@@ -82,6 +111,7 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const Document& document
   if (const std::string notice = live->loop_->figures().notice; !notice.empty()) {
     live->notices_.add(Notice::Kind::information, notice);
   }
+  if (!limit.empty()) live->notices_.add(Notice::Kind::problem, limit);
   for (const std::string& note : notes) live->notices_.add(Notice::Kind::problem, note);
   return live;
 }
@@ -116,22 +146,37 @@ bool LiveSession::send(LiveCommand command) {
 }
 
 bool LiveSession::ask(Request request) {
+  const LiveFrame& shown = last_frame();
+  const int substeps = shown.snapshot.real_time_substeps;
+  if (switches_real_time_on(request) && substeps > live_substeps_limit) {
+    notices_.add(Notice::Kind::problem, describe_real_time_limit(substeps));
+    return true;
+  }
+  // The substeps of a new material are known only once its lattice is made.
+  if (changes_material_in_real_time(request, shown.facts.sculpting)) {
+    Sculpting sculpting = shown.facts.sculpting;
+    sculpting.real_time = false;
+    notices_.add(Notice::Kind::information, "real time is off, because the material has changed");
+    if (!ask(Command(SetSculpting{sculpting}))) return false;
+  }
   Json json = request_to_json(request);
   return send(QueuedRequest{std::move(request), std::move(json)});
 }
 
 bool LiveSession::open(Document document, std::string source) {
   const InstructionSet set = settings_.instruction_set;
-  return send(QueuedJob{
-      [document = std::move(document), source = std::move(source), device = device_, set](LentSession& lent) {
-        auto session = make_session(document, source, device, set);
-        if (!session) return Status(session.error());
-        lent.session = std::move(session).value();
-        lent.is_new_session = true;
-        lent.is_other_document = true;
-        return Status();
-      },
-      true});
+  return send(QueuedJob{[this, document = std::move(document), source = std::move(source), device = device_,
+                         set](LentSession& lent) {
+                          auto session = make_session(document, source, device, set);
+                          if (!session) return Status(session.error());
+                          const std::string limit = limit_real_time(session.value()->simulation);
+                          if (!limit.empty()) notices_.add(Notice::Kind::problem, limit);
+                          lent.session = std::move(session).value();
+                          lent.is_new_session = true;
+                          lent.is_other_document = true;
+                          return Status();
+                        },
+                        true});
 }
 
 bool LiveSession::start_recording(std::filesystem::path file, const ViewChoice& view,

@@ -11,6 +11,10 @@
 
 namespace spoonbill {
 
+// Largest number of substeps a tick for which a live session runs in real time. A document that needs more is
+// opened with real time off, and a notice says so.
+inline constexpr int live_substeps_limit = 32;
+
 // Settings of a live session.
 struct LiveSettings {
   InstructionSet instruction_set = best_instruction_set();
@@ -30,7 +34,8 @@ class LiveSession {
   ~LiveSession();  // stops the threads after all pending writes
 
   // Queues a request. Requests are applied in order before the next tick. Returns false if the queue is full
-  // because the haptic thread is far behind.
+  // because the haptic thread is far behind. Real time is refused with a notice where a tick would take more
+  // substeps than fit into a millisecond, and a new material switches it off.
   bool ask(Request request);
 
   // Switches the force of the device off at the next tick, ahead of everything that is queued.

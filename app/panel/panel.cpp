@@ -28,7 +28,7 @@ PanelModel make_panel_model(const SessionFacts& facts, const Snapshot& snapshot,
   model.material = facts.material;
   model.region_count = facts.region_count;
   model.mass_kg = facts.mass_kg;
-  model.effective_youngs_modulus_pa = snapshot.bodies.front().material.effective_youngs_modulus_pa;
+  model.inertia_scale = snapshot.bodies.front().material.inertia_scale;
   model.implicit_nodes = snapshot.bodies.front().material.implicit_nodes;
   for (std::size_t b = 0; b < snapshot.bodies.size(); ++b) {
     const double residual_m = snapshot.bodies[b].residual.largest_m;
@@ -149,13 +149,9 @@ bool draw_presets(const PanelModel& model, Material& material) {
   return changed;
 }
 
-// Returns the effective modulus and its solver: explicit springs, which may carry only a part of the
-// stiffness, or the implicit method, which carries all of it.
-std::string effective_modulus_text(const PanelModel& model) {
-  const std::string modulus = modulus_text(model.effective_youngs_modulus_pa);
-  if (model.implicit_nodes > 0) return modulus + "  (implicit)";
-  return modulus + "  (" +
-         percent_text(model.effective_youngs_modulus_pa / model.material.youngs_modulus_pa) + " of E)";
+std::string response_text(const PanelModel& model) {
+  const std::string text = slowness_text(model.inertia_scale);
+  return model.implicit_nodes > 0 ? text + ", implicit" : text;
 }
 
 std::string after_touch_text(const Material& material) {
@@ -189,14 +185,14 @@ void draw_material(const PanelModel& model, const Theme& theme, PanelAnswer& ans
   bool changed = draw_presets(model, material);
   for (const Field<Material>& field : fields_of<Material>) {
     changed |= field_row(field, material, answer.refusal);
-    if (is_field(field, &Material::youngs_modulus_pa)) fact_row("Effective E", effective_modulus_text(model));
   }
-  bool damping_changed = field_row(field_of(&Sculpting::damping_per_s), sculpting, answer.refusal);
-  damping_changed |=
+  bool sculpting_changed = field_row(field_of(&Sculpting::drag_per_s), sculpting, answer.refusal);
+  sculpting_changed |= switch_row("Responds", response_text(model), "real time", sculpting.real_time);
+  sculpting_changed |=
       switch_row("After touch", after_touch_text(material), "no ringing", sculpting.is_critically_damped);
   fact_row("Mass", mass_text(model));
   if (changed) request_material(std::move(material), answer);
-  if (damping_changed) answer.requests.emplace_back(Command(SetSculpting{sculpting}));
+  if (sculpting_changed) answer.requests.emplace_back(Command(SetSculpting{sculpting}));
 }
 
 // Returns the distance by which a surface lags behind its lattice.

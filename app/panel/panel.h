@@ -28,7 +28,7 @@ struct PanelModel {
   int region_count = 0;           // regions of other materials
   std::vector<Material> presets;  // choices of the preset list
 
-  double effective_youngs_modulus_pa = 0.0;
+  double inertia_scale = 1.0;
   int implicit_nodes = 0;  // 0: explicit springs
   double mass_kg = 0.0;    // mass of all bodies
   int plane_count = 0;

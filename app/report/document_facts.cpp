@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "app/report/quantity_text.h"
@@ -176,7 +177,8 @@ Json add_simulated_body(FactSheet& facts, const std::string& suffix, const BodyS
             "", nullptr);
   if (mass) facts.add("Mass" + suffix, grams_text(mass->mass_kg()), "", nullptr);
   facts.add("Lattice mass" + suffix, grams_text(body.material.lattice_mass_kg), "", nullptr);
-  facts.add("Effective E" + suffix, modulus_text(body.material.effective_youngs_modulus_pa), "", nullptr);
+  const double inertia_scale = body.material.inertia_scale;
+  facts.add("Responds" + suffix, slowness_text(inertia_scale), "", nullptr);
   const int implicit = body.material.implicit_nodes;
   facts.add(
       "Solver" + suffix,
@@ -186,7 +188,8 @@ Json add_simulated_body(FactSheet& facts, const std::string& suffix, const BodyS
   Json json = {
       {"lattice", {{"nodes", counts}, {"node_count", lattice.x.size()}, {"fixed_node_count", fixed}}},
       {"lattice_mass_kg", body.material.lattice_mass_kg},
-      {"felt_youngs_modulus_pa", body.material.effective_youngs_modulus_pa},
+      {"inertia_scale", inertia_scale},
+      {"responds_times_slower", std::sqrt(inertia_scale)},
       {"solver", {{"kind", implicit > 0 ? "implicit" : "explicit"}, {"implicit_nodes", implicit}}}};
   if (mass) json["mass_kg"] = mass->mass_kg();
   return json;
@@ -354,6 +357,10 @@ void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot, const std:
   const char* const label = bodies.size() == 1 ? "" : "Mass";
   if (is_whole) facts.add(label, grams_text(mass_kg) + " together", "mass_kg", mass_kg);
   facts.add("", "", "lattice_mass_kg", lattice_mass_kg);
+  facts.add(
+      "Real time",
+      count_text(static_cast<std::size_t>(snapshot.real_time_substeps), "substep", "substeps") + " a tick",
+      "real_time_substeps", snapshot.real_time_substeps);
 }
 
 MapProgress::MapProgress(Console& console, bool is_forced)

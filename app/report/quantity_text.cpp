@@ -75,6 +75,14 @@ std::string percent_text(double fraction) {
   return text.data();
 }
 
+std::string slowness_text(double inertia_scale) {
+  const double times = std::sqrt(inertia_scale);
+  if (times < 1.05) return "real time";
+  std::array<char, 48> text{};
+  std::snprintf(text.data(), text.size(), times < 9.95 ? "%.1f times slower" : "%.0f times slower", times);
+  return text.data();
+}
+
 std::string count_text(std::size_t count, const char* one, const char* many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
 }

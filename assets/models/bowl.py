@@ -34,7 +34,7 @@ def surface():
 
 def main():
     document = {
-        "spoonbill_document": 2,
+        "spoonbill_document": 3,
         "name": "bowl",
         "body": {
             "name": "bowl",
@@ -44,8 +44,8 @@ def main():
             "shell_thickness_mm": 2,
         },
         "fixing_planes": [{"point_mm": [0, 10.5, 0], "normal": [0, -1, 0]}],
-        "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "iterations": 6},
-        "sculpting": {"damping_per_s": 4.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 60.0},
+        "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "substeps": 6},
+        "sculpting": {"drag_per_s": 24.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 60.0},
         "view": {"camera": {"yaw_deg": 30, "pitch_deg": 32}},
     }
     write(document)

@@ -31,7 +31,7 @@ def surface():
 
 def main():
     document = {
-        "spoonbill_document": 2,
+        "spoonbill_document": 3,
         "name": "jelly",
         "body": {
             "name": "jelly",
@@ -39,8 +39,8 @@ def main():
             "material": material("gelatin-10-1"),
             "lattice": {"nodes": [12, 12, 12]},
         },
-        "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "iterations": 4},
-        "sculpting": {"damping_per_s": 8.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 1.0},
+        "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "substeps": 4},
+        "sculpting": {"drag_per_s": 32.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 1.0},
         "view": {
             "camera": {"yaw_deg": 32, "pitch_deg": 24},
             "overlays": {"cells": True, "tool": False},

@@ -61,7 +61,7 @@ def main():
     name = sys.argv[1]
     folder = __file__.rsplit("/", 1)[0]
     document = {
-        "spoonbill_document": 2,
+        "spoonbill_document": 3,
         "name": name + "-block",
         "body": {
             "name": "block",
@@ -70,8 +70,8 @@ def main():
             "lattice": {"node_budget": 4500},
         },
         "fixing_planes": [{"point_mm": [0, -8.5, 0], "normal": [0, 1, 0]}],
-        "tool": {"kind": "sphere", "action": "push", "radius_mm": 5, "iterations": 4},
-        "sculpting": {"damping_per_s": 8.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": FORCE_SCALES[name]},
+        "tool": {"kind": "sphere", "action": "push", "radius_mm": 5, "substeps": 4},
+        "sculpting": {"drag_per_s": 32.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": FORCE_SCALES[name]},
         "view": {
             "camera": {"yaw_deg": 30, "pitch_deg": 30, "target_mm": [0, 2, 0], "distance_mm": 150},
             "ground_mm": -11,

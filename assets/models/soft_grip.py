@@ -32,7 +32,7 @@ def main():
     ]
     document["fixing_planes"] = [{"point_mm": [92.0, 0.0, 0.0], "normal": [-1.0, 0.0, 0.0]}]
     document["tool"]["radius_mm"] = 6.0
-    document["sculpting"] = {"damping_per_s": 20.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 1.0}
+    document["sculpting"] = {"drag_per_s": 120.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 1.0}
     document["view"]["camera"] = {"yaw_deg": 22, "pitch_deg": 16, "target_mm": [50, -4, 0], "distance_mm": 260}
     write(document)
 

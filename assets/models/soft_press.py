@@ -39,7 +39,7 @@ def pillow(length, half_height, half_width, exponent, spans):
 
 def main():
     document = {
-        "spoonbill_document": 2,
+        "spoonbill_document": 3,
         "name": "soft-press",
         "body": {
             "name": "cushion",
@@ -52,7 +52,7 @@ def main():
             "kind": "solid",
             "action": "push",
             "radius_mm": 8,
-            "iterations": 4,
+            "substeps": 4,
             "solid": {"shape": "surface", **pillow(26, 9, 9, 2, 8)},
             "soft": {
                 "material": material("silicone-soft"),
@@ -60,7 +60,7 @@ def main():
                 "grip": {"point_mm": [0, 3, 0], "normal": [0, -1, 0]},
             },
         },
-        "sculpting": {"damping_per_s": 8.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 1.0},
+        "sculpting": {"drag_per_s": 32.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 1.0},
         "view": {
             "camera": {"yaw_deg": 28, "pitch_deg": 14, "target_mm": [0, 8, 0], "distance_mm": 215},
             "ground_mm": -13,

@@ -72,7 +72,7 @@ def main():
             y = -scale * thick * math.copysign(abs(s) ** 0.8, s) - scale * deep * (1 - c * c)
             points[i].append([round(START + along, 6), round(y, 6), round(z, 6)])
     document = {
-        "spoonbill_document": 1,
+        "spoonbill_document": 3,
         "name": "spoon-bowl",
         "body": {
             "name": "bowl",
@@ -81,8 +81,8 @@ def main():
             "lattice": {"node_budget": 2000},
         },
         "fixing_planes": [],
-        "tool": {"kind": "sphere", "action": "push", "radius_mm": 8.0, "iterations": 6},
-        "sculpting": {"damping_per_s": 2.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 60.0},
+        "tool": {"kind": "sphere", "action": "push", "radius_mm": 8.0, "substeps": 6},
+        "sculpting": {"drag_per_s": 12.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 60.0},
         "view": {
             "camera": {"yaw_deg": 30, "pitch_deg": 35, "target_mm": [134, -4, 0], "distance_mm": 170},
             "ground_mm": -46,

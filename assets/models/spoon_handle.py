@@ -66,7 +66,7 @@ def main():
         for i in range(COLUMNS_U):
             points[i].append([round(x, 6), round(scale * half_thickness * y[i], 6), round(scale * half_width * z[i], 6)])
     document = {
-        "spoonbill_document": 2,
+        "spoonbill_document": 3,
         "name": "spoon-handle",
         "body": {
             "name": "handle",
@@ -75,8 +75,8 @@ def main():
             "lattice": {"node_budget": 2000},
         },
         "fixing_planes": [],
-        "tool": {"kind": "sphere", "action": "push", "radius_mm": 8.0, "iterations": 6},
-        "sculpting": {"damping_per_s": 2.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 60.0},
+        "tool": {"kind": "sphere", "action": "push", "radius_mm": 8.0, "substeps": 6},
+        "sculpting": {"drag_per_s": 12.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 60.0},
         "view": {
             "camera": {"yaw_deg": 22, "pitch_deg": 16, "target_mm": [57, -7, 0], "distance_mm": 250},
             "ground_mm": -46,

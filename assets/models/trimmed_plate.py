@@ -71,7 +71,7 @@ def slot():
 
 def main():
     document = {
-        "spoonbill_document": 2,
+        "spoonbill_document": 3,
         "name": "trimmed plate",
         "body": {
             "name": "plate",
@@ -81,8 +81,8 @@ def main():
             "shell_thickness_mm": 3,
         },
         "fixing_planes": [{"point_mm": [15, 0, 0], "normal": [1, 0, 0]}],
-        "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "iterations": 6},
-        "sculpting": {"damping_per_s": 4.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 60.0},
+        "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "substeps": 6},
+        "sculpting": {"drag_per_s": 24.0, "gravity_m_per_s2": [0.0, 0.0, 0.0], "force_scale": 60.0},
         "view": {"camera": {"yaw_deg": 30, "pitch_deg": 40}},
     }
     write(document)

@@ -51,14 +51,6 @@ struct FieldSlider {
   bool logarithmic = false;
 };
 
-// An alternative name that files may use instead of the field's. The number under it is `factor` times the
-// field's value.
-struct FieldAlias {
-  const char* name = nullptr;
-  double factor = 1.0;
-  const char* help = "";
-};
-
 // Returns the range with its ends converted to int.
 constexpr Range<int> whole(Range<double> range) {
   return {static_cast<int>(range.low), static_cast<int>(range.high)};
@@ -80,7 +72,6 @@ struct FieldForm {
   // Name of an earlier optional field, the partner. If the partner is given, this field is required;
   // otherwise this field is unknown.
   const char* partner = nullptr;
-  FieldAlias alias = {};
   FieldSlider slider = {};
   std::span<const char* const> choices = {};  // names of an enumeration's values, in order
 };
@@ -175,11 +166,6 @@ struct Field {
   constexpr Field with_partner(const char* name) const {
     Field field = *this;
     field.form.partner = name;
-    return field;
-  }
-  constexpr Field with_alias(FieldAlias alias) const {
-    Field field = *this;
-    field.form.alias = alias;
     return field;
   }
   constexpr Field with_slider(FieldSlider slider) const {

@@ -11,6 +11,7 @@
 #include "engine/base/file.h"
 #include "engine/exchange/field_json.h"
 #include "engine/exchange/field_reader.h"
+#include "engine/exchange/old_documents.h"
 #include "engine/exchange/scene_json.h"
 #include "engine/exchange/surface_json.h"
 
@@ -205,9 +206,8 @@ void add_content(const RefineKnots& command, Json& json) {
   add_body_index(command.body, json);
 }
 
-}  // namespace
-
-Result<Document> document_from_json(const Json& json, const std::string& source) {
+// Reads a document that has the current fields, of any version.
+Result<Document> read_current_fields(const Json& json, const std::string& source) {
   FieldReader reader(json, source);
   const int version = reader.version("spoonbill_document", {oldest_document_version, document_version});
   std::string name = reader.text("name");
@@ -228,6 +228,18 @@ Result<Document> document_from_json(const Json& json, const std::string& source)
   return Document{std::move(name),
                   Scene{*std::move(bodies), std::move(planes), tool, sculpting, symmetry, ground},
                   std::move(view)};
+}
+
+}  // namespace
+
+Result<Document> document_from_json(const Json& json, const std::string& source) {
+  FieldReader reader(json, source);
+  reader.version("spoonbill_document", {oldest_document_version, document_version});
+  if (!reader.status().ok()) return reader.status().error();
+  if (!is_old_document(json)) return read_current_fields(json, source);
+  const auto converted = convert_old_document(json, source);
+  if (!converted.ok()) return converted.error();
+  return read_current_fields(converted.value(), source);
 }
 
 Json document_to_json(const Document& document) {
@@ -292,6 +304,8 @@ Json material_to_json(const Material& material) {
 Result<Material> read_material(const std::filesystem::path& file) {
   auto json = read_json(file, material_bytes_limit);
   if (!json.ok()) return json.error();
+  const Status converted = convert_old_material(json.value(), file.string());
+  if (!converted.ok()) return converted.error();
   return material_from_json(json.value(), file.string());
 }
 

@@ -2,7 +2,7 @@
 // human-readable JSON with lengths in mm. Fields marked "optional" may be missing; the value after the mark
 // is the default.
 //
-//   {"spoonbill_document": 2,
+//   {"spoonbill_document": 3,
 //    "name": "spoon handle",
 //    "body": {
 //      "name": "handle",
@@ -13,9 +13,8 @@
 //        "trims": [{"degree": 1, "periodic": false, "knots": [...],      optional, the whole surface;
 //          "control_points_uv": [[u, v], ...]}, ...]},           closed curves in its domain (trim_loop.h)
 //      "material": {"name": "clay", "source": "...", "youngs_modulus_pa": 2e5, "poissons_ratio": 0.45,
-//        "density_kg_per_m3": 1700, "damping_ratio": 0.1, "plastic": true, "yield_strain": 0.02,
-//        "flow_rate_per_s": 40,                                  "loss_factor": 0.2 may replace a
-//                                                                damping ratio of half its value
+//        "density_kg_per_m3": 1700, "damping_time_s": 2e-5, "plastic": true, "yield_strain": 0.02,
+//        "flow_rate_per_s": 240,
 //        "hardening": 0.1, "stiffening": 2, "friction": 0.3,     each optional, 0
 //        "relaxing_share": 0.5, "relaxation_time_s": 30},        optional, no creep
 //      "lattice": {"node_budget": 2000,                          or "nodes": [4, 8, 60]
@@ -34,13 +33,14 @@
 //    "other_bodies": [{"name": ...}, ...],                       optional; each as "body", at most 999; a
 //                                                              simulation has at most 8 bodies
 //    "fixing_planes": [{"point_mm": [20, 0, 0], "normal": [1, 0, 0]}],    optional
-//    "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "iterations": 6,
+//    "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "substeps": 6,
 //      "solid": {"shape": "box", "half_extents_mm": [4, 3, 10]},  of kind solid; see below
 //      "soft": {"material": {...}, "lattice": {...},              optional, rigid
 //        "grip": {"point_mm": [0, 1, 0], "normal": [0, -1, 0]}}},   in the tool's frame
-//    "sculpting": {"damping_per_s": 4, "gravity_m_per_s2": [0, 0, 0], "force_scale": 1,
+//    "sculpting": {"drag_per_s": 24, "gravity_m_per_s2": [0, 0, 0], "force_scale": 1,
 //      "settles": true,                                          optional, false: oscillates
-//      "free": false},                     optional, false: a body that nothing fixes keeps its place
+//      "free": false,                      optional, false: a body that nothing fixes keeps its place
+//      "real_time": false},                                      optional, false: bodies respond slower
 //    "ground": {"point_mm": [0, 0, 0], "normal": [0, 1, 0], "friction": 0.5},       optional
 //    "symmetry": {"on": true, "point_mm": [0, 0, 0], "normal": [0, 0, 1]},          optional
 //    "view": {...}}                                              optional
@@ -57,11 +57,12 @@
 // surface except trims. A soft tool is a surface or a closed mesh; its "nodes" count along x, y and z, as in
 // LatticeRequest (body.h). implicit_shapes.h and triangle_mesh.h define the shapes.
 //
-// Version 1, which had neither trims nor solids, is read too; assets/schemas/document.schema.json describes
-// both versions. Control points are in the world frame, a tool's shape in the frame of the hand. The headers
-// of engine/scene define the ranges; knots are from -1e6 to 1e6, and unequal ones are at least 1e-9 of the
-// domain apart. A length is a number of millimetres, or a decimal in quotes where no double of millimetres
-// reads back to the same bits of metres (length_to_json()). Normals are scaled to unit length.
+// Versions 1 and 2 are read too: old_documents.h converts their constants, and version 1 had neither trims
+// nor solids. assets/schemas/document.schema.json describes all three. Control points are in the world frame,
+// a tool's shape in the frame of the hand. The headers of engine/scene define the ranges; knots are from -1e6
+// to 1e6, and unequal ones are at least 1e-9 of the domain apart. A length is a number of millimetres, or a
+// decimal in quotes where no double of millimetres reads back to the same bits of metres (length_to_json()).
+// Normals are scaled to unit length.
 #pragma once
 
 #include <filesystem>
@@ -74,7 +75,7 @@
 
 namespace spoonbill {
 
-inline constexpr int document_version = 2;         // version that write_document() writes
+inline constexpr int document_version = 3;         // version that write_document() writes
 inline constexpr int oldest_document_version = 1;  // oldest version that can be read
 
 // Content of a document file. `view` belongs to the program that draws (camera, overlays) and is written as
@@ -106,18 +107,18 @@ Status write_document(const Document& document, const std::filesystem::path& fil
 // Convert between JSON and a single material, the content of a file in assets/materials.
 Result<Material> material_from_json(const Json& json, const std::string& source);
 Json material_to_json(const Material& material);
-// Reads a material of at most 1 MiB.
+// Reads a material of at most 1 MiB; one with the former fields is converted (old_documents.h).
 Result<Material> read_material(const std::filesystem::path& file);
 
 // Convert between JSON and a command of the simulation. Every field is required unless noted; the fields of
 // tool, material and sculpting are those of documents:
 //   {"command": "place_plane", "point_mm": [x, y, z], "normal": [x, y, z]}
 //   {"command": "remove_planes"}
-//   {"command": "set_tool", "kind", "action", "radius_mm", "iterations", and for a solid "solid", "soft"}
+//   {"command": "set_tool", "kind", "action", "radius_mm", "substeps", and for a solid "solid", "soft"}
 //   {"command": "keep_shape"}
 //   {"command": "set_material", "name", "source", "youngs_modulus_pa", ..., and optionally "body": 1}
-//   {"command": "set_sculpting", "damping_per_s", "gravity_m_per_s2", "force_scale", optionally "settles",
-//   "free"}
+//   {"command": "set_sculpting", "drag_per_s", "gravity_m_per_s2", "force_scale", optionally "settles",
+//   "free", "real_time"}
 //   {"command": "set_symmetry", "on", "point_mm", "normal"}
 //   {"command": "reset_proxy"}
 //   {"command": "lift_tool"}

@@ -18,18 +18,7 @@ void read_value(FieldReader& reader, const FieldForm& form, Range<double>, bool&
 }
 
 void read_value(FieldReader& reader, const FieldForm& form, Range<double> range, double& value) {
-  const FieldAlias& alias = form.alias;
-  if (alias.name == nullptr || !reader.has(alias.name)) {
-    value =
-        form.unit == FieldUnit::metre ? reader.length_m(form.name, range) : reader.number(form.name, range);
-    return;
-  }
-  if (reader.has(form.name)) {
-    reader.refuse(alias.name, "is another name for " + std::string(form.name) + "; leave one of them out",
-                  ErrorCode::duplicate);
-    reader.ignore(form.name);
-  }
-  value = reader.number(alias.name, {alias.factor * range.low, alias.factor * range.high}) / alias.factor;
+  value = form.unit == FieldUnit::metre ? reader.length_m(form.name, range) : reader.number(form.name, range);
 }
 
 void read_value(FieldReader& reader, const FieldForm& form, Range<double> range, int& value) {

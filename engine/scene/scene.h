@@ -16,8 +16,8 @@
 
 namespace spoonbill {
 
-// Settings by which sculpting deviates from real behaviour: drag, slower responses, no gravity by default, and
-// scaled forces.
+// Settings by which sculpting deviates from real behaviour: drag, slower responses, no gravity by default,
+// and scaled forces.
 struct Sculpting {
   double drag_per_s = 24.0;  // damping of all motion, proportional to mass; leaves static forces unchanged
   Vector3 gravity_m_per_s2 = Vector3::Zero();

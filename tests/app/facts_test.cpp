@@ -37,7 +37,9 @@ TEST(Info, TellsOfAModel) {
   EXPECT_EQ(facts["surfaces"][0]["u"]["periodic"], true);
   EXPECT_GT(facts["lattice"]["node_count"], 100);
   EXPECT_GT(facts["mass_kg"], 0.0);
-  EXPECT_GT(facts["felt_youngs_modulus_pa"], 0.0);
+  EXPECT_GE(facts["inertia_scale"], 1.0);
+  EXPECT_DOUBLE_EQ(facts["responds_times_slower"], std::sqrt(facts["inertia_scale"].get<double>()));
+  EXPECT_GE(facts["real_time_substeps"], 1);
   EXPECT_NE(run({"info", place.text("model.json")}).out.find("Size"), std::string::npos);
 }
 

@@ -133,6 +133,57 @@ TEST(LiveSession, ARefusedRequestIsSaidAndChangesNothing) {
   EXPECT_NE(live->frame().facts.material.poissons_ratio, 0.7);
 }
 
+// Returns a handle that springs step, of this stiffness.
+Document handle_of_stiffness(double youngs_modulus_pa, bool real_time) {
+  Document document = held_handle();
+  document.scene.bodies[0].material.plastic = true;
+  document.scene.bodies[0].material.youngs_modulus_pa = youngs_modulus_pa;
+  document.scene.sculpting.real_time = real_time;
+  return document;
+}
+
+TEST(LiveSession, RunsInRealTimeWhereATickHasTheTime) {
+  Live live(handle_of_stiffness(1e3, false));
+  const LiveFrame& first = live->frame();
+  ASSERT_LE(first.snapshot.real_time_substeps, live_substeps_limit);
+  Sculpting sculpting = first.facts.sculpting;
+  sculpting.real_time = true;
+  ASSERT_TRUE(live->ask(Command(SetSculpting{sculpting})));
+  EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) {
+    return frame.facts.sculpting.real_time && frame.snapshot.bodies[0].material.inertia_scale == 1.0;
+  }));
+  // A new material may need more substeps.
+  Material stiffer = first.facts.material;
+  stiffer.youngs_modulus_pa = 1e8;
+  ASSERT_TRUE(live->ask(Command(SetMaterial{stiffer})));
+  EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) {
+    return frame.facts.material.youngs_modulus_pa == 1e8 && !frame.facts.sculpting.real_time;
+  }));
+}
+
+TEST(LiveSession, RefusesRealTimeThatATickHasNoTimeFor) {
+  Live live(handle_of_stiffness(1e8, false));
+  Sculpting sculpting = live->frame().facts.sculpting;
+  sculpting.real_time = true;
+  live->consume_notices();
+  ASSERT_TRUE(live->ask(Command(SetSculpting{sculpting})));
+  const std::vector<Notice> notices = live->consume_notices();
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_EQ(notices[0].text, "this material needs " +
+                                 std::to_string(live->last_frame().snapshot.real_time_substeps) +
+                                 " substeps a tick in real time; a live session can take 32; replay runs it");
+  wait_ticks(*live, 10);
+  EXPECT_FALSE(live->frame().facts.sculpting.real_time);
+}
+
+TEST(LiveSession, OpensADocumentThatNeedsTooManySubstepsWithRealTimeOff) {
+  Live live(handle_of_stiffness(1e8, true));
+  EXPECT_FALSE(live->frame().facts.sculpting.real_time);
+  const std::vector<Notice> notices = live->consume_notices();
+  const auto is_off = [](const Notice& notice) { return notice.text.starts_with("real time is off: "); };
+  EXPECT_EQ(std::count_if(notices.begin(), notices.end(), is_off), 1);
+}
+
 TEST(LiveSession, SavesWhatTheShapeIsNow) {
   const Workplace place;
   Live live(held_handle());
@@ -375,7 +426,7 @@ TEST(LiveSession, AHandleOfBeechThatIsPulledStaysInTheScene) {
     if (!is_fixed) document.scene.planes.clear();
     document.scene.tool.action = ToolAction::pull;
     const Box box = bounding_box(document.scene.bodies[0].surface.net);
-    const int substep_limit = document.scene.tool.iterations * substep_ceiling;
+    const int substep_limit = document.scene.tool.substeps * substep_ceiling;
     Live live(document);
     double farthest_m = 0.0;
     int substeps = 0;
@@ -433,7 +484,7 @@ class LiveRecording : public testing::Test {
         {"command": "place_plane", "point_mm": [20, 0, 0], "normal": [1, 0, 0]},
         {"hold_s": 0.1},
         {"move_to_mm": [50, 6, 0], "over_s": 0.2},
-        {"command": "set_tool", "kind": "sphere", "action": "push", "radius_mm": 7, "iterations": 3},
+        {"command": "set_tool", "kind": "sphere", "action": "push", "radius_mm": 7, "substeps": 3},
         {"hold_s": 0.1},
         {"command": "cancel_stroke"},
         {"move_to_mm": [50, 14, 0], "over_s": 0.2},

@@ -26,9 +26,9 @@ PanelModel full_model() {
   model.title = "A spoon handle with a long name";
   model.time_s = 123.45;
   model.can_undo = model.can_redo = true;
-  model.material = {"modelling-clay", "test", 2e5, 0.45, 1700.0, 0.1, true, 0.01, 50.0};
+  model.material = {"modelling-clay", "test", 2e5, 0.45, 1700.0, 2e-5, true, 0.01, 300.0};
   model.presets = {model.material};
-  model.effective_youngs_modulus_pa = 163.0;
+  model.inertia_scale = 1225.0;
   model.mass_kg = 1.2345;
   model.fixed_node_count = 39999;
   model.node_count = 40000;
@@ -190,7 +190,31 @@ TEST(Panel, LetsBodiesSettleAndSwingAgain) {
     const auto* set = std::get_if<SetSculpting>(command);
     ASSERT_NE(set, nullptr);
     EXPECT_EQ(set->sculpting.is_critically_damped, is_critically_damped);
-    EXPECT_EQ(set->sculpting.damping_per_s, model.sculpting.damping_per_s);
+    EXPECT_EQ(set->sculpting.drag_per_s, model.sculpting.drag_per_s);
+    model.sculpting = set->sculpting;
+  }
+}
+
+TEST(Panel, SaysHowMuchSlowerABodyResponds) {
+  Frame frame(1280, 720);
+  PanelModel model = full_model();
+  frame.draw(model);
+  EXPECT_NE(frame.draw_text(model).find("35 times slower"), std::string::npos);
+  model.inertia_scale = 1.0;
+  model.implicit_nodes = 100;
+  EXPECT_NE(frame.draw_text(model).find("real time, implicit"), std::string::npos);
+}
+
+TEST(Panel, SwitchesRealTime) {
+  PanelModel model = full_model();
+  for (const bool real_time : {true, false}) {
+    const auto requests = click_once(model, 275.0F, 285.0F);
+    ASSERT_EQ(requests.size(), 1U);
+    const auto* command = std::get_if<Command>(&requests[0]);
+    ASSERT_NE(command, nullptr);
+    const auto* set = std::get_if<SetSculpting>(command);
+    ASSERT_NE(set, nullptr);
+    EXPECT_EQ(set->sculpting.real_time, real_time);
     model.sculpting = set->sculpting;
   }
 }
@@ -215,7 +239,7 @@ TEST(Panel, LetsUnfixedBodiesMoveAndKeepsThemAgain) {
     ASSERT_TRUE(sculpting);
     EXPECT_EQ(sculpting->free, is_free);
     EXPECT_EQ(sculpting->is_critically_damped, model.sculpting.is_critically_damped);
-    EXPECT_EQ(sculpting->damping_per_s, model.sculpting.damping_per_s);
+    EXPECT_EQ(sculpting->drag_per_s, model.sculpting.drag_per_s);
     EXPECT_EQ(sculpting->force_scale, model.sculpting.force_scale);
     model.sculpting = *sculpting;
   }

@@ -40,7 +40,7 @@ Material any_material(Random& random) {
   material.name = material.source = "random";
   material.youngs_modulus_pa = random.log_uniform(youngs_modulus_range_pa.low, youngs_modulus_range_pa.high);
   material.density_kg_per_m3 = random.log_uniform(density_range_kg_per_m3.low, density_range_kg_per_m3.high);
-  material.damping_ratio = random.uniform(damping_ratio_range);
+  material.damping_time_s = random.uniform(damping_time_range_s);
   switch (random.bits() % 4) {
     case 0:
       material.plastic = true;
@@ -86,8 +86,8 @@ Scene random_stroke_scene(Random& random, const std::vector<Material>& bundled, 
   scene.tool.kind = random.once_in(3) ? ToolKind::point : ToolKind::sphere;
   scene.tool.action = static_cast<ToolAction>(random.bits() % tool_actions.size());
   scene.tool.radius_m = random.log_uniform(0.001, 0.05);
-  scene.tool.iterations = static_cast<int>(1 + random.bits() % 8);
-  scene.sculpting.damping_per_s = random.once_in(4) ? 0.0 : random.uniform(0.0, 100.0);
+  scene.tool.substeps = static_cast<int>(1 + random.bits() % 8);
+  scene.sculpting.drag_per_s = random.once_in(4) ? 0.0 : random.uniform(0.0, 600.0);
   scene.sculpting.force_scale = random.log_uniform(0.01, 100.0);
   scene.sculpting.free = random.once_in(4);
   return scene;
@@ -131,7 +131,7 @@ std::string in_words(const Scene& scene) {
   for (const auto& [name, value] : {std::pair{"E", material.youngs_modulus_pa},
                                     {"nu", material.poissons_ratio},
                                     {"rho", material.density_kg_per_m3},
-                                    {"z", material.damping_ratio},
+                                    {"damping time", material.damping_time_s},
                                     {"plastic", material.plastic ? 1.0 : 0.0},
                                     {"yield", material.yield_strain},
                                     {"flow", material.flow_rate_per_s},
@@ -142,8 +142,8 @@ std::string in_words(const Scene& scene) {
                                     {"kind", static_cast<double>(scene.tool.kind)},
                                     {"action", static_cast<double>(scene.tool.action)},
                                     {"radius", scene.tool.radius_m},
-                                    {"iterations", static_cast<double>(scene.tool.iterations)},
-                                    {"damping", scene.sculpting.damping_per_s},
+                                    {"substeps", static_cast<double>(scene.tool.substeps)},
+                                    {"drag", scene.sculpting.drag_per_s},
                                     {"scale", scene.sculpting.force_scale},
                                     {"free", scene.sculpting.free ? 1.0 : 0.0}}) {
     words += std::string(", ") + name + " " + std::to_string(value);

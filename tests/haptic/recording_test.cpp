@@ -8,7 +8,9 @@
 
 #include <chrono>
 #include <cmath>
+#include <sstream>
 
+#include "haptic/recording_lines.h"
 #include "tests/engine/exchange/sample_document.h"
 #include "tests/engine/refusal.h"
 #include "tests/haptic/sample_recording.h"
@@ -49,6 +51,35 @@ TEST(Recording, WritesTheSameBytesAgain) {
     ASSERT_TRUE(write_again(recording.value(), second).ok());
     EXPECT_EQ(content_of(first), content_of(second)) << ticks << " ticks";
   }
+}
+
+// Returns a recording of one command, whose document has the version and the tool the number of steps.
+std::string recording_with_command(int version, const char* steps_field, const std::string& command) {
+  Json header = header_to_json(sample_header());
+  Json& document = header["document"];
+  document["spoonbill_document"] = version;
+  document["tool"].erase("substeps");
+  document["tool"][steps_field] = 3;
+  if (version == 2) {
+    document["sculpting"].erase("drag_per_s");
+    document["sculpting"]["damping_per_s"] = 4;
+    document["body"]["material"].erase("damping_time_s");
+    document["body"]["material"]["damping_ratio"] = 0.1;
+  }
+  return json_to_line(header) + "\n" + command + "\n";
+}
+
+TEST(Recording, ConvertsTheCommandsOfAnOldDocument) {
+  const std::string command =
+      R"({"tick":0,"command":"set_sculpting","damping_per_s":2,"gravity_m_per_s2":[0,0,0],"force_scale":1})";
+  std::istringstream old(recording_with_command(2, "iterations", command));
+  const auto recording = read_recording(old, "old.jsonl");
+  ASSERT_TRUE(recording.ok()) << recording.error().message;
+  EXPECT_EQ(recording->header.document.scene.sculpting.drag_per_s, 12.0);
+  ASSERT_EQ(recording->commands.size(), 1u);
+  EXPECT_EQ(recording->commands[0].command["drag_per_s"], 6);
+  std::istringstream current(recording_with_command(3, "substeps", command));
+  EXPECT_EQ(Refusal(read_recording(current, "new.jsonl")), Refusal(ErrorCode::missing, "drag_per_s"));
 }
 
 TEST(Recording, LeavesOutWhatDoesNotChange) {

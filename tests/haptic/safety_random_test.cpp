@@ -188,13 +188,13 @@ Scene random_safety_scene(Random& random) {
   material.youngs_modulus_pa = random.log_uniform(1e4, 1e9);
   material.poissons_ratio = random.uniform(0.26, 0.45);
   material.density_kg_per_m3 = random.log_uniform(500.0, 8000.0);
-  material.damping_ratio = random.uniform(0.01, 0.1);
+  material.damping_time_s = random.uniform(2e-6, 2e-5);
   material.plastic = random.once_in(2);
   scene.planes.push_back({Vector3(random.uniform(0.01, 0.04), 0, 0), Vector3::UnitX()});
   scene.tool.kind = random.once_in(3) ? ToolKind::point : ToolKind::sphere;
   scene.tool.action = static_cast<ToolAction>(random.bits() % tool_actions.size());
   scene.tool.radius_m = random.uniform(0.003, 0.008);
-  scene.tool.iterations = 1 + static_cast<int>(random.bits() % 8);
+  scene.tool.substeps = 1 + static_cast<int>(random.bits() % 8);
   scene.sculpting.force_scale = random.log_uniform(0.1, 1e4);
   return scene;
 }

@@ -50,6 +50,23 @@ TEST(Script, MovesWithMinimumJerk) {
   EXPECT_NEAR(fastest, 0.04 * 1.875e-3, 1e-8);
 }
 
+TEST(Script, ReadsCommandsWithFormerFields) {
+  const Script script =
+      compile(
+          std::string(start) +
+          ",{\"command\": \"set_tool\", \"kind\": \"sphere\", \"action\": \"push\", \"radius_mm\": 6, "
+          "\"iterations\": 4},{\"command\": \"set_sculpting\", \"damping_per_s\": 2, \"gravity_m_per_s2\": "
+          "[0, 0, 0], \"force_scale\": 1}")
+          .value();
+  ASSERT_EQ(script.commands.size(), 2u);
+  EXPECT_EQ(script.commands[0].command["substeps"], 4);
+  EXPECT_EQ(script.commands[1].command["drag_per_s"], 8);
+  EXPECT_EQ(script_refusal(std::string(start) +
+                           ",{\"command\": \"set_tool\", \"kind\": \"sphere\", \"action\": \"push\", "
+                           "\"radius_mm\": 6, \"iterations\": 9}"),
+            Refusal(ErrorCode::out_of_range, "iterations"));
+}
+
 TEST(Script, TurnsTheShortWay) {
   const Script script = compile(
                             "{\"start_mm\": [0,0,0], \"turn\": {\"axis\": [0,0,2], \"degrees\": 170}},"

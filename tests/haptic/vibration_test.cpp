@@ -225,7 +225,7 @@ Scene steel_handle() {
   material.youngs_modulus_pa = 2e11;
   material.poissons_ratio = 0.3;
   material.density_kg_per_m3 = 7850.0;
-  material.damping_ratio = 0.002;
+  material.damping_time_s = 4e-7;
   material.plastic = false;
   scene.planes.push_back({Vector3(0.03, 0, 0), Vector3::UnitX()});
   return scene;

@@ -8,6 +8,7 @@
 #include "engine/material/contact/contact_constraints.h"
 #include "engine/material/implicit/implicit_body.h"
 #include "engine/material/lattice/lattice_mesh.h"
+#include "engine/material/lattice/layer_volumes.h"
 
 namespace spoonbill {
 namespace {
@@ -211,22 +212,6 @@ Result<LatticeMesh> choose_coarse_counts(const LatticeMesh& mesh, const Vector3&
   }
 }
 
-// Scales the cell fractions of a coarse shell so that it has the volume of the fine one. Otherwise its longer
-// chords would lose volume where the shell is bent.
-void set_shell_fractions(const LatticeMesh& mesh, LatticeMesh& coarse) {
-  const auto filled_volume = [](const LatticeMesh& of) {
-    double volume = 0.0;
-    for (int k = 0; k + 1 < of.count[2]; ++k) {
-      for (int i = 0; i + 1 < of.count[0]; ++i) {
-        for (int j = 0; j + 1 < of.count[1]; ++j)
-          volume += of.cell_fraction(i, j, k) * cell_volume(of.cell(i, j, k));
-      }
-    }
-    return volume;
-  };
-  coarse.cell_fractions.assign(coarse.cell_count(), filled_volume(mesh) / filled_volume(coarse));
-}
-
 // Fraction of a coarse cell that belongs to the body, from the overlapping cells of the lattice. Cells of a
 // box are congruent, so the body's mass is conserved.
 double overlapped_fraction(const LatticeMesh& mesh, const std::array<std::vector<Overlap>, 3>& overlaps) {
@@ -267,8 +252,12 @@ Result<LatticeMesh> make_coarse_mesh(const LatticeMesh& mesh, const std::vector<
       coarse.nodes[static_cast<std::size_t>(n)] += at.weight[c] * nodes[static_cast<std::size_t>(at.node[c])];
     }
   }
-  if (mesh.thin) set_shell_fractions(mesh, coarse);
-  if (!mesh.thin && !mesh.cell_fractions.empty()) set_box_fractions(mesh, coarse);
+  if (!mesh.filled.empty()) {
+    set_box_fractions(mesh, coarse);
+  } else {
+    // Longer chords would lose volume where the body is bent or round.
+    scale_layers_to(redistribute_layers(layer_volumes_m3(mesh), coarse.count[2] - 1), coarse);
+  }
   return coarse;
 }
 

@@ -16,6 +16,7 @@
 #include "engine/collision/surfaces/closed_surface.h"
 #include "engine/material/lattice/box_lattice.h"
 #include "engine/material/lattice/lattice_mesh.h"
+#include "engine/material/lattice/layer_volumes.h"
 #include "engine/material/lattice/shell_lattice.h"
 
 namespace spoonbill {
@@ -363,10 +364,10 @@ void fill_ring(const Surface& surface, const RingParameters& ring, LatticeMesh& 
   }
 }
 
-// A block of nodes and the parameters u of its rings.
+// A block of nodes and the parameters of its slices and rings.
 struct TubeBlock {
   LatticeMesh mesh;
-  RingParameters ring;
+  TubeStations stations;
 };
 
 Result<TubeBlock> make_block(const Surface& surface, const Profile& profile, const Rims& rims,
@@ -399,16 +400,20 @@ Result<TubeBlock> make_block(const Surface& surface, const Profile& profile, con
   LatticeMesh& mesh = block.mesh;
   mesh.count = counts.value();
   mesh.nodes.assign(static_cast<std::size_t>(mesh.node_count()), Vector3::Zero());
-  block.ring = ring_parameters(surface, centre_ring, section, mesh.count[0], mesh.count[1]);
+  RingParameters& ring = block.stations.ring;
+  ring = ring_parameters(surface, centre_ring, section, mesh.count[0], mesh.count[1]);
   const LinearTable distance_to_v{profile.distance, profile.v};
   const int last = mesh.count[2] - 1;
+  std::vector<double>& v = block.stations.v;
+  v.push_back(surface.v.domain_start());
   for (int k = 1; k < last; ++k) {
-    fill_ring(surface, block.ring, mesh, k,
-              distance_to_v.at(first_distance + (last_distance - first_distance) * k / last));
+    v.push_back(distance_to_v.at(first_distance + (last_distance - first_distance) * k / last));
+    fill_ring(surface, ring, mesh, k, v.back());
     fill_slice(mesh, k, extents.bent);
   }
-  fill_cap(surface, block.ring, mesh, 0, surface.v.domain_start(), profile.v[rims.first]);
-  fill_cap(surface, block.ring, mesh, last, surface.v.domain_end(), profile.v[rims.last]);
+  v.push_back(surface.v.domain_end());
+  fill_cap(surface, ring, mesh, 0, v.front(), profile.v[rims.first]);
+  fill_cap(surface, ring, mesh, last, v.back(), profile.v[rims.last]);
   return block;
 }
 
@@ -452,8 +457,9 @@ Result<LatticeMesh> tube_lattice(const Surface& surface, const LatticeRequest& r
     block = std::move(*unfolded);
   }
   LatticeMesh mesh = std::move(block->mesh);
-  set_turns(surface, block->ring, mesh);
+  set_turns(surface, block->stations.ring, mesh);
   if (request.feature_map) order_by_feature_map(mesh, *request.feature_map, watch);
+  scale_layers_to(tube_layer_volumes_m3(surface, block->stations, mesh), mesh);
   return mesh;
 }
 

@@ -11,6 +11,7 @@
 
 #include "engine/base/assert.h"
 #include "engine/base/text.h"
+#include "engine/bspline/strip_volumes.h"
 #include "engine/bspline/surface.h"
 #include "engine/bspline/tube_rings.h"
 #include "engine/collision/meshes/mesh_distance.h"
@@ -358,7 +359,7 @@ bool is_slender(const Surface& surface, const ClosedSkin& skin, const ShellDista
 
 Result<LatticeMesh> surface_in_box(const Surface& surface, const LatticeRequest& request) {
   const ClosedSkin skin = make_skin(surface);
-  const double volume = enclosed_volume_m3(skin);
+  const double volume = compute_closed_volume_m3(surface);
   const ShellDistance inside(skin.mesh.vertices_m, skin.mesh.triangles, ShellDistance::Kind::solid);
   const Vector3 size = inside.bounds().high - inside.bounds().low;
   if (Status thick = check_thick(skin, volume, size.maxCoeff()); !thick) return thick.error();

@@ -45,10 +45,6 @@ double LatticeMesh::mean_edge() const {
 
 namespace {
 
-double face_volume(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
-  return (a.dot(b.cross(c)) + a.dot(c.cross(d)) + a.dot(b.cross(d)) + b.dot(c.cross(d))) / 12.0;
-}
-
 std::array<double, 8> trilinear_weights(double a, double b, double c) {
   std::array<double, 8> weights;
   for (int corner = 0; corner < 8; ++corner) {
@@ -59,13 +55,17 @@ std::array<double, 8> trilinear_weights(double a, double b, double c) {
 
 }  // namespace
 
+double quad_cone_volume(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
+  return (a.dot(b.cross(c)) + a.dot(c.cross(d)) + a.dot(b.cross(d)) + b.dot(c.cross(d))) / 12.0;
+}
+
 double cell_volume(const CellCorners& p) {
   const Vector3 centre = (p[0] + p[1] + p[2] + p[3] + p[4] + p[5] + p[6] + p[7]) / 8.0;
   CellCorners q;
   for (int c = 0; c < 8; ++c) q[c] = p[c] - centre;
-  return face_volume(q[0], q[1], q[3], q[2]) + face_volume(q[0], q[2], q[6], q[4]) +
-         face_volume(q[0], q[4], q[5], q[1]) + face_volume(q[4], q[6], q[7], q[5]) +
-         face_volume(q[2], q[3], q[7], q[6]) + face_volume(q[1], q[5], q[7], q[3]);
+  return quad_cone_volume(q[0], q[1], q[3], q[2]) + quad_cone_volume(q[0], q[2], q[6], q[4]) +
+         quad_cone_volume(q[0], q[4], q[5], q[1]) + quad_cone_volume(q[4], q[6], q[7], q[5]) +
+         quad_cone_volume(q[2], q[3], q[7], q[6]) + quad_cone_volume(q[1], q[5], q[7], q[3]);
 }
 
 Eigen::Matrix3d trilinear_jacobian(const CellCorners& p, double a, double b, double c) {

@@ -98,6 +98,10 @@ using CellCorners = std::array<Vector3, 8>;
 // triangulations.
 double cell_volume(const CellCorners& corners);
 
+// Returns the volume between the origin and a quad face, m^3, positive if a, b, c, d run counter-clockwise
+// seen from beyond the face. The face counts as the mean of its two triangulations.
+double quad_cone_volume(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d);
+
 // Returns the smallest Jacobian determinant at the corners divided by the cell's volume: 1 for a box, at most
 // 0 for a folded cell.
 double smallest_jacobian_ratio(const CellCorners& corners);

@@ -61,10 +61,6 @@ inline void require(const FieldForm& form, Json& object) {
   if (form.partner != nullptr) {
     object["dependentRequired"][form.partner] = Json::array({form.name});
     object["dependentRequired"][form.name] = Json::array({form.partner});
-  } else if (form.alias.name != nullptr) {
-    for (const char* name : {form.name, form.alias.name}) {
-      append(object["oneOf"], {{"required", Json::array({name})}});
-    }
   } else if (!form.optional) {
     append(object["required"], form.name);
   }
@@ -86,10 +82,6 @@ Json object_schema(const Object& object, const Json& first = Json::object()) {
     if (!properties.contains(form.name)) require(form, json);
     const Json value = field.member.visit([&](auto member) { return value_schema<Object>(form, member); });
     if (!properties.contains(form.name)) properties[form.name] = with_help(form.help, value);
-    if (form.alias.name == nullptr) continue;
-    const FieldAlias& alias = form.alias;
-    properties[alias.name] = with_help(
-        alias.help, number_schema("number", {alias.factor * form.range.low, alias.factor * form.range.high}));
   }
   json["additionalProperties"] = false;
   json["properties"] = properties;

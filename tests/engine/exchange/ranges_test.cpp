@@ -28,9 +28,8 @@ TEST(Ranges, NameFieldValueAndRange) {
   EXPECT_EQ(Refusal(check_material(material)), Refusal(ErrorCode::inconsistent, "plastic"));
   EXPECT_EQ(check_tool({.radius_m = std::nan("")}).error().message,
             "tool: radius_m is nan, must be from 0 to 0.5");
-  EXPECT_EQ(Refusal(check_tool({.iterations = 9})), Refusal(ErrorCode::out_of_range, "iterations"));
-  EXPECT_EQ(Refusal(check_sculpting({.damping_per_s = -1.0})),
-            Refusal(ErrorCode::out_of_range, "damping_per_s"));
+  EXPECT_EQ(Refusal(check_tool({.substeps = 9})), Refusal(ErrorCode::out_of_range, "substeps"));
+  EXPECT_EQ(Refusal(check_sculpting({.drag_per_s = -1.0})), Refusal(ErrorCode::out_of_range, "drag_per_s"));
   EXPECT_EQ(Refusal(check_lattice_request({.counts = {{1, 8, 8}}})),
             Refusal(ErrorCode::out_of_range, "nodes[0]"));
   EXPECT_EQ(Refusal(check_fixing_plane({Vector3::Zero(), Vector3::Zero()})),

@@ -38,20 +38,12 @@ void append(std::vector<double>& values, const Vector3& vector) {
 std::vector<double> numbers_of(const Document& document) {
   const Scene& scene = document.scene;
   const Material& material = scene.bodies[0].material;
-  std::vector<double> numbers = {material.youngs_modulus_pa,
-                                 material.poissons_ratio,
-                                 material.density_kg_per_m3,
-                                 material.damping_ratio,
-                                 material.yield_strain,
-                                 material.flow_rate_per_s,
-                                 material.hardening,
-                                 material.stiffening,
-                                 material.relaxing_fraction,
-                                 material.relaxation_time_s,
-                                 material.friction,
-                                 scene.tool.radius_m,
-                                 scene.sculpting.damping_per_s,
-                                 scene.sculpting.force_scale};
+  std::vector<double> numbers = {
+      material.youngs_modulus_pa, material.poissons_ratio,    material.density_kg_per_m3,
+      material.damping_time_s,    material.yield_strain,      material.flow_rate_per_s,
+      material.hardening,         material.stiffening,        material.relaxing_fraction,
+      material.relaxation_time_s, material.friction,          scene.tool.radius_m,
+      scene.sculpting.drag_per_s, scene.sculpting.force_scale};
   append(numbers, scene.sculpting.gravity_m_per_s2);
   for (const FixingPlane& plane : scene.planes) {
     append(numbers, plane.point_m);
@@ -71,8 +63,20 @@ Document sample_document() {
   Surface surface = make_surface(KnotVector::periodic_uniform(3, around).value(),
                                  KnotVector::clamped_uniform(3, along).value(), tube())
                         .value();
-  const Material clay{
-      "modelling-clay", "for tests", 2e5, 0.45, 1700.0, 0.1, true, 0.02, 40.0, 0.125, -2.5, 0.0, 1.0, 0.375};
+  const Material clay{"modelling-clay",
+                      "for tests",
+                      2e5,
+                      0.45,
+                      1700.0,
+                      2.5e-5,
+                      true,
+                      0.02,
+                      40.0,
+                      0.125,
+                      -2.5,
+                      0.0,
+                      1.0,
+                      0.375};
   Scene scene{{Body{"stub", std::move(surface), clay, {}}}, {}, {}, {}};
   scene.planes.push_back({Vector3(0.01, 0.0, 0.0), Vector3::UnitX()});
   return {"stub", std::move(scene), Json{{"camera", {{"distance_mm", 250}}}}};
@@ -113,7 +117,7 @@ bool same_bits(const Document& a, const Document& b) {
          body.material.plastic == other.material.plastic && body.lattice.counts == other.lattice.counts &&
          body.lattice.feature_map == other.lattice.feature_map &&
          body.lattice.node_budget == other.lattice.node_budget && tool.kind == other_tool.kind &&
-         tool.action == other_tool.action && tool.iterations == other_tool.iterations;
+         tool.action == other_tool.action && tool.substeps == other_tool.substeps;
 }
 
 TemporaryFolder::TemporaryFolder() {

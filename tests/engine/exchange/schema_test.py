@@ -14,7 +14,7 @@ written = root / "tests/engine/exchange/documents"
 
 models = sorted((root / "assets/models").glob("*.json"))
 assert len(models) >= 8, models
-for file in [*models, written / "version-1.json", written / "version-2.json"]:
+for file in [*models, *(written / f"version-{version}.json" for version in (1, 2, 3))]:
     problems = [f"{list(problem.absolute_path)}: {problem.message[:200]}"
                 for problem in validator.iter_errors(json.loads(file.read_text()))]
     assert not problems, (file, problems)
@@ -48,34 +48,37 @@ optional = {
     "regions": {"material", "friction"},
     "supports": {"motion"},
     "tool": {"soft"},
-    "sculpting": {"settles", "free"},
+    "sculpting": {"settles", "free", "real_time"},
     "view": {"camera", "overlays", "see_through_body", "ground_mm"},
     "camera": {"yaw_deg", "pitch_deg", "field_of_view_deg"},
 }
 optional["other_bodies"] = optional["body"]
 
-whole = json.loads((written / "version-2.json").read_text())
 tried = 0
-for path, holder in objects(whole):
-    name = next((step for step in reversed(path) if isinstance(step, str)), "")
-    changed = copy.deepcopy(whole)
-    at(changed, path)["colour"] = "red"
-    assert not validator.is_valid(changed), (path, "an unknown field is taken")
-    for field, value in holder.items():
+for version in (2, 3):
+    whole = json.loads((written / f"version-{version}.json").read_text())
+    for path, holder in objects(whole):
+        name = next((step for step in reversed(path) if isinstance(step, str)), "")
         changed = copy.deepcopy(whole)
-        at(changed, path)[field] = {"strange": None}
-        assert not validator.is_valid(changed), (path, field, "a strange value is taken")
-        if name == "overlays" or field in optional.get(name, ()):
-            continue
-        changed = copy.deepcopy(whole)
-        del at(changed, path)[field]
-        assert not validator.is_valid(changed), (path, field, "may be missing")
-        tried += 1
-assert tried > 100, tried
+        at(changed, path)["colour"] = "red"
+        assert not validator.is_valid(changed), (path, "an unknown field is taken")
+        for field, value in holder.items():
+            changed = copy.deepcopy(whole)
+            at(changed, path)[field] = {"strange": None}
+            assert not validator.is_valid(changed), (path, field, "a strange value is taken")
+            if name == "overlays" or field in optional.get(name, ()):
+                continue
+            changed = copy.deepcopy(whole)
+            del at(changed, path)[field]
+            assert not validator.is_valid(changed), (path, field, "may be missing")
+            tried += 1
+assert tried > 200, tried
 
-for version in (0, 3, "2", None):
+for version in (0, 1, 2, 4, "3", None):
     assert not validator.is_valid({**whole, "spoonbill_document": version}), version
-assert not validator.is_valid({**whole, "spoonbill_document": 1}), "version 1 had no trims"
+second = json.loads((written / "version-2.json").read_text())
+assert not validator.is_valid({**second, "spoonbill_document": 1}), "version 1 had no trims"
+assert not validator.is_valid({**second, "spoonbill_document": 3}), "version 3 has other constants"
 joined = copy.deepcopy(whole)
 for body in (joined["body"], *joined["other_bodies"]):
     body["solid"] = "bracket"

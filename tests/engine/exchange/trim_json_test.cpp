@@ -15,7 +15,7 @@ namespace {
 const std::filesystem::path documents = SPOONBILL_DOCUMENTS;
 
 Document trimmed_document() {
-  return read_document(documents / "version-2.json").value();
+  return read_document(documents / "version-3.json").value();
 }
 
 Refusal trim_refusal(const std::function<void(Json&)>& change) {
@@ -71,29 +71,14 @@ TEST(TrimJson, RefusesWhatIsNoLoop) {
             Refusal(ErrorCode::wrong_type, "other_bodies[0].surface.trims"));
 }
 
-// A document of version 1 is written as version 2 with only the version changed.
-TEST(TrimJson, ADocumentOfVersionOneIsReadAndWrittenAsVersionTwo) {
-  const auto read = read_document(documents / "version-1.json");
-  ASSERT_TRUE(read.ok()) << read.error().message;
-  std::string expected = content_of(documents / "version-1.json");
-  const std::string field = "\"spoonbill_document\": 1";
-  ASSERT_NE(expected.find(field), std::string::npos);
-  expected.replace(expected.find(field), field.size(), "\"spoonbill_document\": 2");
-  TemporaryFolder folder;
-  const auto file = folder.write("old.json", content_of(documents / "version-1.json"));
-  ASSERT_TRUE(write_document(read.value(), file).ok());
-  EXPECT_EQ(content_of(file), expected);
-  EXPECT_EQ(content_of(folder.path() / "old.json.bak"), content_of(documents / "version-1.json"));
-}
-
-TEST(TrimJson, ADocumentOfVersionTwoIsWrittenToTheSameBytes) {
+TEST(TrimJson, ADocumentIsWrittenToTheSameBytes) {
   TemporaryFolder folder;
   ASSERT_TRUE(write_document(trimmed_document(), folder.path() / "new.json").ok());
-  EXPECT_EQ(content_of(folder.path() / "new.json"), content_of(documents / "version-2.json"));
+  EXPECT_EQ(content_of(folder.path() / "new.json"), content_of(documents / "version-3.json"));
 }
 
 TEST(TrimJson, VersionOneKnowsNoTrims) {
-  Json json = document_to_json(trimmed_document());
+  Json json = parse_json(content_of(documents / "version-2.json"), "plate.json").value();
   json["spoonbill_document"] = 1;
   const auto read = document_from_json(json, "plate.json");
   ASSERT_FALSE(read.ok());
