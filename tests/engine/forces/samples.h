@@ -1,31 +1,63 @@
-// Provides bodies and materials for the tests of true forces: stock shapes, and the models and materials that
-// the program ships.
+// Provides bodies, scenes and measurements for the tests of true forces, and selects the cases that a run
+// tries.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "engine/scene/scene.h"
 #include "engine/shapes/stock_shapes.h"
+#include "engine/simulation/simulation.h"
 
 namespace spoonbill {
 
-// Returns a surface fitted to a stock shape.
-Surface stock_surface(const StockShapeSize& size);
+// The smallest run of the tests that tries a case: tests/run, tests/run --full or tests/run --long.
+enum class ForceRun { always, full, whole_table };
+
+// Returns the reason to skip a case in the present run; empty if the case is to be tried.
+std::string find_skip_reason(ForceRun smallest);
+
+// Prints a line of the table of results.
+void print_result(const std::string& row, const std::string& what, double measured,
+                  const std::string& unit = "");
+
+// Returns a surface fitted to a stock shape, moved by `centre_m`.
+Surface stock_surface(const StockShapeSize& size, const Vector3& centre_m = Vector3::Zero());
 
 // Returns a material that the program ships, by the name of its file without ".json".
 Material bundled_material(const std::string& name);
-
-// Names of all materials that the program ships.
+// Returns the names of all materials that the program ships.
 std::vector<std::string> bundled_material_names();
 
 // Returns the scene of a model that the program ships, by the name of its file without ".json".
 Scene bundled_scene(const std::string& name);
-
-// Names of all models that the program ships.
+// Returns the names of all models that the program ships.
 std::vector<std::string> bundled_model_names();
 
-// Returns the material without flow, creep and stiffening.
+// Returns the material without flow, creep, stiffening and friction.
 Material made_elastic(Material material);
+
+// Returns a body of a stock shape.
+Body stock_body(const std::string& name, const StockShapeSize& size, const Vector3& centre_m,
+                const Material& material, int node_budget);
+
+// Returns the part of a tube at its end with the smaller or the larger coordinate along an axis. `length` is
+// a fraction of the tube's length.
+BodyRegion end_region(const Surface& tube, int axis, bool at_larger, double length);
+
+// Returns a scene of these bodies without gravity, which comes to rest as soon as it can.
+Scene settling_scene(std::vector<Body> bodies);
+
+Simulation make_simulation(const Scene& scene);
+
+// Returns the input of a tool far from all bodies.
+ToolInput idle_tool();
+
+// Advances the simulation and returns the mean of a measurement over the ticks.
+double mean_over(Simulation& simulation, int ticks, const ToolInput& input,
+                 const std::function<double()>& measure);
+
+void advance(Simulation& simulation, int ticks, const ToolInput& input);
 
 }  // namespace spoonbill

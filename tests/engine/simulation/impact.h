@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "engine/base/processor.h"
@@ -13,15 +14,24 @@
 
 namespace spoonbill {
 
-// Collision of two bodies without any other influence. Both share one inertia scale, with which a substep of
-// a millisecond is stable, so that the masses of both are scaled alike.
+// Collision of two bodies without any other influence.
 class Impact {
  public:
-  Impact(BodyState first, BodyState second)
+  // `slowed`: both bodies share one inertia scale, with which a substep of a millisecond is stable, so that
+  // the masses of both are scaled alike. `real_time`: a tick takes as many substeps as both need without.
+  enum class Clock { slowed, real_time };
+
+  Impact(BodyState first, BodyState second, Clock clock = Clock::slowed)
       : bodies_{std::move(first), std::move(second)}, pair_(bodies_[0], bodies_[1]) {
-    const double step_s = RelaxSettings().time_s;
-    const double scale = std::max(bodies_[0].lattice.find_inertia_scale(step_s),
-                                  bodies_[1].lattice.find_inertia_scale(step_s));
+    double step_s = settings_.time_s, scale = 1.0;
+    for (BodyState& body : bodies_) {
+      if (clock == Clock::real_time) {
+        step_s = body.lattice.find_real_time_step_s(step_s);
+      } else {
+        scale = std::max(scale, body.lattice.find_inertia_scale(step_s));
+      }
+    }
+    settings_.substeps = static_cast<int>(std::lround(settings_.time_s / step_s));
     for (BodyState& body : bodies_) body.set_inertia(scale, step_s);
   }
 
@@ -36,8 +46,9 @@ class Impact {
     EXPECT_TRUE(pair_.find({0, &bodies_[0]}, {1, &bodies_[1]}));
     EXPECT_TRUE(pair_.add_contacts({0, &bodies_[0]}, {1, &bodies_[1]}, contacts_));
     contacts_.begin();
-    relax(std::array{RelaxedLattice{&bodies_[0].lattice}, RelaxedLattice{&bodies_[1].lattice}}, {tick_++}, {},
+    relax(std::array{RelaxedLattice{&bodies_[0].lattice}, RelaxedLattice{&bodies_[1].lattice}}, settings_, {},
           &contacts_);
+    ++settings_.tick;
     for (BodyState& body : bodies_) body.update_skin();
     return contacts_.acted(0);
   }
@@ -59,7 +70,7 @@ class Impact {
   std::array<BodyState, 2> bodies_;
   BodyPairContact pair_;
   BodyContacts contacts_{8192};
-  std::uint64_t tick_ = 0;
+  RelaxSettings settings_;
 };
 
 }  // namespace spoonbill

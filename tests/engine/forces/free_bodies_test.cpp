@@ -1,0 +1,167 @@
+// Tests free bodies of springs: one that rings keeps its energy, and two that collide keep their momentum.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "engine/material/statics/static_body.h"
+#include "tests/engine/forces/samples.h"
+#include "tests/engine/simulation/impact.h"
+
+namespace spoonbill {
+namespace {
+
+BodyState make_state(const Body& body) {
+  return make_body_state(body, {}, InstructionSet::baseline).value();
+}
+
+// Returns kinetic energy of a lattice in real time, J.
+double kinetic_energy_j(const SpringLattice& lattice) {
+  double energy = 0.0;
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    energy += 0.5 * static_cast<double>(lattice.mass(n)) * lattice.velocity(n).squaredNorm();
+  }
+  return energy;
+}
+
+struct Potential {
+  double energy_j = 0.0;
+  double power_w = 0.0;  // its rate of change
+};
+
+Potential find_potential(const SpringLattice& lattice, const StaticBody& springs) {
+  Potential sum;
+  for (std::size_t cell = 0; cell < springs.cell_count(); ++cell) {
+    const std::array<int, 8>& nodes = springs.cell_nodes(cell);
+    CellMoves moves;
+    for (std::size_t c = 0; c < 8; ++c) moves[c] = lattice.displacement(nodes[c]);
+    const CellResponse response = springs.respond(cell, moves, Tangent::plain);
+    sum.energy_j += response.energy_j;
+    for (std::size_t c = 0; c < 8; ++c) {
+      sum.power_w +=
+          response.force_n.segment<3>(3 * static_cast<Eigen::Index>(c)).dot(lattice.velocity(nodes[c]));
+    }
+  }
+  return sum;
+}
+
+// Steps of a kick and a drift conserve T + V - (h / 2) v . grad V up to the order of h^2.
+double conserved_energy_j(const SpringLattice& lattice, const StaticBody& springs, double step_s) {
+  const Potential potential = find_potential(lattice, springs);
+  return kinetic_energy_j(lattice) + potential.energy_j - 0.5 * step_s * potential.power_w;
+}
+
+TEST(Ringing, KeepsItsEnergyWithoutDamping) {
+  if (const std::string reason = find_skip_reason(ForceRun::always); !reason.empty()) GTEST_SKIP() << reason;
+  const DenormalsFlushed flushed;
+  const bool is_full = find_skip_reason(ForceRun::full).empty();
+  for (const char* material : {"silicone-00-30", "foam", "gelatin-20-1"}) {
+    CylinderSize size{0.006, 0.06, 0.001};
+    Body body = stock_body("rod", size, Vector3::Zero(), made_elastic(bundled_material(material)),
+                           is_full ? 1000 : 300);
+    body.material.damping_time_s = 0.0;
+    BodyState state = make_state(body);
+    SpringLattice& lattice = state.lattice;
+    const StaticBody springs =
+        StaticBody::make(lattice.mesh(), lattice.materials(), CellKind::springs).value();
+    RelaxSettings settings;
+    // Energy is conserved up to the square of the step times the frequency, so the steps are short.
+    settings.substeps =
+        static_cast<int>(std::ceil(settings.time_s / lattice.find_real_time_step_s(settings.time_s))) * 3;
+    const double step_s = settings.time_s / settings.substeps;
+    lattice.set_inertia(1.0, step_s);
+    // The rod swings in its first bending shape, and is stretched.
+    for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+      const double along = lattice.mesh().nodes[static_cast<std::size_t>(n)].y() / size.height_m;
+      lattice.set_velocity(n, {0.05 * (std::cos(2.0 * std::numbers::pi * along) - 0.0), 0.05 * along, 0.0});
+    }
+    const double before = conserved_energy_j(lattice, springs, step_s);
+    double least = before, most = before, least_kinetic = kinetic_energy_j(lattice);
+    for (settings.tick = 0; settings.tick < (is_full ? 1000u : 300u); ++settings.tick) {
+      relax(std::array{RelaxedLattice{&lattice}}, settings, {});
+      const double now = conserved_energy_j(lattice, springs, step_s);
+      least = std::min(least, now);
+      most = std::max(most, now);
+      least_kinetic = std::min(least_kinetic, kinetic_energy_j(lattice));
+    }
+    print_result("ringing", std::string(material) + ": largest change of energy",
+                 std::max(most / before - 1.0, 1.0 - least / before));
+    EXPECT_LT(least_kinetic, 0.9 * before) << material << " does not ring";
+    EXPECT_LT(most / before, 1.001) << material;
+    EXPECT_GT(least / before, 0.999) << material;
+    if (!is_full) break;
+  }
+}
+
+Vector3 momentum_ns(const SpringLattice& lattice) {
+  Vector3 sum = Vector3::Zero();
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    sum += static_cast<double>(lattice.mass(n)) * lattice.velocity(n);
+  }
+  return sum;
+}
+
+struct Collision {
+  double momentum_change = 0.0;  // relative to the momentum of the thrown body
+  double energy_lost = 0.0;      // fraction of the energy before
+  bool touched = false, parted = false;
+};
+
+double whole_energy_j(const BodyState& body, const StaticBody& springs) {
+  return kinetic_energy_j(body.lattice) + find_potential(body.lattice, springs).energy_j;
+}
+
+// Throws one pebble off centre against another, in real time.
+Collision collide(int node_budget) {
+  const DenormalsFlushed flushed;
+  Material silicone = made_elastic(bundled_material("silicone-00-30"));
+  silicone.damping_time_s = 0.0;
+  const SphereSize size{0.015};
+  Impact impact(make_state(stock_body("target", size, Vector3::Zero(), silicone, node_budget)),
+                make_state(stock_body("thrown", size, {0.004, 0.0302, 0.002}, silicone, node_budget)),
+                Impact::Clock::real_time);
+  const std::array<StaticBody, 2> springs = {
+      StaticBody::make(impact.body(0).lattice.mesh(), silicone, CellKind::springs).value(),
+      StaticBody::make(impact.body(1).lattice.mesh(), silicone, CellKind::springs).value()};
+  impact.throw_at(1, {0.0, -0.2, 0.0});
+  const auto energy_j = [&] {
+    return whole_energy_j(impact.body(0), springs[0]) + whole_energy_j(impact.body(1), springs[1]);
+  };
+  const auto sum = [&] {
+    return Vector3(momentum_ns(impact.body(0).lattice) + momentum_ns(impact.body(1).lattice));
+  };
+  const Vector3 before = sum();
+  const double energy_before_j = energy_j();
+  Collision collision;
+  for (int tick = 0; tick < 200; ++tick) {
+    const bool touches = impact.tick();
+    collision.touched |= touches;
+    collision.parted = !touches;
+  }
+  collision.momentum_change = (sum() - before).norm() / before.norm();
+  collision.energy_lost = 1.0 - energy_j() / energy_before_j;
+  return collision;
+}
+
+TEST(FreeCollision, KeepsMomentumAndLosesLessEnergyWithSmallerCells) {
+  if (const std::string reason = find_skip_reason(ForceRun::full); !reason.empty()) GTEST_SKIP() << reason;
+  const bool is_whole = find_skip_reason(ForceRun::whole_table).empty();
+  double last = 2.0;
+  for (const int node_budget :
+       is_whole ? std::vector<int>{150, 500, 1500, 4000} : std::vector<int>{150, 500}) {
+    const Collision collision = collide(node_budget);
+    const std::string what = std::to_string(node_budget) + " nodes";
+    print_result("collision", what + ": change of momentum", collision.momentum_change);
+    print_result("collision", what + ": energy lost", collision.energy_lost);
+    EXPECT_TRUE(collision.touched && collision.parted) << what;
+    EXPECT_LT(collision.momentum_change, 1e-5) << what;
+    EXPECT_LT(collision.energy_lost, last) << what;
+    last = collision.energy_lost;
+  }
+}
+
+}  // namespace
+}  // namespace spoonbill

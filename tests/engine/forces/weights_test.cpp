@@ -1,0 +1,231 @@
+// Tests that supports, the ground and other bodies bear the weight of a body's exact volume, at any drag and
+// with any inertia scale, and that bodies fall at g.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+#include "engine/inspection/mass_properties.h"
+#include "tests/engine/forces/samples.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double g = 9.81;
+const Vector3 gravity(0.0, -g, 0.0);
+
+double weight_n(const Body& body) {
+  return g * compute_body_mass(body).value().mass_kg();
+}
+
+// Advances until the mean of a force over 200 ticks changes by less than a thousandth of it, and returns the
+// mean.
+double settled_force_n(Simulation& simulation, int most_ticks, const std::function<double()>& force_n) {
+  constexpr int window = 200;
+  double before = 0.0, now = mean_over(simulation, window, idle_tool(), force_n);
+  for (int ticks = window; ticks < most_ticks; ticks += window) {
+    before = now;
+    now = mean_over(simulation, window, idle_tool(), force_n);
+    if (ticks >= 5 * window && std::abs(now - before) < 2e-4 * std::abs(now)) break;
+  }
+  return now;
+}
+
+void expect_weight(const std::string& what, double measured_n, double expected_n) {
+  print_result("weights", what + ": force over weight", measured_n / expected_n);
+  EXPECT_NEAR(measured_n / expected_n, 1.0, 5e-3) << what;
+}
+
+// Returns the body with a support at one end and no other.
+Body supported_at_start(Body body) {
+  body.supports = {{BodyRegion{{0.0, 0.2}, {0.0, 1.0}}}};
+  body.loads.clear();
+  return body;
+}
+
+struct ModelCase {
+  std::string model;
+  ForceRun run;
+};
+
+void PrintTo(const ModelCase& model, std::ostream* out) {
+  *out << model.model;
+}
+
+std::vector<ModelCase> model_cases() {
+  std::vector<ModelCase> cases;
+  for (const std::string& model : bundled_model_names()) {
+    // The lattice of a trimmed body also covers what is trimmed away.
+    if (model == "trimmed-plate") continue;
+    const ForceRun run = model == "spoon-handle" ? ForceRun::always
+                         : model == "jelly"      ? ForceRun::full
+                                                 : ForceRun::whole_table;
+    cases.push_back({model, run});
+  }
+  return cases;
+}
+
+// Each model has the inertia scale of its own lattice, material and substeps.
+class WeightOfModel : public testing::TestWithParam<ModelCase> {};
+
+TEST_P(WeightOfModel, ReachesItsSupport) {
+  if (const std::string reason = find_skip_reason(GetParam().run); !reason.empty()) GTEST_SKIP() << reason;
+  Scene scene = bundled_scene(GetParam().model);
+  scene.planes.clear();
+  scene.tool = {};
+  scene.tool.substeps = bundled_scene(GetParam().model).tool.substeps;
+  scene.sculpting.gravity_m_per_s2 = gravity;
+  scene.sculpting.is_critically_damped = true;
+  scene.ground.reset();
+  for (Body& body : scene.bodies) body = supported_at_start(body);
+  Simulation simulation = make_simulation(scene);
+  const double force_n =
+      settled_force_n(simulation, 10000, [&] { return simulation.support_force_n(0, 0).y(); });
+  expect_weight(GetParam().model + ", r = " + std::to_string(simulation.inertia_scale()), force_n,
+                weight_n(scene.bodies[0]));
+}
+
+INSTANTIATE_TEST_SUITE_P(, WeightOfModel, testing::ValuesIn(model_cases()));
+
+Body small_block(const std::string& material, const Vector3& centre_m) {
+  BoxSize size;
+  size.size_m = {0.03, 0.02, 0.02};
+  size.rounding_m = 0.001;
+  Material elastic = made_elastic(bundled_material(material));
+  elastic.friction = 0.5;
+  return stock_body(material, size, centre_m, elastic, 250);
+}
+
+TEST(WeightOnSupport, IsTheSameWithAnyDrag) {
+  if (const std::string reason = find_skip_reason(ForceRun::full); !reason.empty()) GTEST_SKIP() << reason;
+  for (const char* material : {"gelatin-20-1", "silicone-00-30", "abs", "steel-304"}) {
+    for (const double drag : {30.0, 1000.0, 8000.0}) {
+      Scene scene;
+      scene.bodies = {supported_at_start(small_block(material, Vector3::Zero()))};
+      scene.sculpting.gravity_m_per_s2 = gravity;
+      scene.sculpting.drag_per_s = drag;
+      Simulation simulation = make_simulation(scene);
+      const double force_n =
+          settled_force_n(simulation, 20000, [&] { return simulation.support_force_n(0, 0).y(); });
+      expect_weight(std::string(material) + " on a support, drag " + std::to_string(drag), force_n,
+                    weight_n(scene.bodies[0]));
+    }
+  }
+}
+
+// Without drag the force oscillates about the weight.
+TEST(WeightOnSupport, IsTheMeanWithoutDrag) {
+  if (const std::string reason = find_skip_reason(ForceRun::full); !reason.empty()) GTEST_SKIP() << reason;
+  Scene scene;
+  scene.bodies = {supported_at_start(small_block("silicone-00-30", Vector3::Zero()))};
+  scene.sculpting.gravity_m_per_s2 = gravity;
+  scene.sculpting.drag_per_s = 0.0;
+  Simulation simulation = make_simulation(scene);
+  const double force_n =
+      mean_over(simulation, 6000, idle_tool(), [&] { return simulation.support_force_n(0, 0).y(); });
+  expect_weight("silicone-00-30 on a support, no drag", force_n, weight_n(scene.bodies[0]));
+}
+
+TEST(WeightOnGround, IsTheBodys) {
+  if (const std::string reason = find_skip_reason(ForceRun::full); !reason.empty()) GTEST_SKIP() << reason;
+  for (const char* material : {"gelatin-20-1", "silicone-00-30", "abs", "steel-304"}) {
+    for (const double drag : {30.0, 1000.0}) {
+      Scene scene;
+      scene.bodies = {small_block(material, {0.0, 0.01001, 0.0})};
+      scene.sculpting.gravity_m_per_s2 = gravity;
+      scene.sculpting.drag_per_s = drag;
+      scene.ground = Ground{};
+      Simulation simulation = make_simulation(scene);
+      const double force_n =
+          settled_force_n(simulation, 10000, [&] { return simulation.ground_force_n(0).y(); });
+      expect_weight(std::string(material) + " on the ground, drag " + std::to_string(drag), force_n,
+                    weight_n(scene.bodies[0]));
+    }
+  }
+}
+
+struct Stack {
+  const char *lower, *upper;
+  ForceRun run;
+};
+
+void PrintTo(const Stack& stack, std::ostream* out) {
+  *out << stack.upper << " on " << stack.lower;
+}
+
+class WeightOnBody : public testing::TestWithParam<Stack> {};
+
+TEST_P(WeightOnBody, ReachesTheSupportOfTheOther) {
+  const Stack& stack = GetParam();
+  if (const std::string reason = find_skip_reason(stack.run); !reason.empty()) GTEST_SKIP() << reason;
+  BoxSize plate;
+  plate.size_m = {0.05, 0.008, 0.04};
+  plate.rounding_m = 0.0008;
+  Scene scene;
+  scene.bodies = {
+      stock_body("plate", plate, {0.0, -0.004, 0.0}, made_elastic(bundled_material(stack.lower)), 250),
+      small_block(stack.upper, {0.0, 0.01001, 0.0})};
+  scene.bodies[0].material.friction = 0.5;
+  // Both ends, so that the plate hardly bends and nothing slides off.
+  scene.bodies[0].supports = {{BodyRegion{{0.0, 0.1}, {0.0, 1.0}}}, {BodyRegion{{0.9, 1.0}, {0.0, 1.0}}}};
+  scene.sculpting.gravity_m_per_s2 = gravity;
+  scene.sculpting.drag_per_s = 30.0;
+  Simulation simulation = make_simulation(scene);
+  const double force_n = settled_force_n(simulation, 8000, [&] {
+    return simulation.support_force_n(0, 0).y() + simulation.support_force_n(1, 0).y();
+  });
+  const double upper_n = weight_n(scene.bodies[1]);
+  expect_weight(std::string(stack.upper) + " on " + stack.lower, force_n - weight_n(scene.bodies[0]),
+                upper_n);
+}
+
+INSTANTIATE_TEST_SUITE_P(, WeightOnBody,
+                         testing::Values(Stack{"abs", "gelatin-20-1", ForceRun::full},
+                                         Stack{"silicone-00-30", "gelatin-20-1", ForceRun::whole_table},
+                                         Stack{"silicone-soft", "abs", ForceRun::whole_table},
+                                         Stack{"steel-304", "silicone-00-30", ForceRun::whole_table}));
+
+class FreeFall : public testing::TestWithParam<std::string> {};
+
+Vector3 mean_position(const SpringLattice& lattice) {
+  Vector3 sum = Vector3::Zero();
+  double mass_kg = 0.0;
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    const auto node_kg = static_cast<double>(lattice.mass(n));
+    sum += node_kg * lattice.position(n);
+    mass_kg += node_kg;
+  }
+  return sum / mass_kg;
+}
+
+TEST_P(FreeFall, IsThatOfAllBodies) {
+  const ForceRun run = GetParam() == "gelatin-20-1" ? ForceRun::always
+                       : GetParam() == "steel-304"  ? ForceRun::full
+                                                    : ForceRun::whole_table;
+  if (const std::string reason = find_skip_reason(run); !reason.empty()) GTEST_SKIP() << reason;
+  Body body = small_block("abs", Vector3::Zero());
+  body.material = bundled_material(GetParam());
+  Scene scene;
+  scene.bodies = {body};
+  scene.sculpting.gravity_m_per_s2 = gravity;
+  scene.sculpting.drag_per_s = 0.0;
+  scene.sculpting.real_time = true;
+  Simulation simulation = make_simulation(scene);
+  // The second difference of the height is the mean acceleration of an interval.
+  constexpr int ticks = 40;
+  const double first = mean_position(simulation.lattice()).y();
+  advance(simulation, ticks, idle_tool());
+  const double second = mean_position(simulation.lattice()).y();
+  advance(simulation, ticks, idle_tool());
+  const double third = mean_position(simulation.lattice()).y();
+  const double measured = -(third - 2.0 * second + first) / (1e-6 * ticks * ticks);
+  print_result("free fall", GetParam() + ", " + std::to_string(simulation.substeps()) + " substeps", measured,
+               "m/s2");
+  EXPECT_NEAR(measured / g, 1.0, 1e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(, FreeFall, testing::ValuesIn(bundled_material_names()));
+
+}  // namespace
+}  // namespace spoonbill
