@@ -101,7 +101,7 @@ FIGURES = (
            "the whole tick while touching, p99 over ticks of the thread's own time, each the median of five rounds",
            "handle"),
     Figure("tick_p99_us", "us", "ours", "at most", 250,
-           "the whole tick while touching, 6 relaxation steps, p99 as above", "block 12x12x12"),
+           "the whole tick while touching, 6 substeps, p99 as above", "block 12x12x12"),
     Figure("stiff_tick_p99_us", "us", "ours", "at most", 1000,
            "the whole tick while touching, of ABS stepped implicitly, p99 as above", "stiff handle"),
     Figure("frames_per_second", "1/s", "ours", "at least", 30,
@@ -115,7 +115,7 @@ FIGURES = (
            "a grid of 100 x 100 points to 24 x 24 control points; OCCT GeomAPI_PointsToBSplineSurface to 0.01 mm, "
            "which also finds parameters and knots"),
     Figure("lattice_at_1khz", "nodes", "ours", "at least", 32768,
-           "the largest block of clay whose whole tick while touching, one relaxation step, keeps its p99 of the "
+           "the largest block of clay whose whole tick while touching, one substep, keeps its p99 of the "
            "thread's own time under 1 ms"),
     Figure("loop_missed_per_1000", "per 1,000", "ours", "at most", 1, LOOP + "nothing draws", "idle"),
     Figure("loop_missed_per_1000", "per 1,000", "ours", "at most", 1, LOOP + "a thread draws at 60 Hz", "drawing"),

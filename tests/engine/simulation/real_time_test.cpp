@@ -25,7 +25,7 @@ Scene two_handles() {
 
 const FixingPlane plane_through_all{Vector3(0.02, 0, 0), Vector3::UnitX()};
 
-Material steel() {
+Material rigid_steel() {
   Material material = silicone();
   material.name = "steel";
   material.youngs_modulus_pa = 193e9;
@@ -51,7 +51,7 @@ TEST(InertiaScale, IsSharedByBodiesThatNothingFixes) {
 
 TEST(InertiaScale, OfAnImplicitBodyIsThatOfTheOthersUnlessItIsFixed) {
   Scene scene = two_handles();
-  scene.bodies[1].material = steel();
+  scene.bodies[1].material = rigid_steel();
   Simulation simulation = simulate(scene);
   EXPECT_GT(simulation.inertia_scale(0), 1.0);
   EXPECT_EQ(simulation.inertia_scale(1), simulation.inertia_scale(0));
@@ -59,7 +59,7 @@ TEST(InertiaScale, OfAnImplicitBodyIsThatOfTheOthersUnlessItIsFixed) {
   EXPECT_GT(simulation.inertia_scale(0), 1.0);
   EXPECT_EQ(simulation.inertia_scale(1), 1.0);
   Scene alone = small_handle();
-  alone.bodies[0].material = steel();
+  alone.bodies[0].material = rigid_steel();
   EXPECT_EQ(simulate(alone).inertia_scale(), 1.0);
 }
 
@@ -114,7 +114,7 @@ TEST(RealTime, IsThatOfAFall) {
   for (const bool real_time : {false, true}) {
     for (const bool is_stiff : {false, true}) {
       Scene scene = two_handles();
-      if (is_stiff) scene.bodies[0].material = steel();
+      if (is_stiff) scene.bodies[0].material = rigid_steel();
       scene.sculpting.real_time = real_time;
       scene.sculpting.drag_per_s = 0.0;
       scene.sculpting.gravity_m_per_s2 = {0.0, -9.81, 0.0};

@@ -112,6 +112,24 @@ TEST(Integration, KickDriftConservesItsOwnEnergy) {
   }
 }
 
+// With a damping time t, a mode's energy decays as exp(-t w^2 s) in the time s.
+TEST(Integration, AModeDecaysByItsDampingTime) {
+  SpringLattice undamped = one_cell(0.0);
+  const double omega = fastest_mode(undamped).omega;
+  constexpr double loss_factor = 0.02;
+  SpringLattice lattice = one_cell(loss_factor / omega);
+  const Mode mode = fastest_mode(lattice);
+  excite(lattice, mode);
+  const double step_s = 0.02 / mode.omega;
+  const auto energy = [&] {
+    const double q = mode.omega * amplitude(lattice, mode, false), p = amplitude(lattice, mode, true);
+    return p * p + q * q - step_s * mode.omega * q * p;
+  };
+  const double before = energy();
+  for (int step = 0; step < 5000; ++step) plain_substep(lattice, static_cast<float>(step_s));
+  EXPECT_NEAR(energy() / before, std::exp(-100.0 * loss_factor), 0.01);
+}
+
 TEST(Integration, FreeFallIsTheSumOfItsSteps) {
   SpringLattice lattice = block({8e-3, 8e-3, 8e-3}, {5, 5, 5}, elastic_material(100.0, 0.25, 1000.0));
   ContactConstraints none(1);

@@ -105,6 +105,32 @@ TEST(LatticeForces, RigidRotationProducesNoDamping) {
   EXPECT_LT(std::abs(power), 1e-3 * whole_damper);  // single precision of positions; (tau w)^2 / 2 is 2e-5
 }
 
+// A block that grows evenly is resisted by its springs alone: changes of volume are not damped.
+TEST(LatticeForces, OnlySpringsAreDamped) {
+  SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, elastic_material(5000.0, 0.45, 1000.0));
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) lattice.set_velocity(n, lattice.mesh().nodes[n]);
+  const LatticeView view = lattice.view();
+  lattice.kernels().look_ahead(view, 1e-3f);
+  lattice.kernels().linearise_springs(view, Linearised::tangents);
+  lattice.kernels().start_forces(view);
+  const std::vector<float> of_springs(view.fx, view.fx + view.padded_count);
+  EXPECT_GT(of_springs[0], 0.0f);
+  lattice.kernels().volume_forces(view);
+  EXPECT_EQ(std::vector<float>(view.fx, view.fx + view.padded_count), of_springs);
+}
+
+// Drag slows a velocity but takes nothing from the impulse of a force.
+TEST(LatticeForces, AKickAddsTheWholeImpulse) {
+  SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {2, 2, 2}, elastic_material(5000.0, 0.25, 1000.0));
+  lattice.set_velocity(0, {2.0, 0.0, 0.0});
+  const LatticeView view = lattice.view();
+  std::fill_n(view.fx, view.padded_count, 1e-3f);
+  lattice.kernels().kick(view, 1e-3f, 0.5f);
+  const double gained = 1e-6 / static_cast<double>(lattice.mass(0));
+  EXPECT_NEAR(lattice.velocity(0).x(), 1.0 + gained, 1e-6);
+  EXPECT_NEAR(lattice.velocity(1).x(), gained, 1e-6 * gained);
+}
+
 // One pass over the springs gives the same bits as a linearisation followed by a step of the power iteration,
 // and it leaves the previous derivatives unchanged if the new ones are not to be stored.
 TEST(LatticeForces, PowerStepsAlongWithALinearisation) {
