@@ -54,34 +54,37 @@ double conserved_energy_j(const SpringLattice& lattice, const StaticBody& spring
   return kinetic_energy_j(lattice) + potential.energy_j - 0.5 * step_s * potential.power_w;
 }
 
+// The springs are linearised once a tick, which changes the energy of large strains, and at very small ones
+// single precision does.
 TEST(Ringing, KeepsItsEnergyWithoutDamping) {
   if (const std::string reason = find_skip_reason(ForceRun::always); !reason.empty()) GTEST_SKIP() << reason;
   const DenormalsFlushed flushed;
+  constexpr double speed_m_per_s = 0.005;
+  constexpr int step_divisor = 3;
   const bool is_full = find_skip_reason(ForceRun::full).empty();
-  for (const char* material : {"silicone-00-30", "foam", "gelatin-20-1"}) {
-    CylinderSize size{0.006, 0.06, 0.001};
-    Body body = stock_body("rod", size, Vector3::Zero(), made_elastic(bundled_material(material)),
-                           is_full ? 1000 : 300);
+  for (const char* material : {"gelatin-20-1", "silicone-00-30", "foam"}) {
+    const CylinderSize size{0.006, 0.06, 0.001};
+    Body body = stock_body("rod", size, Vector3::Zero(), made_elastic(bundled_material(material)), 300);
     body.material.damping_time_s = 0.0;
     BodyState state = make_state(body);
     SpringLattice& lattice = state.lattice;
     const StaticBody springs =
         StaticBody::make(lattice.mesh(), lattice.materials(), CellKind::springs).value();
     RelaxSettings settings;
-    // Energy is conserved up to the square of the step times the frequency, so the steps are short.
     settings.substeps =
-        static_cast<int>(std::ceil(settings.time_s / lattice.find_real_time_step_s(settings.time_s))) * 3;
+        step_divisor *
+        static_cast<int>(std::lround(settings.time_s / lattice.find_real_time_step_s(settings.time_s)));
     const double step_s = settings.time_s / settings.substeps;
     lattice.set_inertia(1.0, step_s);
-    // The rod swings in its first bending shape, and is stretched.
+    // The rod swings in about its first bending shape, and along itself.
     for (int n = 0; n < lattice.mesh().node_count(); ++n) {
       const double along = lattice.mesh().nodes[static_cast<std::size_t>(n)].y() / size.height_m;
-      lattice.set_velocity(n, {0.05 * (std::cos(2.0 * std::numbers::pi * along) - 0.0), 0.05 * along, 0.0});
+      lattice.set_velocity(n, speed_m_per_s * Vector3(std::cos(2.0 * std::numbers::pi * along), along, 0.0));
     }
     const double before = conserved_energy_j(lattice, springs, step_s);
     double least = before, most = before, least_kinetic = kinetic_energy_j(lattice);
-    for (settings.tick = 0; settings.tick < (is_full ? 1000u : 300u); ++settings.tick) {
-      relax(std::array{RelaxedLattice{&lattice}}, settings, {});
+    for (; settings.tick < (is_full ? 1000u : 300u); ++settings.tick) {
+      EXPECT_EQ(relax(std::array{RelaxedLattice{&lattice}}, settings, {}).substeps, settings.substeps);
       const double now = conserved_energy_j(lattice, springs, step_s);
       least = std::min(least, now);
       most = std::max(most, now);
@@ -114,11 +117,10 @@ double whole_energy_j(const BodyState& body, const StaticBody& springs) {
   return kinetic_energy_j(body.lattice) + find_potential(body.lattice, springs).energy_j;
 }
 
-// Throws one pebble off centre against another, in real time.
+// Throws one ball off centre against another, in real time.
 Collision collide(int node_budget) {
   const DenormalsFlushed flushed;
-  Material silicone = made_elastic(bundled_material("silicone-00-30"));
-  silicone.damping_time_s = 0.0;
+  const Material silicone = made_elastic(bundled_material("silicone-00-30"));
   const SphereSize size{0.015};
   Impact impact(make_state(stock_body("target", size, Vector3::Zero(), silicone, node_budget)),
                 make_state(stock_body("thrown", size, {0.004, 0.0302, 0.002}, silicone, node_budget)),
@@ -150,8 +152,7 @@ TEST(FreeCollision, KeepsMomentumAndLosesLessEnergyWithSmallerCells) {
   if (const std::string reason = find_skip_reason(ForceRun::full); !reason.empty()) GTEST_SKIP() << reason;
   const bool is_whole = find_skip_reason(ForceRun::whole_table).empty();
   double last = 2.0;
-  for (const int node_budget :
-       is_whole ? std::vector<int>{150, 500, 1500, 4000} : std::vector<int>{150, 500}) {
+  for (const int node_budget : is_whole ? std::vector<int>{150, 500, 1500} : std::vector<int>{150, 500}) {
     const Collision collision = collide(node_budget);
     const std::string what = std::to_string(node_budget) + " nodes";
     print_result("collision", what + ": change of momentum", collision.momentum_change);

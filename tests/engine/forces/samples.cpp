@@ -39,10 +39,11 @@ void print_result(const std::string& row, const std::string& what, double measur
               unit.empty() ? "" : (" " + unit).c_str());
 }
 
-Surface stock_surface(const StockShapeSize& size, const Vector3& centre_m) {
+Surface stock_surface(const StockShapeSize& size, const Vector3& centre_m,
+                      std::optional<double> tolerance_m) {
   const ExactShape shape = stock_shape(size).value();
   ShapeFit fit;
-  fit.tolerance_m = default_tolerance_m(shape);
+  fit.tolerance_m = tolerance_m.value_or(default_tolerance_m(shape));
   fit.degree = stock_shape_degree(size);
   return placed(fit_shape(shape, fit).value().surface, {centre_m, Quaternion::Identity()});
 }

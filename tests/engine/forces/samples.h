@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,10 @@ std::string find_skip_reason(ForceRun smallest);
 void print_result(const std::string& row, const std::string& what, double measured,
                   const std::string& unit = "");
 
-// Returns a surface fitted to a stock shape, moved by `centre_m`.
-Surface stock_surface(const StockShapeSize& size, const Vector3& centre_m = Vector3::Zero());
+// Returns a surface fitted to a stock shape within a tolerance, moved by `centre_m`. Default tolerance: that
+// of the shape.
+Surface stock_surface(const StockShapeSize& size, const Vector3& centre_m = Vector3::Zero(),
+                      std::optional<double> tolerance_m = {});
 
 // Returns a material that the program ships, by the name of its file without ".json".
 Material bundled_material(const std::string& name);
