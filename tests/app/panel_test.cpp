@@ -270,7 +270,7 @@ PanelAnswer type_over_slider(float y, const char* text) {
   return answer;
 }
 
-constexpr float modulus_y = 209.0F, poisson_y = 249.0F, density_y = 269.0F;
+constexpr float modulus_y = 209.0F, poisson_y = 229.0F, density_y = 249.0F;
 
 TEST(Panel, TakesATypedMaterialWithItsUnit) {
   const auto material = [](const PanelAnswer& answer) {
