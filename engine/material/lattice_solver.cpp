@@ -145,7 +145,8 @@ void linearise_and_follow(SpringLattice& lattice, const LatticeView& view, Linea
 // Returns the speed cap that speed_cap_cells sets, m/s, for substeps of `h`.
 float speed_cap(const SpringLattice& lattice, float h) {
   const auto longest = static_cast<float>(2.0 / lattice.fastest_frequency());
-  return static_cast<float>(speed_cap_cells) * lattice.cell_size_m() / std::max(h, longest);
+  return static_cast<float>(speed_cap_cells) * lattice.cell_size_m() /
+         std::max({h, longest, lattice.damping_time_s()});
 }
 
 // Caps speeds relative to the frame velocity and moves the nodes.
@@ -208,6 +209,7 @@ void kick(Relaxation& relaxation, float h) {
 struct Substep {
   int index, count;
   float h;
+  bool reverses_tools;  // in every other substep, so that the two sides of a symmetric stroke stay alike
 };
 
 bool touches_springs(const Relaxation& relaxation, const TouchingTool& tool) {
@@ -223,7 +225,8 @@ void solve_contacts(const Relaxation& relaxation, const Substep& substep, std::s
   const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
   std::array<float, lattice_capacity> push_caps{};
   for (std::size_t at = 0; at < relaxation.count(); ++at) push_caps[at] = 0.5f * relaxation.cap[at];
-  for (const TouchingTool& tool : tools) {
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    const TouchingTool& tool = tools[substep.reverses_tools ? tools.size() - 1 - t : t];
     if (touches_springs(relaxation, tool)) {
       tool.contacts->solve(views, *tool.state, substep.h, static_cast<double>(substep.index) / substep.count,
                            push_caps);
@@ -504,7 +507,9 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   for (int s = 0; s < substeps.count; ++s) {
     kick(relaxation, h);
     collect_carried_forces(relaxation, tools);
-    solve_contacts(relaxation, {s, substeps.count, h}, tools, between, ground);
+    // Flow acts in every other tick, so the order changes after two.
+    const bool reverses_tools = (settings.tick / 2 + static_cast<std::uint64_t>(s)) % 2 == 1;
+    solve_contacts(relaxation, {s, substeps.count, h, reverses_tools}, tools, between, ground);
     report.speed_capped |= drift(relaxation, h, tools);
     move_carried_nodes(relaxation, tools);
     move_supported_nodes(relaxation, static_cast<double>(s + 1) / substeps.count);

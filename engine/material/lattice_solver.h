@@ -36,9 +36,10 @@ inline constexpr int substep_ceiling = 4;
 // frequency lags a sudden contact by tens of ticks.
 inline constexpr double stability_fraction = 0.85;
 
-// Distance, in cells, that sets the speed cap: a node moves at most this far in a substep or, if 2 / w is
-// longer, in 2 / w, the longest undamped step that the lattice alone could take. Speeds are relative to the
-// tool or support that carries the whole body, or to the mean velocity of a body without fixed nodes.
+// Distance, in cells, that sets the speed cap: a node moves at most this far in a substep, in the damping
+// time, by which damping extrapolates its motion, or in 2 / w, the longest undamped step that the lattice
+// alone could take, whichever is longest. Speeds are relative to the tool or support that carries the whole
+// body, or to the mean velocity of a body without fixed nodes.
 //
 // Waves cross a cell in about 2 / w. Nodes stay below a ninth of the wave speed, and an impact strains even
 // a soft, undamped body by no more than its springs can restore.
@@ -87,7 +88,8 @@ struct TouchingTool {
 // Advances at most lattice_capacity lattices by as many substeps as the stiffest one needs. Lattices with an
 // implicit solver advance by one implicit step: its velocities are computed before the contacts, move the
 // lattice from substep to substep, and respond to the contacts afterwards. If only such lattices are present,
-// a tick takes one substep. Tools act in their order, then bodies on each other, then the ground. A tool that
+// a tick takes one substep. Tools act first, in alternating order, then bodies on each
+// other, then the ground. A tool that
 // touches only implicitly stepped lattices acts once, at the start. The caller must
 // flush denormals for speed (see DenormalsFlushed).
 RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,

@@ -52,6 +52,7 @@ struct BodyState {
       implicit_solver->fix_nodes(fixed);
       implicit_solver->adopt_shape(lattice);
     }
+    lattice.fix_nodes(fixed);
     lattice.set_contact_inverse_mass(implicit_solver ? implicit_solver->contact_inverse_mass() : 0.0);
   }
   // Returns the implicit solver if it steps the body; null if the springs do.

@@ -53,6 +53,7 @@ Simulation dented(double v) {
   Scene scene = small_handle();
   scene.tool.kind = ToolKind::point;
   scene.tool.substeps = 1;
+  scene.bodies[0].material.flow_rate_per_s = 50.0;
   const FixingPlane left{Vector3(0.012, 0, 0), Vector3::UnitX()};
   scene.planes = {left, {Vector3(0.048, 0, 0), -Vector3::UnitX()}};
   Simulation simulation = simulate(scene);

@@ -193,13 +193,13 @@ TEST(SolidTool, IsExchangedWhileTheSimulationRuns) {
 TEST(SolidTool, ABodyThatIsHeldIsNotMeshedAgainForAnotherSetting) {
   Tool tool = solid(SurfaceSolid{finger()});
   Simulation simulation = simulate(held_handle(tool));
-  tool.substeps = 7;
+  tool.radius_m = 0.007;
   tool.action = ToolAction::pull;
   const Command change = SetTool{tool};
   const std::size_t before = allocation_count();
   EXPECT_TRUE(simulation.apply(change).ok());
   EXPECT_EQ(allocation_count(), before);
-  EXPECT_EQ(simulation.scene().tool.substeps, 7);
+  EXPECT_EQ(simulation.scene().tool.radius_m, 0.007);
   tool.substeps = 0;
   EXPECT_FALSE(simulation.apply(SetTool{tool}).ok());
   Tool empty;

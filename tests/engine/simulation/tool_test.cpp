@@ -12,6 +12,7 @@ TEST(Tool, SymmetryMirrorsTheStroke) {
   for (const bool symmetric : {true, false}) {
     Scene scene = small_handle();
     scene.tool.substeps = 1;
+    scene.bodies[0].material.flow_rate_per_s = 50.0;
     scene.sculpting.free = true;  // so that a one-sided stroke turns the handle
     scene.tool.radius_m = 0.0015;
     scene.symmetry.on = symmetric;  // about z = 0

@@ -13,6 +13,7 @@ namespace {
 // Returns a box with a floor and two walls, each one cell thick; the rest is void.
 LatticeMesh bowl_in_box(const std::array<int, 3>& counts) {
   LatticeMesh box = box_mesh({0.04, 0.04, 0.04}, counts);
+  box.filled.assign(box.cell_count(), true);
   box.cell_fractions.assign(box.cell_count(), 1e-3);
   for (int k = 0; k + 1 < counts[2]; ++k) {
     for (int i = 0; i + 1 < counts[0]; ++i) {
