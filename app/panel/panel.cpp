@@ -29,7 +29,6 @@ PanelModel make_panel_model(const SessionFacts& facts, const Snapshot& snapshot,
   model.region_count = facts.region_count;
   model.mass_kg = facts.mass_kg;
   model.inertia_scale = snapshot.bodies.front().material.inertia_scale;
-  model.implicit_nodes = snapshot.bodies.front().material.implicit_nodes;
   for (std::size_t b = 0; b < snapshot.bodies.size(); ++b) {
     const double residual_m = snapshot.bodies[b].residual.largest_m;
     if (residual_m <= model.residual_m) continue;
@@ -149,11 +148,6 @@ bool draw_presets(const PanelModel& model, Material& material) {
   return changed;
 }
 
-std::string response_text(const PanelModel& model) {
-  const std::string text = slowness_text(model.inertia_scale);
-  return model.implicit_nodes > 0 ? text + ", implicit" : text;
-}
-
 std::string after_touch_text(const Material& material) {
   if (material.plastic) return "plastic";
   if (!(material.relaxing_fraction > 0.0)) return "elastic";
@@ -187,7 +181,8 @@ void draw_material(const PanelModel& model, const Theme& theme, PanelAnswer& ans
     changed |= field_row(field, material, answer.refusal);
   }
   bool sculpting_changed = field_row(field_of(&Sculpting::drag_per_s), sculpting, answer.refusal);
-  sculpting_changed |= switch_row("Responds", response_text(model), "real time", sculpting.real_time);
+  sculpting_changed |=
+      switch_row("Responds", slowness_text(model.inertia_scale), "real time", sculpting.real_time);
   sculpting_changed |=
       switch_row("After touch", after_touch_text(material), "no ringing", sculpting.is_critically_damped);
   fact_row("Mass", mass_text(model));

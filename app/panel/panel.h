@@ -29,8 +29,7 @@ struct PanelModel {
   std::vector<Material> presets;  // choices of the preset list
 
   double inertia_scale = 1.0;
-  int implicit_nodes = 0;  // 0: explicit springs
-  double mass_kg = 0.0;    // mass of all bodies
+  double mass_kg = 0.0;  // mass of all bodies
   int plane_count = 0;
   int fixed_node_count = 0;
   int node_count = 0;

@@ -54,7 +54,8 @@ TEST(BadInput, DamagedModels) {
   const std::string start = model.substr(0, model.find(':'));
   ASSERT_NE(start.find("spoonbill_document"), std::string::npos);
   for (const std::string& damaged :
-       {model.substr(0, model.size() / 2), replaced(model, start + ": 2", start + ": 99"),
+       {model.substr(0, model.size() / 2),
+        replaced(model, start + ": " + std::to_string(document_version), start + ": 99"),
         replaced(model, "\"degree\": 3", "\"degree\": 42"),
         replaced(model, "\"degree\": 3", "\"degree\": NaN"),
         replaced(model, "\"degree\": 3", "\"degree\": 1e999"), replaced(model, "\"degree\"", "\"degre\"")}) {

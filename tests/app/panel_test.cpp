@@ -201,8 +201,7 @@ TEST(Panel, SaysHowMuchSlowerABodyResponds) {
   frame.draw(model);
   EXPECT_NE(frame.draw_text(model).find("35 times slower"), std::string::npos);
   model.inertia_scale = 1.0;
-  model.implicit_nodes = 100;
-  EXPECT_NE(frame.draw_text(model).find("real time, implicit"), std::string::npos);
+  EXPECT_EQ(frame.draw_text(model).find("slower"), std::string::npos);
 }
 
 TEST(Panel, SwitchesRealTime) {
@@ -271,7 +270,7 @@ PanelAnswer type_over_slider(float y, const char* text) {
   return answer;
 }
 
-constexpr float modulus_y = 209.0F, poisson_y = 249.0F, density_y = 269.0F;
+constexpr float modulus_y = 209.0F, poisson_y = 229.0F, density_y = 249.0F;
 
 TEST(Panel, TakesATypedMaterialWithItsUnit) {
   const auto material = [](const PanelAnswer& answer) {

@@ -41,7 +41,7 @@ struct Touched {
       before = simulation.shape();
     }
     EXPECT_GT(height_m, -0.05);
-    hold(height_m - 0.0005, 40);
+    hold(height_m - 0.0003, 40);
     return before;
   }
 
