@@ -70,7 +70,8 @@ struct MaterialMix {
 Result<MaterialMix> compute_material_mix(const Body& body);
 
 // Mass of a body, the same number wherever the program states it: the exact volume times the mean density.
-// The mass of the body's lattice, on which forces act, differs by the error of the cells.
+// The mass of the body's lattice, on which forces act, equals it up to rounding, except where trims cut the
+// surface.
 struct BodyMass {
   double volume_m3 = 0.0;
   Vector3 centre_m = Vector3::Zero();  // centre of mass

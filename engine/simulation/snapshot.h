@@ -78,7 +78,7 @@ struct MaterialSnapshot {
   double density_kg_per_m3 = 0.0;
   double drag_per_s = 0.0;  // mass-proportional
   bool plastic = false;
-  double lattice_mass_kg = 0.0;  // differs from the body's by the cells' error
+  double lattice_mass_kg = 0.0;  // that of the whole surface if the body has trims
 };
 
 // Distance by which a body's surface lags behind its lattice, since its knots or fixing planes last changed.
