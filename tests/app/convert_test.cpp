@@ -163,7 +163,7 @@ TEST_F(ConvertTest, BodiesAreChosen) {
 
 TEST_F(ConvertTest, ATrimmedSurfaceStaysTrimmed) {
   Json document = json_of(content_of(place_.path("model.json")));
-  document["spoonbill_document"] = 2;
+  document["spoonbill_document"] = 3;
   Json& surface = document["body"]["surface"];
   const auto domain = read_document(place_.path("model.json"))->scene.bodies[0].surface;
   const double low = domain.v.domain_start(), high = domain.v.domain_end();
