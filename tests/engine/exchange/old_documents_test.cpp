@@ -102,6 +102,14 @@ TEST(OldDocuments, HaveNoCurrentFields) {
             Refusal(ErrorCode::unknown, "body.material.damping_ratio"));
 }
 
+TEST(OldDocuments, OfVersionOneHaveNoSolids) {
+  Json json = old_json("version-1.json");
+  json["body"]["solid"] = "bracket";
+  EXPECT_EQ(Refusal(document_from_json(json, "a.json")), Refusal(ErrorCode::unknown, "body.solid"));
+  json["spoonbill_document"] = 2;
+  EXPECT_TRUE(document_from_json(json, "a.json").ok());
+}
+
 TEST(OldDocuments, AMaterialFileIsReadAsOfSixIterations) {
   Json json = material_to_json(sample_document().scene.bodies[0].material);
   json.erase("damping_time_s");
