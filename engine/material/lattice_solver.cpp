@@ -209,7 +209,7 @@ void kick(Relaxation& relaxation, float h) {
 struct Substep {
   int index, count;
   float h;
-  bool reverses_tools;  // in every other substep, so that the two sides of a symmetric stroke stay alike
+  bool is_reversed;  // in every other substep, so that the two sides of a symmetric stroke stay alike
 };
 
 bool touches_springs(const Relaxation& relaxation, const TouchingTool& tool) {
@@ -220,19 +220,56 @@ bool touches_springs(const Relaxation& relaxation, const TouchingTool& tool) {
   return false;
 }
 
+// Passes over the contacts of a tool with implicitly stepped lattices. Each pass is a descent step: it is
+// shortened to the best fraction where the lattices respond more than the contacts assumed.
+void solve_with_solvers(const Relaxation& relaxation, const TouchingTool& tool, std::span<const float> caps) {
+  constexpr int passes = 2;
+  const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
+  for (int p = 0; p < passes; ++p) {
+    tool.contacts->pass(views, *tool.state,
+                        {relaxation.time_s, ContactConstraints::Moved::by_solver, p % 2 == 1, caps});
+    std::array<bool, lattice_capacity> responds{};
+    double assumed = tool.contacts->pass_work_j(*tool.state), work = assumed;
+    for (std::size_t at = 0; at < relaxation.count(); ++at) {
+      if (relaxation.has_springs(at) || !tool.contacts->has_constraint_on(static_cast<int>(at))) continue;
+      const auto response = relaxation.lattices[at].implicit_solver->find_response(relaxation.lattice(at));
+      responds[at] = response.work_j > 0.0;
+      assumed += response.assumed_work_j;
+      work += response.work_j;
+    }
+    const double fraction = work > assumed ? assumed / work : 1.0;
+    tool.contacts->shorten_pass(*tool.state, fraction);
+    for (std::size_t at = 0; at < relaxation.count(); ++at) {
+      if (responds[at]) relaxation.lattices[at].implicit_solver->respond(fraction, relaxation.lattice(at));
+    }
+  }
+}
+
+// Solves the contacts of a tool: with springs in each substep, with implicitly stepped lattices once a tick.
+void solve_tool(const Relaxation& relaxation, const TouchingTool& tool, const Substep& substep,
+                std::span<const float> caps) {
+  const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
+  const bool with_springs = touches_springs(relaxation, tool);
+  if (!with_springs && substep.index > 0) return;
+  const double h = with_springs ? static_cast<double>(substep.h) : relaxation.time_s;
+  tool.contacts->start(views, *tool.state, h, static_cast<double>(substep.index) / substep.count);
+  if (substep.index == 0) {
+    solve_with_solvers(relaxation, tool, caps);
+  }
+  if (with_springs) {
+    tool.contacts->pass(views, *tool.state,
+                        {h, ContactConstraints::Moved::by_springs, substep.is_reversed, caps});
+  }
+  tool.contacts->finish(*tool.state, h);
+}
+
 void solve_contacts(const Relaxation& relaxation, const Substep& substep, std::span<const TouchingTool> tools,
                     BodyContacts* between, GroundContacts* ground) {
   const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
   std::array<float, lattice_capacity> push_caps{};
   for (std::size_t at = 0; at < relaxation.count(); ++at) push_caps[at] = 0.5f * relaxation.cap[at];
   for (std::size_t t = 0; t < tools.size(); ++t) {
-    const TouchingTool& tool = tools[substep.reverses_tools ? tools.size() - 1 - t : t];
-    if (touches_springs(relaxation, tool)) {
-      tool.contacts->solve(views, *tool.state, substep.h, static_cast<double>(substep.index) / substep.count,
-                           push_caps);
-    } else if (substep.index == 0) {
-      tool.contacts->solve(views, *tool.state, static_cast<float>(relaxation.time_s), 0.0, push_caps);
-    }
+    solve_tool(relaxation, tools[substep.is_reversed ? tools.size() - 1 - t : t], substep, push_caps);
   }
   if (between) between->solve(views, substep.h, push_caps);
   if (!ground) return;
@@ -508,8 +545,8 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     kick(relaxation, h);
     collect_carried_forces(relaxation, tools);
     // Flow acts in every other tick, so the order changes after two.
-    const bool reverses_tools = (settings.tick / 2 + static_cast<std::uint64_t>(s)) % 2 == 1;
-    solve_contacts(relaxation, {s, substeps.count, h, reverses_tools}, tools, between, ground);
+    const bool is_reversed = (settings.tick / 2 + static_cast<std::uint64_t>(s)) % 2 == 1;
+    solve_contacts(relaxation, {s, substeps.count, h, is_reversed}, tools, between, ground);
     report.speed_capped |= drift(relaxation, h, tools);
     move_carried_nodes(relaxation, tools);
     move_supported_nodes(relaxation, static_cast<double>(s + 1) / substeps.count);

@@ -105,17 +105,13 @@ TEST(Bodies, ADocumentHoldsAThousand) {
   EXPECT_EQ(Refusal(more), Refusal(ErrorCode::too_many, "other_bodies"));
 }
 
-TEST(Bodies, VersionOneHasNoSolids) {
+TEST(Bodies, KeepTheNameOfTheirSolid) {
   Json json = document_to_json(sample_document());
   json["body"]["solid"] = "bracket";
   const auto document = document_from_json(json, "a.json");
   ASSERT_TRUE(document) << document.error().message;
   EXPECT_EQ(document->scene.bodies[0].solid, "bracket");
   EXPECT_EQ(document_to_json(document.value()), json);
-  json["spoonbill_document"] = 1;
-  const auto first = document_from_json(json, "a.json");
-  ASSERT_FALSE(first);
-  EXPECT_EQ(Refusal(first), Refusal(ErrorCode::unknown, "body.solid"));
 }
 
 }  // namespace

@@ -84,7 +84,6 @@ bool ContactConstraints::add(const Constraint& constraint, const SpringLattice& 
   Constraint& added = constraints_[count_++];
   added = constraint;
   added.rest_m = constraint.point.rest_m(lattice);
-  added.compliance = constraint.point.compliance(lattice);
   added.friction = constraint.point.friction(lattice);
   added.is_implicit = lattice.moved_by_solver();
   added.keeps_force =
@@ -111,35 +110,46 @@ void ContactConstraints::begin(const ToolMotion& motion, double time_s) {
   for (int c = 0; c < count_; ++c) constraints_[c].acted = false;
 }
 
-void ContactConstraints::solve(std::span<const LatticeView> lattices, ToolState& tool, float h,
-                               double fraction, std::span<const float> caps) {
-  SPOONBILL_ASSERT_DEBUG(h > 0.0f && fraction >= 0.0 && fraction < 1.0);
-  const double damped = 1.0 + static_cast<double>(h) * coupling_frequency;
+void ContactConstraints::start(std::span<const LatticeView> lattices, ToolState& tool, double h_s,
+                               double fraction) {
+  SPOONBILL_ASSERT_DEBUG(h_s > 0.0 && fraction >= 0.0 && fraction < 1.0);
+  const double damped = 1.0 + h_s * coupling_frequency;
   response_compliance_ = tool_compliance_ / (damped * damped);
-  follow_hand(tool, h, fraction);
-  if (motion_.carried.body >= 0) {
-    tool_impulse_[motion_.carried.body] += static_cast<double>(h) * carried_force_;
-  }
+  follow_hand(tool, h_s, fraction);
+  if (motion_.carried.body >= 0) tool_impulse_[motion_.carried.body] += h_s * carried_force_;
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[c];
-    if (constraint.force_n > 0.0) start_push(lattices[constraint.body], constraint, tool, h);
+    if (constraint.force_n > 0.0) start_push(lattices[constraint.body], constraint, tool, h_s);
   }
-  for (int c = 0; c < count_; ++c) {
-    Constraint& constraint = constraints_[c];
-    if (effective_compliance(constraint) + response_compliance_ == 0.0) continue;
-    const LatticeView& lattice = lattices[constraint.body];
-    const double cap = caps[constraint.body];
-    if (constraint.kind == Kind::grip) {
-      solve_grip(lattice, constraint, tool, h, cap);
-    } else {
-      solve_push(lattice, constraint, tool, h, cap);
-    }
-  }
-  tool.position_m += static_cast<double>(h) * tool.velocity_m_per_s;
 }
 
-double ContactConstraints::effective_compliance(const Constraint& constraint) const {
-  return motion_.body_yields ? constraint.compliance : 0.0;
+void ContactConstraints::pass(std::span<const LatticeView> lattices, ToolState& tool, const Pass& pass) {
+  passed_ = {tool.velocity_m_per_s, tool_impulse_};
+  const bool by_solver = pass.moved == Moved::by_solver;
+  for (int c = 0; c < count_; ++c) {
+    Constraint& constraint = constraints_[pass.is_reversed ? count_ - 1 - c : c];
+    if (constraint.is_implicit != by_solver) continue;
+    const LatticeView& lattice = lattices[constraint.body];
+    // Grips last for many ticks, in which the inertia may change.
+    constraint.compliance = motion_.body_yields ? constraint.point.compliance(lattice) : 0.0;
+    if (constraint.compliance + response_compliance_ == 0.0) continue;
+    const auto cap = static_cast<double>(pass.push_speed_caps_m_per_s[constraint.body]);
+    if (constraint.kind == Kind::grip) {
+      solve_grip(lattice, constraint, tool, pass.h_s, cap);
+    } else {
+      solve_push(lattice, constraint, tool, pass.h_s, cap);
+    }
+  }
+}
+
+void ContactConstraints::shorten_pass(ToolState& tool, double fraction) {
+  SPOONBILL_ASSERT_DEBUG(fraction >= 0.0 && fraction <= 1.0);
+  const Vector3& before = passed_.velocity_m_per_s;
+  tool.velocity_m_per_s = before + fraction * (tool.velocity_m_per_s - before);
+  for (std::size_t body = 0; body < tool_impulse_.size(); ++body) {
+    const Vector3& impulse = passed_.impulse_ns[body];
+    tool_impulse_[body] = impulse + fraction * (tool_impulse_[body] - impulse);
+  }
 }
 
 // Moves the tool by its coupling spring and critical damper, implicit in the tool's velocity: x'' = w^2
@@ -173,7 +183,7 @@ std::optional<ContactPush> ContactConstraints::find_push(const LatticeView& latt
   const Vector3 from_centre = position - tool.position_m;
   ContactPush push{0.0, constraint.direction,
                    constraint.point.velocity_m_per_s(lattice) - tool.velocity_m_per_s,
-                   1.0 / (effective_compliance(constraint) + response_compliance_)};
+                   1.0 / (constraint.compliance + response_compliance_)};
   if (constraint.kind == Kind::plane_push) {
     push.gap_m = from_centre.dot(push.normal) - constraint.offset_m;
     return push;
@@ -219,8 +229,7 @@ void ContactConstraints::solve_grip(const LatticeView& lattice, Constraint& cons
   if (speed > cap) target *= cap / speed;
   const Vector3 velocity = constraint.point.velocity_m_per_s(lattice);
   exchange(lattice, constraint, tool,
-           (tool.velocity_m_per_s + target - velocity) /
-               (effective_compliance(constraint) + response_compliance_));
+           (tool.velocity_m_per_s + target - velocity) / (constraint.compliance + response_compliance_));
 }
 
 void ContactConstraints::mark_touched(int body, std::uint8_t* touched) const {

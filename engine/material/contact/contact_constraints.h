@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -130,10 +131,29 @@ class ContactConstraints {
   // Sets the force of the carried nodes on the tool in the coming substep, N.
   void set_carried_force(const Vector3& force_n) { carried_force_ = force_n; }
 
-  // Solves the constraints and moves the tool. Call after the kick and before the drift of a substep of h_s
-  // that starts at `fraction` [0, 1) of the tick. Impulses on nodes and tool are equal and opposite.
-  void solve(std::span<const LatticeView> lattices, ToolState& tool, float h_s, double fraction,
-             std::span<const float> push_speed_caps_m_per_s);
+  // Parts of a substep of h_s, after the kick and before the drift of the lattices. `fraction` [0, 1) is the
+  // part of the tick that has passed. start() moves the tool's velocity towards the hand and pushes with the
+  // forces of the last substep; pass() solves the constraints once, those with lattices that springs or that
+  // the implicit solver moves; finish() moves the tool. Impulses on nodes and tool are equal and opposite.
+  enum class Moved { by_springs, by_solver };
+  struct Pass {
+    double h_s;
+    Moved moved;
+    // One pass favours the last constraints, so the order should be reversed in every other substep.
+    bool is_reversed;
+    std::span<const float> push_speed_caps_m_per_s;  // by body
+  };
+  void start(std::span<const LatticeView> lattices, ToolState& tool, double h_s, double fraction);
+  void pass(std::span<const LatticeView> lattices, ToolState& tool, const Pass& pass);
+  void finish(ToolState& tool, double h_s) { tool.position_m += h_s * tool.velocity_m_per_s; }
+  // Shortens the impulses of the last pass() on the tool to this fraction. The caller does so with those on
+  // the nodes.
+  void shorten_pass(ToolState& tool, double fraction);
+  // Product of the last pass()'s impulses on the tool and the tool's velocity change, J.
+  double pass_work_j(const ToolState& tool) const {
+    return (tool.velocity_m_per_s - passed_.velocity_m_per_s).squaredNorm() /
+           std::max(response_compliance_, std::numeric_limits<double>::min());
+  }
 
   int count() const { return count_; }
   bool has_constraint_on(int body) const;
@@ -158,8 +178,8 @@ class ContactConstraints {
     Vector3 rest_m = Vector3::Zero();     // position in the rest shape
     Vector3 direction = Vector3::Zero();  // plane push: normal; grip: offset in the tool's frame
     double offset_m = 0.0;                // plane push only
-    double compliance = 0.0;              // velocity change per impulse, 1/kg; 0 if all nodes are fixed
-    double friction = 0.0;                // coefficient of the body's surface; tools have none
+    double compliance = 0.0;  // velocity change per impulse in the last pass(), 1/kg; 0 if it does not yield
+    double friction = 0.0;    // coefficient of the body's surface; tools have none
     int key = changing_point_key;
     bool is_implicit = false;  // on a lattice that the implicit solver moves
     // False on such a lattice, whose contact mass is an estimate: a kept force would amplify its error.
@@ -173,7 +193,6 @@ class ContactConstraints {
   };
   bool add(const Constraint& constraint, const SpringLattice& lattice);
   double find_kept_force(int body, int key) const;
-  double effective_compliance(const Constraint& constraint) const;
   void follow_hand(ToolState& tool, double h, double fraction) const;
   void solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
   void solve_grip(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
@@ -194,6 +213,11 @@ class ContactConstraints {
   // and damper, 1/kg.
   double response_compliance_ = 0.0;
   std::array<Vector3, lattice_capacity> tool_impulse_;
+  // The tool's velocity and impulses before the last pass().
+  struct {
+    Vector3 velocity_m_per_s = Vector3::Zero();
+    std::array<Vector3, lattice_capacity> impulse_ns;
+  } passed_;
   bool acted_ = false;
 };
 

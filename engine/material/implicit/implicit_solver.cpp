@@ -421,20 +421,32 @@ double ImplicitSolver::collect_impulses(const SpringLattice& lattice) {
   return squares;
 }
 
+ImplicitSolver::ContactResponse ImplicitSolver::find_response(const SpringLattice& lattice) {
+  const double squares = collect_impulses(lattice);
+  if (!(squares > 0.0)) return {};
+  const double work = body_.respond_to(impulse_);
+  if (measured_inverse_mass_ == 0.0) measured_inverse_mass_ = work / squares;
+  return {contact_inverse_mass_ * squares, work};
+}
+
+void ImplicitSolver::respond(double fraction, SpringLattice& lattice) {
+  body_.apply_response(fraction);
+  write_velocities(lattice);
+}
+
 // Updates the inverse mass in contacts to the geometric mean of the old and the measured one, so that two
 // bodies that adapt to each other converge.
-void ImplicitSolver::update_contact_mass(double measured, SpringLattice& lattice) {
-  if (!std::isfinite(measured)) return;
+void ImplicitSolver::update_contact_mass(SpringLattice& lattice) {
+  const double measured = std::exchange(measured_inverse_mass_, 0.0);
+  if (measured == 0.0 || !std::isfinite(measured)) return;
   const double target = std::clamp(measured, min_inverse_mass_, max_lightness * min_inverse_mass_);
   contact_inverse_mass_ = std::sqrt(contact_inverse_mass_ * target);
   lattice.set_contact_inverse_mass(contact_inverse_mass_);
 }
 
 void ImplicitSolver::end_step(SpringLattice& lattice, const GroundPush& on_ground) {
-  // So far each contact has changed only its node's velocity, by the impulse divided by the contact mass.
-  // Here the whole body responds to all impulses together.
-  const double squares = collect_impulses(lattice);
-  if (squares > 0.0) update_contact_mass(body_.push(impulse_) / squares, lattice);
+  if (find_response(lattice).work_j > 0.0) body_.apply_response(1.0);
+  update_contact_mass(lattice);
   if (!on_ground.contacts.empty()) {
     ground_contacts_.solve(*on_ground.ground, on_ground.contacts, followers_, step_s_,
                            on_ground.push_speed_cap_m_per_s, body_, impulse_);

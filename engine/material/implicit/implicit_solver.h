@@ -113,8 +113,10 @@ struct RigidMove {
 // contacts and supports use the lattice.
 //
 // Contacts push the lattice's nodes as if each were free, with an inverse mass that matches the block's
-// response to the last contacts. The block then responds as a whole. The ground comes last and pushes the
-// block directly. One owner, the body; built outside the tick, allocates nothing afterwards.
+// response to the last contacts. The block then responds as a whole: after each pass over the contacts of a
+// tool, which is shortened where the nodes would respond more than that, and at the end of the tick. The
+// ground comes last and pushes the block directly. One owner, the body; built outside the tick, allocates
+// nothing afterwards.
 class ImplicitSolver {
  public:
   // Builds the solver, unstrained where the lattice's nodes are at `rest_m`.
@@ -160,6 +162,15 @@ class ImplicitSolver {
   // contacts act with their impulses of the last tick. Contacts then change the velocities.
   ImplicitReport begin_step(const ImplicitStep& step, SpringLattice& lattice,
                             std::span<GroundContact> on_ground = {});
+  // Impulses of contacts on the lattice's nodes since the last response, and what they do to the block.
+  struct ContactResponse {
+    double assumed_work_j =
+        0.0;              // product of the impulses and the velocity changes that the contacts assumed
+    double work_j = 0.0;  // product of the impulses and the block's velocity changes
+  };
+  ContactResponse find_response(const SpringLattice& lattice);
+  // Lets the block respond to this fraction of the impulses of find_response(), and the lattice follow.
+  void respond(double fraction, SpringLattice& lattice);
   // Ground contacts of the lattice for end_step().
   struct GroundPush {
     const GroundContacts* ground = nullptr;
@@ -185,7 +196,7 @@ class ImplicitSolver {
   void write_velocities(SpringLattice& lattice);
   void write_displacements(SpringLattice& lattice);
   double collect_impulses(const SpringLattice& lattice);
-  void update_contact_mass(double measured, SpringLattice& lattice);
+  void update_contact_mass(SpringLattice& lattice);
   bool follows_fixed(const GridPoint& follower) const;
   // Returns whether one of the lattice nodes fixes this node of the block.
   bool is_fixed_by(int node, std::span<const int> nodes) const;
@@ -198,7 +209,8 @@ class ImplicitSolver {
   std::vector<std::array<float, 3>> velocity_;  // of the lattice's nodes, before contacts
   std::vector<double> impulse_;                 // by coordinate of the block, N s: working memory
   ImplicitGroundContacts ground_contacts_;
-  double step_s_ = 0.0;
+  double step_s_ = 0.0,
+         measured_inverse_mass_ = 0.0;  // in the first response of the tick; 0 if there was none
   double inertia_scale_ = 1.0;
   double contact_inverse_mass_ = 0.0, min_inverse_mass_ = 0.0;  // with the scaled inertia
 };

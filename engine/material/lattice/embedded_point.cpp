@@ -52,6 +52,15 @@ Vector3 EmbeddedPoint::position_m(const SpringLattice& lattice) const {
   return sum;
 }
 
+double EmbeddedPoint::compliance(const LatticeView& lattice) const {
+  double sum = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const double fraction = weight[i];
+    sum += fraction * fraction * lattice.inverse_mass[node[i]];
+  }
+  return sum;
+}
+
 double EmbeddedPoint::compliance(const SpringLattice& lattice) const {
   double sum = 0.0;
   for (int i = 0; i < count; ++i) {

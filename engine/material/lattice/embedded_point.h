@@ -27,6 +27,7 @@ struct EmbeddedPoint {
   Vector3 position_m(const SpringLattice& lattice) const;
   // Velocity change of the point per impulse, 1/kg; 0 if all of its nodes are fixed.
   double compliance(const SpringLattice& lattice) const;
+  double compliance(const LatticeView& lattice) const;
   // Mean friction of the nodes, weighted, and within the range of their values.
   double friction(const SpringLattice& lattice) const;
   Vector3 displacement_m(const LatticeView& lattice) const;
