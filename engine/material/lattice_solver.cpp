@@ -209,7 +209,6 @@ void kick(Relaxation& relaxation, float h) {
 struct Substep {
   int index, count;
   float h;
-  bool is_reversed;  // in every other substep, so that the two sides of a symmetric stroke stay alike
 };
 
 bool touches_springs(const Relaxation& relaxation, const TouchingTool& tool) {
@@ -257,8 +256,7 @@ void solve_tool(const Relaxation& relaxation, const TouchingTool& tool, const Su
     solve_with_solvers(relaxation, tool, caps);
   }
   if (with_springs) {
-    tool.contacts->pass(views, *tool.state,
-                        {h, ContactConstraints::Moved::by_springs, substep.is_reversed, caps});
+    tool.contacts->pass(views, *tool.state, {h, ContactConstraints::Moved::by_springs, false, caps});
   }
   tool.contacts->finish(*tool.state, h);
 }
@@ -268,9 +266,7 @@ void solve_contacts(const Relaxation& relaxation, const Substep& substep, std::s
   const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
   std::array<float, lattice_capacity> push_caps{};
   for (std::size_t at = 0; at < relaxation.count(); ++at) push_caps[at] = 0.5f * relaxation.cap[at];
-  for (std::size_t t = 0; t < tools.size(); ++t) {
-    solve_tool(relaxation, tools[substep.is_reversed ? tools.size() - 1 - t : t], substep, push_caps);
-  }
+  for (const TouchingTool& tool : tools) solve_tool(relaxation, tool, substep, push_caps);
   if (between) between->solve(views, substep.h, push_caps);
   if (!ground) return;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
@@ -544,9 +540,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   for (int s = 0; s < substeps.count; ++s) {
     kick(relaxation, h);
     collect_carried_forces(relaxation, tools);
-    // Flow acts in every other tick, so the order changes after two.
-    const bool is_reversed = (settings.tick / 2 + static_cast<std::uint64_t>(s)) % 2 == 1;
-    solve_contacts(relaxation, {s, substeps.count, h, is_reversed}, tools, between, ground);
+    solve_contacts(relaxation, {s, substeps.count, h}, tools, between, ground);
     report.speed_capped |= drift(relaxation, h, tools);
     move_carried_nodes(relaxation, tools);
     move_supported_nodes(relaxation, static_cast<double>(s + 1) / substeps.count);

@@ -88,8 +88,8 @@ struct TouchingTool {
 // Advances at most lattice_capacity lattices by as many substeps as the stiffest one needs. Lattices with an
 // implicit solver advance by one implicit step: its velocities are computed before the contacts, move the
 // lattice from substep to substep, and respond to the contacts afterwards. If only such lattices are present,
-// a tick takes one substep. Tools act first, in alternating order, then bodies on each
-// other, then the ground. A tool that
+// a tick takes one substep. Tools act in their order, then bodies on each other,
+// then the ground. A tool that
 // touches only implicitly stepped lattices acts once, at the start. The caller must
 // flush denormals for speed (see DenormalsFlushed).
 RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,

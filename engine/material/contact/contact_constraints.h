@@ -139,8 +139,7 @@ class ContactConstraints {
   struct Pass {
     double h_s;
     Moved moved;
-    // One pass favours the last constraints, so the order should be reversed in every other substep.
-    bool is_reversed;
+    bool is_reversed;  // solves the last constraint first: one pass favours those that come later
     std::span<const float> push_speed_caps_m_per_s;  // by body
   };
   void start(std::span<const LatticeView> lattices, ToolState& tool, double h_s, double fraction);

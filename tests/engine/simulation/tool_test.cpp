@@ -26,11 +26,13 @@ TEST(Tool, SymmetryMirrorsTheStroke) {
     }
     EXPECT_TRUE(reaction.touching);
     EXPECT_EQ(reaction.mirror_touching, symmetric);
-    // u = 0.75 is the top; 0.75 - d and 0.75 + d mirror each other.
+    // The top is two of the twelve spans beyond the knot of its control point; points at equal distances from
+    // it mirror each other.
+    const double top = 0.75 + 2.0 / 12.0;
     const auto dent = [&](double u) {
       return (evaluate(before, u, 0.03).position_m - evaluate(simulation.surface(), u, 0.03).position_m).y();
     };
-    const double left = dent(0.66), right = dent(0.84);
+    const double left = dent(top - 0.09), right = dent(top + 0.09 - 1.0);
     ASSERT_GT(std::max(left, right), 2e-4);
     // The two tools alternate within a substep, so that the sides agree closely but not bit for bit.
     if (symmetric) {
