@@ -14,7 +14,7 @@ namespace {
 
 struct Pair {
   const char *left, *right;  // bundled materials
-  double press_m;  // a fraction of the strain at which a pressed block would bend aside
+  double press_m;            // a fraction of the strain at which a pressed block would bend aside
   int node_budget;
   ForceRun run;
 };
