@@ -58,9 +58,6 @@ double distance_bound(const Vector3& point, const PatchCorners& at) {
 
 }  // namespace
 
-// Allowance for the rounding of distances.
-constexpr double distance_rounding_m = 1e-9;
-
 NearPoints::NearPoints(const NestedGrid& nested) : levels_(nested) {
   const auto samples = static_cast<std::size_t>(nested.grid.rows() * nested.grid.columns());
   index_.assign(samples, 0);
@@ -168,10 +165,6 @@ void NearPoints::add_between_samples(const SurfaceLevels& other, double outside)
     const DeepestPair deepest =
         deepest_pair(levels_.pieces(), other.pieces(), {near.u, near.v, near.other_u, near.other_v}, outside,
                      infinity, &budget_);
-    // A distance changes by no more than its point moves. A larger depth belongs to a part of the other
-    // surface that is not the nearest one, such as the far end of its axis.
-    const double moved_m = (deepest.pair.first_m - near.point_m).norm();
-    if (deepest.depth_m > -near.gap_m + moved_m + distance_rounding_m) continue;
     const PairParameters& at = deepest.pair.at;
     near_.push_back({-1, at.u, at.v, at.s, at.t, deepest.pair.first_m, deepest.normal, -deepest.depth_m});
     least_gap_m_ = std::min(least_gap_m_, -deepest.depth_m);
