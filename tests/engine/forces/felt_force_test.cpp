@@ -73,7 +73,7 @@ TEST_P(FeltForce, IsTheSameForAnyNumberOfSubsteps) {
   const bool is_whole = find_skip_reason(ForceRun::whole_table).empty();
   const bool is_full = find_skip_reason(ForceRun::full).empty();
   const std::vector<int> substeps = is_whole  ? std::vector<int>{1, 2, 3, 4, 5, 6, 7, 8}
-                                    : is_full ? std::vector<int>{1, 4, 8}
+                                    : is_full ? std::vector<int>{2, 4, 8}
                                               : std::vector<int>{2, 6};
   std::vector<double> forces;
   for (const int count : substeps) {

@@ -192,7 +192,7 @@ TEST_P(WeightOnBody, ReachesTheSupportOfTheOther) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, WeightOnBody,
-                         testing::Values(Stack{"abs", "gelatin-20-1", ForceRun::full},
+                         testing::Values(Stack{"abs", "gelatin-20-1", ForceRun::whole_table},
                                          Stack{"silicone-00-30", "gelatin-20-1", ForceRun::whole_table},
                                          Stack{"silicone-soft", "abs", ForceRun::whole_table},
                                          Stack{"steel-304", "silicone-00-30", ForceRun::whole_table}));
