@@ -252,9 +252,7 @@ void solve_tool(const Relaxation& relaxation, const TouchingTool& tool, const Su
   if (!with_springs && substep.index > 0) return;
   const double h = with_springs ? static_cast<double>(substep.h) : relaxation.time_s;
   tool.contacts->start(views, *tool.state, h, static_cast<double>(substep.index) / substep.count);
-  if (substep.index == 0) {
-    solve_with_solvers(relaxation, tool, caps);
-  }
+  if (substep.index == 0) solve_with_solvers(relaxation, tool, caps);
   if (with_springs) {
     tool.contacts->pass(views, *tool.state, {h, ContactConstraints::Moved::by_springs, false, caps});
   }

@@ -152,22 +152,16 @@ class ImplicitBody {
   // Force of cells and loads on a fixed node at the start of the last step, N.
   Vector3 force_on_fixed(int node) const { return at(force_, mesh_.joined(node)); }
 
-  // Rayleigh quotient (v.Kv) / (v.Mv) of the free nodes' velocities, with the tangent of the last step; 0
-  // at rest.
+  // Rayleigh quotient (v.Kv) / (v.Mv) of the free nodes' velocities, with the scaled inertia M and the
+  // tangent of the last step; 0 at rest.
   double rayleigh_quotient();
 
   // Parts of a step, to be called in order. solve_velocities() computes the velocities at the end of the
   // step; `known_ns` are contact impulses, N s, by coordinate; those on joined nodes belong to the first of
-  // the pair. push() lets the whole body respond to further impulses and returns the product of impulses and
-  // velocity changes, J. move() advances the nodes and returns whether one reached the speed cap.
+  // the pair. respond_to() computes the velocity changes of the whole body due to further impulses and
+  // returns their product with the impulses, J; apply_response() applies this fraction of the changes. move()
+  // advances the nodes and returns whether one reached the speed cap.
   ImplicitReport solve_velocities(const ImplicitStep& step, std::span<const double> known_ns = {});
-  double push(const std::vector<double>& impulses) {
-    const double work = respond_to(impulses);
-    apply_response(1.0);
-    return work;
-  }
-  // Parts of push(): respond_to() computes the velocity changes due to the impulses and returns their product
-  // with the impulses, J; apply_response() applies this fraction of the velocity changes.
   double respond_to(const std::vector<double>& impulses);
   void apply_response(double fraction);
   bool move(double step_s);

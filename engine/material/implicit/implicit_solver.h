@@ -162,11 +162,10 @@ class ImplicitSolver {
   // contacts act with their impulses of the last tick. Contacts then change the velocities.
   ImplicitReport begin_step(const ImplicitStep& step, SpringLattice& lattice,
                             std::span<GroundContact> on_ground = {});
-  // Impulses of contacts on the lattice's nodes since the last response, and what they do to the block.
+  // Products of the contacts' impulses since the last response with the velocity changes that the contacts
+  // assumed, and with those of the block.
   struct ContactResponse {
-    double assumed_work_j =
-        0.0;              // product of the impulses and the velocity changes that the contacts assumed
-    double work_j = 0.0;  // product of the impulses and the block's velocity changes
+    double assumed_work_j = 0.0, work_j = 0.0;
   };
   ContactResponse find_response(const SpringLattice& lattice);
   // Lets the block respond to this fraction of the impulses of find_response(), and the lattice follow.
@@ -209,8 +208,8 @@ class ImplicitSolver {
   std::vector<std::array<float, 3>> velocity_;  // of the lattice's nodes, before contacts
   std::vector<double> impulse_;                 // by coordinate of the block, N s: working memory
   ImplicitGroundContacts ground_contacts_;
-  double step_s_ = 0.0,
-         measured_inverse_mass_ = 0.0;  // in the first response of the tick; 0 if there was none
+  double step_s_ = 0.0;
+  double measured_inverse_mass_ = 0.0;  // in the first response of the tick, 1/kg; 0 if there was none
   double inertia_scale_ = 1.0;
   double contact_inverse_mass_ = 0.0, min_inverse_mass_ = 0.0;  // with the scaled inertia
 };

@@ -52,22 +52,26 @@ Vector3 EmbeddedPoint::position_m(const SpringLattice& lattice) const {
   return sum;
 }
 
-double EmbeddedPoint::compliance(const LatticeView& lattice) const {
+namespace {
+
+template <class InverseMassOf>
+double sum_compliance(const EmbeddedPoint& point, const InverseMassOf& inverse_mass_of) {
   double sum = 0.0;
-  for (int i = 0; i < count; ++i) {
-    const double fraction = weight[i];
-    sum += fraction * fraction * lattice.inverse_mass[node[i]];
+  for (int i = 0; i < point.count; ++i) {
+    const double fraction = point.weight[i];
+    sum += fraction * fraction * inverse_mass_of(point.node[i]);
   }
   return sum;
 }
 
+}  // namespace
+
 double EmbeddedPoint::compliance(const SpringLattice& lattice) const {
-  double sum = 0.0;
-  for (int i = 0; i < count; ++i) {
-    const double fraction = weight[i];
-    sum += fraction * fraction * lattice.inverse_mass(node[i]);
-  }
-  return sum;
+  return sum_compliance(*this, [&](int at) { return lattice.inverse_mass(at); });
+}
+
+double EmbeddedPoint::compliance(const LatticeView& lattice) const {
+  return sum_compliance(*this, [&](int at) { return lattice.inverse_mass[at]; });
 }
 
 double EmbeddedPoint::friction(const SpringLattice& lattice) const {
