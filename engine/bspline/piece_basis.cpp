@@ -168,7 +168,21 @@ Vector3 position(const PiecewiseSurface& surface, double u, double v) {
   return point;
 }
 
+namespace {
+
+bool is_end(const KnotVector& knots, double parameter) {
+  return !knots.is_periodic() && (parameter <= knots.domain_start() || parameter >= knots.domain_end());
+}
+
+}  // namespace
+
+bool is_on_edge(const PiecewiseSurface& surface, double u, double v) {
+  return is_end(surface.u->knots(), u) || is_end(surface.v->knots(), v);
+}
+
 Vector3 unit_normal(const PiecewiseSurface& surface, const SurfacePoint& at, double u, double v) {
+  // On an edge that is collapsed to a point, one of the tangents is rounding noise of any direction.
+  if (is_on_edge(surface, u, v)) return unit_normal(*surface.surface, u, v);
   const Vector3 across = at.du.cross(at.dv);
   const double squared = across.squaredNorm();
   if (squared > min_sine * min_sine * at.du.squaredNorm() * at.dv.squaredNorm()) {

@@ -53,6 +53,8 @@ struct PiecewiseSurface {
 // Same as evaluate() and position() of the surface, except for rounding.
 SurfacePoint evaluate(const PiecewiseSurface& surface, double u, double v);
 Vector3 position(const PiecewiseSurface& surface, double u, double v);
+// Returns whether u, v is at the end of an open domain.
+bool is_on_edge(const PiecewiseSurface& surface, double u, double v);
 // Returns the unit normal of the surface at u, v, given the result of evaluate() there.
 Vector3 unit_normal(const PiecewiseSurface& surface, const SurfacePoint& at, double u, double v);
 

@@ -319,8 +319,7 @@ void add_to_hash(const HeldTool& held, StateHash& hash) {
   if (held.touched) {
     for (int axis = 0; axis < 3; ++axis) hash.add(held.touch_m[axis]);
   }
-  held.contact.constraints().visit_state(
-      [&](const double* data, std::size_t count) { hash.add(data, count); });
+  held.contact.visit_state([&](const double* data, std::size_t count) { hash.add(data, count); });
   hash.add(lifted | hovered | static_cast<std::uint64_t>(held.contact.constraints().count()));
 }
 

@@ -1,6 +1,7 @@
 #include "engine/simulation/tool_contact.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "engine/base/assert.h"
@@ -176,7 +177,7 @@ ToolContact::ToolContact(std::span<const BodyState> bodies, const ToolModel& mod
     : constraints_(constraint_capacity) {
   contacts_.reserve(bodies.size());
   for (const BodyState& body : bodies) {
-    contacts_.push_back({SurfaceCollider(body.mapping().nested(), body.trim), nullptr, {}});
+    contacts_.push_back({SurfaceCollider(body.mapping().nested(), body.trim), nullptr, {}, {}});
     if (!model.surface) continue;
     contacts_.back().proximity = std::make_unique<SurfaceProximity>(body.mapping().nested(), *model.nested);
   }
@@ -344,25 +345,90 @@ void ToolContact::visit_near(BodyContact& contact, const BodyState& state, const
   }
 }
 
+namespace {
+
+// Distance in lattice cells, beyond the tool's movement, up to which the nearest point counts as the same
+// point as in the last tick.
+constexpr double same_point_cells = 0.5;
+
+int key_of(std::size_t point) {
+  return nearest_point_key - static_cast<int>(point);
+}
+
+}  // namespace
+
+std::size_t ToolContact::track_nearest(int body, const BodyState& state, double reach_m) {
+  BodyContact& contact = contacts_[body];
+  const SurfaceContact& nearest = contact.collision.nearest;
+  const Surface& surface = state.mapping().current();
+  const Vector3 at_m = position(surface, nearest.u, nearest.v);
+  double least_m = same_point_cells * static_cast<double>(state.lattice.cell_size_m()) + reach_m;
+  double least_n = std::numeric_limits<double>::infinity();
+  std::size_t same = contact.points.size(), weakest = 0;
+  for (std::size_t p = 0; p < contact.points.size(); ++p) {
+    ContactPoint& point = contact.points[p];
+    const double force_n = constraints_.last_force_n(body, key_of(p));
+    point.is_used = point.is_used && force_n > 0.0;
+    if (point.is_used) {
+      const double distance_m = (position(surface, point.u, point.v) - at_m).norm();
+      if (distance_m <= least_m) {
+        least_m = distance_m;
+        same = p;
+      }
+    }
+    if (force_n < least_n) {
+      least_n = force_n;
+      weakest = p;
+    }
+  }
+  const std::size_t found = same < contact.points.size() ? same : weakest;
+  contact.points[found] = {true, nearest.u, nearest.v};
+  return found;
+}
+
+void ToolContact::add_earlier_pushes(int body, const BodyState& state, std::size_t nearest,
+                                     const ToolHold& hold) {
+  const BodyContact& contact = contacts_[body];
+  for (std::size_t p = 0; p < contact.points.size(); ++p) {
+    const ContactPoint& point = contact.points[p];
+    if (p == nearest || !point.is_used) continue;
+    const Vector3 at_m = position(state.mapping().current(), point.u, point.v);
+    const Vector3 push = push_direction_at(shape_, at_m);
+    if (push.isZero(0.0)) continue;
+    const double distance_m =
+        is_solid_ ? shape_.at(at_m).distance_m : (at_m - shape_.centre_m).norm() - shape_.radius_m;
+    add_plane_push(body, state,
+                   {state.mapping().at(point.u, point.v), push, find_gap(state, point.u, point.v, distance_m),
+                    key_of(p)},
+                   hold);
+  }
+}
+
 void ToolContact::add_pushes(int body, const BodyState& state, const ToolHold& hold) {
   BodyContact& contact = contacts_[body];
   const SurfaceContact& nearest = contact.collision.nearest;
   if (state.shell_thickness_m > 0.0 && !is_surface()) return add_shell_pushes(body, state, hold);
-  if (!is_solid_) return add_sphere_pushes(body, state);
-  add_plane_push(
-      body, state,
-      {state.mapping().at(nearest.u, nearest.v), -nearest.normal, -nearest.depth_m, nearest_point_key}, hold);
+  if (!is_solid_) return add_sphere_pushes(body, state, hold);
+  const std::size_t point = track_nearest(body, state, hold.reach_m);
+  add_plane_push(body, state,
+                 {state.mapping().at(nearest.u, nearest.v), -nearest.normal, -nearest.depth_m, key_of(point)},
+                 hold);
+  // All locally nearest points of a B-spline tool are visited below.
+  if (!is_surface()) add_earlier_pushes(body, state, point, hold);
   visit_near(contact, state, [&](const Pushed& pushed) { add_plane_push(body, state, pushed, hold); });
 }
 
-double ToolContact::find_gap(const BodyState& state, const NearSample& sample) const {
-  if (!(state.shell_thickness_m > 0.0)) return sample.distance_m;
-  const Grid& grid = state.mapping().nested().grid;
-  const double u = grid.u.parameters[sample.index / grid.columns()],
-               v = grid.v.parameters[sample.index % grid.columns()];
+double ToolContact::find_gap(const BodyState& state, double u, double v, double distance_m) const {
+  if (!(state.shell_thickness_m > 0.0)) return distance_m;
   const Vector3 normal = unit_normal(state.mapping().current(), u, v);
   const Vector3 push = push_direction_at(shape_, position(state.mapping().current(), u, v));
-  return sample.distance_m - far_face_offset_m(state.shell_thickness_m, normal, push);
+  return distance_m - far_face_offset_m(state.shell_thickness_m, normal, push);
+}
+
+double ToolContact::find_gap(const BodyState& state, const NearSample& sample) const {
+  const Grid& grid = state.mapping().nested().grid;
+  return find_gap(state, grid.u.parameters[sample.index / grid.columns()],
+                  grid.v.parameters[sample.index % grid.columns()], sample.distance_m);
 }
 
 // Adds pushes away from the tool, at either face of the shell.
@@ -370,11 +436,13 @@ void ToolContact::add_shell_pushes(int body, const BodyState& state, const ToolH
   BodyContact& contact = contacts_[body];
   const SurfaceContact& nearest = contact.collision.nearest;
   const EmbeddedPoint deepest = state.mapping().at(nearest.u, nearest.v);
+  const std::size_t point = track_nearest(body, state, hold.reach_m);
   if (is_small(state)) {
-    return add_plane_push(body, state, {deepest, -nearest.normal, -nearest.depth_m, nearest_point_key}, hold);
+    return add_plane_push(body, state, {deepest, -nearest.normal, -nearest.depth_m, key_of(point)}, hold);
   }
   const Vector3 push = push_direction_at(shape_, position(state.mapping().current(), nearest.u, nearest.v));
-  add_plane_push(body, state, {deepest, push, -nearest.depth_m, nearest_point_key}, hold);
+  add_plane_push(body, state, {deepest, push, -nearest.depth_m, key_of(point)}, hold);
+  add_earlier_pushes(body, state, point, hold);
   const double margin = std::max(find_margin_m(state), hold.reach_m);
   for (const NearSample& sample : contact.collider.near_samples()) {
     const double gap = find_gap(state, sample);
@@ -387,13 +455,15 @@ void ToolContact::add_shell_pushes(int body, const BodyState& state, const ToolH
 // Adds pushes for the samples and for the nearest point's tangent plane. The tangent plane is added for a
 // tool that fits between samples, or for one so near that its nearest point remains the nearest throughout a
 // tick.
-void ToolContact::add_sphere_pushes(int body, const BodyState& state) {
+void ToolContact::add_sphere_pushes(int body, const BodyState& state, const ToolHold& hold) {
   BodyContact& contact = contacts_[body];
   const SurfaceContact& nearest = contact.collision.nearest;
   const double cell = static_cast<double>(state.lattice.cell_size_m());
   if (-nearest.depth_m <= find_margin_m(state) || shape_.radius_m < cell) {
+    const std::size_t point = track_nearest(body, state, hold.reach_m);
     overflow_ |= !constraints_.add_plane_push(body, state.lattice, state.mapping().at(nearest.u, nearest.v),
-                                              -nearest.normal, shape_.radius_m, nearest_point_key);
+                                              -nearest.normal, shape_.radius_m, key_of(point));
+    if (shape_.radius_m >= cell) add_earlier_pushes(body, state, point, hold);
   }
   for (const NearSample& sample : contact.collider.near_samples()) {
     overflow_ |=

@@ -2,6 +2,7 @@
 // tick.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -96,11 +97,33 @@ class ToolContact {
   int deepest_body() const;
   bool overflow() const { return overflow_; }
 
+  // Visits what the next tick depends on.
+  template <class Visitor>
+  void visit_state(Visitor&& visit) const {
+    constraints_.visit_state(visit);
+    for (const BodyContact& contact : contacts_) {
+      for (const ContactPoint& point : contact.points) {
+        if (!point.is_used) continue;
+        visit(&point.u, 1);
+        visit(&point.v, 1);
+      }
+    }
+  }
+
  private:
+  // Point of a body's surface that is, or was, nearest to the tool.
+  struct ContactPoint {
+    bool is_used = false;
+    double u = 0.0, v = 0.0;
+  };
   struct BodyContact {
     SurfaceCollider collider;
     std::unique_ptr<SurfaceProximity> proximity;  // B-spline tools only
     CollisionResult collision;
+    // The nearest point may jump between places where the tool is equally deep. Each place stays constrained
+    // while it pushes; otherwise the force would ripple. The key of a point is nearest_point_key minus its
+    // index.
+    std::array<ContactPoint, 4> points;
   };
   // Point of a body's surface, and the tangent plane of the tool beyond which it must stay.
   struct Pushed {
@@ -115,14 +138,21 @@ class ToolContact {
   void find_near_points(BodyContact& contact, const BodyState& body, double margin, const ToolHold& hold);
   // Replaces the contact with a shell's surface by the contact with the face that is nearest to the tool.
   void select_shell_face(BodyContact& contact, const BodyState& body, double margin) const;
+  // Assigns the nearest point of the last find() to one of the contact points and returns that point's index.
+  // Frees the points that pushed with no force in the last tick.
+  std::size_t track_nearest(int body, const BodyState& state, double reach_m);
+  // Adds pushes at the contact points other than the nearest one.
+  void add_earlier_pushes(int body, const BodyState& state, std::size_t nearest, const ToolHold& hold);
   // Returns whether the tool is a sphere that fits between samples.
   bool is_small(const BodyState& body) const;
   // Returns whether the tool in the hand is a B-spline. Checks the tool's kind as well, because the model may
   // belong to an earlier solid tool.
   bool is_surface() const { return is_solid_ && placed_ != nullptr; }
   void add_pushes(int body, const BodyState& state, const ToolHold& hold);
-  void add_sphere_pushes(int body, const BodyState& state);
-  // Returns the gap of a sample near the tool to the body's surface, or to the far face of a shell.
+  void add_sphere_pushes(int body, const BodyState& state, const ToolHold& hold);
+  // Returns the gap between the tool and the point (u, v) of the body's surface, or of the far face of a
+  // shell, given the tool's distance to the surface.
+  double find_gap(const BodyState& state, double u, double v, double distance_m) const;
   double find_gap(const BodyState& state, const NearSample& sample) const;
   void add_shell_pushes(int body, const BodyState& state, const ToolHold& hold);
   void add_plane_push(int body, const BodyState& state, const Pushed& pushed, const ToolHold& hold);

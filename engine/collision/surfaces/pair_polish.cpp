@@ -206,14 +206,6 @@ struct DepthPoint {
   double depth;
 };
 
-bool is_end(const KnotVector& knots, double parameter) {
-  return !knots.is_periodic() && (parameter <= knots.domain_start() || parameter >= knots.domain_end());
-}
-
-bool on_edge(const PiecewiseSurface& surface, double u, double v) {
-  return is_end(surface.u->knots(), u) || is_end(surface.v->knots(), v);
-}
-
 // Returns true if the difference is not along the normal, within a tolerance above the error of Newton's
 // method.
 bool is_oblique(const Vector3& difference, const Vector3& normal) {
@@ -231,7 +223,7 @@ DepthPoint evaluate_depth(const PiecewiseSurface& first, const PiecewiseSurface&
   const Vector3 difference = result.a.position_m - nearest.at.position_m;
   // smallest gain that the model must predict, in the unit of the objective
   const bool is_behind = difference.dot(result.normal) < 0.0 &&
-                         !(on_edge(second, nearest.u, nearest.v) && is_oblique(difference, result.normal));
+                         !(is_on_edge(second, nearest.u, nearest.v) && is_oblique(difference, result.normal));
   result.depth = is_behind ? difference.norm() : -difference.norm();
   return result;
 }

@@ -47,7 +47,7 @@ void ContactConstraints::forget() {
   count_ = 0;
 }
 
-double ContactConstraints::find_kept_force(int body, int key) const {
+double ContactConstraints::last_force_n(int body, int key) const {
   const auto at =
       std::lower_bound(kept_.begin(), kept_.end(), std::tie(body, key),
                        [](const KeptForce& kept, const std::tuple<const int&, const int&>& wanted) {
@@ -87,8 +87,8 @@ bool ContactConstraints::add(const Constraint& constraint, const SpringLattice& 
   added.friction = constraint.point.friction(lattice);
   added.is_implicit = lattice.moved_by_solver();
   added.keeps_force =
-      !added.is_implicit && constraint.kind != Kind::grip && constraint.key >= nearest_point_key;
-  if (added.keeps_force) added.force_n = find_kept_force(added.body, added.key);
+      !added.is_implicit && constraint.kind != Kind::grip && constraint.key != changing_point_key;
+  if (added.keeps_force) added.force_n = last_force_n(added.body, added.key);
   return true;
 }
 

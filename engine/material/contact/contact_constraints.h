@@ -97,9 +97,10 @@ struct ToolMotion {
 };
 
 // Identifies a pushed point from tick to tick, so that its push starts from the force of the last substep.
-// Points of samples are numbered by sample.
-inline constexpr int nearest_point_key = -1;   // the point nearest to the tool
-inline constexpr int changing_point_key = -2;  // another point in every tick, whose push starts from zero
+// Points of samples are numbered by sample. The keys of points that were or are nearest to the tool count
+// down from nearest_point_key.
+inline constexpr int nearest_point_key = -1;
+inline constexpr int changing_point_key = -1000;  // another point in every tick, whose push starts from zero
 
 // Contacts of one tick, and the forces of the last one. One owner, one thread; allocates only in its
 // constructor.
@@ -123,6 +124,9 @@ class ContactConstraints {
                       const Vector3& normal, double offset_m, int key);
   // Adds a point gripped by the tool, at `offset_m` from its centre in the tool's frame.
   bool add_grip(int body, const SpringLattice& lattice, const EmbeddedPoint& point, const Vector3& offset_m);
+
+  // Returns the force in N that a point pushed with in the last tick; 0 for changing_point_key.
+  double last_force_n(int body, int key) const;
 
   // Starts a tick of `time_s`.
   void begin(const ToolMotion& motion, double time_s);
@@ -191,7 +195,6 @@ class ContactConstraints {
     double force_n;
   };
   bool add(const Constraint& constraint, const SpringLattice& lattice);
-  double find_kept_force(int body, int key) const;
   void follow_hand(ToolState& tool, double h, double fraction) const;
   void solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
   void solve_grip(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);

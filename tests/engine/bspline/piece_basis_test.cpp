@@ -4,6 +4,7 @@
 
 #include "tests/engine/allocations.h"
 #include "tests/engine/bspline/random_surface.h"
+#include "tests/engine/bspline/tube.h"
 
 namespace spoonbill {
 namespace {
@@ -54,6 +55,20 @@ TEST(PieceBasis, NormalsAreThoseOfTheSurfaceAtPolesToo) {
   if (surface.u.is_periodic()) return;
   for (int j = 1; j < surface.net.columns; ++j) surface.net.set_point(0, j, surface.net.point(0, 0));
   expect_normal(u0, 0.3 * surface.v.domain_start() + 0.7 * surface.v.domain_end());
+}
+
+// Far from the origin, the derivative around a pole is rounding noise instead of zero.
+TEST(PieceBasis, NormalsAtThePolesOfADistantTubePointOutward) {
+  const Surface tube = ellipsoid_tube(12, 9, {0.3, -0.2, 0.1});
+  const PieceBasis in_u(tube.u), in_v(tube.v);
+  const PiecewiseSurface pieces{&tube, &in_u, &in_v};
+  for (int step = 0; step < 100; ++step) {
+    const double u = (step + 0.2) / 100;
+    for (const double v : {0.0, 1.0}) {
+      const Vector3 normal = unit_normal(pieces, evaluate(pieces, u, v), u, v);
+      EXPECT_LT((normal - Vector3(0, 0, v > 0.5 ? 1 : -1)).norm(), 1e-12) << u << " " << v;
+    }
+  }
 }
 
 TEST(PieceBasis, AllocatesNothingOnceMade) {
