@@ -19,8 +19,8 @@ std::vector<BodyCoordinates> find_node_coordinates(const LatticeMesh& mesh);
 // mean of `around`, weighted by the distance from the centre line. `around` is 0 if the nodes surround the
 // axis. The depth is not set.
 //
-// Uses sums only: the C library's trigonometric functions differ between processors, and the cells of a
-// region are part of the state.
+// Uses sums only: the C library's trigonometric functions differ between processors, and the assignment of
+// cells to regions must not.
 BodyCoordinates mean_coordinates(const LatticeMesh& mesh, const std::vector<BodyCoordinates>& nodes,
                                  std::span<const int> selected);
 

@@ -53,9 +53,9 @@ struct LatticeMesh {
   // Position along the body by node, 0 to 1, and depth in it, for a box about a surface. NaN for nodes
   // outside the body. Empty for other lattices.
   std::vector<double> along, depth_m;
-  // Data of a box about a surface: body coordinates of the surface point nearest to each cell's centre, with
-  // the centre's depth (0 outside); the skin that bears pressure; whether the body is thinner than two cells
-  // anywhere.
+  // Data of a box about a surface. `cell_centres` are the body coordinates of the surface point nearest to
+  // each cell's centre, with the depth of the centre (0 outside). `skin` bears pressure. `slender` is true if
+  // the body is thinner than two cells anywhere.
   std::vector<BodyCoordinates> cell_centres;
   BodySkin skin;
   bool slender = false;

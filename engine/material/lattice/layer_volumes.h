@@ -1,5 +1,5 @@
-// Volumes of the layers of a lattice, between the nodes of consecutive k, and cell fractions that correct
-// them.
+// Volumes of the layers of a lattice, which are between nodes of consecutive k, and cell fractions that
+// correct these volumes.
 #pragma once
 
 #include <array>

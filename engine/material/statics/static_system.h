@@ -44,7 +44,7 @@ class StaticSystem {
   void add(std::size_t cell, const CellMatrix& tangent);
 
   const StaticBody* body_;
-  std::vector<FixedAxis> fixed_;    // on both nodes of a joined pair
+  std::vector<FixedAxis> fixed_;    // fixed axes; each axis of a joined node is listed for both nodes
   std::vector<Eigen::Index> free_;  // by coordinate: index of the free coordinate, or -1 if fixed
   Eigen::Index free_count_ = 0;
   Stiffness stiffness_;
