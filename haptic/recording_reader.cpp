@@ -191,7 +191,7 @@ class RecordingBuilder {
 
 struct ReadHeader {
   RecordingHeader header;
-  std::optional<OldCommands> old_commands;  // present if the header's document is old
+  std::optional<OldCommands> old_commands;  // set if the header's document is old
 };
 
 Result<ReadHeader> read_header(const Line& line, const std::string& source) {

@@ -22,8 +22,8 @@ class SurfacePass {
  public:
   static Result<SurfacePass> make(const GlFunctions& gl);
 
-  // Draws a surface. Opaque looks write depth. Translucent ones are blended, back faces first, and must be
-  // drawn after everything opaque. `shadow` is null if shadows are off.
+  // Draws a surface. An opaque look writes depth. A translucent look is blended, back faces first, and must
+  // be drawn after everything opaque. `shadow` is null if shadows are off.
   void draw(const FrameView& view, const SurfaceBuffers& surface, const SurfaceLook& look,
             const ToolSphere& tool, const ShadowPass* shadow) const;
 
