@@ -35,7 +35,7 @@ namespace spoonbill {
 
 // The last forces and positions; initially empty. Plain data.
 struct VibrationState {
-  static constexpr std::size_t capacity = 256;  // a power of two, at least three periods of 60 ticks
+  static constexpr std::size_t capacity = 256;  // a power of two, at least three periods of 66 ticks
   struct Sample {
     Vector3 force_n = Vector3::Zero();
     Vector3 position_m = Vector3::Zero();
