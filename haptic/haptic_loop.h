@@ -80,7 +80,7 @@ struct LoopFigures {
   std::uint64_t ticks = 0;   // completed calls
   std::uint64_t late = 0;    // calls that began more than half a period after their deadline
   std::uint64_t missed = 0;  // dropped periods
-  double rate_hz = 0.0;      // over the last whole second, or since the start during the first second
+  double rate_hz = 0.0;      // tick rate over the last whole second, or since the start
   // Quantiles of the delay from the deadline to the start of a tick, including dropped periods; accurate
   // within 1/16.
   double lateness_p50_s = 0.0;

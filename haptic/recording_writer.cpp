@@ -18,7 +18,7 @@ struct RecordingWriter::State {
   std::string name;
   std::uint64_t ticks = 0;             // readings so far
   std::vector<DeviceReading> pending;  // readings not written yet
-  DeviceReading before;                // the reading before the pending ones
+  DeviceReading before;                // the reading before the first pending reading
   std::optional<std::uint64_t> checkpoint_tick;
   std::optional<std::uint64_t> command_tick;
   Status failure;  // the first error, which persists

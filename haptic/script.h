@@ -50,7 +50,7 @@ struct Script {
   std::filesystem::path model_file;
   Hand hand;
   HandTarget start;
-  std::vector<ScriptMotion> motions;  // without gaps
+  std::vector<ScriptMotion> motions;  // motions without gaps between them
   std::vector<TimedCommand> commands;
 
   std::uint64_t tick_count() const { return motions.empty() ? 0 : motions.back().end; }

@@ -21,7 +21,7 @@ namespace spoonbill {
 struct Hand {
   double mass_kg = 0.1;  // the handle and the part of the hand that moves with it
   double stiffness_n_per_m = 300.0;
-  double damping_n_s_per_m = 10.954;  // against the motion relative to the target
+  double damping_n_s_per_m = 10.954;  // damping of the motion relative to the target
 };
 
 // Ranges in which a step is stable: tick_s^2 * stiffness / mass is at most 1.

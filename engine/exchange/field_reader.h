@@ -46,7 +46,7 @@ class FieldReader {
   std::uint64_t unsigned_integer(std::string_view field, std::uint64_t limit);
   double length_m(std::string_view field, Range<double> range_m);
   Vector3 vector(std::string_view field, Range<double> range);
-  Vector3 position_m(std::string_view field, Range<double> range_m);  // three lengths
+  Vector3 position_m(std::string_view field, Range<double> range_m);  // a list of three lengths
   // Reads a vector that is not zero, and scales it to length 1 unless it already has this length.
   Vector3 direction(std::string_view field);
   const Json& object(std::string_view field);

@@ -42,7 +42,7 @@ class BodyLoads {
   std::vector<PressedFace> pressures_;
   PressedSkin pressed_skin_;
   std::vector<int> nodes_;        // all loaded nodes, sorted
-  std::vector<Vector3> force_n_;  // by node of the lattice; working memory
+  std::vector<Vector3> force_n_;  // working memory: force on each node of the lattice
 };
 
 // Supports of a body, which owns them. A support's displacement is that of its nodes. begin_tick() allocates

@@ -44,7 +44,7 @@ class SkinHeights {
 
   NestedGrid nested_;
   std::vector<double> control_;  // heights of the control points
-  std::vector<double> blended_;  // one row of samples, by column of control points
+  std::vector<double> blended_;  // one row of samples before blending along v
   std::vector<double> height_;   // heights of the samples
 };
 

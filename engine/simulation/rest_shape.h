@@ -9,9 +9,9 @@
 namespace spoonbill {
 
 struct RestShape {
-  LatticeMesh mesh;  // undeformed
+  LatticeMesh mesh;  // undeformed lattice
   StaticResult result;
-  Surface surface;  // deformed
+  Surface surface;  // deformed surface
   int fixed_nodes = 0;
   Vector3 load_n = Vector3::Zero();      // sum of gravity and loads on the deformed body
   Vector3 reaction_n = Vector3::Zero();  // sum over all fixed nodes

@@ -44,7 +44,7 @@ struct Reaction {
 // State that a stroke can change and that undo restores bit for bit: the lattices' displacements, velocities,
 // rest lengths and volumes. The control points follow from it.
 struct ShapeState {
-  std::vector<std::vector<float>> lattices;  // by body
+  std::vector<std::vector<float>> lattices;  // shape of each body's lattice
   friend bool operator==(const ShapeState&, const ShapeState&) = default;
 };
 

@@ -42,7 +42,7 @@ class Smoothing {
   using Pair = std::array<int, 2>;
   struct ShellNode {
     std::array<Pair, 2> pairs{};
-    int pair_count = 0;  // 2, but 1 at the block's corners and 0 inside
+    int pair_count = 0;  // number of pairs: 2, but 1 at the block's corners and 0 inside
   };
   struct Curvature {
     Vector3 normal;  // unit normal
@@ -79,7 +79,7 @@ class Smoothing {
   // Returns the neighbours before and after an inner node along an axis, across the seam of a closed block.
   std::array<int, 2> beside(int node, int axis) const;
 
-  std::vector<ShellNode> shell_;                   // by node
+  std::vector<ShellNode> shell_;                   // one entry for each node
   std::vector<std::array<double, 2>> rest_per_m_;  // rest curvatures of shell nodes
   std::vector<Vector3> rest_centre_;               // rest offsets of inner nodes, as fractions of `across`
   std::array<int, 3> stride_{};

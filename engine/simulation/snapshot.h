@@ -34,7 +34,7 @@ struct MeshSnapshot {
 // Edges join neighbours in each of the three directions.
 struct LatticeSnapshot {
   int count[3] = {0, 0, 0};
-  std::vector<float> x, y, z;          // metres
+  std::vector<float> x, y, z;          // positions in metres
   std::vector<std::uint8_t> fixed;     // 1 where the node is fixed
   std::vector<std::uint8_t> touched;   // 1 where a contact acted on the node in this tick
   std::vector<std::uint8_t> on_shell;  // 1 where the node is on the surface or next to it

@@ -107,7 +107,7 @@ class ToolContact {
   // Point of a body's surface, and the tangent plane of the tool that the point must not cross.
   struct Pushed {
     EmbeddedPoint point;
-    Vector3 normal;  // unit, away from the tool
+    Vector3 normal;  // unit normal, away from the tool
     double gap_m;
     int key;  // see nearest_point_key
   };
@@ -134,7 +134,7 @@ class ToolContact {
   template <class Visit>
   void visit_near(BodyContact& contact, const BodyState& state, const Visit& visit);
 
-  std::vector<BodyContact> contacts_;  // by body
+  std::vector<BodyContact> contacts_;  // contact with each body
   std::unique_ptr<Surface> placed_;    // only for B-spline tools, in world coordinates
   ToolShape shape_;                    // for all other tools
   ContactConstraints constraints_;

@@ -70,7 +70,7 @@ class GlfwWindow final : public GlContext {
 
   // A key that was pressed. Holding a key does not repeat it.
   struct KeyPress {
-    int key = 0;  // GLFW_KEY_
+    int key = 0;  // a GLFW_KEY_ constant
     bool ctrl = false;
     bool shift = false;
   };

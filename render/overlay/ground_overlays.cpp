@@ -11,8 +11,8 @@ namespace {
 
 constexpr double cells_across_view = 22.0;
 constexpr int strong_every = 5;
-constexpr double fade_end_fraction = 0.85;    // fraction of the visible width at the target
-constexpr double fade_start_fraction = 0.30;  // fraction of the radius
+constexpr double fade_end_fraction = 0.85;    // grid radius / visible width at the target
+constexpr double fade_start_fraction = 0.30;  // radius at which fading starts / grid radius
 constexpr double strong_alpha = 88.0, thin_alpha = 46.0;
 constexpr float line_width_px = 1.0f;
 constexpr int pieces_per_line = 12;

@@ -26,7 +26,7 @@ struct OverlayLine {
   Eigen::Vector3f end_m = Eigen::Vector3f::Zero();
   Colour start_colour;
   Colour end_colour;
-  float width_px = 1.0f;  // before the interface scale
+  float width_px = 1.0f;  // width before the interface scale
 };
 
 enum class MarkShape { square, disc, diamond };
@@ -35,7 +35,7 @@ enum class MarkShape { square, disc, diamond };
 struct OverlayMark {
   Eigen::Vector3f position_m = Eigen::Vector3f::Zero();
   Colour colour;
-  float radius_m = 0.0f;    // half the width in the world
+  float radius_m = 0.0f;    // half the width of the mark, in the world
   float minimum_px = 2.0f;  // smallest radius on the screen, before the interface scale
   float shape = 0.0f;       // a MarkShape
 };

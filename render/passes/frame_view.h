@@ -15,8 +15,8 @@ struct FrameView {
   Viewport viewport;
   Eigen::Matrix4f world_to_clip;
   Eigen::Vector3f eye_m;
-  Eigen::Vector3f eye_right, eye_up;  // unit
-  Eigen::Vector3f toward_key;         // unit, at least 11 degrees above the horizon
+  Eigen::Vector3f eye_right, eye_up;  // unit vectors
+  Eigen::Vector3f toward_key;         // unit vector, at least 11 degrees above the horizon
   float ground_y_m = 0.0f;
   float interface_scale = 1.0f;
   float nearest_depth_m = 0.0f;    // depth at which lines are clipped before they are widened

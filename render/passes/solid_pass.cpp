@@ -81,7 +81,7 @@ Eigen::Vector4f to_srgb(Colour colour) {
 
 struct SolidVertex {
   Eigen::Vector3f position;
-  Eigen::Vector3f normal;  // unit, outward
+  Eigen::Vector3f normal;  // unit normal, outward
 };
 
 // A point of a profile: distance from the axis, height, and normal in the plane of the profile.

@@ -84,7 +84,7 @@ class SolidPass {
   Programs programs_;
   GlHandle vertex_array_;
   GlHandle vertices_;
-  std::vector<Shape> spheres_;  // from coarse to fine
+  std::vector<Shape> spheres_;  // spheres from coarse to fine
   Shape shaft_, head_, pane_;
 };
 

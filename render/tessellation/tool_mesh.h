@@ -39,7 +39,7 @@ Vector3 find_exit_point(const Box& box, const ToolFrame& frame, const Vector3& d
 
 struct ToolVertex {
   Eigen::Vector3f position_m;
-  Eigen::Vector3f normal;  // unit, outward
+  Eigen::Vector3f normal;  // unit normal, outward
 };
 
 // A triangle mesh in the frame of the tool. Each triangle has three indices, counter-clockwise seen from

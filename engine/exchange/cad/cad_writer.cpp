@@ -54,7 +54,7 @@ namespace spoonbill {
 namespace {
 
 struct WrittenBody {
-  std::string name;  // unique within the file
+  std::string name;  // name, unique within the file
   TopoDS_Shape shape;
   bool solid = false;
   // Surface of the model; null for a solid joined from several surfaces.

@@ -12,7 +12,7 @@
 namespace spoonbill {
 
 struct FaceSurface {
-  Surface surface;              // in metres; normals point out of the face
+  Surface surface;              // surface in metres; normals point out of the face
   double deviation_m = 0.0;     // 0 if the conversion is exact
   std::vector<TrimLoop> trims;  // empty if the face covers its whole range of parameters
   // Largest distance from the file's edges, of the loops or of the sides of an untrimmed face.

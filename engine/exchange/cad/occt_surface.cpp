@@ -200,8 +200,8 @@ std::vector<double> greville_parameters(const KnotVector& knots) {
   const std::vector<double>& all = knots.extended_knots();
   const auto degree = static_cast<std::size_t>(knots.degree());
   std::vector<double> parameters;
-  // In a periodic direction the first control point is the first one whose basis function starts in the
-  // period.
+  // In a periodic direction, the first control point is the one whose basis function is the first to start
+  // in the period.
   const std::size_t first = knots.is_periodic() ? degree : 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(knots.control_point_count()); ++i) {
     double sum = 0.0;

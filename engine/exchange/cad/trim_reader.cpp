@@ -24,7 +24,7 @@ namespace {
 using Point = Eigen::Vector2d;
 // Control points of a cubic Bezier curve, and the part of an edge that it follows.
 struct CubicPiece : std::array<Point, 4> {
-  int edge = -1;                // index of the edge in its wire; -1: none, a line across a gap
+  int edge = -1;                // index of the edge in its wire; -1 for a line across a gap
   double from = 0.0, to = 0.0;  // parameters of the edge at the ends of the piece
 };
 

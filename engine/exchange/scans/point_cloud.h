@@ -21,7 +21,7 @@ inline constexpr std::size_t point_file_bytes_limit = std::size_t{1} << 30;
 
 struct PointCloud {
   std::vector<Vector3> points;   // in the file's own unit
-  std::vector<Vector3> normals;  // one for each point, of any length; or empty
+  std::vector<Vector3> normals;  // one normal for each point, of any length; may be empty
   // Number of points skipped because a coordinate is NaN, which depth cameras write.
   std::size_t skipped = 0;
 };

@@ -77,9 +77,9 @@ class SpringCell {
   // Returns the length of a spring minus its rest length, m.
   double extension_m(std::size_t spring, const CellMoves& moves) const;
 
-  CellCorners rest_{};  // relative to the centre
+  CellCorners rest_{};  // corners at rest, relative to the centre
   std::array<double, cell_spring_count> stiffness_{}, rest_length_{};
-  double bulk_ = 0.0, rest_volume_ = 0.0;  // K_v V0, V0
+  double bulk_ = 0.0, rest_volume_ = 0.0;  // K_v V0 and V0, see respond()
 };
 
 }  // namespace spoonbill

@@ -74,7 +74,7 @@ struct GroundContact {
   double gap_m = 0.0;
   Vector3 at_m = Vector3::Zero();  // displacement of the node when gap_m was measured
   double friction = 0.0;
-  Vector3 impulse_ns = Vector3::Zero();  // in the present tick
+  Vector3 impulse_ns = Vector3::Zero();  // impulse on the node in the present tick
   // Carried from tick to tick: the mean force in the last tick, the mean push and the contact time.
   Vector3 force_n = Vector3::Zero();
   double mean_push_n = 0.0;

@@ -31,7 +31,7 @@ inline constexpr ContactPace ground_pace{1.0, 4200.0};
 // State of a contact between two points before the drift of a substep, and the impulse that keeps the points
 // from passing each other.
 struct ContactPush {
-  double gap_m;      // negative: penetration depth
+  double gap_m;      // distance of the points; negative if they penetrate
   Vector3 normal;    // unit vector along which the points separate
   Vector3 relative;  // separation velocity, m/s
   double mass_kg;    // effective mass: 1 / the sum of the compliances
@@ -140,8 +140,8 @@ class ContactConstraints {
   struct Pass {
     double h_s;
     Moved moved;
-    bool is_reversed;  // solves the last constraint first: one pass favours those that come later
-    std::span<const float> push_speed_caps_m_per_s;  // by body
+    bool is_reversed;  // true: solves the last constraint first, because a pass favours the later ones
+    std::span<const float> push_speed_caps_m_per_s;  // largest correction speed for each body
   };
   void start(std::span<const LatticeView> lattices, ToolState& tool, double h_s, double fraction);
   void pass(std::span<const LatticeView> lattices, ToolState& tool, const Pass& pass);
@@ -177,12 +177,12 @@ class ContactConstraints {
     EmbeddedPoint point;
     Vector3 rest_m = Vector3::Zero();     // position in the rest shape
     Vector3 direction = Vector3::Zero();  // plane push: normal; grip: offset in the tool's frame
-    double offset_m = 0.0;                // plane push only
+    double offset_m = 0.0;                // distance of the plane from the tool's centre; plane push only
     // Velocity change of the point per impulse in the last pass(), 1/kg; 0 if the body does not yield.
     double compliance = 0.0;
-    double friction = 0.0;  // coefficient of the body's surface; tools have none
+    double friction = 0.0;  // friction coefficient of the body's surface; tools have none
     int key = changing_point_key;
-    bool is_implicit = false;  // on a lattice that the implicit solver moves
+    bool is_implicit = false;  // true if the implicit solver moves the lattice
     // True if the next push starts from this push's force. False on lattices that the implicit solver moves:
     // their contact mass is an estimate, and a kept force would amplify its error.
     bool keeps_force = false;
@@ -210,7 +210,7 @@ class ContactConstraints {
   ToolMotion motion_;
   Vector3 hand_velocity_ = Vector3::Zero();  // m/s
   Vector3 carried_force_ = Vector3::Zero();
-  double tool_compliance_ = 0.0;  // 1/kg; 0 if the hand holds the tool rigidly
+  double tool_compliance_ = 0.0;  // 1 / mass of the tool, 1/kg; 0 if the hand holds the tool rigidly
   // Velocity change of the tool per impulse by the end of a substep, including the response of its spring
   // and damper, 1/kg.
   double response_compliance_ = 0.0;

@@ -88,7 +88,7 @@ class ImplicitGroundContacts {
   double mass_, min_mass_, max_mass_;
   Vector3 normal_ = Vector3::UnitY();
   std::vector<double> target_;                              // smallest speed along the normal by contact, m/s
-  std::vector<Vector3> velocity_errors_, impulse_changes_;  // by contact, m/s and N s
+  std::vector<Vector3> velocity_errors_, impulse_changes_;  // for each contact, m/s and N s
 };
 
 // Node budget of the hexahedral block: the largest number that a tick can solve for a long body with a narrow
@@ -98,7 +98,7 @@ inline constexpr int implicit_node_budget = 500;
 // An instantaneous rigid displacement of a body, which also subtracts a rigid motion from the body's
 // velocities.
 struct RigidMove {
-  Vector3 from_m = Vector3::Zero(), to_m = Vector3::Zero();  // position of the centre, before and after
+  Vector3 from_m = Vector3::Zero(), to_m = Vector3::Zero();  // centre before and after the move
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();        // rotation about the centre
   Vector3 velocity_m_per_s = Vector3::Zero(), spin_rad_per_s = Vector3::Zero();  // subtracted before the turn
 
@@ -206,12 +206,12 @@ class ImplicitSolver {
 
   ImplicitBody body_;
   std::vector<Vector3> rest_m_;       // rest positions of the lattice's nodes
-  std::vector<GridPoint> followers_;  // by lattice node: the node as a weighted sum of block nodes
-  std::vector<int> nearest_;          // by node of the block: nearest node of the lattice in the grid
-  std::vector<int> fixing_node_;      // by node of the block: the lattice node that fixes it, or -1
+  std::vector<GridPoint> followers_;  // each lattice node as a weighted sum of block nodes
+  std::vector<int> nearest_;          // for each block node: nearest lattice node in the grid
+  std::vector<int> fixing_node_;      // for each block node: lattice node that fixes it, or -1 if none
   // Velocities of the lattice's nodes before contacts.
   std::vector<std::array<float, 3>> velocity_;
-  std::vector<double> impulse_;  // by coordinate of the block, N s: working memory
+  std::vector<double> impulse_;  // working memory: impulses by coordinate of the block, N s
   ImplicitGroundContacts ground_contacts_;
   double step_s_ = 0.0;
   // Inverse mass in the first response of the tick, 1/kg; 0 if there was none.

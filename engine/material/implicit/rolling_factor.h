@@ -21,8 +21,8 @@ struct CellBlock {
 // Terms of the matrix inertia * M + stiffness * K, without the rows and columns of fixed coordinates.
 struct MatrixParts {
   const CellBlock* cells;
-  const double* mass;  // by node, kg
-  const double* free;  // by coordinate: 1, or 0 if fixed
+  const double* mass;  // mass of each node, kg
+  const double* free;  // for each coordinate: 1 if free, 0 if fixed
   double inertia, stiffness;
 };
 

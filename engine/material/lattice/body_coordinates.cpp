@@ -78,7 +78,7 @@ class Hull {
 
   std::vector<Triangle> triangles_;
   std::vector<Sphere> spheres_;
-  std::size_t last_ = 0;  // nearest triangle of the last point
+  std::size_t last_ = 0;  // index of the triangle nearest to the previous point
 };
 
 // Returns the distance of a node from the centre line of the block in its grid: 0 on the line, 1 on the hull.

@@ -62,7 +62,7 @@ class Draws {
     CellCorners corners;
   };
   std::vector<Cell> cells_;
-  std::vector<double> volumes_;  // cumulative
+  std::vector<double> volumes_;  // cumulative volumes of the cells
 };
 
 class FeatureMap {

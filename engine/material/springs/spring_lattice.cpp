@@ -86,7 +86,7 @@ struct SpringLattice::Assembly {
   std::size_t leading_material(int direction, std::size_t node) const;
 
   std::vector<Stiffness> materials;
-  std::vector<double> mass, cell_count;  // per node
+  std::vector<double> mass, cell_count;  // mass, kg, and number of cells around each node
   BySpring stiffness;
   // Contribution of each material to the stiffness of each spring; empty for a single material.
   std::vector<BySpring> by_material;

@@ -55,7 +55,7 @@ class PressedSkin {
   std::vector<CellPoint> points_;  // corners of the pressed triangles
   std::vector<Pressed> triangles_;
   std::vector<int> point_index_;               // index in points_ for each point of the skin, or -1
-  std::vector<Vector3> position_m_, force_n_;  // by point: working memory
+  std::vector<Vector3> position_m_, force_n_;  // working memory: one entry for each point
 };
 
 enum class CellKind : std::uint8_t {

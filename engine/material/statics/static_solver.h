@@ -19,11 +19,11 @@ struct StaticSettings {
 };
 
 struct StaticResult {
-  std::vector<Vector3> displacement_m;  // by node
-  std::vector<Vector3> reaction_n;      // by node: reaction of its fixed axes; 0 for free nodes
+  std::vector<Vector3> displacement_m;  // displacement of each node
+  std::vector<Vector3> reaction_n;      // reaction of the fixed axes of each node; 0 for free nodes
   double energy_j = 0.0;                // energy stored in the cells
   int newton_steps = 0;
-  bool is_fixed_everywhere = false;  // no node is free to move
+  bool is_fixed_everywhere = false;  // true if no node is free to move
 };
 
 // Minimises the potential energy by Newton's method with sparse Cholesky factors, halving each step until the
