@@ -82,8 +82,8 @@ struct MaterialSnapshot {
   double lattice_mass_kg = 0.0;  // mass of the whole surface if the body has trims
 };
 
-// Distance by which a body's surface deviates from its lattice, accumulated since its knots or fixing planes
-// last changed.
+// Part of the lattice's displacement that a body's surface does not follow. Counted since its knots or fixing
+// planes last changed.
 struct ResidualSnapshot {
   double largest_m = 0.0;
   double root_mean_square_m = 0.0;

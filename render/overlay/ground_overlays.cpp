@@ -18,7 +18,7 @@ constexpr float line_width_px = 1.0f;
 constexpr int pieces_per_line = 12;
 
 constexpr double bar_width_fraction = 0.17;
-constexpr double bar_height_fraction = 0.87;  // from the top of the free rectangle
+constexpr double bar_height_fraction = 0.87;  // height of the bar in the free rectangle, from its top
 constexpr float bar_width_px = 2.2f;
 
 std::uint8_t faded(double alpha, double distance_m, double radius_m) {

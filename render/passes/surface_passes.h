@@ -47,7 +47,7 @@ class SolidPass {
   void draw_glass_sphere(const FrameView& view, const Eigen::Vector3f& centre_m, float radius_m,
                          Colour colour) const;
 
-  // Draws a solid tool of the same glass.
+  // Draws a solid tool with the glass of draw_glass_sphere(). Draw after everything opaque.
   void draw_glass_tool(const FrameView& view, ToolBuffers& tool, const ToolFrame& frame, Colour colour) const;
 
   void draw_sphere(const FrameView& view, const Eigen::Vector3f& centre_m, float radius_m,

@@ -34,8 +34,8 @@ struct LossCount {
 // Counts the losses. Call after the transfer.
 LossCount count_losses(const opencascade::handle<XSControl_WorkSession>& session, FileFormat format);
 
-// Count placements that OpenCASCADE ignores because they do more than translate and rotate: placements that
-// scale or mirror in STEP, placements that change angles in IGES.
+// Returns the number of placements that OpenCASCADE ignores because they do more than translate and rotate.
+// In STEP these are placements that scale or mirror, in IGES placements that change angles.
 int count_unread_placements(const opencascade::handle<StepData_StepModel>& model);
 int count_unread_placements(const opencascade::handle<IGESData_IGESModel>& model);
 

@@ -196,7 +196,7 @@ std::optional<ContactPush> ContactConstraints::find_push(const LatticeView& latt
   return push;
 }
 
-// Applies the force of the last substep as the first push of this one.
+// Starts the push of this substep with the force of the last substep.
 void ContactConstraints::start_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
                                     double h) {
   const std::optional<ContactPush> push = find_push(lattice, constraint, tool);

@@ -153,8 +153,8 @@ inline void spin_map_times(const CellBatch& b, const Rotation& a, Rotation& resu
   }
 }
 
-// Rotates the cells by one Newton step, by at most half a radian: a longer step has a useful direction, but
-// no useful length.
+// Rotates the cells by one Newton step, limited to half a radian: the direction of a longer step is useful,
+// but not its length.
 inline void rotate_further(CellBatch& b, const Matrix& s) {
   Rotation skew, w;
   for (int l = 0; l < lanes; ++l) {

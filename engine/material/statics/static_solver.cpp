@@ -64,8 +64,8 @@ class Equilibrium {
   bool cancelled() const { return cancelled_; }
 
  private:
-  // Measures the progress as the orders of magnitude by which the unbalanced force has fallen, relative to
-  // the number required: Newton's method gains more orders with each step.
+  // Sets the progress to the orders of magnitude by which the unbalanced force has fallen, divided by the
+  // orders required. Newton's method gains more orders with each step.
   void set_done(double fraction, double unbalanced, double first) {
     const double orders = std::log(first / settings_->tolerance);
     done_ = orders > 0.0 ? fraction * std::log(first / unbalanced) / orders : 0.0;
