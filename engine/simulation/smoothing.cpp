@@ -95,8 +95,8 @@ std::optional<Smoothing::Curvature> Smoothing::curvature_at(int node, const Posi
     if (!(to_a > 0.0 && to_b > 0.0)) return std::nullopt;
     along[p] = b - a;
     over_chord[p] = here - (to_b * a + to_a * b) / (to_a + to_b);
-    // A point on a circle of radius r is a b / (2 r) above the chord between two points of the circle at
-    // distances a and b.
+    // A point on a circle of radius r is a b / (2 r) above a chord, if a and b are its distances from the
+    // ends of the chord.
     curvature.height_factor[p] = 0.5 * to_a * to_b;
   }
   const Vector3 across = along[0].cross(along[1]);

@@ -99,7 +99,7 @@ struct ToolMotion {
 // Keys identify a pushed point from tick to tick, so that its push starts from the force of the last substep.
 // A point at a sample of the surface has the sample's number as its key; other points have one of these.
 inline constexpr int nearest_point_key = -1;   // the point nearest to the tool
-inline constexpr int changing_point_key = -2;  // another point in every tick, whose push starts from zero
+inline constexpr int changing_point_key = -2;  // a point that differs in every tick; its push starts at zero
 
 // Contacts of one tool in one tick, and their forces in the last tick. One owner, one thread; allocates only
 // in its constructor.
