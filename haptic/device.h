@@ -29,14 +29,14 @@ struct DeviceSpecification {
   bool workspace_follows_model = false;
 
   // Limits of the safety chain (haptic/safe_device.h).
-  double quiet_force_n = 0.2;  // forces engage once the requested force has stayed below this
+  double quiet_force_n = 0.2;  // forces engage after the requested force has stayed below this limit
   // Time for the force to ramp from zero to full. The short default suits the virtual device, which cannot
   // hurt anybody; use 2 s for real hardware.
   double ramp_time_s = 0.2;
   // Limit on the change of the force. A hand at maximum speed and maximum stiffness changes the force by 700
   // N/s, so the limit affects only jumps.
   double maximum_force_rate_n_per_s = 1000.0;
-  double maximum_speed_m_per_s = 1.0;  // the force fades above this speed and is zero at twice this
+  double maximum_speed_m_per_s = 1.0;  // the force fades above this speed and is zero at twice the speed
   std::uint32_t dead_man_buttons = 0;  // buttons that must all be pressed for any force; 0: none
 };
 
@@ -64,8 +64,8 @@ inline constexpr std::int64_t reading_limit_nm = 10'000'000'000;
 struct DeviceReading {
   std::int64_t position_nm[3] = {0, 0, 0};
   std::int64_t orientation_e9[4] = {0, 0, 0, 1'000'000'000};  // x, y, z, w
-  std::uint32_t buttons = 0;  // button_main, button_hover and the device's own
-  // Ticks that passed without a reading since the one before. Set by SafeDevice, not by devices.
+  std::uint32_t buttons = 0;  // button_main, button_hover, and buttons specific to the device
+  // Number of ticks without a reading since the previous reading. Set by SafeDevice, not by devices.
   std::uint32_t missed = 0;
 
   // Returns true if every coordinate is within reading_limit_nm and the orientation is a unit quaternion.
@@ -83,14 +83,16 @@ struct DeviceReading {
   friend bool operator==(const DeviceReading&, const DeviceReading&) = default;
 };
 
-// A haptic device, or a substitute for one.
+// A haptic device, or a simulated substitute for a haptic device.
 //
 // A factory function of each class opens the device, on a thread that may block, and returns an Error that
-// says what is missing. The destructor closes it. The ticking thread calls read() and set_force(); its owner
-// may also call them before that thread starts and after it has ended, and the watchdog
-// (haptic/watched_device.h) sets zero force from its own thread, but never two of them at once. Neither may
-// allocate, lock, block or throw. A driver with a callback thread or a socket exchanges readings and forces
-// through a TripleBuffer, and drops a force that is not renewed within 50 ms.
+// states what is missing. The destructor closes the device.
+//
+// read() and set_force() must not allocate, lock, block or throw. The ticking thread calls them; its owner
+// may call them before that thread starts and after it has ended. The watchdog (haptic/watched_device.h) sets
+// zero force from its own thread. No two threads call these functions at the same time. A driver with a
+// callback thread or a socket exchanges readings and forces through a TripleBuffer, and drops a force that is
+// not renewed within 50 ms.
 //
 // Only SafeDevice (haptic/safe_device.h) calls set_force().
 class Device {
@@ -104,11 +106,11 @@ class Device {
   // the device is disconnected, has stopped itself or answers too late. It may recover.
   virtual std::optional<DeviceReading> read() = 0;
 
-  // Sets the force on the hand until the next tick, at most the maximum of the specification.
+  // Sets the force on the hand until the next tick. The force is at most the maximum of the specification.
   virtual void set_force(const Vector3& force_n) = 0;
 
-  // Returns true for a device that plays back readings which were checked when they were recorded. They reach
-  // the simulation unchanged, and the recording contains the proxy resets that faults caused.
+  // Returns true for a device that plays back readings, which were checked when they were recorded. They
+  // reach the simulation unchanged, and the recording contains the proxy resets that faults caused.
   virtual bool is_playback() const { return false; }
 };
 

@@ -31,7 +31,7 @@ struct RealTimeGrant {
 namespace {
 
 constexpr double nanosecond_s = 1e-9;
-// Adds to a counter. A load and a store suffice, because a single thread writes.
+// Adds to a counter. A load and a store suffice, because only one thread writes it.
 void increase(std::atomic<std::uint64_t>& number, std::uint64_t by) noexcept {
   number.store(number.load(std::memory_order_relaxed) + by, std::memory_order_relaxed);
 }
@@ -175,7 +175,7 @@ double DurationHistogram::mean_s() const noexcept {
          nanosecond_s;
 }
 
-// The thread of the loop alone writes the atomic members, except `stopping`, which the owner writes; any
+// Only the thread of the loop writes the atomic members, except `stopping`, which the owner writes; any
 // thread may read them. All other members are set before start() returns and are constant until stop().
 struct HapticLoop::State {
   std::function<void(const LoopTick&)> body;
@@ -183,8 +183,8 @@ struct HapticLoop::State {
   RealTimeGrant grant;
   std::thread thread;
 
-  // Ends the real-time scheduling of the loop's thread if one tick takes too long. Has a higher priority than
-  // that thread, and exists only if that thread is scheduled first-in-first-out.
+  // Ends the real-time scheduling of the loop's thread if one tick takes too long. The watcher has a higher
+  // priority than the loop's thread. It exists only if the loop's thread is scheduled first-in-first-out.
   std::thread watcher;
   std::atomic<std::int64_t> tick_begin_ns{0};  // 0 between ticks
   std::atomic<bool> fifo{false};
@@ -298,7 +298,7 @@ Result<HapticLoop> HapticLoop::start(const LoopSettings& settings,
       state->watcher = std::thread([&inner = *state] { inner.watch(); });
       make_ahead_of_haptic_thread(state->watcher);
     } catch (const std::system_error&) {
-      // Without a watcher the loop runs all the same, but no tick loses its real-time scheduling.
+      // Without a watcher the loop still runs, but it keeps real-time scheduling however long a tick takes.
     }
   }
   state->started.store(true, std::memory_order_release);

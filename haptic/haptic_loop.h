@@ -5,7 +5,7 @@
 //   ticks      [0]          [1........................]  [4]       [5]
 //                                        ^ dropped    ^ late, but by less than a period
 //
-// The clock also runs while the machine is suspended, so that a resume is a gap like any other.
+// The clock also runs while the machine is suspended, so a suspension is a gap like any other.
 //
 // A tick that is late by a whole period or more is dropped and never caught up; the next tick receives the
 // number of dropped ticks. The function must not lock, allocate, access files or block in any other way.
@@ -29,7 +29,8 @@ namespace spoonbill {
 std::int64_t boot_time_ns();
 void sleep_until_ns(std::int64_t deadline_ns);
 
-// Requests first-in-first-out scheduling above that of the haptic thread, for threads that only watch it.
+// Requests first-in-first-out scheduling with a higher priority than the haptic thread. For threads that only
+// watch the haptic thread.
 void make_ahead_of_haptic_thread(std::thread& thread);
 
 // A lock-free histogram of durations. Exactly one thread calls add(). Any thread may read; values being added
@@ -61,8 +62,8 @@ class DurationHistogram {
 
 inline constexpr Range<double> loop_period_range_s{1e-4, 1.0};
 
-// Longest run of one tick with first-in-first-out scheduling. A thread that took longer would keep the whole
-// machine waiting, so it gets ordinary scheduling for the rest of its life.
+// Longest run of one tick with first-in-first-out scheduling. A thread whose tick takes longer would keep the
+// whole machine waiting, so it gets ordinary scheduling for the rest of its life.
 inline constexpr double longest_real_time_tick_s = 0.1;
 
 struct LoopSettings {
@@ -79,8 +80,9 @@ struct LoopFigures {
   std::uint64_t ticks = 0;   // completed calls
   std::uint64_t late = 0;    // calls that began more than half a period after their deadline
   std::uint64_t missed = 0;  // dropped periods
-  double rate_hz = 0.0;      // over the last whole second, or since the start during the first second
-  // Quantiles of the delay from the deadline to the start of a tick, dropped periods included; within 1/16.
+  double rate_hz = 0.0;      // tick rate over the last whole second, or since the start
+  // Quantiles of the delay from the deadline to the start of a tick, including dropped periods; accurate
+  // within 1/16.
   double lateness_p50_s = 0.0;
   double lateness_p99_s = 0.0;
   double lateness_p999_s = 0.0;

@@ -14,7 +14,7 @@
 
 namespace spoonbill {
 
-// Passes the newest value from one thread to another. Neither side ever waits; a value that the reader does
+// Passes the newest value from one thread to another. Neither thread ever waits. A value that the reader does
 // not fetch in time is overwritten.
 //
 //   writer: fill writing(), then publish().    reader: if (update_reading()) use reading().
@@ -64,9 +64,9 @@ class TripleBuffer {
 // Passes every value from one thread to another, in order and without waiting. A full queue rejects the
 // value.
 //
-// Exactly one thread pushes and one pops. push() and pop() swap the value with the contents of a slot, so the
-// popping thread frees nothing: memory that it no longer needs returns to the pushing thread. T must be
-// default-constructible; slots start as T().
+// Exactly one thread pushes and exactly one thread pops. push() and pop() swap the value with the contents of
+// a slot, so the popping thread frees nothing: memory that it no longer needs returns to the pushing thread.
+// T must be default-constructible; slots start as T().
 template <class T>
 class BoundedQueue {
   static_assert(std::is_nothrow_swappable_v<T>);

@@ -10,23 +10,25 @@
 //    "buttons":[...],"missed":[...]}                                                motion (on one line)
 //   {"end":true,"ticks":4300,"state_hash":"fedcba9876543210"}                       last line
 //
-// The last line also has "missed":N if a live recording missed N periods of 1 ms: the performance then took
-// that much longer than its ticks.
+// The last line also has "missed":N if a live recording missed N periods of 1 ms: the session then took N ms
+// longer than its number of ticks.
 //
 // Faults of the device and the program are recorded by their effects, so that a session with faults replays
-// to its own states: without a valid reading the tool only points (button_hover), and a reset of the proxy
-// and the switch of the force are commands.
+// to the same states. Without a valid reading the tool only points (button_hover). A reset of the proxy and
+// the switch of the force are commands.
 //
-// Version 1. In a recording whose document has an old version, the commands are converted with it
+// Version 1. In a recording whose document has an old version, the commands are converted like the document
 // (old_documents.h); its state hashes are those of the former steps. Lines are in the order of their ticks.
 // Within a tick the order is: state hash, commands, motion. The state hash is that of the simulation after
 // ticks 0 to tick - 1, before any command of this tick. A motion line covers `ticks` readings from `tick` on.
 // It ends at the next multiple of 100, or earlier before a command or the end, so that the same recording
-// always has the same lines. dx_nm, dy_nm and dz_nm are the differences of DeviceReading::position_nm to the
-// previous reading (before tick 0: the default reading), dq_e9 those of orientation_e9 (x, y, z, w). Each is
-// omitted if all its numbers are zero. `buttons` lists the buttons themselves and is omitted while they do
-// not change. `missed` lists DeviceReading::missed and is omitted if all are zero, as in lock-step and in
-// recordings from before it existed. The hash of the last line is that of the final state.
+// always has the same lines.
+//
+// dx_nm, dy_nm and dz_nm are the differences of DeviceReading::position_nm to the previous reading (before
+// tick 0: the default reading), dq_e9 those of orientation_e9 (x, y, z, w). Each field is omitted if all its
+// numbers are zero. `buttons` lists the buttons of each reading, not their differences, and is omitted while
+// they do not change. `missed` lists DeviceReading::missed and is omitted if all are zero, as in lock-step
+// recordings and in recordings older than this field. The hash of the last line is that of the final state.
 //
 // device: name, maximum_force_n, maximum_stiffness_n_per_m, maximum_damping_n_s_per_m, workspace_radius_m,
 // position_resolution_m, senses_orientation, actuates_torque. Optional, with the defaults of
@@ -51,7 +53,7 @@
 namespace spoonbill {
 
 inline constexpr int recording_version = 1;
-inline constexpr std::uint64_t recording_line_ticks = 100;  // most ticks that a crash can lose
+inline constexpr std::uint64_t recording_line_ticks = 100;  // largest number of ticks that a crash can lose
 inline constexpr std::uint64_t recording_checkpoint_ticks = 1000;
 inline constexpr std::uint64_t recording_tick_limit = 10'000'000;  // 2 h 46 min
 
@@ -78,7 +80,7 @@ struct Checkpoint {
 struct Recording {
   RecordingHeader header;
   std::vector<DeviceReading> readings;  // one per tick
-  std::vector<TimedCommand> commands;   // in order; commands at tick readings.size() follow the last tick
+  std::vector<TimedCommand> commands;   // in order; commands at tick readings.size() come after all ticks
   std::vector<Checkpoint> checkpoints;
   std::optional<Checkpoint> end;  // empty if the recording is truncated
   std::uint64_t missed = 0;       // periods of 1 ms without a tick while it was recorded live
@@ -86,15 +88,15 @@ struct Recording {
 };
 
 // Reads a recording. A recording that is truncated anywhere after its first line is read up to the cut. Any
-// other deviation from the format above is an error that names line and field. Exceeding a limit is also an
-// error: 10 million ticks, 1 GiB, positions within 10 m, unit quaternions.
+// other deviation from the format above is an error that names line and field. So is exceeding a limit: 10
+// million ticks, 1 GiB, positions within 10 m, unit quaternions.
 Result<Recording> read_recording(const std::filesystem::path& file);
 Result<Recording> read_recording(std::istream& in, const std::string& source);
 
 // Writes a recording while the session runs. Each complete line is passed to the operating system at once, so
 // that a killed program loses at most 100 ticks.
 //
-// One owner, never the haptic thread: writing may block. After an error every later call returns the same
+// One owner, never the haptic thread: writing may block. After an error, every later call returns the same
 // error.
 //
 //   while (...) {
@@ -106,16 +108,16 @@ Result<Recording> read_recording(std::istream& in, const std::string& source);
 //   writer.commit();
 class RecordingWriter {
  public:
-  // Creates the file and writes the header. The recording grows as FILE.part, which can be replayed too, and
-  // becomes FILE at commit(). Errors: a path that cannot be written, another program that records to the same
-  // file (ErrorCode::unavailable), a document that could not be read back.
+  // Creates the file and writes the header. The recording is written as FILE.part, which can be replayed too,
+  // and becomes FILE at commit(). Errors: a path that cannot be written, another program that records to the
+  // same file (ErrorCode::unavailable), a document that could not be read back.
   static Result<RecordingWriter> create(const std::filesystem::path& file, const RecordingHeader& header,
                                         const OutputOptions& options = {});
 
-  // One line for the user if a crash left a FILE.part, which create() has renamed; empty in most cases.
+  // One line for the user if a crash left a FILE.part, which create() has renamed; otherwise empty.
   const std::string& notice() const;
 
-  // The name under which the recording grows.
+  // Name of the file to which the recording is written until commit().
   const std::filesystem::path& written_file() const;
 
   RecordingWriter(RecordingWriter&&) noexcept;
@@ -135,10 +137,10 @@ class RecordingWriter {
 
   Status reading(const DeviceReading& reading);
 
-  // Writes the last line and waits until the file is on the disk. `missed` as in Recording.
+  // Writes the last line and waits until the file is on the disk. `missed` is stored as Recording::missed.
   Status finish(std::uint64_t state_hash, std::uint64_t missed = 0);
 
-  // Closes the recording and replaces an older file of its name. Must be called after finish().
+  // Closes the recording and replaces an older file of the same name. Must be called after finish().
   Status commit();
 
  private:

@@ -11,7 +11,7 @@ namespace spoonbill {
 
 namespace {
 
-// Largest difference of two valid positions, far beyond that of two orientations.
+// Largest difference of two valid positions, far above any difference of two orientations.
 constexpr std::int64_t delta_limit = 2 * reading_limit_nm;
 
 constexpr const char* position_fields[3] = {"dx_nm", "dy_nm", "dz_nm"};

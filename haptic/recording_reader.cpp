@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t header_bytes_limit = std::size_t{64} << 20;
 constexpr std::size_t file_bytes_limit = std::size_t{1} << 30;
-constexpr std::size_t command_bytes_limit = std::size_t{64} << 20;  // for all commands together
+constexpr std::size_t command_bytes_limit = std::size_t{64} << 20;  // limit for all commands together
 
 constexpr std::size_t chunk_bytes = std::size_t{64} << 10;
 
@@ -28,7 +28,7 @@ std::string readable_size(std::size_t bytes) {
 // A line without its newline.
 struct Line {
   std::string_view text;    // valid until the next line is read
-  std::size_t number = 0;   // from 1
+  std::size_t number = 0;   // number of the line, from 1
   bool terminated = false;  // false for a last line without a newline
 };
 
@@ -191,7 +191,7 @@ class RecordingBuilder {
 
 struct ReadHeader {
   RecordingHeader header;
-  std::optional<OldCommands> old_commands;  // present if the header's document is old
+  std::optional<OldCommands> old_commands;  // set if the header's document is old
 };
 
 Result<ReadHeader> read_header(const Line& line, const std::string& source) {

@@ -18,7 +18,7 @@ struct RecordingWriter::State {
   std::string name;
   std::uint64_t ticks = 0;             // readings so far
   std::vector<DeviceReading> pending;  // readings not written yet
-  DeviceReading before;                // the reading before the pending ones
+  DeviceReading before;                // the reading before the first pending reading
   std::optional<std::uint64_t> checkpoint_tick;
   std::optional<std::uint64_t> command_tick;
   Status failure;  // the first error, which persists
@@ -46,8 +46,8 @@ struct RecordingWriter::State {
     return status;
   }
 
-  // Writes the pending readings and returns the line that says where they are. Called by the thread that ends
-  // the process. If the owner is writing at the same time, waits a moment for it.
+  // Writes the pending readings and returns a line for the user that names the file. Called by the thread
+  // that ends the process. If the owner is writing at the same time, waits up to 200 ms for it.
   std::string leave() {
     const std::unique_lock lock(mutex, std::chrono::milliseconds(200));
     if (lock.owns_lock() && failure.ok() && !finished) [[maybe_unused]]
@@ -56,7 +56,7 @@ struct RecordingWriter::State {
            out.written_file().string() + ", which can be replayed";
   }
 
-  // Returns an error if the recording has failed or is finished. Called first by every member.
+  // Returns an error if the recording has failed or is finished. Every member function calls it first.
   Status ready() {
     if (failure.ok() && finished)
       return fail(ErrorCode::internal, "the recording is finished; nothing can be added");
@@ -74,8 +74,8 @@ Status check_header(const Json& header, const std::string& name) {
   return read_back.ok() ? Status() : Status(read_back.error());
 }
 
-// Checks that the line can be read back: numbers must be finite, and values must not be nested more deeply
-// than readers accept.
+// Checks that the line can be read back: numbers must be finite, and nesting must not be deeper than the
+// reader accepts.
 Status check_line(const Json& line, const std::string& source) {
   const std::string text = json_to_line(line);
   if (text.size() + 1 >= recording_line_bytes_limit) {
@@ -113,7 +113,7 @@ RecordingWriter::RecordingWriter(std::unique_ptr<State> state) : state_(std::mov
 RecordingWriter::RecordingWriter(RecordingWriter&&) noexcept = default;
 RecordingWriter& RecordingWriter::operator=(RecordingWriter&&) noexcept = default;
 
-// A recording that is stopped holds every tick up to the stop.
+// Writes the pending readings, so that a stopped recording contains every tick up to the stop.
 RecordingWriter::~RecordingWriter() {
   if (state_ == nullptr) return;
   const std::lock_guard lock(state_->mutex);

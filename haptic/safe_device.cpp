@@ -16,7 +16,7 @@ constexpr int quiet_ticks_needed = 10;
 
 constexpr double lowest_tick_count = lowest_tick_rate_hz * tick_s * TickHistory::window_ms;
 
-// The force has faded to zero at these multiples of the workspace radius and of the maximum speed.
+// Multiples of the workspace radius and of the maximum speed at which the force has faded to zero.
 constexpr double workspace_end = 1.1;
 constexpr double speed_end = 2.0;
 
@@ -230,7 +230,7 @@ DeviceReading SafeDevice::read(std::uint64_t dropped_ticks) {
 }
 
 bool SafeDevice::consume_proxy_reset() {
-  // While the device has no valid reading, nothing touches; the reset waits for the hand.
+  // Without a valid reading the tool touches nothing, so the reset waits until the device answers.
   return answers_ && std::exchange(proxy_is_stale_, false);
 }
 
@@ -255,7 +255,7 @@ Vector3 SafeDevice::give(SafetyInput input) {
   input.off = !force_on_;
   const SafeForce safe = make_safe(state_, limits_, input);
   flags_ = safe.flags;
-  // After a stall the proxy has been reset before the simulation advanced.
+  // After a stall, the proxy was reset already, before the simulation advanced.
   const bool is_reset = (flags_ & safety_flag_stalled) != 0;
   if (!device_->is_playback()) proxy_is_stale_ = proxy_is_stale_ || (safe.reset_proxy && !is_reset);
   device_->set_force(safe.force_n);

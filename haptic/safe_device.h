@@ -5,19 +5,20 @@
 // reaches a hand unchecked. make_safe() applies these steps in every tick:
 //   1. A fault gives zero force within that tick: a value that is not finite, a stale simulation, a stall, a
 //      loop that misses most of its ticks, a hand that moves impossibly fast, a released dead-man button, a
-//      device without a valid reading. So does the user's switch.
+//      device without a valid reading. A force that the user has switched off counts as a fault.
 //   2. The force stays off until the requested force has been small for some ticks, so that a hand that
 //      starts inside the material is not thrown out; then the force ramps in.
 //   3. Its norm is limited to the maximum of the device.
 //   4. It fades for a hand that is too fast or outside the workspace.
 //   5. Its change per tick is limited.
-//   6. A requested force that vibrates faster than a hand moves (haptic/vibration.h) is cut. It is judged
-//      before the limits, which would hide it.
-// After a fault or a cut the chain restarts at step 2. A cut is the one change that may exceed the limit of
-// step 5.
+//   6. A requested force that vibrates faster than a hand moves (haptic/vibration.h) is cut. Vibration is
+//      detected before the limits of steps 3 to 5, which would hide it.
+// After a fault or a cut, the chain restarts at step 2. Only a cut may change the force by more than the
+// limit of step 5.
 //
-// The order and the quiet force follow cGenericTool of CHAI3D; the other limits belong to the device. The
-// state hash excludes the chain, because it is the coupling (haptic/tick.h) that moves the material.
+// The order of the steps and the quiet force follow cGenericTool of CHAI3D; the other limits belong to the
+// device. The state hash excludes the chain, because the coupling (haptic/tick.h), not the chain, moves the
+// material.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +31,7 @@
 
 namespace spoonbill {
 
-// Reasons why the hand does not receive the requested force. safety_text() describes each.
+// Reasons why the hand does not receive the requested force. safety_text() describes each reason.
 enum SafetyFlag : std::uint32_t {
   safety_flag_none = 0,
   safety_flag_cut = 1u << 0,  // a fault made the force zero in this tick
@@ -47,7 +48,7 @@ enum SafetyFlag : std::uint32_t {
   safety_flag_fast = 1u << 9,
   safety_flag_outside = 1u << 10,
   safety_flag_change_limited = 1u << 11,
-  // Further faults, which stay set like the faults above.
+  // Further faults; each stays set until the full force is back.
   safety_flag_no_device = 1u << 12,
   safety_flag_jumped = 1u << 13,
   safety_flag_off = 1u << 14,
@@ -56,20 +57,20 @@ enum SafetyFlag : std::uint32_t {
   safety_flag_softened = 1u << 16,
 };
 
-// Ticks between two calls that are a stall. In that time a hand moves by several millimetres, so the force is
-// no longer valid. Shorter gaps only lower the speed that is computed from two positions.
+// Number of ticks between two calls that counts as a stall. In that time a hand moves by several millimetres,
+// so the force is no longer valid. Shorter gaps only lower the speed that is computed from two positions.
 inline constexpr std::uint64_t stall_ticks = 10;
 
-// Ticks a second below which the force is cut, counted over the last 100 ms.
+// Tick rate below which the force is cut, counted over the last 100 ms.
 inline constexpr double lowest_tick_rate_hz = 200.0;
 
 // Multiple of the device's maximum speed above which a change of position is a fault of the sensor.
 inline constexpr double jump_speed_factor = 5.0;
 
-// Returns whether no hand on the device can have moved by `offset_m` in dropped_ticks + 1 ticks.
+// Returns true if a hand on the device cannot have moved by `offset_m` in dropped_ticks + 1 ticks.
 bool is_jump(const DeviceSpecification& specification, const Vector3& offset_m, std::uint64_t dropped_ticks);
 
-// Returns whether so many whole ticks without a call are a stall.
+// Returns true if a gap of `dropped_ticks` whole ticks without a call is a stall.
 constexpr bool is_stall(std::uint64_t dropped_ticks) {
   return dropped_ticks >= stall_ticks - 1;
 }
@@ -78,7 +79,7 @@ struct SafetyInput {
   Vector3 requested_n = Vector3::Zero();  // force requested by the coupling
   Vector3 position_m = Vector3::Zero();   // position of the handle relative to the centre of the workspace
   std::uint32_t buttons = 0;
-  std::uint64_t dropped_ticks = 0;  // whole ticks that passed without a call since the last one
+  std::uint64_t dropped_ticks = 0;  // whole ticks that passed without a call since the last call
   bool stale = false;               // requested_n is not from this tick
   bool off = false;                 // the user has switched the force off
   bool no_device = false;           // no valid reading: position and buttons are not from this tick
@@ -100,68 +101,67 @@ struct SafetyState {
   bool position_known = false;        // false without a valid position in the last tick
   Vector3 position_m = Vector3::Zero();
   VibrationState vibration;  // history of the requested force since the chain engaged
-  TickHistory ticks;         // since the last stall
+  TickHistory ticks;         // history of the ticks since the last stall
 };
 
 // Applies the chain to one tick. A pure function: it does not allocate, lock, read a clock or throw. The
 // specification has passed check_specification(). Called only by SafeDevice.
 SafeForce make_safe(SafetyState& state, const DeviceSpecification& specification, const SafetyInput& input);
 
-// Returns one line for each flag that concerns the user, the most serious first, separated by newlines. Empty
-// if no flag is set.
+// Returns one line for each flag that concerns the user, the most serious flag first, separated by newlines.
+// Empty if no flag is set.
 std::string safety_text(std::uint32_t flags);
 
-// A device behind the safety chain.
+// A device whose force passes through the safety chain.
 //
-//   once a tick:  read(dropped ticks) -> reset the proxy if consume_proxy_reset() -> advance the simulation
-//   ->
-//                 give(force)
+//   once a tick:  read(dropped ticks) -> reset the proxy if consume_proxy_reset()
+//                 -> advance the simulation -> give(force)
 //   or, without a simulation to advance:  read(dropped ticks) -> give_none()
 //
 // A device that does not answer, or answers with an invalid reading, gets no force. Its last valid reading
-// replaces the missing one, as a hand that only points: the tool releases the material and touches nothing.
-// So does a hand that moves impossibly fast. When the fault is over, the proxy is reset to the position of
-// the hand, and the force returns as after any other fault. After a stall the proxy is reset in the same
-// tick.
+// replaces the missing reading, with a hand that only points: the tool releases the material and touches
+// nothing. During an impossibly fast motion the hand also only points. When the fault is over, the proxy is
+// reset to the position of the hand, and the force returns as after any other fault. After a stall the proxy
+// is reset in the same tick.
 //
-// All of this is in the readings and proxy resets that a recording holds; the readings of a playback device
-// pass unchanged.
+// A recording contains these replaced readings and proxy resets. The readings of a playback device are
+// therefore not changed again.
 //
 // One owner, the owner of the device. Does not allocate, lock or read a clock.
 class SafeDevice {
  public:
-  // The device must outlive this object, and its specification, from which all limits come, must pass
+  // The device must outlive this object. All limits come from its specification, which must pass
   // check_specification(). The workspace has the radius of the specification and is centred on the first
-  // valid reading. read() returns `last`, which must be valid, until the device has answered for the first
-  // time.
+  // valid reading. Until the device has answered for the first time, read() returns `last`, which must be
+  // valid.
   explicit SafeDevice(Device& device, const DeviceReading& last = {});
   ~SafeDevice();  // leaves the device without force
   SafeDevice(const SafeDevice&) = delete;
   SafeDevice& operator=(const SafeDevice&) = delete;
 
-  // Moves or resizes the workspace, in scene coordinates.
+  // Moves the workspace, in scene coordinates, or resizes it.
   void set_workspace_centre(const Vector3& centre_m) {
     workspace_centre_m_ = centre_m;
     state_.position_known = false;
   }
   void set_workspace_radius(double radius_m) { limits_.workspace_radius_m = radius_m; }
 
-  // Returns a valid reading for this tick: that of the device, or a replacement as described above.
-  // `dropped_ticks` is the number of whole ticks skipped before this one.
+  // Returns a valid reading for this tick: the reading of the device, or a replacement (see the class
+  // comment). `dropped_ticks` is the number of whole ticks skipped before this tick.
   DeviceReading read(std::uint64_t dropped_ticks = 0);
 
   // Returns true if the proxy must be moved to the device before this tick advances, and clears the request.
   bool consume_proxy_reset();
-  // Requests a reset of the proxy, for use after the simulation has missed motions of the hand.
+  // Requests a reset of the proxy. To be called after the simulation has missed motions of the hand.
   void request_proxy_reset() { proxy_is_stale_ = true; }
 
-  // Switches the force on or off; default: on. Off counts as a fault, so the force ramps in when it is back
-  // on.
+  // Switches the force on or off; default: on. Switching off counts as a fault, so the force ramps in when it
+  // is switched on again.
   void switch_force(bool on) { force_on_ = on; }
 
-  // Sends the safe part of the requested force to the hand and returns it.
+  // Sends the requested force to the hand, as far as it is safe, and returns the force sent.
   Vector3 give(const Vector3& requested_n);
-  // Sends zero force while nothing computes a force.
+  // Sends zero force. To be called in ticks in which no force is computed.
   void give_none();
 
   // SafetyFlag bits of the last force sent.
@@ -177,7 +177,7 @@ class SafeDevice {
   DeviceReading reading_;  // last valid reading
   std::uint64_t dropped_ticks_ = 0;
   bool answers_ = true;
-  bool position_known_ = false;  // the last tick had a valid reading
+  bool position_known_ = false;  // whether the last tick had a valid reading
   bool proxy_is_stale_ = false;
   bool force_on_ = true;
   SafetyState state_;

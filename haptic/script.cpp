@@ -36,8 +36,8 @@ constexpr Range<double> time_range_s{0.0, static_cast<double>(script_tick_limit)
 constexpr Range<double> reach_range_m{-10.0, 10.0};
 constexpr double pi = 3.14159265358979323846;
 
-// Reads a time as ticks. Times that are not whole milliseconds are errors, because rounding would change them
-// silently.
+// Reads a time as a number of ticks. A time that is not a whole number of milliseconds is an error, because
+// rounding would change it silently.
 std::uint64_t read_ticks(FieldReader& reader, const char* field, Range<double> range_s) {
   const double seconds = reader.number(field, range_s);
   const double ticks = std::round(seconds / tick_s);

@@ -1,4 +1,4 @@
-// Scripts: the motions of a tool and the commands between them, as a person writes them down.
+// Scripts: the motions of a tool and the commands between them, as a person writes them by hand.
 //
 //   {"spoonbill_script": 1,
 //    "note": "bends the handle",                      optional, here and in each step
@@ -17,8 +17,8 @@
 // Steps run one after another; start_mm must be the first motion. Commands and grips take no time and happen
 // at the end of the step before them. A step with "at_s" waits until that time. A move starts and ends at
 // rest (minimum jerk). "turn" and "turn_to" are rotations from the world axes, not from the previous
-// orientation. Times are whole milliseconds. Commands with former fields are converted (old_documents.h), for
-// the iterations of the script's own tool.
+// orientation. Times are whole milliseconds. Commands with former fields are converted (see old_documents.h)
+// with the number of iterations of the script's own tool.
 #pragma once
 
 #include <cstdint>
@@ -50,12 +50,13 @@ struct Script {
   std::filesystem::path model_file;
   Hand hand;
   HandTarget start;
-  std::vector<ScriptMotion> motions;  // without gaps
+  std::vector<ScriptMotion> motions;  // motions without gaps between them
   std::vector<TimedCommand> commands;
 
   std::uint64_t tick_count() const { return motions.empty() ? 0 : motions.back().end; }
 
-  // Returns the target of the hand at the end of a tick; for ticks after the last one, the final target.
+  // Returns the target of the hand at the end of a tick. For ticks after the last tick, returns the final
+  // target.
   HandTarget target_at(std::uint64_t tick) const;
 };
 
@@ -63,7 +64,8 @@ struct Script {
 Result<Script> script_from_json(const Json& json, const std::string& source,
                                 const std::filesystem::path& folder);
 
-// Reads a script of at most 16 MiB. A model file that does not exist is an error; the caller reads the model.
+// Reads a script of at most 16 MiB. A model file that does not exist is an error; reading the model is left
+// to the caller.
 Result<Script> read_script(const std::filesystem::path& file);
 
 // A virtual device whose hand follows a script from tick 0.

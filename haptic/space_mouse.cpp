@@ -12,7 +12,7 @@ namespace spoonbill {
 
 namespace {
 
-// Count that the devices send at full displacement.
+// Number that a SpaceMouse sends for the full displacement of its cap.
 constexpr double full_counts = 350.0;
 
 constexpr int button_count = 32;

@@ -1,5 +1,5 @@
 // A 3Dconnexion SpaceMouse: a cap that a hand pushes and turns in six directions, without force feedback.
-// Read with libspnav from the daemon spacenavd.
+// Its motion is read with libspnav from the daemon spacenavd.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ struct SpaceMouseMotion {
   std::uint32_t buttons = 0;  // bit n: button n is down
 };
 
-// Converts the six numbers of a libspnav event: x right, y up, z away from the person, and rotations about
-// them.
+// Converts the six numbers of a libspnav event: displacements x right, y up, z away from the person, and
+// rotations about these axes.
 SpaceMouseMotion motion_from_counts(const int (&counts)[6], std::uint32_t buttons);
 
 // The connection to the daemon. libspnav has one connection for the process. One owner: the drawing thread,
@@ -42,7 +42,7 @@ class SpaceMouse : public InputSource {
   // button was pressed or released.
   bool is_used() override;
 
-  // Steers with the motion that is_used() polled. Of the buttons, only the main button counts.
+  // Moves the target by the motion that is_used() polled. Of the buttons, only the main button is used.
   HandTarget next_target(const HandTarget& current, double elapsed_s) override;
 
  private:
@@ -62,8 +62,9 @@ struct Steering {
 };
 
 // Returns the target `elapsed_s` later. Beyond the dead zone the speed grows with the square of the
-// displacement, for fine work near rest. Rotations are about the world axes. The buttons replace those of the
-// target. The time is clamped to the range from 0 to 0.1 s, because the program may have paused.
+// displacement, for fine work near rest. Rotations are about the world axes. The buttons of the motion
+// replace those of the target. The time is clamped to the range from 0 to 0.1 s, because the program may have
+// paused.
 HandTarget steer(const HandTarget& target, const SpaceMouseMotion& motion, double elapsed_s,
                  const Steering& steering = {});
 

@@ -8,17 +8,17 @@
 namespace spoonbill {
 namespace {
 
-// Halvings per tick of the old force in the low pass. One gives a cut-off of about 110 Hz, above the motion
-// of a hand and below the jitter of nodes that gain and lose contact.
+// Number of times per tick that the low-pass filter halves the weight of the old force. One gives a cut-off
+// of about 110 Hz, above the motion of a hand and below the jitter of nodes that gain and lose contact.
 constexpr double filter_halvings = 1.0;
 
-// Returns the weight of a new force after a hold of so many ticks.
+// Returns the filter weight of a new force that follows a force held for this many ticks.
 double filter_weight(double hold_ticks) {
   return 1.0 - std::exp2(-hold_ticks * filter_halvings);
 }
 
-// Returns the delay of a force that is held for so many ticks, in seconds: the delay of the filter plus half
-// of the hold.
+// Returns the delay of a force that is held for this many ticks, in seconds: the delay of the filter plus
+// half of the hold.
 double force_lag_s(double hold_ticks) {
   const double weight = filter_weight(hold_ticks);
   return ((1.0 - weight) / weight + 0.5) * (hold_ticks * tick_s);
@@ -30,7 +30,7 @@ constexpr double damping_reserve = 2.0;
 // Force scale below which no force reaches the hand, and the hand moves the tool rigidly.
 constexpr double minimum_force_scale = 1e-9;
 
-// Sets the stiffness for a tick that follows `missed` ones.
+// Sets the stiffness for a tick that follows `missed` missed ticks.
 void scale_stiffness(CouplingState& coupling, const DeviceSpecification& specification,
                      std::uint32_t missed) {
   coupling.ticks.add(missed);
@@ -52,8 +52,8 @@ void scale_stiffness(CouplingState& coupling, const DeviceSpecification& specifi
   }
 }
 
-// Returns the force of the damped spring along the displacement to the proxy. The force never pushes away
-// from the proxy, so that nothing sticks.
+// Returns the force of the damped spring along the displacement to the proxy. The force never points away
+// from the proxy, so the tool does not stick to the material.
 Vector3 damped_spring(const CouplingState& coupling, const DeviceSpecification& specification,
                       const Vector3& displacement_m, const Vector3& velocity_m_per_s) {
   const double length_m = displacement_m.norm();

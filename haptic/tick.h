@@ -18,15 +18,16 @@ namespace spoonbill {
 // force, divided by the force scale, presses the tool on the material.
 //
 // The force is late, because it is filtered and constant for a tick. With a delay t, a spring of stiffness K
-// returns more energy than it received, as if its damping were -K t (Colgate and Brown 1994, for t of half a
-// tick). The hand is therefore damped along the spring by 2 K t, at most by the maximum damping of the
-// device.
+// returns more energy than it received, as if it had the negative damping -K t (Colgate and Brown 1994, for t
+// of half a tick). The hand is therefore damped along the spring by 2 K t, but at most by the maximum damping
+// of the device.
 //
-// A force that is held for several ticks is later still, so the stiffness is scaled by 1 ms over the longest
-// hold of the last 100 ms. A spring that becomes stiffer under load would give the hand energy: under load it
-// recovers only the energy that its softening withheld, and the rest once the tool is free.
+// A force that is held for several ticks is even later. The stiffness is therefore scaled by 1 ms divided by
+// the longest hold of the last 100 ms. A spring that becomes stiffer under load would give energy to the
+// hand. Under load, the stiffness therefore recovers only by the energy that its reduction has withheld; the
+// rest recovers once the tool is free.
 //
-// Plain data, owned with the simulation by the ticking thread.
+// Plain data. The ticking thread owns it together with the simulation.
 struct CouplingState {
   Vector3 force_n = Vector3::Zero();  // force on the hand
   Vector3 position_m = Vector3::Zero();
@@ -46,12 +47,12 @@ struct TickResult {
 TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpecification& specification,
                 const DeviceReading& reading);
 
-// Computes the coupling alone. `displacement_m` is the vector from the device to the proxy, zero without
-// contact; `missed` is that of DeviceReading.
+// Computes the force of the coupling without advancing a simulation. `displacement_m` is the vector from the
+// device to the proxy, zero without contact; `missed` is DeviceReading::missed.
 TickResult couple(CouplingState& coupling, const DeviceSpecification& specification,
                   const Vector3& position_m, const Vector3& displacement_m, std::uint32_t missed = 0);
 
-// Adds the coupling to the state hash: the last three members only after missed ticks.
+// Adds the coupling to the state hash. `ticks` and the members after it are added only after missed ticks.
 void add_to_hash(const CouplingState& coupling, StateHash& hash);
 
 }  // namespace spoonbill

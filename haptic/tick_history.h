@@ -1,4 +1,4 @@
-// The recent ticks of a loop that may miss some.
+// History of the recent ticks of a loop that may miss ticks.
 #pragma once
 
 #include <algorithm>
@@ -9,11 +9,11 @@
 
 namespace spoonbill {
 
-// Ticks of the last 100 ms, by millisecond. Plain data; starts as if no tick had been missed.
+// Ticks of the last 100 ms, one bit per millisecond. Plain data; starts as if no tick had been missed.
 class TickHistory {
  public:
   static constexpr std::size_t window_ms = 100;
-  // Longest hold (time between two ticks) that is measured; longer ones are stalls.
+  // Longest hold (time between two ticks) that is measured; a longer hold is a stall.
   static constexpr std::size_t longest_hold_ms = 10;
 
   TickHistory() { ticked_.set(); }
@@ -25,8 +25,8 @@ class TickHistory {
     ticked_.set(0);
   }
 
-  // Returns the longest time between two ticks, in milliseconds, of those that ended within the window: 1 if
-  // none was missed, at most longest_hold_ms.
+  // Returns the longest time between two ticks, in milliseconds, of which the later tick is within the
+  // window. It is 1 if no tick was missed, and at most longest_hold_ms.
   std::size_t find_longest_hold() const {
     std::size_t longest = 1;
     std::size_t end = 0;  // age, in milliseconds, of the tick at the end of the hold

@@ -31,8 +31,8 @@ const VibrationState::Sample& at(const VibrationState& state, int ticks_ago) {
   return state.samples[(state.count - 1 - static_cast<std::uint64_t>(ticks_ago)) % VibrationState::capacity];
 }
 
-// Returns the mismatch below which a period counts as repeated: at most that of a sine of `slowest_hz`, of
-// which 1 - cos(x) is the exact value for a phase error x.
+// Returns the mismatch below which a period counts as repeated: at most that of a sine of `slowest_hz`. For a
+// phase error x, that mismatch is 1 - cos(x), approximated by x^2 / 2.
 double mismatch_limit(int period) {
   const double phase_error = 2.0 * std::numbers::pi * (1.0 - period * tick_s * slowest_hz);
   return std::min(largest_mismatch, 0.5 * phase_error * phase_error);
@@ -42,7 +42,8 @@ bool vibrates(const VibrationState& state, const VibrationLimits& limits, int pe
   const int periods = count_periods(period);
   const int ticks = periods * period;
   if (state.count < static_cast<std::uint64_t>(ticks)) return false;
-  double change = 0.0, moved_m2 = 0.0;  // sums of |f(t) - f(t - L)|^2 and of the same for the hand
+  // Sums of |f(t) - f(t - L)|^2, and of the squared motion of the hand in the same time.
+  double change = 0.0, moved_m2 = 0.0;
   double energy = 0.0, newest_energy = 0.0, oldest_energy = 0.0;  // sums of |a(t)|^2
   const int third = periods / 3;
   for (int p = 0; p < periods; ++p) {

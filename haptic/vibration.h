@@ -1,4 +1,4 @@
-// Recognises a requested force that vibrates, by what repeats.
+// Detection of vibration in a requested force, by comparing the force with itself one period earlier.
 //
 // For each period of L ticks, from 2 to 66, the force is compared with itself L ticks before. The comparison
 // covers n periods, at least three and at least 75 ticks. With the deviation a(t) of the force f(t) from its
@@ -16,10 +16,10 @@
 //   - strong: the root mean square of a(t) exceeds the quiet force;
 //   - lasting: the newest and the oldest third of the periods each have at least 0.7 of the mean |a(t)|^2,
 //     unlike the first ticks of a pulse and the bounces after a tap, which die down;
-//   - no pattern that the hand crosses, such as ridges, or one ridge again and again with a tremor: the
-//     hand is within 2.5 mm of its position a period before (root mean square). A contact only pushes, so the
-//     root mean square of its a(t) is at most half the maximum force; above 0.6 of the maximum, the force
-//     reverses, and the position does not matter.
+//   - not a pattern that the hand crosses, such as ridges, or one ridge again and again with a tremor: the
+//     hand is within 2.5 mm of its position a period before (root mean square). This condition does not apply
+//     if the root mean square of a(t) exceeds 0.6 of the maximum force. Such a force reverses, because a
+//     contact only pushes and its a(t) reaches at most half the maximum.
 //
 // A pulse does not repeat. A steady vibration is recognised within 150 ms of its first tick from 22 Hz on and
 // within 100 ms from 50 Hz on; between 16 and 22 Hz it takes three periods.
@@ -33,9 +33,9 @@
 
 namespace spoonbill {
 
-// The last forces and positions. Plain data; initially without any.
+// The last forces and positions; initially empty. Plain data.
 struct VibrationState {
-  static constexpr std::size_t capacity = 256;  // a power of two, at least three periods of 60 ticks
+  static constexpr std::size_t capacity = 256;  // a power of two, at least three periods of 66 ticks
   struct Sample {
     Vector3 force_n = Vector3::Zero();
     Vector3 position_m = Vector3::Zero();
@@ -49,12 +49,12 @@ struct VibrationLimits {
   double maximum_force_n = 3.3;  // largest force of the device
 };
 
-// Adds the force that the coupling requests in this tick, before any limit, with the position of the hand,
-// and returns whether the force vibrates. Both must be finite. `dropped_ticks` ticks passed before this one
-// without a force; the last force counts for them, at most `capacity` times.
+// Adds the force that the coupling requests in this tick, before any limit, and the position of the hand, and
+// returns whether the force vibrates. Both must be finite. `dropped_ticks` is the number of ticks before this
+// one without a force. They count as ticks with the last force, at most `capacity` times.
 //
-// Tries an eighth of the periods in each tick, so that a tick costs a few microseconds and a vibration is
-// recognised at most 7 ticks late. Does not allocate, lock, read a clock or throw.
+// Tries an eighth of the periods in each tick, so that a tick costs a few microseconds. A vibration is
+// therefore recognised at most 7 ticks late. Does not allocate, lock, read a clock or throw.
 bool detect_vibration(VibrationState& state, const VibrationLimits& limits, const Vector3& force_n,
                       const Vector3& position_m, std::uint64_t dropped_ticks);
 

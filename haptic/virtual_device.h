@@ -21,7 +21,7 @@ namespace spoonbill {
 struct Hand {
   double mass_kg = 0.1;  // the handle and the part of the hand that moves with it
   double stiffness_n_per_m = 300.0;
-  double damping_n_s_per_m = 10.954;  // against the motion relative to the target
+  double damping_n_s_per_m = 10.954;  // damping of the motion relative to the target
 };
 
 // Ranges in which a step is stable: tick_s^2 * stiffness / mass is at most 1.
@@ -53,7 +53,7 @@ class VirtualDevice : public Device {
 
   static DeviceSpecification default_specification();
 
-  // Sets the target for the next read().
+  // Sets the target that the hand follows from the next read() on.
   void set_target(const HandTarget& target);
 
   const DeviceSpecification& specification() const override { return specification_; }
@@ -149,7 +149,7 @@ class SteeredDevice : public Device {
   // Makes a device at rest at `start`. Errors are those of VirtualDevice::make().
   static Result<std::unique_ptr<SteeredDevice>> make(const Hand& hand, const HandTarget& start);
 
-  // Returns the mailbox for targets; a holder of the pointer may outlive the device.
+  // Returns the mailbox for targets. A holder of the pointer may outlive the device.
   const std::shared_ptr<TargetMailbox>& mailbox() const { return mailbox_; }
 
   const DeviceSpecification& specification() const override { return handle_.specification(); }
@@ -169,22 +169,24 @@ class InputSource {
  public:
   virtual ~InputSource() = default;
 
-  // Returns true if the person uses the source in this frame. Called once per frame, before next_target().
+  // Returns true if the person uses the source in this frame. Must be called once per frame, before
+  // next_target().
   virtual bool is_used() = 0;
 
   // Returns the new target of the handle. `current` is the target `elapsed_s` seconds ago. Called only while
-  // this source leads.
+  // this source leads the hand.
   virtual HandTarget next_target(const HandTarget& current, double elapsed_s) = 0;
 };
 
 // Chooses among input sources: the one used last leads the hand. One owner: the drawing thread.
 class HandInputs {
  public:
-  // `leader` leads until another source is used. Every source must outlive its last update().
+  // `leader` leads the hand until another source is used. Every source must outlive its last update().
   HandInputs(std::shared_ptr<TargetMailbox> mailbox, const HandTarget& start, const InputSource& leader)
       : mailbox_(std::move(mailbox)), target_(start), leader_(&leader) {}
 
-  // Makes the source the leader if it is in use. Sends the source's target to the device if the source leads.
+  // Makes the source the leader if it is in use. Sends the source's target to the device if the source leads
+  // the hand.
   void update(InputSource& source, double elapsed_s) {
     if (source.is_used()) leader_ = &source;
     if (leader_ != &source) return;

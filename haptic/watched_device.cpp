@@ -35,7 +35,7 @@ void WatchedDevice::check(std::int64_t now_ns) {
   }
   if (forces == 0 || is_zeroed_ || now_ns - seen_ns_ < watchdog_limit_ns) return;
   const Claim claim(busy_);
-  // The haptic thread is at the device: the next check sees whether it has set a force.
+  // If the haptic thread is using the device, the next check sees whether it has set a force.
   if (!claim || forces_.load(std::memory_order_acquire) != forces) return;
   cut_.store(true, std::memory_order_release);
   device_->set_force(Vector3::Zero());

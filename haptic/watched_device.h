@@ -4,8 +4,8 @@
 //   haptic thread:  SafeDevice -> WatchedDevice -> device
 //   own thread:     WatchedDevice::check() every millisecond
 //
-// The loop may be stuck in a tick, starved of its processor, or stopped; a suspended machine holds its last
-// force too, and gets zero at the first check after the resume.
+// The loop may be stuck in a tick, starved of its processor, or stopped. While the machine is suspended, the
+// device also keeps the last force; the first check after the resume sets it to zero.
 #pragma once
 
 #include <atomic>
@@ -20,10 +20,10 @@ namespace spoonbill {
 // Time without a force after which the watchdog writes zero.
 inline constexpr std::int64_t watchdog_limit_ns = 10'000'000;
 
-// A device behind the watchdog. Its Device functions belong to the haptic thread, which never waits and reads
-// no clock; check() belongs to the watchdog's thread. At most one of the two uses the device at a time: while
-// the watchdog writes zero, the haptic thread reads nothing and its force is dropped. A driver that blocks in
-// one of its functions cannot be cut.
+// A device behind the watchdog. Its Device functions are called by the haptic thread, which never waits and
+// reads no clock; check() is called by the watchdog's thread. Only one of the two threads uses the device at
+// a time. While the watchdog writes zero, the haptic thread reads nothing and its force is dropped. If a
+// driver blocks in one of its functions, the force cannot be cut.
 class WatchedDevice : public Device {
  public:
   // The device must outlive this object. No thread runs until start().
@@ -39,20 +39,20 @@ class WatchedDevice : public Device {
   bool is_playback() const override { return device_->is_playback(); }
 
   // Returns whether the watchdog has cut the force since the last call. Called by the haptic thread at the
-  // start of a tick, which must then treat the time since the last one as a stall.
+  // start of a tick. If true, the tick must treat the time since the previous tick as a stall.
   bool consume_cut() { return cut_.exchange(false, std::memory_order_acq_rel); }
 
-  // Writes zero if no force has been set for watchdog_limit_ns, as far as earlier checks have seen. `now_ns`
+  // Writes zero if the calls of this function show that no force has been set for watchdog_limit_ns. `now_ns`
   // is from any clock that never goes back and also runs while the machine is suspended.
   void check(std::int64_t now_ns);
 
-  // Starts a thread that calls check() every millisecond, ahead of the haptic thread if `real_time` and if
-  // the system permits it. Returns an error if the thread cannot be started.
+  // Starts a thread that calls check() every millisecond. If `real_time`, requests a higher priority than
+  // that of the haptic thread. Returns an error if the thread cannot be started.
   Status start(bool real_time);
   void stop();
 
  private:
-  // The exclusive use of the device, if the other thread does not have it.
+  // Exclusive use of the device for the life of this object; empty if the other thread is using the device.
   class Claim {
    public:
     explicit Claim(std::atomic<bool>& busy)
@@ -77,7 +77,7 @@ class WatchedDevice : public Device {
   // Used by check() only.
   std::uint64_t seen_forces_ = 0;
   std::int64_t seen_ns_ = 0;  // time of the first check after the last force
-  bool is_zeroed_ = false;    // since the last force
+  bool is_zeroed_ = false;    // whether zero was written after the last force
 
   std::atomic<bool> stopping_{false};
   std::thread thread_;

@@ -19,28 +19,28 @@ float srgb8_to_linear(int value);
 // that nothing depends on distinguishing red from green.
 namespace palette {
 
-inline constexpr Colour fixed_node{28, 150, 84};    // squares
-inline constexpr Colour touched_node{214, 40, 46};  // discs
-inline constexpr Colour lattice{52, 62, 74, 150};   // the thinnest lines
-inline constexpr Colour cell_edge{178, 30, 52};     // thick lines
+inline constexpr Colour fixed_node{28, 150, 84};    // drawn as squares
+inline constexpr Colour touched_node{214, 40, 46};  // drawn as discs
+inline constexpr Colour lattice{52, 62, 74, 150};   // drawn as the thinnest lines
+inline constexpr Colour cell_edge{178, 30, 52};     // drawn as thick lines
 inline constexpr Colour far_cell_edge{178, 30, 52, 170};
-inline constexpr Colour control_net{38, 66, 128, 190};  // thin lines and diamonds
-inline constexpr Colour force{226, 116, 14};            // the arrow
-inline constexpr Colour contact_normal{112, 46, 134};   // short lines
+inline constexpr Colour control_net{38, 66, 128, 190};  // drawn as thin lines and diamonds
+inline constexpr Colour force{226, 116, 14};            // drawn as an arrow
+inline constexpr Colour contact_normal{112, 46, 134};   // drawn as short lines
 inline constexpr Colour fixing_plane{28, 150, 84, 40};
 inline constexpr Colour fixing_plane_border{22, 122, 70, 210};
-inline constexpr Colour symmetry_plane{38, 92, 168, 210};  // dash-dotted
+inline constexpr Colour symmetry_plane{38, 92, 168, 210};  // drawn dash-dotted
 inline constexpr Colour tool{52, 118, 204};
 inline constexpr Colour ground_line{70, 78, 88};
 inline constexpr Colour scale_bar{48, 54, 62};
-inline constexpr Colour hull{96, 58, 160, 170};             // thin lines from point to point
-inline constexpr Colour parameter_range{0, 124, 132};       // thick borders on the surface
-inline constexpr Colour active_sphere{178, 34, 116};        // translucent shells
-inline constexpr Colour active_second_sphere{20, 92, 168};  // shells of the other surface
-inline constexpr Colour rejected_sphere{92, 100, 112, 90};  // faint shells
+inline constexpr Colour hull{96, 58, 160, 170};             // drawn as thin lines from point to point
+inline constexpr Colour parameter_range{0, 124, 132};       // drawn as thick borders on the surface
+inline constexpr Colour active_sphere{178, 34, 116};        // drawn as translucent shells
+inline constexpr Colour active_second_sphere{20, 92, 168};  // drawn as shells of the second surface
+inline constexpr Colour rejected_sphere{92, 100, 112, 90};  // drawn as faint shells
 inline constexpr Colour active_triangle{246, 196, 24, 205};
 inline constexpr Colour triangle_edge{120, 84, 0};
-inline constexpr Colour tangent_u{0, 118, 196};  // an arrow with a label
+inline constexpr Colour tangent_u{0, 118, 196};  // drawn as an arrow with a label
 inline constexpr Colour tangent_v{0, 132, 104};
 inline constexpr Colour text{38, 43, 50};
 

@@ -72,7 +72,7 @@ struct Glyph {
   std::vector<std::uint8_t> coverage;
 };
 
-// Initialises the font, which keeps a pointer to the bytes.
+// Initialises the font. The font keeps a pointer to the bytes.
 bool read_font(const std::string& bytes, stbtt_fontinfo& font) {
   return stbtt_InitFont(&font, reinterpret_cast<const unsigned char*>(bytes.data()), 0) != 0;
 }

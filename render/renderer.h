@@ -7,8 +7,9 @@
 //   renderer->read_pixels(image);                                   // or renderer->present()
 //
 // The picture depends only on snapshot, settings and interface: the same input gives the same pixels for any
-// number of drawing threads. Two exceptions retain something from earlier frames: ViewSettings::keep_level
-// may keep a slightly finer or coarser tessellation, and a deforming mesh keeps the edges of its first shape.
+// number of drawing threads. There are two exceptions, which retain something from earlier frames. With
+// ViewSettings::keep_level the tessellation may be slightly finer or coarser, and a deforming mesh keeps the
+// sharp edges of its first shape.
 #pragma once
 
 #include <imgui.h>

@@ -15,11 +15,12 @@ namespace {
 constexpr int late_weight = 2;
 constexpr int late_limit = 12;
 
-// Largest part of the frame time at which the next better quality, by index of the current one, is tried.
-// Samples and shadow add half to double the cost, fine tessellation less.
+// Largest time of a frame, as a fraction of the available time, at which the next better quality is tried; by
+// index of the current quality. Samples and shadow increase the cost by half to twice, fine tessellation by
+// less.
 constexpr std::array<double, 4> spare_fraction = {0.0, 0.45, 0.65, 0.65};
 
-constexpr int minimum_patience_frames = 120;   // two seconds, the initial value
+constexpr int minimum_patience_frames = 120;   // two seconds; the initial value
 constexpr int maximum_patience_frames = 7200;  // two minutes
 constexpr int trial_frames = 120;              // a quality sustained for this long is accepted
 
@@ -63,7 +64,7 @@ void FrameBudget::add_frame(double took_s) {
 void FrameBudget::consider_raising(double took_s) {
   if (quality_ == FrameQuality::full) return;
   const bool spare = took_s <= spare_fraction[static_cast<std::size_t>(quality_)] * frame_s_;
-  // Number of fast frames that one slow frame cancels: a single slow frame among many is only weak evidence.
+  // Number of fast frames that one slow frame cancels. A single slow frame among many is only weak evidence.
   constexpr int slow_frame_penalty = 10;
   spare_frames_ = spare ? spare_frames_ + 1 : std::max(0, spare_frames_ - slow_frame_penalty);
   if (spare_frames_ < patience_frames_) return;

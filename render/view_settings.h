@@ -21,7 +21,7 @@ struct Overlays {
   bool lattice = false;          // the thinnest lines
   bool cells = false;            // thick lines where the hexahedra of the lattice meet the surface
   bool control_net = false;      // thin lines with diamonds
-  bool force = true;             // the force on the hand: an arrow with its newtons
+  bool force = true;             // the force on the hand, as an arrow with its value in newtons
   bool contact_normals = false;  // short lines from the contact points
   bool fixing_planes = true;
   bool symmetry_plane = true;  // dash-dotted
@@ -46,7 +46,7 @@ struct ViewSettings {
   bool shadow = true;
   int samples = 4;          // samples per pixel, 0 or 4
   double detail = 1.0;      // fineness of the tessellation; 0.5 doubles edge lengths and chord errors
-  bool keep_level = true;   // lets the tessellation stay slightly too fine or coarse, to avoid flicker
+  bool keep_level = true;   // lets the tessellation stay slightly too fine or too coarse, to avoid flicker
   double ground_y_m = 0.0;  // see ground_below()
   double arrow_m_per_n = 0.012;
 };
@@ -73,9 +73,9 @@ class FrameBudget {
   explicit FrameBudget(double frame_s = 1.0 / 60.0) : frame_s_(frame_s) {}
 
   // Records the time of a frame drawn at quality(). Consecutive late frames, or more than one late frame in
-  // three, lower the quality; a long time with spare capacity raises it. A single late frame changes nothing,
-  // because another program may have caused it. A quality that fails soon after it was raised is retried
-  // after a longer time.
+  // three, lower the quality. A long time with spare capacity raises it. A single late frame changes nothing,
+  // because another program may have caused it. If a raised quality soon fails, it is retried after a longer
+  // time.
   void add_frame(double took_s);
 
   FrameQuality quality() const { return quality_; }

@@ -21,14 +21,14 @@ struct CadSurface {
   // Largest distance between the surface and the original in the file; 0 if the conversion is exact.
   double deviation_m = 0.0;
   std::vector<TrimLoop> trims;  // loops around the visible part; empty if the whole surface is visible
-  // Reason why there are no trims although the file shows only a part; empty otherwise.
+  // Reason why there are no trims although the file shows only a part of the surface; empty otherwise.
   std::string trim_problem;
   // Thickness of the material behind the surface, 0 for a surface without a shell. Exported meshes include
   // the walls of the shell, CAD files do not.
   double shell_thickness_m = 0.0;
-  // Largest distance of the trims, or of an untrimmed surface's sides, from the edges in the file.
+  // Largest distance from the edges in the file, of the trims or of the sides of an untrimmed surface.
   double trim_deviation_m = 0.0;
-  std::string solid = {};  // solid of several faces that this surface belongs to; empty: none
+  std::string solid = {};  // name of the solid of several faces that the surface belongs to; empty: none
 };
 
 struct CadModel {
@@ -39,14 +39,14 @@ struct CadModel {
 };
 
 struct CadReading {
-  FileFormat format = FileFormat::step;  // or iges
-  double unit_m = 0.0;                   // length of one unit of the file; 0: as the file declares
+  FileFormat format = FileFormat::step;  // step or iges
+  double unit_m = 0.0;                   // length of one unit of the file; 0: take it from the file
   double tolerance_m = 1e-5;             // largest deviation of approximated surfaces
   std::size_t face_limit = 1000;         // files with more faces are refused
 };
 
 struct CadWriting {
-  FileFormat format = FileFormat::step;   // or iges
+  FileFormat format = FileFormat::step;   // step or iges
   StepSchema schema = StepSchema::ap214;  // for STEP only
   std::string unit = "mm";                // mm, cm, m or in
 };
@@ -79,7 +79,7 @@ struct CadSolids {
 
 struct SolidMeshing {
   double chord_m = 5e-5;                    // requested chord error
-  std::size_t triangle_limit = 10'000'000;  // for all solids together
+  std::size_t triangle_limit = 10'000'000;  // largest number of triangles of all solids together
 };
 
 // Length limit of names in CAD files, in bytes.

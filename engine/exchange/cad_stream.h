@@ -13,14 +13,14 @@
 
 namespace spoonbill {
 
-// Convert a surface to JSON as in documents and back. `source` names the CAD file in messages. Refused: a
-// surface that a document could not contain.
+// cad_surface_to_json() and cad_surface_from_json() convert a surface to JSON, in the form of documents, and
+// back. `source` names the CAD file in messages. Refused: a surface that a document could not contain.
 Json cad_surface_to_json(const CadSurface& surface);
 Result<CadSurface> cad_surface_from_json(std::string_view text, const std::string& source);
 
-// Convert a solid to bytes and back: a line of JSON, then the mesh's vertices as doubles and its triangles as
-// 32-bit indices. `surfaces` is the number of surfaces of the model, `source` names the file in messages.
-// Refused: malformed bytes, numbers out of range.
+// cad_solid_to_bytes() and cad_solid_from_bytes() convert a solid to bytes and back. The bytes are a line of
+// JSON, the mesh's vertices as doubles and its triangles as 32-bit indices. `surfaces` is the number of
+// surfaces of the model, `source` names the file in messages. Refused: malformed bytes, numbers out of range.
 std::string cad_solid_to_bytes(const CadSolid& solid);
 Result<CadSolid> cad_solid_from_bytes(std::string_view bytes, std::size_t surfaces,
                                       const std::string& source);

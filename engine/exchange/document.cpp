@@ -119,7 +119,7 @@ std::optional<Ground> read_ground(FieldReader& reader) {
   return ground;
 }
 
-// Returns true if the symmetry differs from the default; only then is it written.
+// Returns true if the symmetry differs from the default. A default symmetry is not written.
 bool is_not_default(const Symmetry& symmetry) {
   const Symmetry standard;
   return symmetry.on || symmetry.point_m != standard.point_m || symmetry.normal != standard.normal;
@@ -206,7 +206,7 @@ void add_content(const RefineKnots& command, Json& json) {
   add_body_index(command.body, json);
 }
 
-// Reads a document that has the current fields, of any version.
+// Reads a document of any version, after its fields have been converted to the current ones.
 Result<Document> read_current_fields(const Json& json, const std::string& source) {
   FieldReader reader(json, source);
   const int version = reader.version("spoonbill_document", {oldest_document_version, document_version});

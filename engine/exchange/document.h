@@ -46,9 +46,9 @@
 //    "view": {...}}                                              optional
 //
 // A region is a part of its body (BodyRegion in material.h): {"along": [0.9, 1], "around": [0.25, 0.75],
-// "depth_mm": [0, 2]}, each field optional; a single depth is the smallest, and the largest is unlimited. An
-// oscillation has "frequency_hz" instead of "duration_s"; loads.h defines both motions. Where regions of
-// material overlap, later ones win.
+// "depth_mm": [0, 2]}. Each field is optional. If only one depth is given, it is the smallest, and the
+// largest is unlimited. An oscillation has "frequency_hz" instead of "duration_s"; loads.h defines both
+// motions. Where regions of material overlap, the later region applies.
 //
 // Shapes of a solid tool: sphere (radius_mm), ellipsoid (semi_axes_mm), cylinder and capsule (radius_mm,
 // half_length_mm), box (half_extents_mm), cone (base_radius_mm, height_mm), torus (ring_radius_mm,
@@ -58,11 +58,11 @@
 // LatticeRequest (body.h). implicit_shapes.h and triangle_mesh.h define the shapes.
 //
 // Versions 1 and 2 are read too: old_documents.h converts their constants, and version 1 had neither trims
-// nor solids. assets/schemas/document.schema.json describes all three. Control points are in the world frame,
-// a tool's shape in the frame of the hand. The headers of engine/scene define the ranges; knots are from -1e6
-// to 1e6, and unequal ones are at least 1e-9 of the domain apart. A length is a number of millimetres, or a
-// decimal in quotes where no double of millimetres reads back to the same bits of metres (length_to_json()).
-// Normals are scaled to unit length.
+// nor solids. assets/schemas/document.schema.json describes all three versions. Control points are in the
+// world frame, the shape of a tool in the frame of the hand. The headers of engine/scene define the ranges.
+// Knots are from -1e6 to 1e6, and unequal knots are at least 1e-9 of the domain apart. A length is a number
+// of millimetres, or a decimal in quotes if no double of millimetres reads back to the same bits of metres
+// (see length_to_json()). Normals are scaled to unit length.
 #pragma once
 
 #include <filesystem>
@@ -104,14 +104,16 @@ Result<Document> read_document(const std::filesystem::path& file);
 Status write_document(const Document& document, const std::filesystem::path& file,
                       const OutputOptions& options = {});
 
-// Convert between JSON and a single material, the content of a file in assets/materials.
+// material_from_json() and material_to_json() convert a single material, the content of a file in
+// assets/materials.
 Result<Material> material_from_json(const Json& json, const std::string& source);
 Json material_to_json(const Material& material);
-// Reads a material of at most 1 MiB; one with the former fields is converted (old_documents.h).
+// Reads a material of at most 1 MiB. A material with the fields of former versions is converted
+// (old_documents.h).
 Result<Material> read_material(const std::filesystem::path& file);
 
-// Convert between JSON and a command of the simulation. Every field is required unless noted; the fields of
-// tool, material and sculpting are those of documents:
+// command_from_json() and command_to_json() convert a command of the simulation. Every field is required
+// unless noted. The fields of tool, material and sculpting are the same as in documents:
 //   {"command": "place_plane", "point_mm": [x, y, z], "normal": [x, y, z]}
 //   {"command": "remove_planes"}
 //   {"command": "set_tool", "kind", "action", "radius_mm", "substeps", and for a solid "solid", "soft"}

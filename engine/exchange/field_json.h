@@ -18,7 +18,7 @@ namespace spoonbill {
 // Returns true if the field is to be read: it is required, or it is optional and present.
 bool is_field_expected(const FieldReader& reader, const FieldForm& form);
 
-// Each function reads one value and stores a problem in the reader.
+// Each read_value() reads one value. A problem is stored in the reader.
 void read_value(FieldReader& reader, const FieldForm& form, Range<double> range, std::string& value);
 void read_value(FieldReader& reader, const FieldForm& form, Range<double> range, bool& value);
 void read_value(FieldReader& reader, const FieldForm& form, Range<double> range, double& value);
@@ -56,8 +56,8 @@ Object read_fields(FieldReader& reader) {
   return object;
 }
 
-// Writes all fields of the table into `json`; an optional field only if its value differs from the struct's
-// default.
+// Writes all fields of the table into `json`. An optional field is written only if its value differs from the
+// struct's default.
 template <class Object>
 void add_fields(const Object& object, Json& json) {
   static const Object default_object{};

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t text_limit = 200;
 
-// Largest deviation from unit length at which a direction is left as it is, so that its bits survive writing
-// and reading.
+// Largest deviation from unit length at which a direction is not scaled, so that it keeps its bits when it is
+// written and read.
 constexpr double unit_tolerance = 1e-12;
 
 const Json& null_value() {

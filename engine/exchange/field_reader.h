@@ -33,8 +33,8 @@ class FieldReader {
 
   bool has(std::string_view field) const;
 
-  // Read the version number of the file's format and refuse a version outside `known`; the second function
-  // returns it.
+  // version() reads the version number of the file's format and refuses a version outside `known`. The second
+  // overload returns it.
   void version(std::string_view field, int known);
   int version(std::string_view field, Range<int> known);
 
@@ -46,19 +46,20 @@ class FieldReader {
   std::uint64_t unsigned_integer(std::string_view field, std::uint64_t limit);
   double length_m(std::string_view field, Range<double> range_m);
   Vector3 vector(std::string_view field, Range<double> range);
-  Vector3 position_m(std::string_view field, Range<double> range_m);  // three lengths
-  // not zero; scaled to length 1 unless it already has this length
+  Vector3 position_m(std::string_view field, Range<double> range_m);  // a list of three lengths
+  // Reads a vector that is not zero, and scales it to length 1 unless it already has this length.
   Vector3 direction(std::string_view field);
   const Json& object(std::string_view field);
   const Json& list(std::string_view field, Range<int> size);
 
-  // Returns the index of the field's text among the names.
+  // Returns the index in `names` of the field's text.
   std::size_t choose(std::string_view field, std::span<const char* const> names);
-  // Returns the value that belongs to the field's text.
+  // Returns the choice that belongs to the field's text.
   template <class Choice>
   Choice choice(std::string_view field, std::initializer_list<std::pair<const char*, Choice>> choices);
 
-  // Returns the reader of a field that is an object, or of an object in a list. Call finish() on each.
+  // inner() returns the reader of a field that is an object, element() that of an object in a list. Call
+  // finish() on each.
   FieldReader inner(std::string_view field);
   FieldReader element(const Json& json, std::string_view list_field, std::size_t index);
 
@@ -68,12 +69,12 @@ class FieldReader {
   // Refuses fields that were neither read nor ignored.
   void finish();
 
-  // Stores the problem "FILE: path.field message", unless one is stored already. The error's field is the
-  // path.
+  // Stores the problem "FILE: path.field message", unless a problem is stored already. The field of the
+  // stored error is the path.
   void refuse(std::string_view field, const std::string& message, ErrorCode code = ErrorCode::out_of_range);
   // Stores the problem "FILE: path message" about the object as a whole, unless one is stored already.
   void refuse(const std::string& message, ErrorCode code = ErrorCode::inconsistent);
-  // Stores an error of the object's content, with its code, unless a problem is stored already.
+  // Stores an error about the object's content with its code, unless a problem is stored already.
   void refuse(const Error& error);
 
   Status status() const;
@@ -89,9 +90,9 @@ class FieldReader {
 
   const Json* json_;
   std::string source_;
-  // path of the object within the file; empty for the outermost object
+  // Path of the object within the file; empty for the outermost object.
   std::string path_;
-  std::vector<std::string> known_fields_;  // in the order of the first read
+  std::vector<std::string> known_fields_;  // fields in the order in which they were first read
   std::shared_ptr<std::optional<Error>> problem_;
 };
 

@@ -41,12 +41,13 @@ struct CloudCounts {
   std::uint64_t skipped = 0;
 };
 
-// Return the size of a frame's content in bytes, counts included.
+// mesh_frame_bytes() and cloud_frame_bytes() return the size of a frame's content in bytes, including the
+// counts.
 std::uint64_t mesh_frame_bytes(const MeshCounts& counts);
 std::uint64_t cloud_frame_bytes(const CloudCounts& counts);
 
 struct FrameHead {
-  FrameKind kind = FrameKind::failure;  // as received, perhaps unknown
+  FrameKind kind = FrameKind::failure;  // kind as received; may be unknown
   std::uint64_t bytes = 0;              // size of the content
 };
 
@@ -63,7 +64,7 @@ inline constexpr std::size_t failure_bytes_limit = 400;
 inline constexpr const char* bad_allocation = "bad allocation";
 
 void write_frame(std::ostream& out, FrameKind kind, std::string_view content);
-// `fraction` is the finished part of the work, from 0 to 1.
+// Writes how much of the work is done; `fraction` is from 0 to 1.
 void write_progress(std::ostream& out, double fraction);
 void write_mesh(std::ostream& out, const TriangleMesh& mesh);
 void write_cloud(std::ostream& out, const PointCloud& cloud);

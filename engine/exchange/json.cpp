@@ -55,7 +55,7 @@ class TrackedIterator {
   const char** furthest_;
 };
 
-// SAX handler that builds the value and enforces the limits that the grammar lacks.
+// SAX handler that builds the value and enforces limits that the grammar of JSON does not have.
 class StrictBuilder : public nlohmann::json_sax<Json> {
  public:
   bool null() override { return add(nullptr); }
@@ -148,7 +148,7 @@ class StrictBuilder : public nlohmann::json_sax<Json> {
 
   Json root_;
   std::vector<Json*> open_;  // containers around the next value, outermost first
-  Json* slot_ = nullptr;     // destination of the next value, which is the value of the field named last
+  Json* slot_ = nullptr;     // destination of the next value, which belongs to the last field name
   std::size_t values_ = 0;
   ErrorCode code_ = ErrorCode::malformed;
   std::string complaint_;
@@ -198,8 +198,8 @@ bool append_spaced(const Json& json, std::size_t width, std::string& out) {
   return out.size() <= width;
 }
 
-// Appends the value as json_to_page() lays it out; `before` is the number of columns that are already used on
-// the first line.
+// Appends the value in the layout of json_to_page(). `before` is the number of columns that are already used
+// on the first line.
 void append_page(const Json& json, std::size_t indent, std::size_t before, std::string& out) {
   std::string line;
   const bool structured = json.is_object() || json.is_array();

@@ -110,8 +110,8 @@ bool lists_ending(const char* endings, std::string_view ending) {
   return false;
 }
 
-// Removes the importers of all other formats; Assimp tries each of them on a file that its own importer
-// refuses.
+// Removes the importers of all formats but `format`. Otherwise Assimp would try them on a file that the
+// importer of `format` refuses.
 void keep_importers(Assimp::Importer& importer, FileFormat format) {
   for (std::size_t k = importer.GetImporterCount(); k-- > 0;) {
     const aiImporterDesc* description = importer.GetImporterInfo(k);
@@ -120,7 +120,7 @@ void keep_importers(Assimp::Importer& importer, FileFormat format) {
   }
 }
 
-// Appends a mesh, moved by `transform`.
+// Appends a mesh, transformed by `transform`.
 Status append(const aiMesh& from, const aiMatrix4x4& transform, TriangleMesh& to) {
   const std::size_t first = to.vertices_m.size();
   if (first + from.mNumVertices > 0xfffffff0U) return Error{ErrorCode::too_many, "has too many vertices"};

@@ -29,7 +29,7 @@ static_assert(old_flow_rate_range_per_s.high * iterations_range.high <= flow_rat
 static_assert(old_damping_range_per_s.high * iterations_range.high <= drag_range_per_s.high);
 static_assert(iterations_range.high <= tool_substeps_range.high);
 
-// Replaces a field in its place among the others.
+// Replaces a field by another one at the same position in the object.
 void replace_field(Json& object, const std::string& old_name, const std::string& name, Json value) {
   Json replaced = Json::object();
   for (auto& item : object.items()) {
@@ -42,7 +42,8 @@ void replace_field(Json& object, const std::string& old_name, const std::string&
   object = std::move(replaced);
 }
 
-// Old files have only the former fields; mixed ones would have two clocks.
+// Refuses the current fields: an old file must have only the former ones, because the two kinds count time
+// differently.
 void refuse_new_fields(FieldReader& reader, std::initializer_list<const char*> fields) {
   for (const char* field : fields) {
     if (!reader.has(field)) continue;
@@ -60,7 +61,7 @@ double read_damping_ratio(FieldReader& reader) {
   return reader.number("loss_factor", loss_factor_range) / 2.0;
 }
 
-// In the following functions, `reader` reads the JSON that the function then changes.
+// In the convert_ functions below, `reader` reads the JSON that the function then changes.
 
 void convert_material(FieldReader reader, Json& material, int iterations) {
   refuse_new_fields(reader, {"damping_time_s"});
@@ -80,14 +81,14 @@ void convert_sculpting(FieldReader reader, Json& sculpting, int iterations) {
   replace_field(sculpting, "damping_per_s", "drag_per_s", number_to_json(iterations * damping_per_s));
 }
 
-// Calls `convert` with the reader and the JSON of an inner object. A missing one, or another value, is left
-// to the reader of current documents.
+// Calls `convert` with the reader and the JSON of an inner object. Does nothing if the field is missing or
+// not an object; the reader of current documents then reports it.
 template <class Convert>
 void convert_inner(FieldReader& reader, Json& outer, const char* field, const Convert& convert) {
   if (outer.contains(field) && outer[field].is_object()) convert(reader.inner(field), outer[field]);
 }
 
-// Does the same for each object of a list.
+// Calls `convert` with the reader and the JSON of each object in a list. Other items are skipped.
 template <class Convert>
 void convert_items(FieldReader& reader, Json& outer, const char* field, const Convert& convert) {
   if (!outer.contains(field) || !outer[field].is_array()) return;
@@ -108,7 +109,7 @@ void convert_body(FieldReader reader, Json& body, int iterations) {
   });
 }
 
-// Returns the iterations of the tool, which are also those of its soft material.
+// Converts a tool and its soft material. Returns the number of iterations, which applies to both.
 int convert_tool(FieldReader reader, Json& tool) {
   refuse_new_fields(reader, {"substeps"});
   const int iterations = reader.integer("iterations", iterations_range);

@@ -66,8 +66,8 @@ std::optional<ToolSolid> read_mesh(FieldReader& reader) {
   return std::nullopt;
 }
 
-// Indices of mesh and surface in the list of shape names; these two have no table of fields and follow the
-// shapes that have one.
+// Indices of "mesh" and "surface" in the list of shape names. These two shapes have no table of fields and
+// follow the shapes that have one.
 constexpr std::size_t mesh_index = kind_names<ImplicitShape>.size(), surface_index = mesh_index + 1;
 constexpr auto shape_names = [] {
   std::array<const char*, surface_index + 1> names{};
@@ -157,7 +157,7 @@ Range<double> read_fractions(FieldReader& reader, const char* field) {
   return fractions;
 }
 
-// Reads one or two depths; a single depth is the smallest, and the largest is then unlimited.
+// Reads one or two depths. A single depth is the smallest; the largest is then unlimited.
 Range<double> read_depths(FieldReader& reader) {
   const Json& list = reader.list("depth_mm", {1, 2});
   Range<double> depths = BodyRegion().depth_m;

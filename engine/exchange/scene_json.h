@@ -1,7 +1,7 @@
-// Conversion between JSON and the parts of a scene that a table of fields does not describe as a whole, for
-// documents and commands alike. The parts with a table use field_json.h. Each read_ function reads the fields
-// that it names and stores the first problem in the reader; each add_ or _to_json function is the inverse of
-// a read_ function.
+// Conversion between JSON and the parts of a scene that no table of fields describes completely, for
+// documents and commands. Parts with a table use field_json.h. Each read_ function reads the fields that it
+// names and stores the first problem in the reader. Each add_ or _to_json function is the inverse of a read_
+// function.
 #pragma once
 
 #include <vector>

@@ -13,23 +13,23 @@
 
 namespace spoonbill {
 
-// Reads the fields "u", "v" and "control_points_mm". Returns nullopt after a problem: a surface has no
-// harmless value.
+// Reads the fields "u", "v" and "control_points_mm". Returns nullopt after a problem, because there is no
+// harmless surface to return instead.
 std::optional<Surface> read_surface(FieldReader& reader);
 Json surface_to_json(const Surface& surface);
 
-// Reads the optional field "trims" of a surface and checks that the loops bound an area of it. Returns an
-// empty list if the field is missing.
+// Reads the optional field "trims" of a surface and checks that the loops bound an area of the surface.
+// Returns an empty list if the field is missing.
 std::vector<TrimLoop> read_trims(FieldReader& surface_reader, const Surface& surface);
 void add_trims(const std::vector<TrimLoop>& trims, Json& surface_json);
 
-// Reads the fields "degree", "periodic" and "knots" of one direction of a surface, or of a trim loop. Returns
+// Reads the fields "degree", "periodic" and "knots" of a trim loop or of one direction of a surface. Returns
 // nullopt after a problem.
 std::optional<KnotVector> read_knot_vector(FieldReader& reader, Range<int> control_point_counts);
 void add_knot_vector(const KnotVector& knots, Json& json);
 
-// Converts a list of three lengths. Returns false if the value is not such a list, or a length is outside
-// position_range_m.
+// Converts a list of three lengths. Returns false if the value is not a list of three lengths, or if a length
+// is outside position_range_m.
 bool read_point(const Json& json, Vector3& point_m);
 Json position_to_json(const Vector3& position_m);
 

@@ -13,16 +13,17 @@
 
 namespace spoonbill {
 
-// Materials by cell and friction by node, so that a body keeps them while its shape changes. Plain data, a
-// value.
+// Material of each cell and friction of each node. They stay with the cells and nodes while the body's shape
+// changes. Plain data, a value.
 struct LatticeMaterials {
   // Creates the materials of a uniform body. An implicit conversion, because most bodies are uniform.
   LatticeMaterials(const Material& own) : materials{own}, frictions{own.friction} {}
 
-  std::vector<Material> materials;           // the body's own material, then those of its regions
-  std::vector<std::uint8_t> material_index;  // index into `materials` by LatticeMesh::cell_index(); empty if
-                                             // every cell has the first
-  std::vector<double> frictions;             // the body's own coefficient, then those of its regions
+  std::vector<Material> materials;  // the body's own material, then those of its regions
+  // Index into `materials` for each cell, by LatticeMesh::cell_index(); empty if every cell has the first
+  // material.
+  std::vector<std::uint8_t> material_index;
+  std::vector<double> frictions;  // friction coefficient of the body, then those of its regions
   // Index into `frictions` for each node; empty if every node has the first friction.
   std::vector<std::uint8_t> friction_index;
 
@@ -44,18 +45,18 @@ struct LatticeMaterials {
   }
 };
 
-// Assigns regions to cells and nodes. A cell gets the material of the last region that has one and contains
-// the cell's centre (see find_cell_coordinates()). A surface node gets the friction of the last region that
-// contains it. Fails where check_material_region() does, and on a region that contains no cell centre or
-// whose friction applies to no surface node.
+// Returns the materials and frictions of a body with regions. A cell gets the material of the last region
+// that has a material and contains the cell's centre (see find_cell_coordinates()). A surface node gets the
+// friction of the last region that contains it. Fails where check_material_region() does. Also fails if a
+// region with a material contains no cell centre, or if a region with a friction contains no surface node.
 Result<LatticeMaterials> lattice_materials(const LatticeMesh& mesh, const Material& own,
                                            std::span<const MaterialRegion> regions);
 
-// Checks that each material is within its ranges. If any of them requires springs, that is, is not linear
-// elastic, every material must have a Poisson's ratio that springs can represent.
+// Checks that each material is within its ranges. If any material is not linear elastic, the body needs
+// springs, so every material must have a Poisson's ratio that springs can represent.
 Status check_materials(const LatticeMaterials& materials);
 
-// Returns whether is_linear_elastic() is true of every material.
+// Returns whether is_linear_elastic() is true for every material.
 bool are_linear_elastic(const LatticeMaterials& materials);
 double max_youngs_modulus_pa(const LatticeMaterials& materials);
 double min_poissons_ratio(const LatticeMaterials& materials);

@@ -29,8 +29,8 @@ Vector3 support_velocity(const SupportedNodes& support, double time_s) {
 
 // Shortens the displacements of supports that would outrun the lattice. `reach_m` is the distance that a node
 // may move relative to another in the tick. If one support fixes all fixed nodes, the whole lattice moves
-// with this support. It may then move at least twice as far as its own motion ever does in a tick, so that it
-// can catch up after an undone stroke. Returns whether any displacement was shortened.
+// with it. This support may move by `reach_m` or twice its largest_step_m, whichever is more, so that it can
+// catch up after an undone stroke. Returns whether any displacement was shortened.
 bool limit_support_motion(std::span<SupportedNodes> supports, const SpringLattice& lattice, double reach_m) {
   SPOONBILL_ASSERT(reach_m >= 0.0);
   const SupportedNodes* const common = find_common_support(supports, lattice);
@@ -55,7 +55,8 @@ Vector3 common_support_velocity(std::span<const SupportedNodes> supports, const 
   return common ? support_velocity(*common, time_s) : Vector3::Zero();
 }
 
-// Sets the velocities of supported nodes. Call after the kick, which sets those of fixed nodes to zero.
+// Sets the velocities of supported nodes. Call after the kick, which sets the velocities of fixed nodes to
+// zero.
 void set_support_velocities(std::span<const SupportedNodes> supports, const LatticeView& view,
                             double time_s) {
   SPOONBILL_ASSERT_DEBUG(time_s > 0.0);
@@ -76,8 +77,8 @@ void add_support_impulses(std::span<SupportedNodes> supports, const LatticeView&
   }
 }
 
-// Moves supported nodes to this fraction of their displacement in the tick. Call after the drift. Returns
-// the largest squared distance of a node from the linearisation, m^2.
+// Moves supported nodes to `fraction` of their displacement in the tick. Call after the drift. Returns the
+// largest squared distance of a node from the linearisation, m^2.
 float move_supported_nodes(std::span<const SupportedNodes> supports, const LatticeView& view, double fraction,
                            float damping_time_s) {
   float moved_square = 0.0f;
@@ -142,7 +143,7 @@ void linearise_and_follow(SpringLattice& lattice, const LatticeView& view, Linea
   if (square > 0.0f && std::isfinite(square)) lattice.set_fastest_square(static_cast<double>(square));
 }
 
-// Returns the speed cap that speed_cap_cells sets, m/s, for substeps of `h`.
+// Returns the speed cap (see speed_cap_cells) for substeps of `h` seconds, m/s.
 float speed_cap(const SpringLattice& lattice, float h) {
   const auto longest = static_cast<float>(2.0 / lattice.fastest_frequency());
   return static_cast<float>(speed_cap_cells) * lattice.cell_size_m() /
@@ -177,14 +178,14 @@ void compute_forces(const SpringLattice& lattice, const LatticeView& view, float
   add_weights(lattice, view, gravity_m_per_s2);
 }
 
-// Lattices of one tick and the settings in which they differ.
+// The lattices of one tick, with a view, a speed cap and a drag for each.
 struct Relaxation {
   std::span<const RelaxedLattice> lattices;
   std::array<LatticeView, lattice_capacity> view;
   std::array<float, lattice_capacity> cap{};  // m/s
   std::array<Drifted, lattice_capacity> drifted{};
   std::array<double, lattice_capacity> drag_per_s{};
-  double time_s = 0.0;  // of the tick
+  double time_s = 0.0;  // duration of the tick, s
 
   std::size_t count() const { return lattices.size(); }
   bool has_springs(std::size_t at) const { return lattices[at].implicit_solver == nullptr; }
@@ -205,7 +206,7 @@ void kick(Relaxation& relaxation, float h) {
   }
 }
 
-// A substep of a tick: number `index` of `count`, each of h.
+// One substep of a tick: its index, the number of substeps, and its duration h, s.
 struct Substep {
   int index, count;
   float h;
@@ -219,8 +220,9 @@ bool touches_springs(const Relaxation& relaxation, const TouchingTool& tool) {
   return false;
 }
 
-// Passes over the contacts of a tool with implicitly stepped lattices. Each pass is a descent step: it is
-// shortened to the best fraction where the lattices respond more than the contacts assumed.
+// Solves the contacts of a tool with implicitly stepped lattices in a few passes. If the lattices respond
+// more than the contacts assumed, the impulses of a pass are scaled down to the fraction with the least
+// energy.
 void solve_with_solvers(const Relaxation& relaxation, const TouchingTool& tool, std::span<const float> caps) {
   constexpr int passes = 2;
   const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
@@ -244,7 +246,7 @@ void solve_with_solvers(const Relaxation& relaxation, const TouchingTool& tool, 
   }
 }
 
-// Solves the contacts of a tool: with springs in each substep, with implicitly stepped lattices once a tick.
+// Solves the contacts of a tool: those with springs in each substep, those with implicit solvers once a tick.
 void solve_tool(const Relaxation& relaxation, const TouchingTool& tool, const Substep& substep,
                 std::span<const float> caps) {
   const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
@@ -274,8 +276,8 @@ void solve_contacts(const Relaxation& relaxation, const Substep& substep, std::s
   }
 }
 
-// Passes the pull of carried nodes to the tool and restores the nodes' velocity, which the kick has set to
-// zero.
+// Applies the forces on carried nodes to the tool, and restores the nodes' velocities, which the kick has set
+// to zero.
 void collect_carried_forces(const Relaxation& relaxation, std::span<const TouchingTool> tools) {
   for (const TouchingTool& tool : tools) {
     const CarriedNodes& carried = tool.motion.carried;
@@ -308,7 +310,7 @@ void move_carried_nodes(Relaxation& relaxation, std::span<const TouchingTool> to
   }
 }
 
-// Moves supported nodes to this fraction of their displacement in the tick.
+// Moves supported nodes to `fraction` of their displacement in the tick.
 void move_supported_nodes(Relaxation& relaxation, double fraction) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const float square = move_supported_nodes(relaxation.lattices[at].supports, relaxation.view[at], fraction,
@@ -363,8 +365,8 @@ void restore_momentum(const SpringLattice& lattice, const LatticeView& view, con
   }
 }
 
-// Moves an implicitly stepped lattice at its present velocities, so that contacts in later substeps meet it
-// where it will be.
+// Moves an implicitly stepped lattice at its present velocities, so that the contacts of later substeps are
+// solved at its later positions.
 void drift_with_solver(const LatticeView& view, float h) {
   for (int i = 0; i < view.padded_count; ++i) {
     view.dx[i] += h * view.vx[i] * view.free_node[i];
@@ -412,7 +414,8 @@ void stabilise_strained_nodes(Relaxation& relaxation, float h) {
   }
 }
 
-// Returns which results of a lattice's linearisation a tick of this many substeps needs.
+// Returns whether a tick of `substeps` substeps needs the spring tangents of the linearisation or only its
+// forces.
 Linearised choose_linearisation(const SpringLattice& lattice, const RelaxSettings& settings, int substeps) {
   return substeps == 1 && !settings.is_critically_damped && !lattice.is_damped_further()
              ? Linearised::forces
@@ -453,7 +456,8 @@ void flow(Relaxation& relaxation) {
   }
 }
 
-// Creeps the springs of one direction per call, for the time until that direction's next turn.
+// Creeps the springs of one direction, which depends on `turn`. The time step is the time until the next call
+// for the same direction.
 void creep(Relaxation& relaxation, std::uint64_t turn) {
   const int direction = static_cast<int>(turn % lattice_direction_count);
   const double time_s = relaxation.time_s * static_cast<double>(creep_pause * lattice_direction_count);
@@ -564,7 +568,8 @@ double rayleigh_quotient(const SpringLattice& lattice, const LatticeView& view) 
     along.power_y[n] = view.vy[n] * view.free_node[n];
     along.power_z[n] = view.vz[n] * view.free_node[n];
   }
-  // The power step sets w = M^-1 K v / |M^-1 K v| and returns |M^-1 K v| / |v|.
+  // For the nodes' velocities v, the stiffness K and the inertia M, the power step sets w = M^-1 K v / |M^-1
+  // K v| and returns |M^-1 K v| / |v|.
   const double growth = static_cast<double>(lattice.kernels().power_step(along, lattice.free_mass()));
   double with_image = 0.0, motion_square = 0.0, image_square = 0.0;
   for (int n = 0; n < view.padded_count; ++n) {

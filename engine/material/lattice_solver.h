@@ -14,16 +14,17 @@
 
 namespace spoonbill {
 
-// Nodes of a lattice that one support fixes, and their motion through a tick. Plain data that the owner of
-// the body stores from tick to tick. Nodes are in ascending order and must be fixed in the lattice. The
-// displacement of each is its base plus the support's.
+// Nodes of a lattice that one support fixes, and the support's motion through a tick. Plain data that the
+// owner of the body stores from tick to tick. Nodes are in ascending order and must be fixed in the lattice.
+// The displacement of each node is its `base_m` plus the displacement of the support.
 struct SupportedNodes {
   std::vector<int> nodes;
   std::vector<Vector3> base_m;
   bool moves = false;
   Vector3 start_m = Vector3::Zero();  // displacement of the support at the start of the tick
   Vector3 end_m = Vector3::Zero();
-  double largest_step_m = 0.0;           // largest displacement in a tick by the support's own motion
+  // Largest displacement of the support in a tick by its own motion, without catching up.
+  double largest_step_m = 0.0;
   Vector3 impulse_ns = Vector3::Zero();  // impulse on the body in the tick, N s
 };
 
@@ -36,43 +37,43 @@ inline constexpr int substep_ceiling = 4;
 // frequency lags a sudden contact by tens of ticks.
 inline constexpr double stability_fraction = 0.85;
 
-// Distance, in cells, that sets the speed cap: a node moves at most this far in a substep, in the damping
-// time, by which damping extrapolates its motion, or in 2 / w, the longest undamped step that the lattice
-// alone could take, whichever is longest. Speeds are relative to the tool or support that carries the whole
-// body, or to the mean velocity of a body without fixed nodes.
+// Sets the speed cap: a node moves at most this distance, in cells, in the longest of three times. They are
+// the substep, the damping time (by which damping extrapolates the node's motion), and 2 / w, the longest
+// undamped step that is stable for the lattice, whose fastest angular frequency is w. Speeds are relative to
+// the tool or support that carries the whole body, or to the mean velocity of a body without fixed nodes.
 //
-// Waves cross a cell in about 2 / w. Nodes stay below a ninth of the wave speed, and an impact strains even
-// a soft, undamped body by no more than its springs can restore.
+// Waves cross a cell in about 2 / w, so nodes stay below about a tenth of the wave speed. An impact strains
+// even a soft, undamped body by no more than its springs can restore.
 inline constexpr double speed_cap_cells = 0.1;
 
-// Distance, in cells, beyond which a node's motion since the linearisation makes a new linearisation
-// necessary within the tick. The first-order error of a spring's strain is then below half the square of the
-// strain. A sculpting hand moves nodes by about a hundredth of a cell per tick.
+// Largest motion of a node since the linearisation, in cells, before the springs are linearised again within
+// the tick. The first-order error of a spring's strain is then below half the square of the strain. A
+// sculpting hand moves nodes by about a hundredth of a cell per tick.
 inline constexpr double linear_cells = 0.1;
 
 // Settings of relax(). Tracking the fastest frequency and plastic flow each cost about as much as a substep.
 // The two alternate: even ticks track the frequency, odd ticks flow for the time of two ticks.
 struct RelaxSettings {
   std::uint64_t tick = 0;             // tick number
-  int substeps = 1;                   // at rest; strain may raise the number by substep_ceiling
-  double time_s = 1e-3;               // time of the tick
-  double drag_per_s = 0.0;            // mass-proportional; the minimum if `is_critically_damped`
+  int substeps = 1;                   // number at rest; strain may multiply it by up to substep_ceiling
+  double time_s = 1e-3;               // duration of the tick
+  double drag_per_s = 0.0;            // mass-proportional drag; the minimum if `is_critically_damped`
   bool is_critically_damped = false;  // true: each body is critically damped, see critical_damping_per_s()
 };
 
-// A lattice that relax() advances, its solver, supports and gravity. Pointers must stay valid during the
+// A lattice that relax() advances, with its solver, supports and gravity. Pointers must stay valid during the
 // call.
 struct RelaxedLattice {
   SpringLattice* lattice;
   Vector3 gravity_m_per_s2 = Vector3::Zero();
-  // Steps the lattice in place of its springs; null if the springs step it.
+  // Implicit solver that steps the lattice instead of its springs; null if the springs step it.
   ImplicitSolver* implicit_solver = nullptr;
   std::span<SupportedNodes> supports = {};
 };
 
 // Results of relax() for one tick.
 struct RelaxReport {
-  int substeps = 0;           // in the tick
+  int substeps = 0;           // number of substeps in the tick
   bool nodes_slowed = false;  // true if the substep ceiling was reached
   bool speed_capped = false;
 };
@@ -85,28 +86,30 @@ struct TouchingTool {
   ContactConstraints* contacts;
 };
 
-// Advances at most lattice_capacity lattices by as many substeps as the stiffest one needs. Lattices with an
-// implicit solver advance by one implicit step: its velocities are computed before the contacts, move the
-// lattice from substep to substep, and respond to the contacts afterwards. If only such lattices are present,
-// a tick takes one substep. Tools act in their order, then bodies on each other,
-// then the ground. A tool that
-// touches only implicitly stepped lattices acts once, at the start. The caller must
-// flush denormals for speed (see DenormalsFlushed).
+// Advances at most lattice_capacity lattices by one tick, in as many substeps as the stiffest one needs. A
+// lattice with an implicit solver takes one implicit step per tick. Its velocities are computed before the
+// contacts, move it from substep to substep, and respond to the contacts at the end. If all lattices have
+// implicit solvers, a tick takes one substep.
+//
+// In each substep the tools act in their order, then bodies on each other, then the ground. A tool that
+// touches only implicitly stepped lattices acts once, at the start of the tick. The caller must flush
+// denormals for speed (see DenormalsFlushed).
 RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,
                   std::span<const TouchingTool> tools, BodyContacts* between = nullptr,
                   GroundContacts* ground = nullptr);
 
-// Fraction of the critical damping of a body's present motion. Slightly above 1, so that other modes do not
-// carry the body past its rest shape.
+// Damping relative to the critical damping of a body's present motion. Slightly above 1, so that other modes
+// do not carry the body past its rest shape.
 inline constexpr double critical_damping_fraction = 1.1;
 
-// Returns the mass-proportional damping, 1/s, that brings a motion v to rest soonest. `rayleigh_quotient`
-// is (v.Kv) / (v.Mv), the square of a frequency. Damping adapts as in dynamic relaxation (Underwood 1983):
-// fast modes decay first, then the slow ones get their small critical damping.
+// Returns the mass-proportional damping, 1/s, that brings a motion to rest soonest. `rayleigh_quotient` is
+// (v.Kv) / (v.Mv) for the velocities v, the stiffness K and the mass M: the square of a frequency. Damping
+// adapts as in dynamic relaxation (Underwood 1983): fast modes decay first, then the slow modes at their
+// smaller critical damping.
 double critical_damping_per_s(double rayleigh_quotient);
 
-// Returns the Rayleigh quotient of a lattice's velocities; 0 at rest. The springs must be linearised.
-// Overwrites the forces and the `moved` arrays of the view.
+// Returns the Rayleigh quotient (see critical_damping_per_s()) of a lattice's velocities; 0 at rest. The
+// springs must be linearised. Overwrites the forces and the `moved` arrays of the view.
 double rayleigh_quotient(const SpringLattice& lattice, const LatticeView& view);
 
 }  // namespace spoonbill

@@ -8,8 +8,9 @@
 namespace spoonbill {
 namespace {
 
-// Largest lateral offset of a point over a surface, as a fraction of its height plus a rounding allowance.
-// The lateral error of nearest points is far smaller.
+// Limits of the lateral offset of a point over a surface: a fraction of the point's height, and an allowance
+// for rounding. Beyond them the point is beside the surface. The lateral error of nearest points is far
+// smaller.
 constexpr double lateral_tolerance = 0.2, rounding_m = 1e-6;
 
 }  // namespace

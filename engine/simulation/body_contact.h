@@ -1,6 +1,6 @@
-// Contact between two bodies of a simulation, and of a body with itself, as constraints between lattices. The
-// surface of a thin shell is one of its faces; the far face is one thickness behind it, and each is touched
-// from its own side.
+// Contact between two bodies of a simulation, and of a body with itself, as constraints between lattices. A
+// thin shell has two faces: its surface, and the far face one thickness behind it. Each face is touched from
+// its own side.
 #pragma once
 
 #include <memory>
@@ -18,24 +18,23 @@
 
 namespace spoonbill {
 
-// Returns the distance by which the touched face of a shell is nearer than the shell's surface, m. `push` is
-// the unit vector along which the contact pushes the shell, `normal` the surface's unit normal. Exact for
-// flat shells.
+// Returns how much closer than the shell's surface the touched face of the shell is, m. `push` is the unit
+// vector along which the contact pushes the shell, `normal` the surface's unit normal. Exact for flat shells.
 double far_face_offset_m(double thickness_m, const Vector3& normal, const Vector3& push);
 
-// Finds the gap from a point near the surface point (u, v) to the face on its side, and that face's outward
-// normal. A point deeper than half the thickness belongs to the far face. Returns false if the gap exceeds
-// the margin, or if the point is beside the rim and touches neither face.
+// Finds the gap from a point to the near face of a shell, and the outward normal of that face. (u, v) is the
+// nearest point of the shell's surface. A point deeper than half the thickness belongs to the far face.
+// Returns false if the gap exceeds the margin, or if the point is beside the rim and touches neither face.
 bool find_shell_gap(const Surface& shell, double thickness_m, double u, double v, const Vector3& point_m,
                     double margin_m, Vector3& normal, double& gap_m);
 
-// Surface of a shell, or of a solid if the thickness is 0.
+// Surface of a shell, or of a solid if `thickness_m` is 0.
 struct ShellOrSolid {
   const Surface* surface;
   double thickness_m;
 };
-// Corrects a point of `of` near `other` for the thickness of both. Returns false if the gap exceeds the
-// margin. Allocates nothing.
+// Corrects the gap and normal of `near`, a point of `of` near `other`, for the thickness of both. Returns
+// false if the gap exceeds the margin. Allocates nothing.
 bool resolve_shell_gap(const ShellOrSolid& of, const ShellOrSolid& other, double margin_m, NearPoint& near);
 
 // Largest penetration of two bodies pressed together at up to 60 mm/s, in lattice cells of the coarser body.
@@ -44,20 +43,20 @@ bool resolve_shell_gap(const ShellOrSolid& of, const ShellOrSolid& other, double
 inline constexpr double body_depth_limit_cells = 0.03;
 
 // Largest penetration of a body pressed onto itself, in lattice cells. It is twice the limit for two bodies,
-// because both sides follow a dent only in part.
+// because the control nets of both sides follow a dent only in part.
 inline constexpr double self_depth_limit_cells = 2.0 * body_depth_limit_cells;
 
 // Gap below which a point becomes a constraint, in lattice cells of the coarser body: about one tick's
 // movement.
 inline constexpr double contact_margin_cells = 0.25;
 
-// State of a body and its index in the simulation.
+// State of a body, and its index in the simulation.
 struct IndexedBody {
   int index;
   const BodyState* state;
 };
 
-// Embeds a near point of a body's surface in the body's lattice.
+// Expresses a near point of a body's surface by the nodes of the body's lattice.
 EmbeddedPoint find_embedding(const BodyMapping& mapping, const NearPoint& near);
 
 // Adds a constraint for each point of `from` that is near `to`, which may be the same body. Returns false if
@@ -72,14 +71,15 @@ class BodyPairContact {
   // The first body must have a surface, the second a surface or a mesh.
   BodyPairContact(const BodyState& first, const BodyState& second);
 
-  // Finds the points of either skin that are near the other. Returns false if a capacity was exceeded.
+  // Finds the points of each skin that are near the other skin. Returns false if a capacity was exceeded.
   bool find(const IndexedBody& first, const IndexedBody& second);
-  // Smallest gap of the last find(), negative where the bodies overlap; infinite if they are not near.
+  // Smallest gap that the last find() found, negative where the bodies overlap; infinite if they are not
+  // near.
   double least_gap_m() const {
     return std::visit([](const auto& proximity) { return proximity->least_gap_m(); }, proximity_);
   }
-  // Returns the point of a body's surface that is deepest in the other or nearest to it, by the last find().
-  // Empty if nothing is near, or on a mesh.
+  // deepest_on_first() and deepest_on_second() return the point of a body's surface that is deepest in the
+  // other body or nearest to it, by the last find(). Empty if nothing is near, or if the body is a mesh.
   std::optional<SurfaceSpot> deepest_on_first(const BodyState& first) const;
   std::optional<SurfaceSpot> deepest_on_second() const;
   // Adds a constraint for each point of the last find(). Returns false if a capacity was exceeded.
@@ -90,8 +90,8 @@ class BodyPairContact {
   std::variant<std::unique_ptr<SurfaceProximity>, std::unique_ptr<MeshProximity>> proximity_;
 };
 
-// Contact of a body with itself, where its surface comes near another part of it from outside. A body in a
-// box of cells (LatticeMesh::slender) has no self-contact if it is thinner than two cells anywhere, because
+// Contact of a body with itself, where its surface comes near another part of it from outside. A slender body
+// in a box of cells (LatticeMesh::slender) has no self-contact: it is thinner than two cells somewhere, and
 // its far side would look like its near side pressed through. One owner, the simulation, which rebuilds it
 // with the body's mapping.
 class BodySelfContact {

@@ -10,12 +10,13 @@
 namespace spoonbill {
 namespace {
 
-// Least extent in the second direction, as a fraction of the first, that determines an orientation.
+// Least extent of a body in its second direction, as a fraction of the first, at which it has an orientation.
 constexpr double least_second_extent = 1e-6;
-// Largest turn of a sound body in a tick, rad. Beyond it the shape has lost its orientation, for instance by
-// turning inside out, and the turn means nothing.
+// Largest turn of an intact body in a tick, rad. A larger turn means that the shape has lost its orientation,
+// for instance by turning inside out, and the turn is ignored.
 constexpr double largest_turn_rad = 0.2;
-// Displacements and turns per tick that are not corrected, so that a body at rest keeps its bits.
+// Displacements and turns per tick that are not corrected, so that a body at rest stays the same to the last
+// bit.
 constexpr double least_move_m = 1e-9, least_turn_rad = 1e-8;
 
 struct MassCentre {
@@ -39,7 +40,8 @@ MassCentre find_mass_centre(const SpringLattice& lattice) {
   return centre;
 }
 
-// Returns the angular velocity of a rigid body with the lattice's angular momentum, rad/s.
+// Returns the angular velocity of a rigid body with the mass distribution and angular momentum of the
+// lattice, rad/s.
 Vector3 find_spin(const SpringLattice& lattice, const MassCentre& centre) {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
   Vector3 momentum = Vector3::Zero();
@@ -51,7 +53,8 @@ Vector3 find_spin(const SpringLattice& lattice, const MassCentre& centre) {
   }
   const double size = inertia.trace();
   if (!(size > 0.0)) return Vector3::Zero();
-  inertia += 1e-9 * size * Eigen::Matrix3d::Identity();  // a rod does not resist a spin about itself
+  // Keeps the tensor invertible for a rod, which does not resist a spin about its axis.
+  inertia += 1e-9 * size * Eigen::Matrix3d::Identity();
   return inertia.ldlt().solve(momentum);
 }
 

@@ -1,4 +1,4 @@
-// Keeps a body in the scene through one tick: keeps the pose of a body that nothing fixes, and returns a body
+// Keeps a body in the scene through one tick. Keeps the pose of a body that nothing fixes, and returns a body
 // to its last good shape if its lattice cannot follow. Allocates only on construction; one owner, the body.
 #pragma once
 
@@ -14,18 +14,18 @@ class BodyHold {
  public:
   explicit BodyHold(int nodes);
 
-  // Remembers the displacements and the mean pose at the start of a tick.
+  // Stores the displacements and the mean pose at the start of a tick.
   void begin(const SpringLattice& lattice);
 
-  // Restores the displacements at the start of the tick, without velocities, if a node is not finite or
-  // farther than `reach_m` from the body's mean position. Returns whether it did. `solver` is null if the
-  // springs step the body.
+  // Restores the displacements at the start of the tick, with zero velocities, if a node's position or
+  // velocity is not finite or a node is farther than `reach_m` from the centre of mass. Returns whether it
+  // did. `solver` is null if the springs step the body.
   bool limit(SpringLattice& lattice, ImplicitSolver* solver, double reach_m) const;
 
-  // Returns the body to its mean position and orientation at the start of the tick, like a gentle hand that
-  // holds the whole body, and removes its linear and angular momentum. The lattice must have no fixed nodes.
-  // The mean orientation is the rotation that fits the rest shape best (Kabsch 1976), so that it does not
-  // drift with a sequence of deformations.
+  // Returns the body to its mean position and orientation at the start of the tick, and removes its linear
+  // and angular momentum, as if a hand gently held the whole body. The lattice must have no fixed nodes. The
+  // mean orientation is the rotation that fits the rest shape best (Kabsch 1976), so that it does not drift
+  // with a sequence of deformations.
   void keep_pose(SpringLattice& lattice, ImplicitSolver* solver) const;
 
  private:

@@ -46,7 +46,7 @@ Vector3 rest_m(const CellPoint& point, const LatticeMesh& mesh) {
 
 }  // namespace
 
-// Converts each load to forces on nodes or to pressed faces.
+// Converts the loads of a body to forces on nodes and pressed faces.
 struct BodyLoads::Builder {
   const LatticeMesh& mesh;
   const std::function<EmbeddedPoint(double u, double v)>& point_at;
@@ -180,7 +180,7 @@ void BodyLoads::apply(SpringLattice& lattice, ImplicitSolver* solver) {
 
 namespace {
 
-// Sets the support's displacement to that of its first node; without nodes it stays.
+// Sets the support's displacement to that of its first node. A support without nodes keeps its displacement.
 void measure_displacement(const SpringLattice& lattice, SupportedNodes& support) {
   if (support.nodes.empty()) return;
   support.end_m = lattice.displacement(support.nodes.front()) - support.base_m.front();

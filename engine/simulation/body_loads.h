@@ -20,18 +20,19 @@ namespace spoonbill {
 class BodyLoads {
  public:
   BodyLoads() = default;
-  // `point_at` embeds a point (u, v) of the body's surface in the lattice. Refuses a load whose region
-  // contains no face or node of the lattice; the error names the load's index.
+  // Builds the loads. `point_at` embeds a point (u, v) of the body's surface in the lattice. Refuses a load
+  // whose region contains no face or node of the lattice; the error names the load's index.
   static Result<BodyLoads> make(const std::vector<Load>& loads, const LatticeMesh& mesh,
                                 const std::function<EmbeddedPoint(double u, double v)>& point_at);
 
   bool empty() const { return nodes_.empty(); }
   const std::vector<NodeForce>& forces() const { return forces_; }
   const std::vector<PressedFace>& pressures() const { return pressures_; }
-  const PressedSkin& pressed_skin() const { return pressed_skin_; }  // used by a body in a box of cells
+  // Pressures on the skin of a body in a box of cells.
+  const PressedSkin& pressed_skin() const { return pressed_skin_; }
 
-  // Sets the node forces of the lattice, and of the implicit solver if not null, to the loads on the current
-  // shape.
+  // Computes the loads on the current shape and sets them as node forces of the lattice, and of the implicit
+  // solver if it is not null.
   void apply(SpringLattice& lattice, ImplicitSolver* solver);
 
  private:
@@ -41,7 +42,7 @@ class BodyLoads {
   std::vector<PressedFace> pressures_;
   PressedSkin pressed_skin_;
   std::vector<int> nodes_;        // all loaded nodes, sorted
-  std::vector<Vector3> force_n_;  // by node of the lattice; working memory
+  std::vector<Vector3> force_n_;  // working memory: force on each node of the lattice
 };
 
 // Supports of a body, which owns them. A support's displacement is that of its nodes. begin_tick() allocates
@@ -53,20 +54,21 @@ class BodySupports {
   // names the support's index.
   static Result<BodySupports> make(const std::vector<Support>& supports, const LatticeMesh& mesh);
 
-  // Assigns each support the nodes of its region that are not fixed yet, later supports first, and marks them
-  // in `fixed`, one byte per node.
+  // Assigns to each support the nodes of its region that are not fixed yet, and marks them in `fixed`, one
+  // byte per node. If regions overlap, the later support gets the nodes.
   void claim_nodes(const SpringLattice& lattice, std::vector<std::uint8_t>& fixed);
-  // Keeps the supports' displacements when the rest shape of the lattice changes from `before` to `after`.
+  // Keeps the supports' displacements when the rest shape of the lattice changes from that of `before` to
+  // that of `after`.
   void rebase(const SpringLattice& before, const SpringLattice& after);
 
-  // Updates the motions for a tick of `tick_s` that ends at `end_s`.
+  // Updates the motions of the supports for a tick of `tick_s` that ends at `end_s`.
   std::span<SupportedNodes> begin_tick(const SpringLattice& lattice, double end_s, double tick_s);
 
   std::span<const SupportedNodes> supports() const { return supported_; }
 
  private:
   std::vector<Support> definitions_;
-  std::vector<std::vector<int>> region_nodes_;  // by support
+  std::vector<std::vector<int>> region_nodes_;  // nodes in the region of each support
   std::vector<SupportedNodes> supported_;
 };
 

@@ -11,9 +11,9 @@
 namespace spoonbill {
 namespace {
 
-// Number of times that elements are halved for sampling. One halving gives at least twice as many samples as
-// control points for simple knots, and a well-conditioned refit. Elements between repeated knots have as many
-// control points as the degree and need more samples.
+// Number of times that elements are halved to get the samples of the refit. One halving gives at least twice
+// as many samples as control points for simple knots, and a well-conditioned refit. Elements between repeated
+// knots have as many control points as the degree and need more samples.
 constexpr int refit_levels = 1, max_refit_levels = 4;
 static_assert(1 << max_refit_levels > max_degree);
 constexpr int edge_stations = 512;
@@ -30,7 +30,7 @@ bool is_ring_behind(const Surface& surface, const FixingPlane& plane, double v) 
   return true;
 }
 
-// Returns the fraction of v, from one end, over which the surface is wholly behind the plane.
+// Returns the fraction of the v domain, from one end, over which the surface is wholly behind the plane.
 double find_fraction_behind(const Surface& surface, const FixingPlane& plane, bool from_end) {
   const double start = surface.v.domain_start(), end = surface.v.domain_end();
   const auto behind = [&](double fraction) {
@@ -50,10 +50,10 @@ double find_fraction_behind(const Surface& surface, const FixingPlane& plane, bo
   return low;
 }
 
-// Stretches of v at both ends that are wholly behind some plane.
+// Stretches of the v domain, one at each end, over which the surface is wholly behind some plane.
 struct FixedStretch {
-  double low_end;     // end of the stretch from the domain's start
-  double high_start;  // start of the stretch to the domain's end
+  double low_end;     // end of the stretch that begins at the domain's start
+  double high_start;  // start of the stretch that ends at the domain's end
 };
 
 FixedStretch find_fixed_stretch(const Surface& surface, const std::vector<FixingPlane>& planes) {
@@ -67,9 +67,9 @@ FixedStretch find_fixed_stretch(const Surface& surface, const std::vector<Fixing
   return {start + low * length, start + (1.0 - high) * length};
 }
 
-// Inserts a knot of multiplicity degree - 1 at v: the displacement may start there with its own curvature,
-// and the surface stays C1. Moves v to an existing knot nearby, which avoids sliver elements. Inserts nothing
-// beyond the largest number of control points; then up to `degree` additional columns are fixed.
+// Inserts a knot of multiplicity degree - 1 at v. The displacement may start there with its own curvature,
+// and the surface stays C1. Moves v to an existing knot nearby, which avoids sliver elements. If the surface
+// would get too many control points, inserts nothing; up to `degree` additional columns are then fixed.
 Result<Surface> insert_edge_knot(const Surface& surface, double& v) {
   const std::vector<double> breaks = surface.v.breakpoints();
   const double tolerance = 1e-3 * surface.v.domain_length();
@@ -96,7 +96,7 @@ Result<Surface> halve_element(const Surface& surface, double u, double v) {
   return insert_knot(finer.value(), Direction::v, find_element_midpoint(surface.v, v), 1);
 }
 
-// Returns 1 for each column whose basis function reaches into a fixed stretch.
+// Returns one byte per column of control points: 1 if its basis function is nonzero in a fixed stretch.
 std::vector<std::uint8_t> find_fixed_columns(const KnotVector& v, const FixedStretch& fixed) {
   const std::vector<double>& knots = v.extended_knots();
   std::vector<std::uint8_t> fixed_columns(static_cast<std::size_t>(v.control_point_count()), 0);
@@ -108,7 +108,7 @@ std::vector<std::uint8_t> find_fixed_columns(const KnotVector& v, const FixedStr
   return fixed_columns;
 }
 
-// Returns whether an end of v is a single point.
+// Returns whether the surface is a single point at an end of v.
 bool is_pole(const Surface& surface, bool at_end) {
   constexpr double tolerance = 1e-6;  // fraction of the net's extent
   if (!surface.u.is_periodic() || surface.v.is_periodic()) return false;
@@ -143,7 +143,8 @@ void search_cells_around(const LatticeMesh& mesh, int node, const Vector3& point
   }
 }
 
-// Embeds a point in the cell that contains it or is nearest to it, among the cells around the nearest node.
+// Embeds a point in a cell around the node nearest to it: in the cell that contains the point or is nearest
+// to it.
 EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
   int nearest = 0;
   double least = std::numeric_limits<double>::infinity();
@@ -180,7 +181,7 @@ struct SampledRefit {
   DisplacementRefit refit;
 };
 
-// Makes the refit on the coarsest grid whose samples determine the control points.
+// Makes the refit on the coarsest grid of samples that determines the control points.
 Result<SampledRefit> make_sampled_refit(const Surface& surface, const RefitConstraints& constraints,
                                         InstructionSet set) {
   for (int levels = refit_levels;; ++levels) {
@@ -246,7 +247,7 @@ void BodyMapping::embed(const SpringLattice& lattice) {
   embedding_.reserve(samples);
   for (int i = 0; i < grid.rows(); ++i) {
     for (int j = 0; j < grid.columns(); ++j) {
-      // Samples at the same point share one embedding, bit for bit, so that they stay together.
+      // Samples at the same point share one embedding, so that they stay together to the last bit.
       const int twin = find_twin(i, j);
       if (twin != i * grid.columns() + j) {
         embedding_.push_back(embedding_[static_cast<std::size_t>(twin)]);
@@ -313,7 +314,7 @@ void BodyMapping::update(const SpringLattice& lattice) {
       (*net[axis])[p] = (*base[axis])[p] + static_cast<double>(control_[axis][p]);
     }
   }
-  // Rounding to single precision moves the control points of a pole apart.
+  // Rounding to single precision separates the control points of a pole; they are joined again.
   for (const NetEdge& edge : collapsed_edges_) join_edge(current_.net, edge);
 }
 
@@ -369,8 +370,8 @@ EmbeddedPoint BodyMapping::at(double u, double v) const {
 
 namespace {
 
-// Returns a number for the octant of a cell that contains the point: its first node and a bit for each
-// direction.
+// Returns a number for the octant of a cell that contains the point. The number consists of the cell's first
+// node and one bit for each direction.
 int find_cell_octant(const EmbeddedPoint& point) {
   int octant = 0;
   for (int bit = 0; bit < 3; ++bit) {

@@ -1,5 +1,5 @@
-// Mappings from a lattice to a skin: a B-spline surface or triangles. Points of the skin are embedded in the
-// lattice's cells by fixed trilinear weights.
+// Mappings from a lattice to a skin, which is a B-spline surface or a triangle mesh. Points of the skin are
+// embedded in the lattice's cells by fixed trilinear weights.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,8 @@
 
 namespace spoonbill {
 
-// Displacement of the samples that the control net cannot follow, and the parameters of its largest value.
+// Part of the samples' displacement that the control net cannot follow, and the parameters (u, v) at which it
+// is largest.
 struct MappingResidual {
   double largest_m = 0.0;
   double root_mean_square_m = 0.0;
@@ -36,11 +37,12 @@ struct MappingResidual {
 // nothing.
 class BodyMapping {
  public:
-  // `rest` is the surface from which the lattice's rest shape was made. `current` is the surface for the
-  // lattice's present displacements, with the same knots. The part of the surface wholly behind a plane stays
-  // exactly fixed: knots are inserted at its edge, which changes no shape, and the control points that reach
-  // into it are fixed. Only parts at an open end of v are fixed in this way. A plane that cuts a sheet across
-  // u fixes only nodes.
+  // Makes the mapping. `rest` is the surface from which the lattice's rest shape was made. `current` is the
+  // surface for the lattice's present displacements, with the same knots.
+  //
+  // The part of the surface wholly behind a plane stays exactly fixed: knots are inserted at its edge, which
+  // changes no shape, and the control points that affect it are fixed. Only parts at an open end of v are
+  // fixed in this way. A plane that cuts a sheet across u fixes only nodes.
   static Result<BodyMapping> make(const Surface& rest, const Surface& current, const SpringLattice& lattice,
                                   const std::vector<FixingPlane>& planes, InstructionSet set);
 
@@ -51,26 +53,29 @@ class BodyMapping {
   // Moves current() by the nodes' displacement since make().
   void update(const SpringLattice& lattice);
 
-  // Residual of the displacements since make(), as last measured.
+  // Residual of the displacements since make(), as of the last measure_residual().
   const MappingResidual& residual() const { return residual_; }
   void measure_residual();
 
-  // Returns the mapping with a knot at the midpoint of the elements that contain u and v. The surface gains
-  // control points there and keeps its shape up to rounding. Fails at the largest number of control points.
+  // Returns the mapping of a refined surface, with a new knot at the midpoint of the elements that contain u
+  // and v. The surface gains control points there and keeps its shape up to rounding. Fails at the largest
+  // number of control points.
   Result<BodyMapping> refine_at(double u, double v, const SpringLattice& lattice,
                                 const std::vector<FixingPlane>& planes) const;
 
-  // Embedding of a grid sample, and of any point by blending the samples around it.
+  // sample() returns the embedding of a grid sample. at() returns that of any point, blended from the samples
+  // around it.
   const EmbeddedPoint& sample(int index) const { return embedding_[index]; }
   EmbeddedPoint at(double u, double v) const;
 
  private:
   BodyMapping(Surface rest, Surface current, InstructionSet set)
       : set_(set), rest_(std::move(rest)), base_(current), current_(std::move(current)) {}
-  // Index of the first sample at the same point, over a seam or at a pole; otherwise the sample's own index.
+  // Returns the index of the first sample at the same point, across a seam or at a pole; otherwise the
+  // sample's own index.
   int find_twin(int row, int column) const;
   void embed(const SpringLattice& lattice);
-  // Embedding of one sample as the tick reads it, without gaps. An unused entry has weight 0.
+  // Embedding of one sample in the compact form that update() reads. An unused entry has weight 0.
   struct CellWeights {
     int node[8];
     float weight[8];
@@ -83,15 +88,15 @@ class BodyMapping {
   // Shared pointer, because colliders keep the grid's address when the mapping is moved.
   std::shared_ptr<NestedGrid> nested_;
   std::vector<EmbeddedPoint> embedding_;
-  std::vector<CellWeights> cell_weights_;  // by sample, equal to embedding_
-  AlignedVector<float> node_moves_;        // x, y, z, 0 by node
-  AlignedVector<float> base_moves_;        // x, y, z, 0 by sample, at make()
-  AlignedVector<float> sample_[3];         // by axis, in the layout of the refit
+  std::vector<CellWeights> cell_weights_;  // by sample, the same weights as in embedding_
+  AlignedVector<float> node_moves_;        // displacements of the nodes: x, y, z and 0 for each
+  AlignedVector<float> base_moves_;        // displacements of the samples at make(): x, y, z and 0 for each
+  AlignedVector<float> sample_[3];         // displacements of the samples by axis, in the layout of the refit
   std::vector<float> control_[3];
   bool first_pole_ = true, last_pole_ = true;    // whether v starts and ends with a pole
-  std::vector<NetEdge> collapsed_edges_;         // kept exactly together
-  std::vector<DisplacementRefit> refit_;         // one element once made
-  std::vector<GridEvaluator<float>> evaluator_;  // one element once made
+  std::vector<NetEdge> collapsed_edges_;         // edges whose control points are kept exactly together
+  std::vector<DisplacementRefit> refit_;         // empty until made, then one element
+  std::vector<GridEvaluator<float>> evaluator_;  // empty until made, then one element
   GridSamples<float> followed_;                  // displacement of the surface at the samples
   MappingResidual residual_;
 };
@@ -100,11 +105,11 @@ class BodyMapping {
 // allocates nothing.
 class MeshMapping {
  public:
-  // `lattice` is a box_lattice() about the mesh, at rest. DeformingMesh states the requirements on the mesh.
+  // `lattice` is a box_lattice() about the mesh, at rest. DeformingMesh states what the mesh must satisfy.
   MeshMapping(const TriangleMesh& rest, const SpringLattice& lattice);
 
   const DeformingMesh& current() const { return current_; }
-  // Triangles in the mesh's own order, shared with snapshots.
+  // Triangles in the order of the mesh, shared with snapshots.
   const std::shared_ptr<const std::vector<TriangleCorners>>& triangles() const { return triangles_; }
 
   // Moves current() with the nodes.
@@ -113,8 +118,8 @@ class MeshMapping {
   EmbeddedPoint vertex(std::uint32_t vertex) const;
   EmbeddedPoint at(const PointOnMesh& point) const;
 
-  // Patch of each vertex: its octant of a cell at rest, numbered without gaps. Constraints denser than half a
-  // cell would act on the same nodes twice.
+  // Patch number of each vertex. A patch is an octant of a lattice cell at rest; patches are numbered without
+  // gaps. Constraints denser than half a cell would act on the same nodes twice.
   const std::vector<int>& patches() const { return patches_; }
 
  private:
@@ -126,7 +131,7 @@ class MeshMapping {
   std::vector<CellWeights> embedding_;
   std::vector<int> patches_;
   std::shared_ptr<const std::vector<TriangleCorners>> triangles_;
-  AlignedVector<float> node_moves_;  // x, y, z, 0 by node
+  AlignedVector<float> node_moves_;  // displacements of the nodes: x, y, z and 0 for each
   DeformingMesh current_;
 };
 

@@ -14,7 +14,8 @@ std::string rounded_text(double number) {
   return number_text(std::round(10.0 * number) / 10.0);
 }
 
-// Returns a warning about the cells of a body without an implicit solver.
+// Returns a warning if the cells of a body without an implicit solver are too slender; otherwise an empty
+// text.
 std::string describe_slender_cells(const BodyState& body) {
   if (body.implicit_solver) return {};
   const LatticeReport& report = body.lattice.report();

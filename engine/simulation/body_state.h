@@ -1,4 +1,4 @@
-// One body of a simulation: lattice, skin, loads, supports and fixed nodes.
+// State of one body of a simulation: lattice, skin, loads, supports and fixed nodes.
 #pragma once
 
 #include <cstdint>
@@ -29,15 +29,16 @@ struct BodyState {
   SpringLattice lattice;
   std::variant<BodyMapping, MeshMapping> skin;
   Smoothing smoothing;
-  std::vector<std::uint8_t> fixed, touched;            // one byte per node
+  std::vector<std::uint8_t> fixed, touched;            // one byte per node: 1 if fixed, 1 if touched
   std::optional<ImplicitSolver> implicit_solver = {};  // for materials too stiff for the lattice's springs
-  BodyHold hold = BodyHold(1);                         // replaced by one with the lattice's number of nodes
+  // A placeholder, which make_body_state() replaces by one with the lattice's number of nodes.
+  BodyHold hold = BodyHold(1);
   BodyLoads loads = {};
   BodySupports supports = {};
   double shell_thickness_m = 0.0;                // 0 for a solid
   std::shared_ptr<const TrimmedArea> trim = {};  // area within the trims; null without trims
 
-  // Fixes the nodes behind the planes, then those of the supports.
+  // Fixes the nodes behind the planes, then the nodes of the supports.
   void fix_nodes_behind(const std::vector<FixingPlane>& planes);
   // Sets the fixed nodes, one byte per node.
   void fix(std::vector<std::uint8_t> nodes) {
@@ -68,7 +69,7 @@ struct BodyState {
 
   const LatticeReport& report() const { return solver() ? solver()->report() : lattice.report(); }
 
-  // Mapping to the surface of any body except a soft mesh tool.
+  // Returns the mapping to the surface. Every body has one except a soft mesh tool.
   BodyMapping& mapping() {
     SPOONBILL_ASSERT(mesh() == nullptr);
     return *std::get_if<BodyMapping>(&skin);
@@ -77,10 +78,10 @@ struct BodyState {
     SPOONBILL_ASSERT(mesh() == nullptr);
     return *std::get_if<BodyMapping>(&skin);
   }
-  // Triangles of a soft mesh tool; null for any other body.
+  // Returns the triangles of a soft mesh tool; null for any other body.
   const MeshMapping* mesh() const { return std::get_if<MeshMapping>(&skin); }
 
-  // Makes the skin follow the lattice.
+  // Updates the skin to the present lattice.
   void update_skin() {
     std::visit([this](auto& mapping) { mapping.update(lattice); }, skin);
   }
@@ -91,23 +92,23 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
                                   InstructionSet set, const FeatureMapWatch& watch = {});
 
 // Young's modulus from which elastic bodies are stepped implicitly at their true stiffness. The few newtons
-// of a hand dent them by less than a third of a millimetre; they bend. Softer bodies are dented, which
-// requires the finer lattice and its springs.
+// of a hand dent such bodies by less than a third of a millimetre, but can bend them. Softer bodies are
+// dented, which requires the finer lattice and its springs.
 inline constexpr double stiff_youngs_modulus_pa = 1e6;
 
-// Makes the implicit solver of a lattice, unstrained at `rest_m`. It steps bodies whose materials are all
-// linear elastic, the stiffest with at least stiff_youngs_modulus_pa. It also steps elastic shells, which a
-// single layer of springs would make twice too stiff in bending. Empty for bodies that are stepped by their
-// springs.
+// Makes the implicit solver of a lattice, unstrained when its nodes are at `rest_m`. It steps bodies whose
+// materials are all linear elastic, if the stiffest has at least stiff_youngs_modulus_pa. It also steps
+// elastic shells, which a single layer of springs would make twice too stiff in bending. Empty for bodies
+// that are stepped by their springs.
 Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& lattice,
                                                            const std::vector<Vector3>& rest_m,
                                                            InstructionSet set);
 
 // Relative error of a lattice's Young's modulus along an axis above which describe_lattice_warning() warns.
-// Cells too slender for springs exceed it.
+// Cells that are too slender for springs cause such errors.
 inline constexpr double slender_stiffness_limit = 0.25;
-// Returns a warning in one line about a lattice that can be simulated but deviates from its material, with a
-// remedy; empty without one.
+// Returns a warning about a lattice that can be simulated but deviates from its material, with a remedy, in
+// one line. Empty if there is nothing to warn about.
 std::string describe_lattice_warning(const BodyState& body);
 
 // Returns one byte per node, 1 for nodes behind a plane.

@@ -22,7 +22,7 @@ std::vector<BodySelfContact> make_self_contacts(const std::vector<BodyState>& bo
 }
 
 BodyContacts make_contact_buffer() {
-  // Largest number of constraints. Two handles pressed on each other need some hundreds.
+  // Largest number of constraints. Two handles pressed against each other need some hundreds.
   constexpr int capacity = 8192;
   return BodyContacts(capacity);
 }
@@ -105,8 +105,8 @@ Status CommandApplier::operator()(const SetMaterial& command) {
   Result<SpringLattice> lattice = SpringLattice::make(body.lattice.mesh(), materials, state.set);
   if (!lattice.ok()) return lattice.error();
   lattice->set_shape(body.lattice.shape());
-  // A body that becomes stiff keeps its current shape as the rest shape. A body that was stiff keeps its rest
-  // shape.
+  // The solver's rest shape: a body that becomes stiff takes its current shape; a body that was stiff keeps
+  // its rest shape.
   Result<std::optional<ImplicitSolver>> solver = make_implicit_solver(
       lattice.value(), body.implicit_solver ? body.implicit_solver->rest_m() : body.lattice.positions(),
       state.set);

@@ -10,11 +10,11 @@
 namespace spoonbill {
 namespace {
 
-// Number of times that elements are halved for sampling.
+// Number of times that elements are halved to get the samples of the heights.
 constexpr int height_levels = 2;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-// Returns how far a parabola through three points falls below the middle point, between the outer two.
+// Returns how far a parabola through three points falls below the middle point between the outer points.
 double dip(double before, double middle, double after, double step_before, double step_after) {
   const double rise_before = (middle - before) / step_before, rise_after = (after - middle) / step_after;
   const double steps = step_before + step_after;
@@ -117,11 +117,12 @@ double SkinHeights::lowest_m(int row, int column) const {
 
 namespace {
 
-// Reach beyond the movement of a tick, in lattice cells.
+// Distance added to the movement of a tick when contacts are searched, in lattice cells.
 constexpr double ground_margin_cells = 0.25;
 
-// Time constant of the filter on a footing's skin height in real time, longer than a round body takes to roll
-// over. Without it a node would push its neighbours' skin at once, and round bodies would roll for ever.
+// Time constant of the filter on the height of a footing's skin. It applies at an inertia scale of 1 and is
+// longer than a round body takes to roll over. Without the filter a node would push its neighbours' skin at
+// once, and round bodies would roll for ever.
 constexpr double skin_time_constant_s = 0.07;
 
 bool on_shell(const LatticeMesh& mesh, int node) {
@@ -148,9 +149,9 @@ int find_heaviest_node(const EmbeddedPoint& sample, const Filter& accepts) {
   return node;
 }
 
-// Returns the node to which a sample is attached: among its nodes on the shell, the one with the largest
-// weight. In a box of cells, a sample without such nodes is attached to the largest weight of all its nodes.
-// Returns -1 otherwise.
+// Returns the node to which a sample is attached: of its nodes on the shell, the one with the largest weight.
+// In a box of cells, a sample without nodes on the shell is attached to its node with the largest weight.
+// Returns -1 if there is no such node.
 int find_footing_node(const LatticeMesh& mesh, const EmbeddedPoint& sample) {
   const int node = find_heaviest_node(sample, [&](int candidate) { return on_shell(mesh, candidate); });
   return node < 0 && is_boxed(mesh) ? find_heaviest_node(sample, [](int) { return true; }) : node;
@@ -254,7 +255,7 @@ void BodyGroundContact::update_skin_offset(const BodyFootings& footings, double 
     skin_m = std::min(skin_m, footings.heights.lowest_m(sample.row, sample.column));
   }
   if (!std::isfinite(skin_m)) skin_m = followed_m;
-  // Bodies of scaled inertia respond more slowly.
+  // Bodies with a larger inertia scale respond more slowly.
   const double constant_s = skin_time_constant_s * std::sqrt(inertia_scale);
   const double fraction = footing.is_near ? time_s / (constant_s + time_s) : 1.0;
   footing.skin_m += fraction * (skin_m - followed_m - footing.skin_m);

@@ -13,12 +13,12 @@
 
 namespace spoonbill {
 
-// Heights of a surface above a plane. The height is itself a spline with the control points' heights as
-// coefficients. It is sampled four times per element in each direction; between samples, parabolas through
-// neighbouring samples bound it. One owner, one thread; allocates only in make().
+// Heights of a surface above a plane. The height is itself a spline whose coefficients are the heights of the
+// control points. It is sampled four times per element in each direction. Between samples, parabolas through
+// neighbouring samples estimate its lowest value. One owner, one thread; allocates only in make().
 class SkinHeights {
  public:
-  // Serves all surfaces with these knots.
+  // Makes the memory for the heights of any surface with these knots.
   static Result<SkinHeights> make(const KnotVector& u, const KnotVector& v);
 
   int rows() const { return nested_.grid.rows(); }
@@ -26,8 +26,8 @@ class SkinHeights {
   double u(int row) const { return nested_.grid.u.parameters[static_cast<std::size_t>(row)]; }
   double v(int column) const { return nested_.grid.v.parameters[static_cast<std::size_t>(column)]; }
 
-  // Samples the heights above the plane. Parts higher than `reach_m` may be skipped; returns false if all
-  // parts are higher.
+  // Samples the heights above the plane. Parts of the surface higher than `reach_m` may be skipped. Returns
+  // false if the whole surface is higher.
   bool compute(const Surface& surface, const Vector3& point_m, const Vector3& normal, double reach_m);
   // Returns the lowest height between a sample and its neighbours; infinite if the sample was skipped.
   double lowest_m(int row, int column) const;
@@ -44,7 +44,7 @@ class SkinHeights {
 
   NestedGrid nested_;
   std::vector<double> control_;  // heights of the control points
-  std::vector<double> blended_;  // one row of samples, by column of control points
+  std::vector<double> blended_;  // one row of samples before blending along v
   std::vector<double> height_;   // heights of the samples
 };
 
@@ -57,8 +57,7 @@ class BodyGroundContact {
  public:
   explicit BodyGroundContact(std::span<const BodyState> bodies);
 
-  // Adds a constraint for each footing that can reach the ground in the coming tick of `time_s` of material
-  // time.
+  // Adds a constraint for each footing that can reach the ground in the coming tick of `time_s`.
   void find(std::span<const BodyState> bodies, const Ground& ground, const Vector3& gravity_m_per_s2,
             double time_s);
 
@@ -77,16 +76,16 @@ class BodyGroundContact {
   const GroundContacts& contacts() const { return contacts_; }
 
  private:
-  // Node with the samples attached to it: samples of the mapping, which follow the lattice, and samples of
-  // the skin, which the control net places slightly elsewhere. The node is on the surface, or any node with
-  // attached skin samples in a box of cells. If no samples of the mapping are attached to it, it gets those
-  // nearest to its skin samples.
+  // A node together with the samples attached to it. "Followed" samples of the mapping move exactly with the
+  // lattice; samples of the skin lie on the surface of the control net, which differs slightly. The node is
+  // on the surface or, in a box of cells, any node with attached skin samples. A node without followed
+  // samples gets those nearest to its skin samples.
   struct Footing {
     int node = 0;
     int first_followed = 0, followed_count = 0;  // range in BodyFootings::followed
     int first = 0, count = 0;                    // range in BodyFootings::samples
     double skin_m = 0.0;                         // filtered height of the skin above the followed samples
-    bool is_near = false;                        // near the ground in the last tick
+    bool is_near = false;                        // whether the footing was near the ground in the last tick
   };
   struct Sample {
     int row = 0, column = 0;
@@ -100,14 +99,15 @@ class BodyGroundContact {
     SkinHeights heights;
     double max_sample_distance_m;  // largest distance of a sample from its node at rest; at least one cell
     std::vector<Footing> footings;
-    std::vector<int> followed;  // samples of the mapping
+    std::vector<int> followed;  // indices of samples of the mapping
     std::vector<Sample> samples;
   };
 
   static std::vector<AttachedSamples> attach_samples(const BodyState& body, const SkinHeights& heights);
   static BodyFootings make_footings(const BodyState& body);
   void find(int index, const BodyState& body, const Ground& ground, double reach_m, double time_s);
-  // Filters the height of the skin above the followed samples. `inertia_scale` is that of the body.
+  // Filters the height of the skin above the followed samples. `inertia_scale` is the inertia scale of the
+  // body.
   void update_skin_offset(const BodyFootings& body, double followed_m, double time_s, double inertia_scale,
                           Footing& footing) const;
 

@@ -31,8 +31,9 @@ std::vector<FixedAxis> find_fixed_axes(const BodyState& state, const Body& body)
   return fixed;
 }
 
-// Returns the principal Green-Lagrange strain of the largest magnitude at a point of a cell. The
-// displacement's gradient keeps the digits of a small strain, which the deformation gradient rounds away.
+// Returns the principal Green-Lagrange strain of the largest magnitude at a point of a cell. It is computed
+// from the displacement gradient, because the deformation gradient would round away the digits of a small
+// strain.
 double principal_strain(const CellCorners& rest, const CellCorners& bent, const Vector3& at) {
   const Eigen::Matrix3d jacobian = trilinear_jacobian(rest, at.x(), at.y(), at.z());
   const Eigen::Matrix3d gradient =

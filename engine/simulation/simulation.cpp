@@ -176,7 +176,7 @@ void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
                     s.scene.ground ? &s.ground_contact.contacts() : nullptr);
 }
 
-// Largest distance of a node from its body's mean position, as a fraction of the scene's size.
+// Largest distance of a node from its body's centre of mass, as a fraction of the scene's size.
 constexpr double reach_fraction = 1.0;
 
 // Keeps the bodies in the scene. Call after everything else has moved them; BodyHold::begin() must have been
@@ -216,7 +216,7 @@ void mark_touched(Simulation::State& s) {
   }
 }
 
-// Measures the mapping residual for the panel, about eight times a second and for the next body each time.
+// Measures the mapping residual for the panel: one body about eight times a second, each body in turn.
 void measure_residuals(Simulation::State& s) {
   constexpr std::uint64_t interval_ticks = 128;
   if (s.tick % interval_ticks != 0) return;
@@ -340,7 +340,7 @@ std::uint64_t Simulation::state_hash() const {
       body.implicit_solver->visit_state_on_ground(
           [&](const double* data, std::size_t count) { hash.add(data, count); });
     }
-    if (body.mesh()) continue;  // its vertices follow from the nodes
+    if (body.mesh()) continue;  // the vertices of a mesh follow from the nodes
     const ControlNet& net = body.mapping().current().net;
     for (const std::vector<double>* coordinate : {&net.x, &net.y, &net.z}) {
       for (const double value : *coordinate) hash.add(value);

@@ -1,5 +1,5 @@
-// The simulation: a scene and its state at a tick. One owner. After the start only the haptic thread or the
-// lock-step loop changes it; all others send commands and read snapshots.
+// The simulation: a scene and its state at a tick. One owner. After the start, only the haptic thread or the
+// lock-step loop changes it. All other threads send commands and read snapshots.
 #pragma once
 
 #include <cstddef>
@@ -24,30 +24,32 @@ inline constexpr double tick_s = 1e-3;
 // Input of the hand in one tick.
 struct ToolInput {
   Pose pose;
-  bool gripping = false;  // the button is down, which keeps a pull gripping
-  // Stiffness of the spring between hand and tool, N/m. 0: the tool is held rigidly.
+  bool gripping = false;  // the button is down, so a pull keeps its grip
+  // Stiffness of the spring between hand and tool, N/m; 0 if the hand holds the tool rigidly.
   double coupling_n_per_m = 0.0;
-  bool hovering = false;  // points without touching: the tool does not act until it is outside the bodies
+  // The hand points without touching. The tool does not act until hovering ends and the tool is outside the
+  // bodies.
+  bool hovering = false;
 };
 
 // Response of the bodies to one tick.
 struct Reaction {
-  Vector3 force_n = Vector3::Zero();  // on the tool, averaged over the tick
+  Vector3 force_n = Vector3::Zero();  // force on the tool, averaged over the tick
   Pose proxy;                         // pose at which the material stops the tool
   bool touching = false;
-  bool mirror_touching = false;  // for the mirrored tool, whose force does not reach the hand
+  bool mirror_touching = false;  // whether the mirrored tool touches; its force does not reach the hand
   std::uint32_t flags = tick_flag_none;
 };
 
-// State that a stroke can change, bit for bit, for undo: the lattices' displacements, velocities, rest
-// lengths and volumes. Control points follow from it.
+// State that a stroke can change and that undo restores bit for bit: the lattices' displacements, velocities,
+// rest lengths and volumes. The control points follow from it.
 struct ShapeState {
-  std::vector<std::vector<float>> lattices;  // by body
+  std::vector<std::vector<float>> lattices;  // shape of each body's lattice
   friend bool operator==(const ShapeState&, const ShapeState&) = default;
 };
 
-// FNV-1a hash, 64 bits, of plain values in words of four bytes (Fowler, Noll and Vo 1991). Hashing a float
-// costs one multiplication.
+// 64-bit FNV-1a hash of plain values (Fowler, Noll and Vo 1991), applied to words of four bytes instead of
+// single bytes. Hashing a float costs one multiplication.
 class StateHash {
  public:
   void add(const float* values, std::size_t count) {
@@ -91,21 +93,21 @@ class Simulation {
   // Carries out a command between ticks; may allocate. An error leaves the simulation unchanged.
   Status apply(const Command& command);
 
-  // Computes one tick, while the hand moves from the last tick's pose to this one's: contacts, lattices,
-  // control points. Allocates nothing, never throws.
+  // Computes one tick, in which the hand moves from the pose of the last tick to the pose of `input`:
+  // contacts, then lattices, then control points. Allocates nothing, never throws.
   Reaction advance(const ToolInput& input);
 
-  // Scene as it was set. Its surfaces date from the last structural change; surface() returns the current
-  // surfaces.
+  // Returns the scene as it was set. Its surfaces date from the last structural change; surface() returns the
+  // current surfaces.
   const Scene& scene() const;
   // Writes the scene with current surfaces, for saving. Allocates only if the structure of `scene` differs.
   void write_scene(Scene& scene) const;
   std::uint64_t tick() const;
 
-  // Hash of every bit that the next tick depends on, including the tick number.
+  // Returns a hash of every bit that the next tick depends on, including the tick number.
   std::uint64_t state_hash() const;
 
-  // Writes everything except force, button and device, which the haptic side owns.
+  // Writes everything except force, button and device, which the owner of the haptic device adds.
   void write_snapshot(Snapshot& snapshot) const;
 
   ShapeState shape() const;
@@ -120,14 +122,16 @@ class Simulation {
   // Lattice and current surface of a body of the scene, for studies and tests.
   const SpringLattice& lattice(int body = 0) const;
   const Surface& surface(int body = 0) const;
-  // Inertia scale of a body, and the substeps of a tick at rest, as set and as real time would need.
+  // inertia_scale() returns the inertia scale of a body. substeps() returns the substeps of a tick at rest,
+  // real_time_substeps() those that an inertia scale of 1 would need.
   double inertia_scale(int body = 0) const { return lattice(body).inertia_scale(); }
   int substeps() const;
   int real_time_substeps() const;
-  // Achieved elasticity of the solver that steps the body.
+  // Returns the elasticity that the solver of the body achieves.
   const LatticeReport& report(int body = 0) const;
 
-  // Mean force of a support or of the ground on a body over the last tick.
+  // support_force_n() and ground_force_n() return the mean force of a support or of the ground on a body over
+  // the last tick.
   Vector3 support_force_n(int support, int body = 0) const;
   Vector3 ground_force_n(int body = 0) const;
 

@@ -17,14 +17,15 @@
 
 namespace spoonbill {
 
-// Tool in the user's hand, or its mirror image. Movable, because the contact keeps only addresses of grids,
-// which the mappings hold by pointer.
+// Tool in the user's hand, or its mirror image. It can be moved, because the contact keeps only addresses of
+// grids, which the mappings hold by pointer.
 struct HeldTool {
   ToolContact contact;
-  Pose hand{};  // in the last tick
+  Pose hand{};  // pose of the hand in the last tick
   ToolState state{};
   bool placed = false;
-  // Position of the hand when a soft tool last began to touch, and whether it still does.
+  // touch_m is the position of the hand when a soft tool last began to touch; touched is true while it
+  // touches.
   Vector3 touch_m = Vector3::Zero();
   bool touched = false;
 
@@ -44,19 +45,20 @@ struct Simulation::State {
   HeldTool tool;
   HeldTool mirrored;
   BodyContacts between;
-  std::vector<BodyPairContact> pairs;  // (0, 1), (0, 2), (1, 2), ...: see make_pairs()
-  std::vector<BodySelfContact> self;   // by body
-  BodyGroundContact ground_contact;    // contacts of the scene's bodies; without a ground, of no body
+  std::vector<BodyPairContact> pairs;  // all pairs: (0, 1), (0, 2), (1, 2), ...; see make_pairs()
+  std::vector<BodySelfContact> self;   // self-contact of each body
+  BodyGroundContact ground_contact;    // contacts of the scene's bodies; empty without a ground
   bool pairs_overflow = false;
-  double tool_gap_m = 0.0;      // smallest gap of a soft tool to a body; infinite if it is not near
+  double tool_gap_m = 0.0;      // smallest gap between a soft tool and a body; infinite if not near
   double scene_size_m = 0.0;    // diagonal of the box around the bodies at rest
-  bool bodies_limited = false;  // a lattice could not follow in the last tick
-  // Bodies and triangles of replaced tools. Snapshots share them, and no tick may free the last reference.
+  bool bodies_limited = false;  // true if a lattice could not follow in the last tick
+  // Bodies and triangles of replaced tools. They are kept, because snapshots share them and no tick may free
+  // the last reference.
   std::vector<std::shared_ptr<const ToolBody>> retired_bodies;
   std::vector<std::shared_ptr<const std::vector<TriangleCorners>>> retired_triangles;
   std::uint64_t tick = 0;
-  int substeps = 1;            // in a tick, at rest
-  int real_time_substeps = 1;  // in a tick of real time, at rest
+  int substeps = 1;            // substeps of a tick at rest
+  int real_time_substeps = 1;  // substeps of a tick at rest with an inertia scale of 1
   RelaxReport relaxed{};
   Reaction reaction{};
 
@@ -77,11 +79,12 @@ std::vector<BodySelfContact> make_self_contacts(const std::vector<BodyState>& bo
 BodyContacts make_contact_buffer();
 
 // Chooses the substeps of a tick and the inertia scale of each body. A body that something fixes has its own
-// scale, or 1 if it is stepped implicitly. All others share the largest of theirs, so that momentum and
-// falling mean something. Call after a change of bodies, fixed nodes, tool or settings; may allocate.
+// scale, or 1 if it is stepped implicitly. All other bodies share the largest of their scales, so that
+// momentum is exchanged correctly and all fall alike. Call after a change of bodies, fixed nodes, tool or
+// settings; may allocate.
 void update_inertia(Simulation::State& state);
 
-// Contact of a tool that acts in this tick, as its kernel receives it.
+// Contact of a tool that acts in this tick, as the kernel of its action receives it.
 struct ToolTouch {
   std::span<const BodyState> bodies;
   const ToolHold& hold;
@@ -89,7 +92,8 @@ struct ToolTouch {
 };
 
 // Kernel of a tool action. Each tick calls constrain() for the tool and its mirror image, moves the bodies,
-// then calls reform() for both. Kernels run in the haptic thread: no allocation, no lock, no clock, no error.
+// then calls reform() for both tools. Kernels run in the haptic thread: they must not allocate, lock, read a
+// clock or throw.
 struct ToolKernel {
   // Adds the constraints of this tick.
   void (*constrain)(ToolContact& contact, const ToolTouch& touch) = nullptr;
@@ -103,18 +107,18 @@ struct ToolKernel {
 const ToolKernel& find_kernel(ToolAction action);
 
 ToolHold make_hold(const ToolInput& input);
-// Returns the mirror image of the hold, with mirrored axes.
+// Returns the hold of the mirrored tool, with mirrored pose and axes.
 ToolHold make_mirrored_hold(const Symmetry& symmetry, const ToolInput& input);
 
 // Finds the contact of a tool and its motion from the last tick's pose to the pose of `hold`.
 TouchingTool touch(Simulation::State& state, HeldTool& held, ToolHold hold, double coupling_n_per_m);
 
-// Computes proxy, force and touch of the tool in the user's hand, not of its mirror image, after the bodies
-// have moved.
+// Computes the proxy, the force and the touching state of the tool in the user's hand, not of its mirror
+// image. Call after the bodies have moved.
 void react(Simulation::State& state, const ToolInput& input);
 
-// Carries out commands, outside the tick; may allocate. Each makes all new parts first and changes the state
-// only if that succeeds.
+// Carries out commands outside the tick; may allocate. Each command first makes all new parts and changes the
+// state only if that succeeds.
 struct CommandApplier {
   Simulation::State& state;
 
@@ -132,8 +136,8 @@ struct CommandApplier {
  private:
   void release();
   Status check_body(int body) const;
-  // Checks a tool, except for a body that has been modelled before. Checking a B-spline body takes as long as
-  // modelling it.
+  // Checks a tool, except for a body that has already been modelled. Checking a B-spline body takes as long
+  // as modelling it.
   Status check_changes(const Tool& tool) const;
   void adopt_model(ToolModel model);
   void make_contacts();

@@ -13,11 +13,11 @@ namespace {
 // Number of nodes that are smoothed in a tick.
 constexpr std::size_t nodes_per_tick = 24;
 
-// Fraction of a bump that is removed in one step. The largest eigenvalue of the flow is 8 (two lines, 4
-// each), so that an explicit step is stable below 2 / 8.
+// Fraction of a bump that is removed in one step. The largest eigenvalue of the smoothing flow is 8, 4 for
+// each of two lattice lines, so an explicit step is stable below 2 / 8.
 constexpr double shell_fraction = 0.15;
 
-// Fraction by which inner nodes return to their rest position among their six neighbours in one step, which
+// Fraction by which an inner node returns, in one step, to its rest position among its six neighbours, which
 // keeps cells even. Stable below 1.
 constexpr double inner_fraction = 0.3;
 
@@ -60,7 +60,7 @@ std::array<int, 2> Smoothing::beside(int node, int axis) const {
 void Smoothing::connect(const LatticeMesh& mesh, int node) {
   const std::array<int, 3> at = mesh.grid_index(node);
   ShellNode& shell = shell_[static_cast<std::size_t>(node)];
-  std::array<int, 3> inward{};  // neighbours inside the body, those along i and j first
+  std::array<int, 3> inward{};  // neighbours inside the body; those along i and j come first
   std::size_t ends = 0;
   Vector3 outward = Vector3::Zero();
   for (int axis = 0; axis < 3; ++axis) {
@@ -75,7 +75,8 @@ void Smoothing::connect(const LatticeMesh& mesh, int node) {
     const bool between = at[axis] > 0 && at[axis] < mesh.count[axis] - 1;
     if (between || (mesh.closed && axis == 0)) shell.pairs[shell.pair_count++] = beside(node, axis);
   }
-  // The line crosses an edge of the block; at a corner it follows the ring of i and j.
+  // The lattice line continues over an edge of the block. At a corner of the block it follows the ring of i
+  // and j.
   if (ends >= 2) shell.pairs[shell.pair_count++] = {inward[0], inward[1]};
   const auto curvature = curvature_at(node, [&](int n) { return mesh.nodes[static_cast<std::size_t>(n)]; });
   if (curvature && curvature->normal.dot(outward) < 0.0) std::swap(shell.pairs[0][0], shell.pairs[0][1]);
@@ -94,7 +95,8 @@ std::optional<Smoothing::Curvature> Smoothing::curvature_at(int node, const Posi
     if (!(to_a > 0.0 && to_b > 0.0)) return std::nullopt;
     along[p] = b - a;
     over_chord[p] = here - (to_b * a + to_a * b) / (to_a + to_b);
-    // A point on a circle of radius r is a b / (2 r) above the chord between points at distances a and b.
+    // A point on a circle of radius r is a b / (2 r) above a chord, if a and b are its distances from the
+    // ends of the chord.
     curvature.height_factor[p] = 0.5 * to_a * to_b;
   }
   const Vector3 across = along[0].cross(along[1]);
@@ -138,7 +140,8 @@ Vector3 Smoothing::measure_bump(const SpringLattice& lattice, int node) const {
   double height = 0.0;
   for (std::size_t p = 0; p < 2; ++p) {
     const auto [a, b] = shell.pairs[p];
-    double height_factor = own->height_factor[p];  // least of the three, for stability with uneven cells
+    // The least height factor of the three nodes, for stability with uneven cells.
+    double height_factor = own->height_factor[p];
     const auto at_a = bend_toward(lattice, a, node, height_factor);
     const auto at_b = bend_toward(lattice, b, node, height_factor);
     if (!at_a || !at_b) continue;

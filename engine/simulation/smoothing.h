@@ -1,14 +1,14 @@
 // Smoothing of a body under the tool. Dents rise and bumps sink, and the material adopts the new positions as
 // its rest shape, so that no force arises and nothing springs back. Parts that no stroke has changed keep
-// their shape, edges included.
+// their shape, including edges.
 //
-// The bump of a shell node is the change of its curvature since the rest shape minus that of its neighbours.
-// It is measured along each of the two lattice lines that cross there. An evenly changing curvature, as in a
-// bend, is not a bump and stays. To first order this is the flow d' = -(d^4 d / ds^4) of the normal
-// displacement, as in a thin plate. Shapes smaller than a cell are not resolved. Small changes of volume do
-// not change the mass.
+// A node's bend is the change of its curvature since the rest shape. The bump of a shell node is its bend
+// minus that of its neighbours, measured along each of the two lattice lines that cross there. An evenly
+// changing curvature, as in a bent beam, is not a bump and stays. To first order this is the flow d' = -(d^4
+// d / ds^4) of the normal displacement d along the arc length s, as in a thin plate. Shapes smaller than a
+// cell are not resolved. Small changes of volume do not change the mass.
 //
-// Shell nodes are those on the hull of the block of cells. The skin of a body in a box of cells is inside
+// Shell nodes are the nodes on the hull of the block of cells. The skin of a body in a box of cells is inside
 // the block and follows inner nodes, which return to their rest position among their neighbours.
 #pragma once
 
@@ -21,7 +21,7 @@
 
 namespace spoonbill {
 
-// Ball to be smoothed, with a weight that falls to 0 at its boundary.
+// Ball in which a body is smoothed, with a weight that falls to 0 at its boundary.
 struct SmoothingBrush {
   Vector3 centre_m = Vector3::Zero();
   double reach_m = 0.0;
@@ -38,16 +38,18 @@ class Smoothing {
   void apply(SpringLattice& lattice, const SmoothingBrush& brush, std::uint64_t tick);
 
  private:
-  // The two neighbours of a node along a lattice line, which continues over the edges of the block.
+  // The two neighbours of a node along a lattice line. Lines continue over the edges of the block.
   using Pair = std::array<int, 2>;
   struct ShellNode {
     std::array<Pair, 2> pairs{};
-    int pair_count = 0;  // 0 inside the block, 1 at its corners
+    int pair_count = 0;  // number of pairs: 2, but 1 at the block's corners and 0 inside
   };
   struct Curvature {
-    Vector3 normal;                 // unit
-    std::array<double, 2> per_m{};  // along each pair; positive where the side of the normal is convex
-    std::array<double, 2> height_factor{};  // height above the neighbours per curvature, m^2
+    Vector3 normal;  // unit normal
+    // Curvature along each pair, 1/m; positive where the side of the normal is convex.
+    std::array<double, 2> per_m{};
+    // Height of the node above the chord of its neighbours per curvature, m^2.
+    std::array<double, 2> height_factor{};
   };
 
   // Returns the curvature at a shell node; nothing where fewer than two lines cross or a line has no length.
@@ -56,10 +58,10 @@ class Smoothing {
   // Returns the change of the curvature since the rest shape.
   std::optional<Curvature> bend_at(const SpringLattice& lattice, int node) const;
   // Returns the bend of a neighbour along the line that leads to `node`. Lowers `height_factor` to the
-  // neighbour's height factor if that is less.
+  // neighbour's height factor if the latter is less.
   std::optional<double> bend_toward(const SpringLattice& lattice, int neighbour, int node,
                                     double& height_factor) const;
-  // Displacement of a shell node from the shape without its bump.
+  // Returns the displacement of a shell node from the shape without its bump.
   Vector3 measure_bump(const SpringLattice& lattice, int node) const;
   // Position of an inner node relative to its six neighbours.
   struct NeighbourCentre {
@@ -68,15 +70,16 @@ class Smoothing {
   };
   template <class PositionOf>
   NeighbourCentre neighbour_centre_at(int node, const PositionOf& position_of) const;
-  // Displacement of an inner node from its rest position relative to its neighbours.
+  // Returns the displacement of an inner node from its rest position relative to its neighbours.
   Vector3 measure_centre_offset(const SpringLattice& lattice, int node) const;
-  // Sets the pairs of a shell node, in the order that makes their cross product point out of the body.
+  // Sets the pairs of a shell node. Their order makes the cross product of the two directions point out of
+  // the body.
   void connect(const LatticeMesh& mesh, int node);
 
-  // Neighbours before and after an inner node along an axis, over the seam of a closed block.
+  // Returns the neighbours before and after an inner node along an axis, across the seam of a closed block.
   std::array<int, 2> beside(int node, int axis) const;
 
-  std::vector<ShellNode> shell_;                   // by node
+  std::vector<ShellNode> shell_;                   // one entry for each node
   std::vector<std::array<double, 2>> rest_per_m_;  // rest curvatures of shell nodes
   std::vector<Vector3> rest_centre_;               // rest offsets of inner nodes, as fractions of `across`
   std::array<int, 3> stride_{};

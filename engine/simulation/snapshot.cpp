@@ -15,7 +15,7 @@ void add_to_hash(const KnotVector& direction, StateHash& hash) {
   for (const double knot : direction.knots()) hash.add(knot);
 }
 
-// Hashes the knots instead of counting changes, so that surfaces of different sessions differ too.
+// Returns a hash of the knots. A counter of changes would not distinguish the surfaces of different sessions.
 std::uint64_t fingerprint_structure(const Surface& surface) {
   StateHash hash;
   add_to_hash(surface.u, hash);
@@ -136,7 +136,7 @@ void add_tool_contacts(const Simulation::State& s, std::vector<ContactSnapshot>&
   }
 }
 
-// Adds the contact of two bodies that push each other, on the surface of each.
+// Adds the contact of two bodies that push each other: one point on the surface of each.
 void add_pair_contacts(const Simulation::State& s, const BodyPairContact& pair, std::size_t first,
                        std::size_t second, std::vector<ContactSnapshot>& contacts) {
   if (!s.between.acted(static_cast<int>(first), static_cast<int>(second))) return;

@@ -25,34 +25,35 @@ struct SurfaceSnapshot {
 
 // Triangles of a soft mesh tool, counter-clockwise seen from outside.
 struct MeshSnapshot {
-  std::shared_ptr<const std::vector<std::array<std::uint32_t, 3>>> triangles;  // shared while the tool stays
-  std::vector<float> x, y, z;                                                  // vertices in metres
+  // Shared while the tool stays the same.
+  std::shared_ptr<const std::vector<std::array<std::uint32_t, 3>>> triangles;
+  std::vector<float> x, y, z;  // vertices in metres
 };
 
 // Nodes of a body's lattice. Node (i, j, k) is at (i * count[1] + j) * count[2] + k, with k along the body.
 // Edges join neighbours in each of the three directions.
 struct LatticeSnapshot {
   int count[3] = {0, 0, 0};
-  std::vector<float> x, y, z;          // metres
+  std::vector<float> x, y, z;          // positions in metres
   std::vector<std::uint8_t> fixed;     // 1 where the node is fixed
   std::vector<std::uint8_t> touched;   // 1 where a contact acted on the node in this tick
   std::vector<std::uint8_t> on_shell;  // 1 where the node is on the surface or next to it
-  // 0 for nodes of a box lattice that are far from the body. They are neither fixed, touched nor drawn.
+  // 1 for nodes in or on the body, 0 for other nodes of a box lattice, which are not fixed, touched or drawn.
   std::vector<std::uint8_t> in_body;
 };
 
 struct ToolSnapshot {
   ToolKind kind = ToolKind::sphere;
   ToolAction action = ToolAction::push;
-  int substeps = 0;  // in a tick, as set
+  int substeps = 0;  // substeps of a tick at rest
   double radius_m = 0.0;
   std::shared_ptr<const ToolBody> body;  // body of a rigid solid; a soft tool is drawn as the last body
   Pose device;                           // pose of the hand
-  Pose proxy;                            // pose at which the material stops the tool, which is drawn
+  Pose proxy;                            // pose at which the material stops the tool; the tool is drawn there
   bool button = false;
 };
 
-// Fixing plane, which fixes everything on the side opposite to its normal.
+// Fixing plane. It fixes everything on the side opposite to its normal.
 struct PlaneSnapshot {
   Vector3 point_m = Vector3::Zero();
   Vector3 normal = Vector3::UnitX();
@@ -60,13 +61,13 @@ struct PlaneSnapshot {
 
 // Deepest contact of a body with the tool or with another body.
 struct ContactSnapshot {
-  int body = 0;                       // index in Snapshot::bodies
-  Vector3 point_m = Vector3::Zero();  // on the body's surface, as the tick found it
-  Vector3 normal = Vector3::UnitY();  // unit, outward from the body
-  Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();  // tangents_across() the normal
+  int body = 0;                       // index of the body in Snapshot::bodies
+  Vector3 point_m = Vector3::Zero();  // point of the body's surface, as the tick found it
+  Vector3 normal = Vector3::UnitY();  // unit normal, outward from the body
+  Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();  // from tangents_across() the normal
   double depth_m = 0.0;                                                // negative before the surfaces touch
   double u = 0.0, v = 0.0;
-  EmbeddedPoint nodes;  // nodes of the body's lattice on which a push acts, with weights
+  EmbeddedPoint nodes;  // nodes of the body's lattice on which a push at the point acts
 };
 
 struct MaterialSnapshot {
@@ -76,12 +77,13 @@ struct MaterialSnapshot {
   int implicit_nodes = 0;      // nodes of the implicit solver; 0: springs step the body explicitly
   double poissons_ratio = 0.0;
   double density_kg_per_m3 = 0.0;
-  double drag_per_s = 0.0;  // mass-proportional
+  double drag_per_s = 0.0;  // mass-proportional drag
   bool plastic = false;
-  double lattice_mass_kg = 0.0;  // that of the whole surface if the body has trims
+  double lattice_mass_kg = 0.0;  // mass of the whole surface if the body has trims
 };
 
-// Distance by which a body's surface lags behind its lattice, since its knots or fixing planes last changed.
+// Part of the lattice's displacement that a body's surface does not follow. Counted since its knots or fixing
+// planes last changed.
 struct ResidualSnapshot {
   double largest_m = 0.0;
   double root_mean_square_m = 0.0;
@@ -91,9 +93,9 @@ struct BodySnapshot {
   SurfaceSnapshot surface;
   LatticeSnapshot lattice;
   MaterialSnapshot material;
-  ResidualSnapshot residual = {};  // bodies with a surface only
-  MeshSnapshot mesh = {};          // soft meshes only, which have no surface
-  double shell_thickness_m = 0.0;  // behind the surface; 0 for a solid
+  ResidualSnapshot residual = {};  // only for bodies with a surface
+  MeshSnapshot mesh = {};          // only for soft meshes, which have no surface
+  double shell_thickness_m = 0.0;  // thickness behind the surface; 0 for a solid
 
   bool is_mesh() const { return mesh.triangles != nullptr; }
 };
@@ -105,7 +107,7 @@ struct DeviceSnapshot {
   double nominal_rate_hz = 1000.0;
 };
 
-// Events in a tick. The comment of each bit names the remedy.
+// Events in a tick. The comment of each bit states the cause and a remedy.
 enum TickFlag : std::uint32_t {
   tick_flag_none = 0,
   tick_flag_nodes_slowed = 1u << 0,      // substep limit reached, strained nodes lag: move more slowly
@@ -121,14 +123,14 @@ struct Snapshot {
   std::vector<BodySnapshot> bodies;  // bodies of the scene, then a soft tool
   ToolSnapshot tool;
   std::vector<PlaneSnapshot> planes;
-  bool symmetric = false;  // a second tool mirrors the first
+  bool symmetric = false;  // true if a second tool mirrors the first
   PlaneSnapshot symmetry;
   Pose mirrored_proxy;  // proxy of the second tool, if symmetric
   std::vector<ContactSnapshot> contacts;
-  Vector3 force_n = Vector3::Zero();  // on the hand, after force scale and limit
+  Vector3 force_n = Vector3::Zero();  // force on the hand, after force scale and limit
   DeviceSnapshot device;
-  int substeps = 0;            // in the last tick
-  int real_time_substeps = 0;  // that a tick would take in real time, at rest
+  int substeps = 0;            // substeps of the last tick
+  int real_time_substeps = 0;  // substeps of a tick at rest with an inertia scale of 1
   std::uint32_t flags = tick_flag_none;
 
   double time_s() const { return static_cast<double>(tick) * 1e-3; }

@@ -9,9 +9,9 @@
 namespace spoonbill {
 namespace {
 
-// Number of cached structures at which the cache is cleared. A session rarely needs as many.
+// Number of cached entries at which the cache is cleared. A session rarely needs as many.
 constexpr std::size_t max_cached_structures = 32;
-// Fingerprint that stands for the tool.
+// Stands for the tool where a fingerprint of knots is expected.
 constexpr std::uint64_t tool_structure = 0;
 
 std::optional<Surface> make_surface_of(const SurfaceSnapshot& snapshot) {
@@ -27,12 +27,13 @@ std::optional<Surface> make_surface_of(const SurfaceSnapshot& snapshot) {
   return std::move(surface).value();
 }
 
-// Returns whether the tool is one of the snapshot's bodies.
+// Returns whether the tool is soft, and so one of the snapshot's bodies.
 bool is_soft_body(const ToolSnapshot& tool) {
   return tool.kind == ToolKind::solid && (!tool.body || tool.body->soft);
 }
 
-// Returns the cached stages of a key. Calls `make` if they are missing; returns null if it fails.
+// Returns the cached stages of a key. Makes them with `make` if they are missing; returns null if `make`
+// fails.
 template <class Key, class Stages, class Make>
 Stages* find_or_make(std::map<Key, Stages>& all, const Key& key, const Make& make) {
   const auto found = all.find(key);

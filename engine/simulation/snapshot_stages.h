@@ -1,5 +1,5 @@
 // Contact debug views: the collision stages of every contact in a snapshot. They cover the tool and its
-// mirror image against every body, and every body against every other one.
+// mirror image against every body, and every pair of bodies.
 #pragma once
 
 #include <cstdint>
@@ -14,28 +14,29 @@
 
 namespace spoonbill {
 
-// Largest gap at which a contact is drawn, in metres: about the gap between pressed bodies and tools.
+// Largest gap at which a contact is drawn, in metres. It is about the gap that remains between pressed bodies
+// and tools.
 inline constexpr double stage_margin_m = 1e-4;
 
-// Collision stages for drawing. The result depends on the snapshot alone, whose control points are floats.
-// Data that depends only on knots and tool is cached between snapshots. One owner, on the drawing thread;
-// allocates.
+// Finds collision stages for drawing. The result depends only on the snapshot, whose control points are
+// floats. Data that depends only on knots and tool is cached between snapshots. One owner, on the drawing
+// thread; allocates.
 class SnapshotStages {
  public:
-  // Skips bodies whose control net does not fit their knots or is not finite.
+  // Finds the stages of a snapshot. Skips bodies whose control net does not fit their knots or is not finite.
   ContactStages find(const Snapshot& snapshot);
 
  private:
   struct Solid {
     std::shared_ptr<const ToolBody> made_from;
-    std::shared_ptr<const SignedDistance> distance;  // implicit or tessellated tools
-    std::shared_ptr<const Surface> surface;          // B-spline tools, in the tool's frame
+    std::shared_ptr<const SignedDistance> distance;  // only for implicit or tessellated tools
+    std::shared_ptr<const Surface> surface;          // only for B-spline tools, in the tool's frame
   };
-  // Surface of a body or a tool, and the fingerprint of its knots.
+  // Surface of a body or a tool, with the fingerprint of its knots.
   struct StructuredSurface {
     const Surface* surface;
     std::uint64_t structure;
-    bool closed = true;  // encloses a solid, with du x dv outward
+    bool closed = true;  // whether it encloses a solid, with du x dv outward
     std::shared_ptr<const TrimmedArea> trim = {};
   };
 

@@ -57,7 +57,7 @@ Result<BodyState> make_soft_mesh(const MeshSolid& solid, const SoftTool& soft, I
 
 namespace {
 
-// Samples of a rigid tool are a quarter of an element apart.
+// Number of times that the elements of a rigid tool are halved: samples are a quarter of an element apart.
 constexpr int tool_levels = 2;
 
 // Returns the extent of a box, limited to 0.1 m for unbounded tools such as a half-space.
@@ -104,7 +104,7 @@ struct ModelBuilder {
     return model;
   }
 
-  // Makes the model of a soft tool, whose grip plane the hand holds.
+  // Makes the model of a soft tool. The hand holds the nodes behind its grip plane.
   Result<ToolModel> make_soft_model(Result<BodyState> soft) const {
     if (!soft.ok()) return soft.error().in("tool");
     // The springs step a soft tool, because the hand carries nodes of the lattice.
@@ -142,16 +142,16 @@ namespace {
 
 constexpr int constraint_capacity = 1024;
 
-// Gap below which a sample becomes a constraint, in lattice cells: the largest distance that the refit may
-// leave between the colliding surface and the lattice.
+// Gap below which a sample becomes a constraint, in lattice cells. It is the largest distance that the refit
+// may leave between the surface used for collision and the lattice.
 constexpr double tool_margin_cells = 0.5;
 
 double find_margin_m(const BodyState& body) {
   return tool_margin_cells * static_cast<double>(body.lattice.cell_size_m());
 }
 
-// Returns the direction in which the tool pushes a point: the gradient of its distance; zero at a sphere's
-// centre.
+// Returns the direction in which the tool pushes a point: the gradient of its distance function; zero at a
+// sphere's centre.
 Vector3 push_direction_at(const ToolShape& tool, const Vector3& point_m) {
   if (tool.is_solid()) return tool.at(point_m).gradient;
   const Vector3 from_centre = point_m - tool.centre_m;
@@ -240,8 +240,8 @@ void ToolContact::grip(std::span<const BodyState> bodies, const ToolHold& hold) 
   gripped_ = true;
 }
 
-// A body that the tool has pressed vibrates against it. A lifted tool therefore counts as clear of the body
-// only at a distance of a margin or, while it hovers, outside the body.
+// After a push, the body vibrates against the tool. A lifted tool therefore counts as clear of the body only
+// at a distance of one margin or, while it hovers, outside the body.
 bool ToolContact::acts(bool inside, bool near, const ToolHold& hold) {
   const bool is_against = hold.hovering ? inside : near;
   lifted_ = lifted_ && (is_against || hold.gripping);
@@ -262,7 +262,7 @@ void ToolContact::find(BodyContact& contact, const BodyState& body, const Tool& 
   if (is_surface()) return find_near_points(contact, body, margin, hold);
   shape_ = make_shape(tool, model, hold);
   const double thickness = body.shell_thickness_m;
-  // A tool can come inside through the holes of a trimmed surface, which is open.
+  // A trimmed surface is open: a tool can get inside through its holes.
   const bool closed = !(thickness > 0.0) && !body.trim;
   contact.collision = contact.collider.collide(body.mapping().current(), shape_, margin + thickness, closed);
   if (thickness > 0.0) select_shell_face(contact, body, margin);
@@ -281,8 +281,8 @@ void ToolContact::select_shell_face(BodyContact& contact, const BodyState& body,
   Vector3 normal = nearest.normal;
   bool behind = false;
   if (is_small(body)) {
-    // A small tool can be within the shell. Then the tool's position, not its push direction, decides which
-    // face it touches.
+    // A small tool can be inside the shell. Its position, not its push direction, then decides which face it
+    // touches.
     double gap = 0.0;
     collision.found = find_shell_gap(surface, thickness, nearest.u, nearest.v, shape_.centre_m,
                                      margin + shape_.radius_m, normal, gap);
@@ -431,7 +431,7 @@ double ToolContact::find_gap(const BodyState& state, const NearSample& sample) c
                   grid.v.parameters[sample.index % grid.columns()], sample.distance_m);
 }
 
-// Adds pushes away from the tool, at either face of the shell.
+// Adds pushes away from the tool on either face of the shell.
 void ToolContact::add_shell_pushes(int body, const BodyState& state, const ToolHold& hold) {
   BodyContact& contact = contacts_[body];
   const SurfaceContact& nearest = contact.collision.nearest;
@@ -452,9 +452,9 @@ void ToolContact::add_shell_pushes(int body, const BodyState& state, const ToolH
   }
 }
 
-// Adds pushes for the samples and for the nearest point's tangent plane. The tangent plane is added for a
-// tool that fits between samples, or for one so near that its nearest point remains the nearest throughout a
-// tick.
+// Adds pushes for the samples near the tool, and one for the tangent plane at the nearest point. The tangent
+// plane is added for a tool that fits between samples, and for a tool so close that its nearest point remains
+// the nearest throughout a tick.
 void ToolContact::add_sphere_pushes(int body, const BodyState& state, const ToolHold& hold) {
   BodyContact& contact = contacts_[body];
   const SurfaceContact& nearest = contact.collision.nearest;
@@ -471,8 +471,8 @@ void ToolContact::add_sphere_pushes(int body, const BodyState& state, const Tool
   }
 }
 
-// Uses the gap of the surface instead of that of the embedded point, whose offset from the surface is
-// constant over a tick.
+// Adds a push whose plane is offset by the gap of the surface. The embedded point itself has a slightly
+// different gap, but its offset from the surface is constant over a tick.
 void ToolContact::add_plane_push(int body, const BodyState& state, const Pushed& pushed,
                                  const ToolHold& hold) {
   const Vector3 from_centre = pushed.point.position_m(state.lattice) - hold.pose.position_m;

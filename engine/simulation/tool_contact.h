@@ -1,5 +1,5 @@
-// The tool as the simulation uses it: its model, made outside the tick, and its contact with the bodies in a
-// tick.
+// The tool as the simulation uses it: its model, which is made outside the tick, and its contact with the
+// bodies in a tick.
 #pragma once
 
 #include <array>
@@ -24,20 +24,21 @@ namespace spoonbill {
 inline constexpr double soft_edge_cells = 0.5;
 
 // Makes the body of a soft tool from triangles, with no node fixed. Refuses a mesh that passes through
-// itself, or that has more than soft_mesh_triangle_limit triangles once its edges are short enough; the error
-// names the field.
+// itself. Also refuses a mesh that has more than soft_mesh_triangle_limit triangles once its edges are short
+// enough. The error names the field.
 Result<BodyState> make_soft_mesh(const MeshSolid& solid, const SoftTool& soft, InstructionSet set);
 
 // Body of a tool prepared for contact; empty for a point or a sphere. Made outside the tick, owned by a
 // simulation.
 struct ToolModel {
-  std::shared_ptr<const SignedDistance> distance;  // rigid implicit or tessellated tools
-  std::shared_ptr<const Surface> surface;          // rigid B-spline tools, in the tool's frame
+  std::shared_ptr<const SignedDistance> distance;  // only for rigid implicit or tessellated tools
+  std::shared_ptr<const Surface> surface;          // only for rigid B-spline tools, in the tool's frame
   std::shared_ptr<const NestedGrid> nested;        // samples of `surface`
-  double extent_m = 0.0;                           // largest distance of the tool from its frame's origin
-  std::optional<BodyState> soft;                   // soft tools, with the rest shape in the tool's frame
-  std::vector<int> gripped;                        // nodes of `soft` that the hand holds
-  std::shared_ptr<const std::vector<TriangleCorners>> triangles;  // soft meshes; shared with snapshots
+  double extent_m = 0.0;          // largest distance of a point of the tool from its frame's origin
+  std::optional<BodyState> soft;  // only for soft tools, with the rest shape in the tool's frame
+  std::vector<int> gripped;       // nodes of `soft` that the hand holds
+  // Only for soft meshes; shared with snapshots.
+  std::shared_ptr<const std::vector<TriangleCorners>> triangles;
 };
 
 // Returns the body from which a tool's model is made; null for a point or a sphere.
@@ -45,7 +46,7 @@ inline std::shared_ptr<const ToolBody> find_model_body(const Tool& tool) {
   return tool.kind == ToolKind::solid ? tool.body : nullptr;
 }
 
-// Refuses a body that cannot be simulated; the error names the field.
+// Makes the model of a tool. Refuses a body that cannot be simulated; the error names the field.
 Result<ToolModel> make_tool_model(const Tool& tool, InstructionSet set);
 
 // Pose of a tool in the hand, and what the hand does with it.
@@ -58,9 +59,9 @@ struct ToolHold {
   bool hovering = false;
 };
 
-// Contact of one tool with the bodies: finds where it touches their surfaces and adds constraints on their
-// lattices. One owner, the simulation, which rebuilds it with the mapping of a body or the model of the tool.
-// prepare() allocates nothing.
+// Contact of one tool with the bodies: finds where the tool touches their surfaces and adds constraints on
+// their lattices. One owner, the simulation, which rebuilds it with the mapping of a body or the model of the
+// tool. prepare() allocates nothing.
 class ToolContact {
  public:
   ToolContact(std::span<const BodyState> bodies, const ToolModel& model);
@@ -69,30 +70,31 @@ class ToolContact {
   // tick. A tool that has hovered does not act again until it has stopped hovering and is outside the bodies.
   void prepare(std::span<const BodyState> bodies, const Tool& tool, const ToolModel& model,
                const ToolHold& hold);
-  // Prepares a soft tool, which touches the bodies as a body itself.
+  // Prepares a tick with a soft tool, which touches the bodies as a body of the simulation.
   void prepare_soft();
-  // Updates whether the tool acts in this tick, given whether it is inside a body and near one, and returns
-  // the result.
+  // Updates whether the tool acts in this tick, and returns it. `inside` is true if the tool is inside a
+  // body, `near` if it is near one.
   bool acts(bool inside, bool near, const ToolHold& hold);
   void release();
 
-  // Keeps the bodies' surfaces out of the tool in this tick; the surfaces slide along the tool. For kernels,
-  // after prepare() has found the contacts.
+  // Keeps the bodies' surfaces out of the tool in this tick; the surfaces slide along the tool. To be called
+  // by kernels, after prepare() has found the contacts.
   void push(std::span<const BodyState> bodies, const ToolHold& hold);
-  // Holds the part of the surface that is inside the tool fixed in the tool's frame, until release(). For
-  // kernels, like push().
+  // Holds the part of the surface that is inside the tool fixed in the tool's frame, until release(). To be
+  // called by kernels, after prepare() has found the contacts.
   void grip(std::span<const BodyState> bodies, const ToolHold& hold);
   bool gripped() const { return gripped_; }
 
-  // Suspends the tool from the next prepare() on, until the button is released and the tool is a margin away
-  // from the bodies or hovers outside them.
+  // Suspends the tool from the next prepare() on. It acts again when the button is released and the tool is a
+  // margin away from the bodies or hovers outside them.
   void lift();
   bool lifted() const { return lifted_; }
   bool hovered() const { return hovered_; }
 
   ContactConstraints& constraints() { return constraints_; }
   const ContactConstraints& constraints() const { return constraints_; }
-  // Collision with one body, by index, and the index of the body in which the tool is deepest.
+  // collision() returns the collision with a body. deepest_body() returns the index of the body in which the
+  // tool is deepest.
   const CollisionResult& collision(int body) const { return contacts_[body].collision; }
   int deepest_body() const;
   bool overflow() const { return overflow_; }
@@ -118,17 +120,17 @@ class ToolContact {
   };
   struct BodyContact {
     SurfaceCollider collider;
-    std::unique_ptr<SurfaceProximity> proximity;  // B-spline tools only
+    std::unique_ptr<SurfaceProximity> proximity;  // only for B-spline tools
     CollisionResult collision;
     // The nearest point may jump between places where the tool is equally deep. Each place stays constrained
     // while it pushes; otherwise the force would ripple. The key of a point is nearest_point_key minus its
     // index.
     std::array<ContactPoint, 4> points;
   };
-  // Point of a body's surface, and the tangent plane of the tool beyond which it must stay.
+  // Point of a body's surface, and the tangent plane of the tool that the point must not cross.
   struct Pushed {
     EmbeddedPoint point;
-    Vector3 normal;  // unit, away from the tool
+    Vector3 normal;  // unit normal, away from the tool
     double gap_m;
     int key;  // see nearest_point_key
   };
@@ -136,14 +138,15 @@ class ToolContact {
   void find(BodyContact& contact, const BodyState& body, const Tool& tool, const ToolModel& model,
             const ToolHold& hold);
   void find_near_points(BodyContact& contact, const BodyState& body, double margin, const ToolHold& hold);
-  // Replaces the contact with a shell's surface by the contact with the face that is nearest to the tool.
+  // Replaces the contact with a shell's surface by the contact with the face of the shell that is nearest to
+  // the tool.
   void select_shell_face(BodyContact& contact, const BodyState& body, double margin) const;
   // Assigns the nearest point of the last find() to one of the contact points and returns that point's index.
   // Frees the points that pushed with no force in the last tick.
   std::size_t track_nearest(int body, const BodyState& state, double reach_m);
   // Adds pushes at the contact points other than the nearest one.
   void add_earlier_pushes(int body, const BodyState& state, std::size_t nearest, const ToolHold& hold);
-  // Returns whether the tool is a sphere that fits between samples.
+  // Returns whether the tool is a sphere that fits between the samples of the body's surface.
   bool is_small(const BodyState& body) const;
   // Returns whether the tool in the hand is a B-spline. Checks the tool's kind as well, because the model may
   // belong to an earlier solid tool.
@@ -161,9 +164,9 @@ class ToolContact {
   template <class Visit>
   void visit_near(BodyContact& contact, const BodyState& state, const Visit& visit);
 
-  std::vector<BodyContact> contacts_;  // by body
-  std::unique_ptr<Surface> placed_;    // B-spline tools, in world coordinates
-  ToolShape shape_;                    // all other tools
+  std::vector<BodyContact> contacts_;  // contact with each body
+  std::unique_ptr<Surface> placed_;    // only for B-spline tools, in world coordinates
+  ToolShape shape_;                    // for all other tools
   ContactConstraints constraints_;
   bool is_solid_ = false;
   bool gripped_ = false;

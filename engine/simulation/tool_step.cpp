@@ -14,15 +14,15 @@ void push(ToolContact& contact, const ToolTouch& touch) {
   contact.push(touch.bodies, touch.hold);
 }
 
-// Pull: grips what is inside the tool when the button goes down, and fixes it in the tool's frame until the
-// button is released.
+// Pull: grips the surface inside the tool when the button goes down, and fixes it in the tool's frame until
+// the button is released.
 void pull(ToolContact& contact, const ToolTouch& touch) {
   if (!touch.hold.gripping) return contact.release();
   if (touch.inside && !contact.gripped()) contact.grip(touch.bodies, touch.hold);
 }
 
-// Smooth: smooths the surface under the tool (smoothing.h), within the tool's radius, or within a few cells
-// for a small tool. The tool slides on the surface without denting it.
+// Smooth: smooths the surface under the tool (see smoothing.h) within the tool's radius, but at least within
+// a few cells. The tool slides on the surface without denting it.
 void smooth(Simulation::State& s, const HeldTool& held) {
   constexpr double least_reach_cells = 2.5;
   const int number = held.contact.deepest_body();
@@ -38,7 +38,7 @@ void smooth(Simulation::State& s, const HeldTool& held) {
   if (body.solver()) body.solver()->adopt_moved_nodes(body.lattice);
 }
 
-// Kernels in the order of the actions. A kernel without constrain() does not compile.
+// Kernels in the order of tool_actions. A kernel without constrain() does not compile.
 constexpr ToolKernel kernels[] = {
     {.constrain = push},
     {.constrain = pull},
@@ -56,8 +56,8 @@ const ToolKernel& find_kernel(ToolAction action) {
 
 namespace {
 
-// Returns the coupling stiffness. With an implicitly solved body, even a hand without coupling gets a
-// coupling spring, because a stiff body does not yield to a rigidly held tool.
+// Returns the stiffness of the spring between hand and tool. If any body has an implicit solver, a hand
+// without coupling also gets a spring, because a stiff body does not yield to a rigidly held tool.
 double choose_coupling(const Simulation::State& s, double wanted_n_per_m) {
   constexpr double hold_n_per_m = 1000.0;
   const auto is_stiff = [](const BodyState& body) { return body.solver() != nullptr; };
@@ -132,7 +132,8 @@ ToolHold make_mirrored_hold(const Symmetry& symmetry, const ToolInput& input) {
 
 namespace {
 
-// Returns the mean force of all bodies on the tool over the tick. The body of a soft tool is one of them.
+// Returns the mean force of all bodies on the tool over the tick. With a soft tool, its own lattice is one of
+// these bodies: it pulls on the nodes that the hand holds.
 Vector3 compute_force(const Simulation::State& s) {
   Vector3 impulse = Vector3::Zero();
   for (std::size_t b = 0; b < s.stepped_count(); ++b) {
@@ -154,7 +155,8 @@ bool update_soft_touch(Simulation::State& s) {
 }
 
 // Computes the reaction of a soft tool, whose own softness replaces the coupling spring. The force on the
-// hand rises no faster than with the spring, and the proxy is where the spring would hold the tool.
+// hand is limited to that of a coupling spring stretched since the touch began, and the proxy is where the
+// spring would hold the tool.
 void react_with_soft_tool(Simulation::State& s, double coupling_n_per_m) {
   s.reaction.touching = update_soft_touch(s);
   Vector3 force = s.reaction.touching ? compute_force(s) : Vector3::Zero();

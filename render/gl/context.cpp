@@ -14,8 +14,8 @@ namespace spoonbill {
 
 namespace {
 
-// Size of OSMesa's own framebuffer, which is as small as possible because the renderer draws into
-// framebuffers of its own.
+// Side of OSMesa's own framebuffer. It is as small as possible, because the renderer draws into framebuffers
+// of its own.
 constexpr int own_framebuffer_side_px = 16;
 constexpr int maximum_side_px = 16384;
 

@@ -39,8 +39,8 @@ class GlContext {
 // A GL context without window or display: Mesa's software renderer, which draws into memory.
 class OsmesaContext final : public GlContext {
  public:
-  // Makes a context with a core profile of OpenGL 3.3 or later, which is not current yet. Errors, with the
-  // remedy: sizes outside 1 to 16384, no libOSMesa, a Mesa without a core profile.
+  // Makes a context with a core profile of OpenGL 3.3 or later. The context is not current yet. Errors, with
+  // the remedy: sizes outside 1 to 16384, no libOSMesa, a Mesa without a core profile.
   static Result<std::unique_ptr<OsmesaContext>> make(int width_px, int height_px);
 
   ~OsmesaContext() override;
@@ -67,8 +67,8 @@ class OsmesaContext final : public GlContext {
   std::vector<unsigned char> own_framebuffer_;
 };
 
-// A shared library opened by name when it is needed, not at program start: OSMesa depends on LLVM, whose
-// relocations alone take longer than most commands.
+// A shared library opened by name when it is needed, not at program start. OSMesa depends on LLVM, whose
+// relocations alone take longer than most commands of the program.
 //
 // The library stays open until the process ends, because drivers do not support unloading and reopening is
 // free. Usable from any thread.

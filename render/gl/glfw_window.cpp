@@ -18,7 +18,8 @@ void* glfw_symbol(const char* name) {
   return library ? library->symbol(name) : nullptr;
 }
 
-// X(result, name, parameters, arguments): the declarations must match those of the GLFW header.
+// List of X(result, name, parameters, arguments), one for each GLFW function in use. The declarations must
+// match those of the GLFW header.
 #define SPOONBILL_GLFW_FUNCTIONS(X)                                                                          \
   X(GLFWcursor*, glfwCreateStandardCursor, (int shape), (shape))                                             \
   X(GLFWwindow*, glfwCreateWindow,                                                                           \
@@ -116,7 +117,7 @@ void request_core_profile() {
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-  // The renderer has its own depth buffer and samples.
+  // The renderer has its own depth buffer and multisampling.
   glfwWindowHint(GLFW_DEPTH_BITS, 0);
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
   glfwWindowHint(GLFW_SAMPLES, 0);

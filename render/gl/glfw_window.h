@@ -46,11 +46,12 @@ class GlfwWindow final : public GlContext {
   // Shows the frame and waits for the next refresh of the display if the driver can. Requires make_current().
   void swap() override;
 
-  // Size of the window in screen coordinates, in which the pointer moves. These are pixels on X11, but not
-  // everywhere.
+  // Size of the window in screen coordinates, which are also the unit of the pointer's position. On X11 they
+  // are pixels, but not everywhere.
   int width() const;
   int height() const;
-  void resize(int width, int height);  // screen coordinates; the display may delay or refuse the change
+  // Resizes the window, in screen coordinates. The display may delay or refuse the change.
+  void resize(int width, int height);
 
   // Returns the number of display pixels along one pixel of the interface: 1 on an ordinary display, 2 on a
   // dense one. Changes when the window moves to another display.
@@ -69,7 +70,7 @@ class GlfwWindow final : public GlContext {
 
   // A key that was pressed. Holding a key does not repeat it.
   struct KeyPress {
-    int key = 0;  // GLFW_KEY_
+    int key = 0;  // a GLFW_KEY_ constant
     bool ctrl = false;
     bool shift = false;
   };

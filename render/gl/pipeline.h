@@ -12,7 +12,8 @@
 
 namespace spoonbill {
 
-// X(type, name): a member `name` of the type, loaded as "gl" + name.
+// List of X(type, name), one for each GL function in use. `name` becomes a member of GlFunctions and is
+// loaded as "gl" + name.
 #define SPOONBILL_GL_FUNCTIONS(X)                                            \
   X(PFNGLACTIVETEXTUREPROC, ActiveTexture)                                   \
   X(PFNGLATTACHSHADERPROC, AttachShader)                                     \
@@ -94,7 +95,7 @@ struct GlFunctions {
 #undef SPOONBILL_GL_MEMBER
 };
 
-// Loads the functions from the context, which must be current. A missing function is an error that names the
+// Loads the functions from the context, which must be current. If a function is missing, the error names the
 // function and the remedy.
 Result<GlFunctions> load_gl_functions(const GlContext& context);
 
@@ -149,7 +150,7 @@ class Program {
 
   void use() const { gl_->UseProgram(handle_.id()); }
 
-  // Sets a uniform; the program must be in use. A name that the compiler removed is ignored.
+  // Sets a uniform; the program must be in use. A uniform that the compiler removed is ignored.
   void set(const char* name, int value) const;
   void set(const char* name, float value) const;
   void set(const char* name, const Eigen::Vector2f& value) const;
@@ -168,8 +169,8 @@ enum class Depth { off, test, test_and_write };
 enum class Blend { off, premultiplied, maximum };  // premultiplied: source over; maximum: per channel
 enum class Cull { off, back, front };
 
-// The fixed-function state of a draw call. Every pass sets all of it, so that no pass depends on an earlier
-// one. The render target and the interface manage scissoring.
+// The fixed-function state of a draw call. Every pass sets the complete state, so that no pass depends on an
+// earlier pass. Scissoring is not included; the render target and the interface manage it.
 struct PipelineState {
   Depth depth = Depth::off;
   Blend blend = Blend::off;

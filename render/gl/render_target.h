@@ -29,8 +29,8 @@ class RenderTarget {
   int height_px() const { return height_px_; }
   int samples() const { return samples_; }
 
-  // Binds the scene and clears its colour and depth in these areas. Pixels outside them belong to an earlier
-  // frame.
+  // Binds the scene and clears its colour and depth in these areas. Pixels outside the areas belong to an
+  // earlier frame.
   void begin_scene(std::span<const PixelArea> areas) const;
 
   // Binds the frame, which has no depth buffer. Every pixel must be written first.

@@ -155,7 +155,7 @@ void append_cell_lines(const LatticeSnapshot& lattice, const Eigen::Vector3f& ey
       edges.push_back({low, high, is_near});
     }
   });
-  // The near one of two equal edges is sorted first and is kept.
+  // The near edge of two equal edges is sorted first and is kept.
   std::sort(edges.begin(), edges.end(), [](const Edge& one, const Edge& other) {
     if (one.from != other.from) return one.from < other.from;
     if (one.to != other.to) return one.to < other.to;

@@ -11,14 +11,14 @@ namespace {
 
 constexpr double cells_across_view = 22.0;
 constexpr int strong_every = 5;
-constexpr double fade_end_fraction = 0.85;    // fraction of the visible width at the target
-constexpr double fade_start_fraction = 0.30;  // fraction of the radius
+constexpr double fade_end_fraction = 0.85;    // grid radius / visible width at the target
+constexpr double fade_start_fraction = 0.30;  // radius at which fading starts / grid radius
 constexpr double strong_alpha = 88.0, thin_alpha = 46.0;
 constexpr float line_width_px = 1.0f;
 constexpr int pieces_per_line = 12;
 
 constexpr double bar_width_fraction = 0.17;
-constexpr double bar_height_fraction = 0.87;  // from the top of the free rectangle
+constexpr double bar_height_fraction = 0.87;  // height of the bar in the free rectangle, from its top
 constexpr float bar_width_px = 2.2f;
 
 std::uint8_t faded(double alpha, double distance_m, double radius_m) {

@@ -60,7 +60,7 @@ void add_stage(const Snapshot& snapshot, const ViewSettings& settings, const Vie
   const Rectangle& free = viewport.free_px;
   Label label;
   label.text = *caption;
-  // The panel begins below the menu, and so does the caption.
+  // The caption begins below the menu, as the panel does.
   const double top = std::max(free.y, settings.panel_px.y);
   label.position_px = {free.x + 0.5 * free.width, top + 18.0 * settings.interface_scale};
   label.anchor = {0.5, 0.0};

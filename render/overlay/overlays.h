@@ -26,7 +26,7 @@ struct OverlayLine {
   Eigen::Vector3f end_m = Eigen::Vector3f::Zero();
   Colour start_colour;
   Colour end_colour;
-  float width_px = 1.0f;  // before the interface scale
+  float width_px = 1.0f;  // width before the interface scale
 };
 
 enum class MarkShape { square, disc, diamond };
@@ -35,7 +35,7 @@ enum class MarkShape { square, disc, diamond };
 struct OverlayMark {
   Eigen::Vector3f position_m = Eigen::Vector3f::Zero();
   Colour colour;
-  float radius_m = 0.0f;    // half the width in the world
+  float radius_m = 0.0f;    // half the width of the mark, in the world
   float minimum_px = 2.0f;  // smallest radius on the screen, before the interface scale
   float shape = 0.0f;       // a MarkShape
 };
@@ -61,7 +61,7 @@ struct OverlayArrow {
 
 // Lattice and control net: body_overlays.cpp.
 
-// Returns the smallest of the mean edge lengths along the three directions of the lattice, in metres: the
+// Returns the smallest of the three mean edge lengths along the directions of the lattice, in metres: the
 // space available for marks. Zero for a lattice without edges.
 float mean_edge_m(const LatticeSnapshot& lattice);
 
@@ -95,8 +95,8 @@ void append_control_net(const SurfaceSnapshot& surface, std::vector<OverlayLine>
 
 using PlaneCorners = std::array<Vector3, 4>;  // in order around a rectangle
 
-// Returns an upright rectangle in a fixing plane, around the fixed nodes, because these do not move while the
-// body bends; around the box of the body if no node is fixed.
+// Returns an upright rectangle in a fixing plane. It is around the fixed nodes, because these do not move
+// while the body bends, or around the box of the body if no node is fixed.
 PlaneCorners fixing_plane_corners(const PlaneSnapshot& plane, const std::vector<BodySnapshot>& bodies,
                                   const Box& body);
 
@@ -121,8 +121,9 @@ struct ForceArrow {
   double newtons = 0.0;
 };
 
-// Returns an arrow whose length is proportional to the force: at least 6 mm, at most the larger of 60 mm and
-// five tool radii. Empty if the overlay is off, or below 5 mN, where the direction is noise.
+// Returns an arrow whose length is proportional to the force: at least 6 mm, and at most 60 mm or five tool
+// radii, whichever is more. Empty if the overlay is off, or if the force is below 5 mN, where its direction
+// is noise.
 std::optional<ForceArrow> force_arrow(const Snapshot& snapshot, const ViewSettings& settings);
 
 // Returns the length of the lines of append_contact_normals(): the larger of 4 mm and 0.6 tool radii.
@@ -155,8 +156,8 @@ Box bounding_box(const StageShapes& shapes);
 
 // Ground grid and scale bar: ground_overlays.cpp.
 
-// Appends lines at multiples of a round length that suits the distance of the camera. Every fifth line is
-// stronger, and all fade out around the target of the camera.
+// Appends the lines of the ground grid, at multiples of a round length that suits the distance of the camera.
+// Every fifth line is stronger, and all lines fade out around the target of the camera.
 void append_ground_grid(const Camera& camera, const Viewport& viewport, double ground_y_m,
                         std::vector<OverlayLine>& lines);
 

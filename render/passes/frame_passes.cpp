@@ -14,7 +14,7 @@ namespace {
 constexpr double bottom_srgb[3] = {238.0, 238.5, 239.0};
 constexpr double top_srgb[3] = {196.0, 200.0, 205.0};
 
-// Ordered dithering between rows hides the steps of eight bits. Each row has one colour, which keeps PNG
+// Ordered dithering of rows hides the steps of eight-bit colours. Each row has one colour, which keeps PNG
 // files small and fast to write.
 constexpr int pattern_rows = 8;
 constexpr int pattern[pattern_rows] = {0, 4, 2, 6, 1, 5, 3, 7};

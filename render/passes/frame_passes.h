@@ -35,7 +35,8 @@ class GroundPass {
  public:
   static Result<GroundPass> make(const GlFunctions& gl);
 
-  // Darkens the ground, after the background. Draws nothing if the eye is below the ground.
+  // Darkens the ground where it is in shadow. Must follow the background. Draws nothing if the eye is below
+  // the ground.
   void draw_shadow(const FrameView& view, const ShadowPass& shadow) const;
 
  private:

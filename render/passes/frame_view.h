@@ -15,8 +15,8 @@ struct FrameView {
   Viewport viewport;
   Eigen::Matrix4f world_to_clip;
   Eigen::Vector3f eye_m;
-  Eigen::Vector3f eye_right, eye_up;  // unit
-  Eigen::Vector3f toward_key;         // unit, at least 11 degrees above the horizon
+  Eigen::Vector3f eye_right, eye_up;  // unit vectors
+  Eigen::Vector3f toward_key;         // unit vector, at least 11 degrees above the horizon
   float ground_y_m = 0.0f;
   float interface_scale = 1.0f;
   float nearest_depth_m = 0.0f;    // depth at which lines are clipped before they are widened
@@ -33,12 +33,12 @@ void set_frame_uniforms(const Program& program, const FrameView& view);
 // without attributes.
 extern const char* const whole_viewport_vertex_glsl;
 
-// The declaration of the uniform toward_key, which must precede the two parts below.
+// The declaration of the uniform toward_key. It must precede sphere_shadow_glsl and studio_light_glsl.
 extern const char* const key_light_glsl;
 
-// Functions for the shadow of the round tool: the fractions of key light and sky that pass it. The shadow is
-// exact in the centre and softens with the distance to the sphere; the occlusion of the sky is the closed
-// form for a sphere above a plane. Uniforms: tool_centre, tool_radius (0 without a tool).
+// Functions for the shadow of the round tool: the fractions of key light and sky that reach a point past the
+// tool. The shadow is exact in the centre and softens with the distance to the sphere. The occlusion of the
+// sky is the exact formula for a sphere above a plane. Uniforms: tool_centre, tool_radius (0 without a tool).
 extern const char* const sphere_shadow_glsl;
 
 // Functions for the lights and materials of the studio. studio_light() returns the light from a surface point

@@ -44,8 +44,8 @@ class BodyMeshes {
  public:
   explicit BodyMeshes(const GlFunctions& gl) : gl_(&gl) {}
 
-  // Updates all surfaces to the snapshot. `keep_level` lets the tessellation of the last frame stay while it
-  // is fine enough. Returns the error of the first surface that cannot be tessellated.
+  // Updates all surfaces to the snapshot. If `keep_level`, the tessellation level of the last frame is kept
+  // while it is fine enough. Returns the error of the first surface that cannot be tessellated.
   Status update(const Snapshot& snapshot, double pixels_per_metre, bool keep_level);
 
   const std::vector<TessellatedSurface>& surfaces() const { return surfaces_; }
@@ -64,8 +64,8 @@ class ToolBuffers {
  public:
   explicit ToolBuffers(const GlFunctions& gl);
 
-  // Builds and uploads the mesh if the tool has a different body than at the last call. Returns the error of
-  // a solid that has no mesh.
+  // Builds and uploads the mesh if the tool's body differs from that of the last call. Returns the error of a
+  // solid that has no mesh.
   Status update(const ToolSnapshot& tool);
 
   bool empty() const { return mesh_.indices.empty(); }

@@ -14,8 +14,8 @@ namespace {
 constexpr int strip_width_px = 64;
 constexpr double margin_px = 14.0;  // before the interface scale; space for marks and line widths
 
-// Vertical strips that grow with the projected shapes. They cover the whole viewport once a point cannot be
-// projected.
+// Vertical strips that grow to enclose the projected shapes. If a point cannot be projected, they cover the
+// whole viewport.
 class Strips {
  public:
   explicit Strips(const FrameView& view)
@@ -23,8 +23,8 @@ class Strips {
         margin_px_(static_cast<float>(margin_px) * view.interface_scale),
         heights_(static_cast<std::size_t>((view.viewport.width_px + strip_width_px - 1) / strip_width_px)) {}
 
-  // Accumulates points and marks the box around their projections, which contains the projection of their
-  // hull.
+  // Collects points and marks the box around their projections. The box contains the projection of the
+  // points' convex hull.
   class Hull {
    public:
     explicit Hull(Strips& strips) : strips_(strips) {}

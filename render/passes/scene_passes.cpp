@@ -13,12 +13,12 @@ namespace {
 constexpr float arrow_width_px = 5.0f;
 constexpr float smallest_tool_px = 5.0f;
 constexpr float stage_arrow_px = 3.0f;
-// Distance by which shapes on a surface are lifted above the surface's chords.
+// Distance by which shapes of a contact stage are lifted above the chords of the surface.
 constexpr float stage_lift_m = 0.0004f;
 constexpr float ghost_translucency = 0.85f;
 
-// Lift of marks on the surface, as a fraction of a lattice cell: marks stay visible above the chords of a
-// curve, and marks on the far side stay hidden.
+// Lift of marks above the surface, as a fraction of a lattice cell. Marks stay visible above the chords of a
+// curved surface, and marks on the far side stay hidden.
 constexpr float lift_fraction_of_cell = 0.4f;
 constexpr float lift_without_lattice_m = 0.0002f;
 
@@ -27,7 +27,7 @@ float lift_m(const Snapshot& snapshot) {
   return cell > 0.0f ? lift_fraction_of_cell * cell : lift_without_lattice_m;
 }
 
-// Returns the length in metres of a number of pixels at a point.
+// Returns the length in metres that `pixels` pixels have at the distance of a point.
 float pixels_at(const FrameView& view, const Eigen::Vector3f& point_m, float pixels) {
   const float depth = (point_m - view.eye_m).norm();
   return pixels * view.interface_scale * depth / view.pixel_depth_ratio;
@@ -148,7 +148,7 @@ void ScenePasses::draw_ground(const FrameView& view, const ViewSettings& setting
   if (settings.shadow) passes_.ground.draw_shadow(view, passes_.shadow);
 }
 
-// Draws the scale bar. Must follow the bodies, which would otherwise hide it.
+// Draws the scale bar. Must be called after the bodies are drawn, which would otherwise hide it.
 void ScenePasses::draw_scale_bar(const FrameView& view, const ViewSettings& settings) {
   if (!settings.overlays.scale_bar) return;
   const auto bar = ground_scale_bar(settings.camera, view.viewport, settings.ground_y_m);
@@ -221,7 +221,7 @@ void ScenePasses::draw_tool(const FrameView& view, const ToolSnapshot& tool, con
   }
 }
 
-// Draws the contact stage. Must follow the tool, so that contacts are visible through it.
+// Draws the contact stage. Must be called after the tool is drawn, so that contacts are visible through it.
 void ScenePasses::draw_stage(const FrameView& view, const Snapshot& snapshot,
                              const ViewSettings& settings) const {
   StageShapes shapes = stage_shapes(snapshot, settings);
@@ -236,7 +236,8 @@ void ScenePasses::draw_stage(const FrameView& view, const Snapshot& snapshot,
   }
 }
 
-// Draws the touched nodes. Must follow the tool, which would otherwise tint the nodes behind it.
+// Draws the touched nodes. Must be called after the tool is drawn, which would otherwise tint the nodes
+// behind it.
 void ScenePasses::draw_touched(const FrameView& view, const Snapshot& snapshot) {
   marks_.clear();
   for (const BodySnapshot& body : snapshot.bodies) append_touched_marks(body.lattice, marks_);

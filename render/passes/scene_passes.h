@@ -5,7 +5,7 @@
 //                            contact stage, touched nodes
 //   frame, without samples:  background, ground with grid and shadows, resolved scene, scale bar
 //
-// The lines of the ground have smooth edges themselves and need no samples.
+// The lines of the ground grid have smooth edges themselves and need no samples.
 #pragma once
 
 #include <utility>
@@ -25,9 +25,9 @@
 
 namespace spoonbill {
 
-// Returns the part of the picture that the scene can touch, as disjoint vertical strips with a margin for
-// marks. The strips enclose bodies, tool and overlays; one strip covers the whole viewport if any point is
-// behind the eye. With four samples per pixel, clearing and resolving empty pixels would take as long as
+// Returns the part of the picture that the scene can cover, as disjoint vertical strips with a margin for
+// marks. The strips enclose bodies, tool and overlays. If any point is behind the eye, one strip covers the
+// whole viewport. With four samples per pixel, clearing and resolving empty pixels would take as long as
 // drawing the model. Defined in scene_area.cpp.
 std::vector<PixelArea> scene_area(const Snapshot& snapshot, const ViewSettings& settings,
                                   const FrameView& view, const std::vector<TessellatedSurface>& bodies);

@@ -23,8 +23,8 @@ constexpr const char* shadow_depth_fragment_glsl = R"(
 void main() {}
 )";
 
-// The occluders of the ground, with MAX blending. Red: the key light is blocked. Green: the height of the
-// highest occluder. Blue: the closeness of the lowest occluder overhead.
+// Draws the occluders of the ground, with MAX blending. Red: the key light is blocked. Green: the height of
+// the highest occluder. Blue: how close the lowest occluder overhead is.
 constexpr const char* shadow_cover_vertex_glsl = R"(
 uniform mat4 to_clip;
 uniform float ground_height;
@@ -52,10 +52,11 @@ void main() {
 }
 )";
 
-// The light on the ground: a percentage-closer soft shadow of the key light, and the occlusion of the sky
-// nearby. Follows sphere_shadow_glsl. The taps form a golden-angle spiral and read the mip level whose texels
-// are about as wide as the gap between taps. A coarse level, whose four texels cover all taps, shows where
-// there is no occluder; the loops are skipped there, which saves most of the time on a software renderer.
+// Computes the light on the ground: a percentage-closer soft shadow of the key light, and the occlusion of
+// the sky nearby. The source follows sphere_shadow_glsl. The taps form a golden-angle spiral and read the mip
+// level whose texels are about as wide as the gap between taps. A coarse level, whose four texels cover all
+// taps, shows where there is no occluder. The loops are skipped there, which saves most of the time on a
+// software renderer.
 constexpr const char* ground_light_fragment_glsl = R"(
 uniform sampler2D cover;
 uniform vec2 corner;
@@ -118,7 +119,7 @@ constexpr int key_side_px = 1024;
 constexpr int cover_side_px = 256;
 constexpr int ground_side_px = 192;
 
-// Distance from the body within which the ground is darkened by the occluded sky.
+// Distance from the body within which the ground is darkened because the body hides part of the sky.
 constexpr float contact_reach_m = 0.007f;
 
 GlHandle make_map(const GlFunctions& gl, GLint internal_format, GLenum format, GLenum type, int side_px,
@@ -151,8 +152,8 @@ int used_px(float fraction, int side_px) {
 
 constexpr float contact_margin_m = 0.012f;
 
-// Returns the projection of points onto the ground in the direction `along`, to the clip space of a square
-// map. A sign of +1 puts the highest point in front, -1 the lowest.
+// Returns the matrix that projects points onto the ground along `along`, into the clip space of a square map.
+// With a sign of +1 the highest point is in front, with -1 the lowest.
 Eigen::Matrix4f ground_projection(const ShadowArea& area, const Eigen::Vector3f& along, float ground_y_m,
                                   float sign) {
   const float to_clip = 2.0f / area.side_m;
@@ -188,7 +189,7 @@ struct Footprint {
   }
 };
 
-// Rounds a size up to the next of eight steps in an octave.
+// Rounds a size up. Sizes have eight steps per octave.
 float quantised_size(float size) {
   const float octave = std::exp2(std::floor(std::log2(size)));
   return octave * std::ceil(8.0f * size / octave) / 8.0f;

@@ -14,25 +14,25 @@ namespace spoonbill {
 
 // The part of the ground that shadows can reach, and the projections of the world onto it.
 //
-// The shadow map covers the ground instead of a plane across the light: a point is projected along the light
-// onto the ground, and its depth is its height. So one map serves both the shadow of a body on itself and the
-// shadow on the ground.
+// The shadow map covers the ground instead of a plane across the light. A point is projected along the light
+// onto the ground, and its depth is its height. One map therefore serves both the shadow of a body on itself
+// and the shadow on the ground.
 struct ShadowArea {
   Eigen::Vector2f corner_m;       // smallest x and z
   float side_m = 0.0f;            // side of the square that the map covers
   Eigen::Vector2f used_fraction;  // fraction of the square, from the corner, that shadows can reach
-  float low_m = 0.0f,
-        high_m = 0.0f;          // range of heights above the ground that the depth of the map represents
-  Eigen::Matrix4f key_to_clip;  // world to the map of the key light
-  Eigen::Matrix4f sky_to_clip;  // world to the map of occluders above the ground, seen from below
+  // Range of heights above the ground that the depth of the map represents. high_m is the upper end.
+  float low_m = 0.0f, high_m = 0.0f;
+  Eigen::Matrix4f key_to_clip;  // maps the world to the map of the key light
+  Eigen::Matrix4f sky_to_clip;  // maps the world to the map of occluders above the ground, seen from below
 };
 
 // Tangent of half the angle of the key light: the rate at which shadows soften with distance.
 inline constexpr float key_light_spread = 0.17f;
 
 // Computes the shadow area. The corner moves in steps of texels and the side in eighths of the size, so that
-// edges do not crawl while the scene moves slightly. The tool needs space on the ground but is not in the
-// map. Either box may be empty. toward_key points above the horizon.
+// edges do not crawl while the scene moves slightly. The area includes the ground around the tool, although
+// the tool is not drawn into the map. Either box may be empty. toward_key points above the horizon.
 ShadowArea shadow_area(const Box& body, const Box& tool, float ground_y_m, const Eigen::Vector3f& toward_key,
                        int map_side_px);
 
@@ -55,7 +55,7 @@ class ShadowPass {
 
   // Results of the last draw().
   const ShadowArea& area() const { return area_; }
-  GLuint key_map() const { return key_map_.id(); }          // depth with comparison, bilinear
+  GLuint key_map() const { return key_map_.id(); }  // depth texture with comparison and bilinear filter
   GLuint ground_dark() const { return ground_dark_.id(); }  // red: darkening of the ground, 0 in the open
 
   static int key_map_side_px();

@@ -81,7 +81,7 @@ Eigen::Vector4f to_srgb(Colour colour) {
 
 struct SolidVertex {
   Eigen::Vector3f position;
-  Eigen::Vector3f normal;  // unit, outward
+  Eigen::Vector3f normal;  // unit normal, outward
 };
 
 // A point of a profile: distance from the axis, height, and normal in the plane of the profile.
@@ -209,8 +209,8 @@ void SolidPass::use_program(const Program& program, const FrameView& view, const
   program.set("colour", colour);
 }
 
-// Returns the coarsest sphere whose sagitta is small enough on the screen. A chord of a circle of radius r
-// with n pieces deviates from its arc by at most r (pi / n)^2 / 2.
+// Returns the coarsest sphere whose sagitta is small enough on the screen. If a circle of radius r is divided
+// into n chords, each chord deviates from its arc by at most r (pi / n)^2 / 2.
 const SolidPass::Shape& SolidPass::sphere_for(const FrameView& view, const Eigen::Vector3f& centre_m,
                                               float radius_m) const {
   const float depth = std::max((centre_m - view.eye_m).norm() - radius_m, view.nearest_depth_m);

@@ -22,8 +22,8 @@ class SurfacePass {
  public:
   static Result<SurfacePass> make(const GlFunctions& gl);
 
-  // Draws a surface. Opaque looks write depth. Translucent ones are blended, back faces first, and must be
-  // drawn after everything opaque. `shadow` is null if shadows are off.
+  // Draws a surface. An opaque look writes depth. A translucent look is blended, back faces first, and must
+  // be drawn after everything opaque. `shadow` is null if shadows are off.
   void draw(const FrameView& view, const SurfaceBuffers& surface, const SurfaceLook& look,
             const ToolSphere& tool, const ShadowPass* shadow) const;
 
@@ -47,7 +47,7 @@ class SolidPass {
   void draw_glass_sphere(const FrameView& view, const Eigen::Vector3f& centre_m, float radius_m,
                          Colour colour) const;
 
-  // Draws a solid tool of the same glass.
+  // Draws a solid tool with the glass of draw_glass_sphere(). Draw after everything opaque.
   void draw_glass_tool(const FrameView& view, ToolBuffers& tool, const ToolFrame& frame, Colour colour) const;
 
   void draw_sphere(const FrameView& view, const Eigen::Vector3f& centre_m, float radius_m,
@@ -84,7 +84,7 @@ class SolidPass {
   Programs programs_;
   GlHandle vertex_array_;
   GlHandle vertices_;
-  std::vector<Shape> spheres_;  // from coarse to fine
+  std::vector<Shape> spheres_;  // spheres from coarse to fine
   Shape shaft_, head_, pane_;
 };
 

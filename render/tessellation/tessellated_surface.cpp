@@ -52,7 +52,7 @@ class CornerGroups {
 
 constexpr std::array<int, 10> piece_steps = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32};
 
-// Ratios of needed to previous pieces within which the previous number is retained; see
+// Range of the ratio of needed pieces to previous pieces in which the previous number is kept; see
 // choose_sampling_level().
 constexpr double tolerated_excess = 1.15;
 constexpr double tolerated_waste = 0.4;
@@ -79,8 +79,9 @@ class NetLine {
   int stride_;
 };
 
-// Upper bounds, for each control point of the derivatives, over all lines of the net: of the length of S' in
-// metres per parameter, and of the length of the component of S'' perpendicular to S', which bends a line.
+// Bounds for each control point of the derivatives, over all lines of the net. `speed` bounds the length of
+// the first derivative S' in metres per parameter. `bend` bounds the component of S'' perpendicular to S',
+// which curves a line.
 struct DerivativeBounds {
   std::vector<double> speed;  // control point i acts on spans i + 1 to i + degree
   std::vector<double> bend;   // control point i acts on spans i + 2 to i + degree
@@ -115,7 +116,7 @@ DerivativeBounds derivative_bounds(const SurfaceSnapshot& surface, bool along_u)
   return bounds;
 }
 
-// Returns the maximum over the control points that act on a span.
+// Returns the maximum over the control points from `first` to `last` that exist.
 double maximum_over(const std::vector<double>& values, int first, int last) {
   double maximum = 0.0;
   for (int i = std::max(first, 0); i <= last && i < static_cast<int>(values.size()); ++i) {
@@ -289,8 +290,8 @@ void TessellatedSurface::orient() {
   for (std::size_t i = 0; i + 2 < indices_.size(); i += 3) std::swap(indices_[i + 1], indices_[i + 2]);
 }
 
-// Replaces the triangles of the whole surface by those within the trim loops. orient() calls this
-// when it has determined from the whole surface whether it is closed and which side is outside.
+// Replaces the triangles of the whole surface by those within the trim loops. orient() calls this after it
+// has determined from the whole surface whether it is closed and which side is outside.
 void TessellatedSurface::trim_indices() {
   TrimmedGrid cut = trim_grid(grid_->u, grid_->v, *trim_);
   indices_.clear();

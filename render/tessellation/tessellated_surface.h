@@ -40,14 +40,14 @@ struct SamplingTarget {
 inline constexpr std::int64_t sampling_cell_limit = 1'000'000;
 
 // Returns the level at which no edge and no sagitta exceeds the target, estimated from the control points of
-// the derivatives. `previous` is retained, span by span, while it is neither too coarse nor more than about
-// twice as fine as needed, so that a slowly changing shape does not flicker between levels. The level is
-// coarser if the cells would exceed the limit. The size of the net must fit the knots.
+// the derivatives. The pieces of a span in `previous` are kept while they are neither too coarse nor more
+// than about twice as fine as needed. A slowly changing shape then does not flicker between levels. The level
+// is coarser if the cells would exceed the limit. The size of the net must fit the knots.
 SamplingLevel choose_sampling_level(const SurfaceSnapshot& surface, double pixels_per_metre,
                                     const SamplingLevel& previous, const SamplingTarget& target = {});
 
-// Returns the parameters of a direction, aligned with the knots. The seam of a periodic direction appears
-// once. `pieces` has one entry per span.
+// Returns the parameters at which a direction is sampled, aligned with the knots. The seam of a periodic
+// direction appears once. `pieces` has one entry per span.
 std::vector<double> drawing_parameters(const KnotVector& knots, const std::vector<int>& pieces);
 
 // Computes the vertices and normals of a deforming mesh, smooth where adjacent faces are nearly parallel and
@@ -57,7 +57,7 @@ class MeshShading {
   // Returns whether the shading was built for these triangles.
   bool matches(const MeshSnapshot& mesh) const { return mesh.triangles == triangles_; }
 
-  // Finds the edges in the current shape of the mesh. They stay edges while the mesh deforms.
+  // Finds the edges in the current shape of the mesh. They remain edges while the mesh deforms.
   void rebuild(const MeshSnapshot& mesh);
 
   // Vertex indices, three per triangle, counter-clockwise seen from outside.
@@ -70,14 +70,14 @@ class MeshShading {
  private:
   // Shared ownership, so that no other mesh gets the same address.
   std::shared_ptr<const std::vector<std::array<std::uint32_t, 3>>> triangles_;
-  std::vector<std::uint32_t> indices_;  // drawn vertex of each corner
-  std::vector<std::uint32_t> vertex_;   // mesh vertex of each drawn vertex
+  std::vector<std::uint32_t> indices_;  // index of the drawn vertex of each triangle corner
+  std::vector<std::uint32_t> vertex_;   // index of the mesh vertex of each drawn vertex
 };
 
 // Returns an error if the size of the control net does not fit the knots.
 Status check_net(const SurfaceSnapshot& surface);
 
-// One owner, one thread.
+// A surface or a deforming mesh, tessellated for drawing. One owner, one thread.
 class TessellatedSurface {
  public:
   // Evaluates the surface at a sampling level. Grid, blending matrices and indices are rebuilt only if the
@@ -134,7 +134,7 @@ class TessellatedSurface {
   GridSamples<float> samples_;
   std::vector<std::uint32_t> indices_;
   std::shared_ptr<const TrimmedArea> trim_;
-  std::vector<CutVertex> cut_vertices_;  // of trimmed cells; their samples follow those of the grid
+  std::vector<CutVertex> cut_vertices_;  // vertices of trimmed cells; their samples follow those of the grid
 };
 
 // Returns the box around all surfaces of a snapshot. The surfaces are evaluated, because boxes around control

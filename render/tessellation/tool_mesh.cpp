@@ -83,8 +83,8 @@ void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, ToolMesh& m
   for (const std::uint32_t corner : {a, b, c}) mesh.indices.push_back(corner);
 }
 
-// Joins `rows` rings of `around` vertices about y, starting at vertex `first`. In the profile, with the axis
-// on the left, the outside is on the right of the direction from ring to ring.
+// Joins `rows` rings of `around` vertices about the y axis, starting at vertex `first`. In the profile, with
+// the axis on the left, the outside is on the right when going from ring to ring.
 void join_rows(std::uint32_t first, int rows, ToolMesh& mesh) {
   for (int row = 0; row + 1 < rows; ++row) {
     for (int i = 0; i < around; ++i) {
@@ -309,8 +309,8 @@ ToolFrame tool_frame(const Snapshot& snapshot) {
   return {snapshot.tool.proxy.orientation.toRotationMatrix(), snapshot.tool.proxy.position_m};
 }
 
-// With the reflection S and the rotation R of the tool, the mirror image is S R. The mirrored pose is the
-// rotation S R S, so it is followed by S.
+// With the reflection S and the rotation R of the tool, the axes of the mirror image are S R. The mirrored
+// pose has the rotation S R S, and (S R S) S is S R.
 ToolFrame mirrored_tool_frame(const Snapshot& snapshot) {
   const Vector3& normal = snapshot.symmetry.normal;
   const Eigen::Matrix3d reflection = Eigen::Matrix3d::Identity() - 2.0 * normal * normal.transpose();
@@ -347,8 +347,8 @@ void FacingOrder::find_facing(const ToolMesh& mesh, const Eigen::Vector3f& eye_m
   buckets_per_m_ = range_m > 0.0F ? static_cast<float>(bucket_count) / range_m : 0.0F;
 }
 
-// Returns the bucket of a distance, the farthest first. Distances too large for single precision share the
-// first or last bucket.
+// Returns the bucket of a distance; the farthest distances are in the first bucket. Distances too large for
+// single precision are in the first or last bucket.
 std::uint32_t FacingOrder::bucket_index(float distance_m) const {
   const float bucket = (farthest_m_ - distance_m) * buckets_per_m_;
   if (!(bucket > 0.0F)) return 0;

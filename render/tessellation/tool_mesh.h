@@ -39,7 +39,7 @@ Vector3 find_exit_point(const Box& box, const ToolFrame& frame, const Vector3& d
 
 struct ToolVertex {
   Eigen::Vector3f position_m;
-  Eigen::Vector3f normal;  // unit, outward
+  Eigen::Vector3f normal;  // unit normal, outward
 };
 
 // A triangle mesh in the frame of the tool. Each triangle has three indices, counter-clockwise seen from
@@ -59,8 +59,8 @@ Result<ToolMesh> make_tool_mesh(const ToolSolid& solid);
 class FacingOrder {
  public:
   // Returns the indices of the triangles that face the eye, the farthest centre first. `eye_m` is in the
-  // frame of the mesh. Valid until the next call. Exact except for triangles that are long compared with
-  // their distance from each other.
+  // frame of the mesh. The result is valid until the next call. The order is exact except for triangles that
+  // are long compared with their distance from each other.
   const std::vector<std::uint32_t>& sort(const ToolMesh& mesh, const Eigen::Vector3f& eye_m);
 
  private:

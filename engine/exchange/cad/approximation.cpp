@@ -194,7 +194,7 @@ Result<std::optional<PatchFit>> approximate_with_degree(const Patch& patch, doub
     const std::vector<double> u_ends = piece_ends(patch.u, u_pieces);
     const std::vector<double> v_ends = piece_ends(patch.v, v_pieces);
     const std::vector<double> u_checks = check_parameters(u_ends), v_checks = check_parameters(v_ends);
-    // On the lines that the other direction interpolates, the error is due to this direction alone.
+    // At the Greville parameters of one direction, the error is due to the other direction alone.
     const Eigen::MatrixXd along_u =
         distances(patch, surface.value(), u_checks, greville_parameters(v.value()));
     const Eigen::MatrixXd along_v =
@@ -305,7 +305,7 @@ PatchDirection make_direction(const ParameterLine& line, double scale) {
   for (std::size_t k = 1; k + 1 < ends.size(); ++k) {
     direction.breaks[k].continuity = std::max(0, continuity_across(line, ends[k], ends[k], scale));
   }
-  // A pole's direction, along which every line is a single point, is not closed.
+  // A direction along which every line is a single point is not closed.
   double largest_span = 0.0;
   for (int k = 0; k < lines_compared; ++k) {
     const Vector3 centre = line.at(0.5 * (line.start() + line.end()), k).position;

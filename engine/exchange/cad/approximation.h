@@ -9,13 +9,13 @@
 
 namespace spoonbill {
 
-// Range of a surface's parameters.
+// Rectangle of parameters (u, v) of a surface.
 struct ParameterBox {
   double u_start = 0.0, u_end = 0.0, v_start = 0.0, v_end = 0.0;
 };
 
 struct PatchFit {
-  Surface surface;  // over the parameters of the original
+  Surface surface;  // surface with the parameters of the original
   // Largest distance at equal parameters, in metres, checked at 9 x 9 positions in each piece.
   double deviation_m = 0.0;
 };

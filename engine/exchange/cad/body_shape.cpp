@@ -49,8 +49,8 @@ using SplineGeometry = opencascade::handle<Geom_BSplineSurface>;
 using Polygon = std::vector<Eigen::Vector2d>;
 
 constexpr double vertex_distance_mm = 1e-7;
-// Distance between an edge's curve in space and its curve over (u, v): the target, and the limit, which is
-// approached only at kinks.
+// Largest distance between an edge's curve in space and its curve over (u, v). The tolerance is the target;
+// the limit is approached only at kinks.
 constexpr double curve_tolerance_mm = 1e-6, curve_error_limit_mm = 1e-2;
 constexpr double corner_sine = 1e-4;
 constexpr int degree_limit = 14, segment_limit = 1000;
@@ -136,8 +136,8 @@ bool has_only_holes(const TrimmedSurface& part) {
   });
 }
 
-// Divides a surface at the centre of a gap between its loops: the gap that follows all loops which begin in
-// the first half of the domain.
+// Divides a surface at the centre of a gap between its loops. The gap is the one after all loops that begin
+// in the first half of the domain.
 Result<std::vector<TrimmedSurface>> divide(const TrimmedSurface& part, Direction direction) {
   const KnotVector& knots = direction == Direction::u ? part.surface.u : part.surface.v;
   const double start = knots.domain_start(), end = knots.domain_end();
@@ -168,7 +168,8 @@ Result<std::vector<TrimmedSurface>> divide(const TrimmedSurface& part, Direction
   return halves;
 }
 
-// Converts a loop to an OpenCASCADE curve over (u, v). to_occt() clamps the curve as the edge of a strip.
+// Converts a loop to an OpenCASCADE curve over (u, v). The loop is made an edge of a strip, because to_occt()
+// clamps surfaces.
 Result<Curve> to_curve(const TrimLoop& loop) {
   ControlNet net(loop.knots.control_point_count(), 2);
   for (int i = 0; i < net.rows; ++i) {
@@ -287,7 +288,7 @@ Result<std::vector<Outline>> make_outlines(const SplineGeometry& geometry, const
   return outlines;
 }
 
-// Returns the index of the smallest outer loop around a hole; -1 if the hole is in the whole surface.
+// Returns the index of the smallest outer loop around a hole; -1 if no outer loop is around it.
 int find_owner(const Outline& hole, const std::vector<Outline>& outlines) {
   int owner = -1;
   for (std::size_t k = 0; k < outlines.size(); ++k) {

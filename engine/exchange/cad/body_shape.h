@@ -18,7 +18,7 @@ struct BodyShape {
 
 struct PartFaces {
   std::vector<TopoDS_Face> faces;  // with the normals of the surface
-  bool was_cut = false;            // the surface was divided into two parts; the faces are those of both
+  bool was_cut = false;  // true if the surface was divided into two parts; `faces` are those of both
 };
 
 // Builds the faces of the part of a surface that its trims keep. A face's edge ends at each corner of its

@@ -14,8 +14,7 @@
 
 namespace spoonbill {
 
-// Makes OpenCASCADE print nothing, compute in millimetres, and change no geometry by its own choice. Call
-// once.
+// Makes OpenCASCADE print nothing, compute in millimetres, and keep geometry as it is. Call once.
 void prepare_occt();
 
 // set_step_schema() and set_file_unit() set options of OpenCASCADE for later files; write_cad() calls both.
@@ -25,27 +24,30 @@ void set_file_unit(std::string_view unit);
 
 using SurfaceSink = std::function<void(CadSurface)>;
 
-// Passes the surface of each face of the file to the sink, one after the other, where the file's assemblies
-// place it. Returns the unit and the notes of the whole file, without surfaces. Notes report an unknown unit,
-// faces that OpenCASCADE lost or that cannot be converted, faces whose outline differs from their edges in
-// the file by more than the tolerance, other files that this one names (they are not opened), and solids that
-// are separated into faces. Refused: a file that OpenCASCADE cannot read, a file without faces that can be
-// converted, and a file with more faces than the limit.
+// Reads the faces of a file. Passes the surface of each face to the sink, one after the other, at the
+// position given by the file's assemblies. Returns the unit and the notes of the whole file, without
+// surfaces.
+//
+// Notes report an unknown unit, faces that OpenCASCADE lost or that cannot be converted, and faces whose
+// outline differs from their edges in the file by more than the tolerance. They also report references to
+// other files, which are not opened, and solids that are separated into faces. Refused: a file that
+// OpenCASCADE cannot read, a file without faces that can be converted, and a file with more faces than the
+// limit.
 Result<CadModel> read_cad(const std::filesystem::path& file, const CadReading& reading,
                           const SurfaceSink& sink, const Progress& progress = {});
 
 // Returns the text of a file. In STEP each surface becomes a product with the surface's name: a
 // MANIFOLD_SOLID_BREP if the surface closes, otherwise an open shell. In IGES it becomes a named entity: type
-// 186 if the surface closes, 128 if it does not, 144 for each face of a trimmed surface. Faces of one solid
-// are joined under its name where they close. A surface that find_closing() classifies as solid is written
-// exactly closed. Notes report by how much such a surface was open, surfaces that would close but are not
-// written as solids, and bridged gaps between the faces of a solid.
+// 186 if the surface closes, 128 if it does not, 144 for each face of a trimmed surface. The faces of one
+// solid are joined under its name where they close. A surface that find_closing() classifies as solid is
+// written exactly closed. Notes report by how much such a surface was open, surfaces that would close but are
+// not written as solids, and bridged gaps between the faces of a solid.
 Result<CadFileContent> write_cad(const CadModel& model, const CadWriting& writing,
                                  const Progress& progress = {});
 
-// Joins the surfaces of each CadSurface::solid into solids, as write_cad() does, and meshes these solids. All
-// other surfaces are loose. Surfaces that OpenCASCADE cannot join, and those of a solid for which it finds no
-// watertight mesh, are loose too and reported in a note. Refused: more triangles than the limit.
+// Joins the surfaces that have the same CadSurface::solid into solids, as write_cad() does, and meshes these
+// solids. All other surfaces are loose. Surfaces that OpenCASCADE cannot join are loose too, as are those of
+// a solid without a watertight mesh; a note reports them. Refused: more triangles than the limit.
 Result<CadSolids> mesh_solids(const CadModel& model, const SolidMeshing& meshing,
                               const Progress& progress = {});
 

@@ -39,8 +39,9 @@ namespace {
 
 struct NamedFace {
   TopoDS_Face face;
-  std::string name;   // name of the face, of its body or of its product; unique within the file
-  std::string solid;  // unique name of the face's solid, if that has several faces; otherwise empty
+  std::string name;  // name of the face, of its body or of its product; unique within the file
+  // Unique name of the face's solid, if the solid has several faces; otherwise empty.
+  std::string solid;
 };
 
 using Shapes = opencascade::handle<XCAFDoc_ShapeTool>;
@@ -301,7 +302,7 @@ double find_scale(const FileUnit& unit, const CadReading& reading) {
   return unit.declared ? 1e-3 : 1e-3 / unit.millimetres;
 }
 
-// Larger deviations are reported as this one, because no reader of a message needs more.
+// Largest deviation that is reported. Larger deviations are reported as this value.
 constexpr double trim_deviation_limit_m = 1e6;
 
 CadSurface make_cad_surface(const NamedFace& face, FaceSurface found) {
@@ -316,7 +317,7 @@ CadSurface make_cad_surface(const NamedFace& face, FaceSurface found) {
   return surface;
 }
 
-// Returns true for coordinates that no document may contain.
+// Returns true if a coordinate is outside the range that documents allow.
 bool is_far_away(const ControlNet& net) {
   for (const auto* coordinates : {&net.x, &net.y, &net.z}) {
     for (const double coordinate : *coordinates) {

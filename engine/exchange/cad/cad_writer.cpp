@@ -54,10 +54,11 @@ namespace spoonbill {
 namespace {
 
 struct WrittenBody {
-  std::string name;  // unique within the file
+  std::string name;  // name, unique within the file
   TopoDS_Shape shape;
   bool solid = false;
-  const CadSurface* surface = nullptr;  // surface of the model; null for a solid joined from several surfaces
+  // Surface of the model; null for a solid joined from several surfaces.
+  const CadSurface* surface = nullptr;
 };
 
 const char* const two_bytes = "\\X2\\";
@@ -89,7 +90,7 @@ Character character_at(std::string_view text, std::size_t start) {
 std::string to_step_ascii(std::string_view text) {
   std::string ascii;
   ascii.reserve(text.size());
-  const char* open_prefix = nullptr;  // prefix of the characters being written; null: ASCII
+  const char* open_prefix = nullptr;  // prefix of the open escape sequence; null within ASCII
   const auto switch_to = [&](const char* wanted) {
     if (open_prefix == wanted) return;
     if (open_prefix != nullptr) ascii += "\\X0\\";
@@ -214,7 +215,8 @@ Result<std::vector<WrittenBody>> collect_bodies(const CadModel& model, const Pro
 }
 
 // Makes OpenCASCADE write seventeen digits, which read back as the same number; its default is six decimals.
-// Its removal of trailing zeros is off, because it loses the exponent of numbers of this length.
+// SetFormat() also turns off the removal of trailing zeros, which would lose the exponent of such long
+// numbers.
 void set_digits(Interface_FloatWriter& writer) {
   writer.SetFormat("%.16E");
 }
@@ -313,7 +315,7 @@ void name_entities(const opencascade::handle<IGESData_IGESModel>& model, int bef
   }
 }
 
-// Extends the header's largest coordinates to include a shape that IGESControl_Writer does not know.
+// Extends the largest coordinates in the header to include a shape that IGESControl_Writer does not know.
 void extend_extent(const TopoDS_Shape& shape, const opencascade::handle<IGESData_IGESModel>& model) {
   Bnd_Box box;
   BRepBndLib::Add(shape, box);

@@ -51,8 +51,8 @@ gp_Pnt2d clamp_into(const gp_Pnt2d& point, const ParameterBox& box) {
   return {std::clamp(point.X(), box.u_start, box.u_end), std::clamp(point.Y(), box.v_start, box.v_end)};
 }
 
-// Returns true if all samples of the edge are on the same side of the box. Samples outside the box count as
-// being on the side that they overshoot by at most `tolerance` or the edge's own tolerance.
+// Returns true if all samples of the edge are on the same side of the box. A sample outside the box counts as
+// on a side if it is beyond that side by at most `tolerance` or the edge's own tolerance.
 bool is_on_side(const TopoDS_Edge& edge, const TopoDS_Face& face, const ParameterBox& box, double tolerance) {
   double first = 0.0, last = 0.0;
   const auto curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
@@ -78,7 +78,7 @@ bool is_on_side(const TopoDS_Edge& edge, const TopoDS_Face& face, const Paramete
   return std::any_of(is_near.begin(), is_near.end(), [](bool near) { return near; });
 }
 
-// Returns true if an edge of the face is on none of the sides of its box, to within `tolerance` (in the
+// Returns true if an edge of the face is on none of the four sides of its box, within `tolerance` (in the
 // face's unit) or the edge's own tolerance.
 bool is_trimmed(const TopoDS_Face& face, const ParameterBox& box, double tolerance) {
   for (TopExp_Explorer edges(face, TopAbs_EDGE); edges.More(); edges.Next()) {
@@ -102,16 +102,15 @@ Geometry basis_surface(Geometry surface) {
   return surface;
 }
 
-// Returns the surface's own bound `full` if the given bound equals it within rounding. Otherwise returns the
-// given bound.
+// Returns `full`, the surface's own bound, if `bound` equals it within rounding; otherwise returns `bound`.
 double snap_bound(double bound, double full, double length) {
   return std::abs(bound - full) < 1e-7 * length ? full : bound;
 }
 
 bool is_polynomial(const Geometry& surface);
 
-// Cuts off the part of the box beyond the end of a polynomial surface, where OpenCASCADE has no surface to
-// cut. Edges overshoot such an end by the rounding of their file, or by its tolerance. A periodic direction
+// Cuts off the part of the box beyond the end of a polynomial surface, where OpenCASCADE cannot cut the
+// surface. Edges overshoot such an end by the rounding or the tolerance of their file. A periodic direction
 // has no end.
 void clip_to_surface(const Geometry& surface, const ParameterBox& full, ParameterBox& box) {
   if (!is_polynomial(surface)) return;
@@ -180,8 +179,8 @@ bool is_whole(const Geometry& surface, const ParameterBox& box) {
          box.v_end == full.v_end;
 }
 
-// Returns the whole domain of a spline, because the face's loops trim it, unless the face crosses the
-// spline's seam. Returns the box for any other surface.
+// Returns the whole domain of a spline, because the loops of the face trim it. If the face crosses the
+// spline's seam, or for any other surface, returns the box.
 ParameterBox widen_to_spline(const Geometry& surface, const ParameterBox& box) {
   ParameterBox full;
   surface->Bounds(full.u_start, full.u_end, full.v_start, full.v_end);

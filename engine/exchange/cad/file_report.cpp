@@ -84,8 +84,8 @@ bool contains(int type, const std::array<int, count>& types) {
   return std::find(types.begin(), types.end(), type) != types.end();
 }
 
-// Returns true if another entity, other than a collection, uses this one. Some systems do not mark such
-// entities as dependent.
+// Returns true if another entity, other than a collection, uses this entity. Some systems do not mark a used
+// entity as dependent.
 bool is_used_by_another(const Entity& entity, const Interface_Graph& graph) {
   for (Interface_EntityIterator users = graph.Sharings(entity); users.More(); users.Next()) {
     const auto user = opencascade::handle<IGESData_IGESEntity>::DownCast(users.Value());

@@ -20,26 +20,27 @@ struct FileUnit {
 };
 
 FileUnit find_unit(const opencascade::handle<StepData_StepModel>& model);
-// Also sets an invalid unit of the model to millimetres, because OpenCASCADE would convert nothing.
+// Returns the unit of an IGES file. Also sets an invalid unit of the model to millimetres, because
+// OpenCASCADE would otherwise convert nothing.
 FileUnit find_unit(const opencascade::handle<IGESData_IGESModel>& model, const std::filesystem::path& file);
 
 // Numbers of entities that OpenCASCADE omits although it reports success.
 struct LossCount {
   int faces = 0, lost_faces = 0;          // faces of the file, and faces that did not become a shape
-  int instances = 0, lost_instances = 0;  // the same for placed copies of parts of an IGES file
+  int instances = 0, lost_instances = 0;  // placed copies of parts of an IGES file, and those lost
   int unread = 0;                         // IGES entities that could not be parsed or have no type
 };
 
-// Counts losses after the transfer.
+// Counts the losses. Call after the transfer.
 LossCount count_losses(const opencascade::handle<XSControl_WorkSession>& session, FileFormat format);
 
-// Count placements that OpenCASCADE ignores because they do more than translate and rotate: placements that
-// scale or mirror in STEP, placements that change angles in IGES.
+// Returns the number of placements that OpenCASCADE ignores because they do more than translate and rotate.
+// In STEP these are placements that scale or mirror, in IGES placements that change angles.
 int count_unread_placements(const opencascade::handle<StepData_StepModel>& model);
 int count_unread_placements(const opencascade::handle<IGESData_IGESModel>& model);
 
-// Removes the names of other files and returns their number. OpenCASCADE would open such a file even if it
-// were a pipe or a device.
+// Removes the names of other files from the model and returns their number. OpenCASCADE would open such a
+// file even if it were a pipe or a device.
 int remove_external_files(const opencascade::handle<StepData_StepModel>& model);
 
 }  // namespace spoonbill

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t section_column = 72, line_limit = 2000, iges_parameter_limit = 26;
 constexpr std::size_t model_scale = 12, unit_flag = 13, unit_parameter = 14;  // counted from 0
 
-// Returns the text of the lines that are marked as global.
+// Returns the text of all lines of the global section.
 std::string global_text(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::string text, line;
@@ -62,7 +62,7 @@ struct LineCounts {
   std::map<char, long> counts;  // number of lines of each section
   std::string last;             // last line of the file, which states the number of lines of each section
   int null_entities = 0;
-  long farthest = 0;  // last line of parameters that an entity refers to
+  long farthest = 0;  // last parameter line that an entity refers to
   // Number of the first parameter line of the present entity, which the first of its two directory lines
   // states.
   std::optional<long> parameters_of_next;

@@ -34,12 +34,12 @@ namespace {
 // approximated faces.
 constexpr double tolerances_mm[] = {1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1};
 
-// Gaps between two faces up to this width are not reported. If the faces deviate more from the originals, the
-// limit is raised.
+// Width up to which gaps between two faces are not reported. The limit is higher if the faces deviate more
+// from the originals.
 constexpr double expected_gap_m = 2e-5;
 constexpr int gap_samples = 16;
 
-// Index of the part to which each geometry belongs; sewing makes new faces on the same geometry.
+// Index of the part to which each surface geometry belongs. Sewing makes new faces on the same geometry.
 using PartOf = std::map<const Geom_Surface*, std::size_t>;
 
 // Number of faces of each part.

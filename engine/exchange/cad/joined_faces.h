@@ -1,4 +1,4 @@
-// Joining of the faces of a solid, which are separate surfaces in the program, into that solid.
+// Joining of the faces of a solid. In the program they are separate surfaces.
 #pragma once
 
 #include <TopoDS_Solid.hxx>
@@ -13,7 +13,7 @@ namespace spoonbill {
 
 struct JoinedSolid {
   TopoDS_Solid shape;              // the solid, including its cavities
-  double gap_m = 0.0;              // widest gap between the two faces of an edge
+  double gap_m = 0.0;              // widest gap between two faces at a shared edge
   std::vector<std::size_t> parts;  // indices of the parts whose faces form the solid
 };
 
@@ -22,15 +22,15 @@ struct JoinedFaces {
   std::vector<std::size_t> loose;  // indices of the parts that belong to no solid
 };
 
-// Sews the parts' edges where they are at most 0.1 mm apart, since approximated faces may have such gaps. The
+// Sews edges of the parts that are at most 0.1 mm apart, since approximated faces may have such gaps. The
 // normals of most of a shell's faces decide which side is outside. A shell that is inside out is a cavity of
 // the solid around it, or loose if no solid is around it. Refused: a surface or trim loops from which
 // OpenCASCADE cannot build a face.
 Result<JoinedFaces> join_faces(const std::vector<const CadSurface*>& parts);
 
-// Returns notes about the joined faces of the solid `name`, one line each: bridged gaps that are wider than
-// the approximation of two faces explains, and the number of loose faces followed by `loose_outcome`, such as
-// "; they are written one by one".
+// Returns notes about the joined faces of the solid `name`, one line each. They report bridged gaps that are
+// wider than the approximation of two faces explains, and the number of loose faces. `loose_outcome` is
+// appended to the latter, for example "; they are written one by one".
 std::vector<std::string> describe_joining(const JoinedFaces& joined, const std::string& name,
                                           const std::vector<const CadSurface*>& parts,
                                           const std::string& loose_outcome);

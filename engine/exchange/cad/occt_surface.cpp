@@ -18,8 +18,8 @@
 namespace spoonbill {
 namespace {
 
-// One direction of an OpenCASCADE surface: for each pole (OpenCASCADE's control point), the index of the
-// program's control point.
+// One direction of an OpenCASCADE surface. For each pole (OpenCASCADE's control point), it has the index of
+// the program's control point.
 struct OcctDirection {
   TColStd_Array1OfReal knots;
   TColStd_Array1OfInteger multiplicities;
@@ -99,7 +99,7 @@ ControlMatrix control_lines(const Surface& surface, Direction direction) {
   return lines;
 }
 
-// Returns the surface with other knots and control points along the direction.
+// Returns the surface with its knots and control points along the direction replaced.
 Surface replace_controls(const Surface& like, Direction direction, const KnotVector& knots,
                          const ControlMatrix& lines) {
   const bool along_u = direction == Direction::u;
@@ -135,7 +135,7 @@ Result<KnotVector> periodic_knots(const KnotVector& open, int seam_multiplicity)
   return KnotVector::periodic(open.degree(), std::move(knots));
 }
 
-// Returns the control points of the open form of a periodic surface, for comparison.
+// Returns the control points of a periodic surface in its open form, for comparison.
 ControlMatrix opened_lines(const Surface& periodic, Direction direction) {
   const KnotVector& before = direction == Direction::u ? periodic.u : periodic.v;
   const auto full = insert_knot(periodic, direction, before.domain_start(), before.degree());
@@ -149,7 +149,7 @@ ControlMatrix opened_lines(const Surface& periodic, Direction direction) {
   return opened;
 }
 
-// Bound of the ratio of the spread of an edge's control points to the width of the edge.
+// Limit for the spread of an edge's control points, as a multiple of the width of the edge.
 constexpr double control_spread = 10.0;
 constexpr int moved_samples = 64;
 
@@ -200,8 +200,8 @@ std::vector<double> greville_parameters(const KnotVector& knots) {
   const std::vector<double>& all = knots.extended_knots();
   const auto degree = static_cast<std::size_t>(knots.degree());
   std::vector<double> parameters;
-  // In a periodic direction the first control point is the first one whose basis function starts in the
-  // period.
+  // In a periodic direction, the first control point is the one whose basis function is the first to start
+  // in the period.
   const std::size_t first = knots.is_periodic() ? degree : 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(knots.control_point_count()); ++i) {
     double sum = 0.0;

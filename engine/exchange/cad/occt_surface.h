@@ -1,5 +1,5 @@
 // Conversion of surfaces to and from OpenCASCADE, and the closing of seams and poles that CAD files leave
-// open. OpenCASCADE's lengths are millimetres.
+// slightly open. OpenCASCADE's lengths are millimetres.
 #pragma once
 
 #include <Geom_BSplineSurface.hxx>
@@ -28,17 +28,17 @@ Result<Surface> from_occt(const Geom_BSplineSurface& surface);
 // tolerance.
 Surface close_seam(const Surface& surface, Direction direction, double tolerance_m);
 
-// Makes all control points of an edge equal if they coincide to `tolerance_m`; treats the edges of both
+// Makes all control points of an edge equal if they coincide to `tolerance_m`. Applies to the edges of both
 // directions.
 void close_poles(Surface& surface, double tolerance_m);
 
 struct ClosedSurface {
   Surface surface;
-  double moved_m = 0.0;  // largest displacement of samples
+  double moved_m = 0.0;  // largest displacement of a sample
 };
 
 // Closes a surface that find_closing() classifies as solid: its seams become periodic and its poles single
-// points. Any other surface, and one that cannot be closed within the tolerance, is returned unchanged.
+// points. Any other surface, or a surface that cannot be closed within the tolerance, is returned unchanged.
 ClosedSurface close_exactly(const Surface& surface);
 
 // Returns the Greville parameters, at which a spline with as many control points is interpolated well. Each

@@ -45,8 +45,8 @@ struct ShapeMesh {
 
 // Largest angle between neighbouring triangles of a face, in radians.
 constexpr double angle_limit = 0.5;
-// Deflection of the first try as a fraction of the chord error, since meshes may exceed the deflection, and
-// smallest ratio of a deflection to the previous one.
+// initial_fraction is the deflection of the first try as a fraction of the chord error; meshes may exceed
+// their deflection. smallest_step is the smallest ratio of a deflection to that of the previous try.
 constexpr double initial_fraction = 0.7, smallest_step = 0.2;
 constexpr int try_limit = 6;
 // Number of sampling intervals on a side of a triangle.
@@ -65,7 +65,7 @@ struct MeshedFace {
   std::size_t first = 0;  // index of the face's first node among the nodes of all faces
 };
 
-// Nodes of an edge in one face, and their parameters along its curve.
+// Nodes of an edge in one face, and their parameters along the curve of the edge.
 struct MeshedEdge {
   TopoDS_Edge edge;
   std::vector<std::size_t> nodes;
@@ -292,9 +292,10 @@ Result<std::optional<ShapeMesh>> mesh_with_deflection(const TopoDS_Shape& shape,
 }
 
 // Meshes a closed shape so that faces share the points of their edges, with a smaller deflection at each try.
-// The tries end when samples of faces and edges are within the chord error plus `gap_m`, the widest gap
-// between two faces: a shared point cannot be on both faces. Returns the most accurate mesh found, or nullopt
-// if none is watertight. Refused: more triangles than the limit before a watertight mesh is found.
+// The tries end when samples of faces and edges are within the chord error plus `gap_m`. `gap_m` is the
+// widest gap between two faces, and a shared point cannot be on both faces. Returns the most accurate mesh
+// found, or nullopt if none is watertight. Refused: more triangles than the limit before a watertight mesh is
+// found.
 Result<std::optional<ShapeMesh>> mesh_shape(const TopoDS_Shape& shape, const SolidMeshing& meshing,
                                             double gap_m) {
   std::optional<ShapeMesh> best;
@@ -318,8 +319,9 @@ Result<std::optional<ShapeMesh>> mesh_shape(const TopoDS_Shape& shape, const Sol
 
 // Relative tolerance to which OpenCASCADE integrates volume and area; its default has an error of about 1 %.
 constexpr double integration_tolerance = 1e-6;
-// Allowed difference between the volumes of mesh and solid: a multiple of the area times the chord error,
-// because narrow bends add to the difference, plus a fraction of the volume for the error of integration.
+// Allowed difference between the volumes of mesh and solid: volume_slack times the area times the chord
+// error, because narrow bends add to the difference, plus integral_slack times the volume for the error of
+// integration.
 constexpr double volume_slack = 2.0, integral_slack = 1e-3;
 
 CadSolid measure_solid(const std::string& name, const JoinedSolid& joined) {
@@ -341,8 +343,8 @@ class SolidMesher {
  public:
   SolidMesher(const CadModel& model, const SolidMeshing& meshing) : model_(model), remaining_(meshing) {}
 
-  // Adds the solid that the surface at this index belongs to, once for all its faces. A surface without a
-  // solid is loose.
+  // Adds the solid that the surface `index` belongs to, unless another of its faces has added it. A surface
+  // without a solid is loose.
   Status add(std::size_t index) {
     const std::string& name = model_.surfaces[index].solid;
     if (name.empty()) {
@@ -400,7 +402,7 @@ class SolidMesher {
     return {};
   }
 
-  // Returns true if mesh and solid have the same volume; a mesh that folds over does not.
+  // Returns true if mesh and solid have the same volume. The volume of a mesh that folds over differs.
   static bool has_same_volume(const ShapeMesh& found, const CadSolid& solid) {
     const double difference_m3 = enclosed_volume_m3(found.mesh) - solid.volume_m3;
     return std::abs(difference_m3) <=

@@ -24,12 +24,12 @@ namespace {
 using Point = Eigen::Vector2d;
 // Control points of a cubic Bezier curve, and the part of an edge that it follows.
 struct CubicPiece : std::array<Point, 4> {
-  int edge = -1;                // index of the edge in its wire; -1: none, a line across a gap
+  int edge = -1;                // index of the edge in its wire; -1 for a line across a gap
   double from = 0.0, to = 0.0;  // parameters of the edge at the ends of the piece
 };
 
-// Largest distance between loops and the file's curves, as a fraction of the domain: the default, and the
-// smallest value that a tight tolerance may require.
+// Largest distance between loops and the file's curves, as a fraction of the domain. The first value is the
+// default; a tight tolerance may require values down to the second.
 constexpr double curve_fraction = 1e-6, smallest_curve_fraction = 1e-9;
 // Largest gap between edges that is closed by moving their ends, as a fraction of the domain.
 constexpr double meeting_fraction = 1e-3;
@@ -45,7 +45,7 @@ Point evaluate(const CubicPiece& piece, double t) {
          t * t * t * piece[3];
 }
 
-// Lengths of a surface's domain, and the tolerance of curves over it as a fraction of these lengths.
+// Side lengths of a surface's domain, and the tolerance of curves over it as a fraction of these lengths.
 struct CurveTolerance {
   Point lengths;
   double fraction;
@@ -57,7 +57,8 @@ CurveTolerance find_curve_tolerance(const Surface& surface, double tolerance_m) 
           std::clamp(fraction, smallest_curve_fraction, curve_fraction)};
 }
 
-// Fit of a curve by cubic pieces with its tangents (Hermite), halved until they are within the tolerance.
+// Fit of a curve by cubic pieces with the tangents of the curve (Hermite). Pieces are halved until they are
+// within the tolerance.
 class CurveFit {
  public:
   CurveFit(const Geom2dAdaptor_Curve& curve, const CurveTolerance& tolerance)
@@ -102,7 +103,7 @@ class CurveFit {
   CurveTolerance tolerance_;
 };
 
-// Returns the cubic pieces of an edge in the direction of its wire; empty where it has no curve over the
+// Returns the cubic pieces of an edge in the direction of its wire. Empty if the edge has no curve over the
 // surface.
 std::vector<CubicPiece> fit_edge(const TopoDS_Edge& edge, const TopoDS_Face& face,
                                  const CurveTolerance& tolerance) {
@@ -132,7 +133,8 @@ CubicPiece line(const Point& from, const Point& to) {
   return {{from, (2.0 * from + to) / 3.0, (from + 2.0 * to) / 3.0, to}};
 }
 
-// Makes `next` begin at `end`: a small gap is closed by moving its start, a large one by a line.
+// Makes `next` begin at `end`. A small gap is closed by moving the start of `next`, a large gap by adding a
+// line.
 void join(const Point& end, const Point& lengths, std::vector<CubicPiece>& next) {
   const Point gap = end - next.front()[0];
   if (gap.cwiseQuotient(lengths).norm() <= meeting_fraction) {
@@ -174,7 +176,7 @@ Result<EdgeChain> join_edges(const TopoDS_Wire& wire, const TopoDS_Face& face,
   return result;
 }
 
-// Distance beyond the domain, as a fraction of it, that is rounding.
+// Distance beyond the domain that counts as rounding, as a fraction of the domain.
 constexpr double rounding_fraction = 1e-10;
 constexpr int bisections = 60;
 
@@ -182,8 +184,8 @@ double coordinate_at(const CubicPiece& piece, int axis, double t) {
   return evaluate(piece, t)[axis];
 }
 
-// Adds the parameters in (0, 1) at which a coordinate of the piece passes a level, between its turning
-// points.
+// Adds the parameters in (0, 1) at which a coordinate of the piece passes a level. Searches between the
+// turning points of the coordinate.
 void add_passages(const CubicPiece& piece, int axis, double level, std::vector<double>& at) {
   // Coefficients of the derivative, without the factor 3.
   const double d0 = piece[1][axis] - piece[0][axis], d1 = piece[2][axis] - piece[1][axis],
@@ -230,8 +232,8 @@ CubicPiece part_of(const CubicPiece& piece, double from, double to) {
   return part;
 }
 
-// Moves the parts of a curve that are outside the domain of an open direction to its end. A curve is cut
-// where it passes the end: its control points may be outside while the curve is not.
+// Moves the parts of a curve that are beyond an end of an open direction to that end. A curve is first cut
+// where it passes the end, because its control points may be outside while the curve is not.
 std::vector<CubicPiece> clip(const std::vector<CubicPiece>& pieces, int axis, const KnotVector& knots) {
   if (knots.is_periodic()) return pieces;
   const double start = knots.domain_start(), end = knots.domain_end();
@@ -300,14 +302,15 @@ double distance_to_edge(const gp_Pnt& point, const Geom_Curve& curve, double fir
 }
 
 // Returns the largest distance of samples of the pieces from the 3D curves of their edges, and of the ends of
-// each edge from those of its pieces, in the unit of the face. `place` returns the point of the surface.
+// each edge from the ends of its pieces, in the unit of the face. `place` returns the point of the surface at
+// a parameter.
 template <class Place>
 double measure_chain(const EdgeChain& chain, const Place& place) {
   double largest = 0.0;
   for (std::size_t e = 0; e < chain.edges.size(); ++e) {
     double first = 0.0, last = 0.0;
     const auto curve = BRep_Tool::Curve(chain.edges[e], first, last);
-    if (curve.IsNull()) continue;  // a pole
+    if (curve.IsNull()) continue;  // the edge is a pole
     for (const CubicPiece& piece : chain.pieces) {
       if (piece.edge != static_cast<int>(e)) continue;
       for (int k = 0; k <= samples_per_piece; ++k) {
@@ -328,9 +331,9 @@ double domain_area(const KnotVector& along_u, const KnotVector& along_v) {
   return along_u.domain_length() * along_v.domain_length();
 }
 
-// Orients the largest loop counter-clockwise and the others clockwise; some systems orient wires against the
-// normal of their face. The knots of a chain of pieces are symmetric, so that reversing the control points
-// suffices.
+// Orients the largest loop counter-clockwise and the others clockwise, because some systems orient wires
+// against the normal of their face. The knots of a chain of pieces are symmetric, so it is enough to reverse
+// the control points.
 std::vector<TrimLoop> orient_loops(std::vector<TrimLoop> loops, const KnotVector& along_u,
                                    const KnotVector& along_v) {
   std::vector<double> areas;
@@ -386,7 +389,7 @@ double measure_sides(const TopoDS_Face& face, const Surface& surface, double sca
   const CurveTolerance tolerance = find_curve_tolerance(surface, tolerance_m);
   const double u_start = surface.u.domain_start(), u_end = surface.u.domain_end();
   const double v_start = surface.v.domain_start(), v_end = surface.v.domain_end();
-  // Returns the nearest point of the four sides; each sample of an edge is near one of them.
+  // Returns the nearest point of the four sides. Each sample of an edge is near one of them.
   const auto place = [&](const Point& at) {
     const gp_Pnt point = place_on(surface, at, scale);
     gp_Pnt nearest = point;

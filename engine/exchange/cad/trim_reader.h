@@ -16,17 +16,17 @@ struct FaceTrims {
   double deviation_m = 0.0;
 };
 
-// Returns a loop for each wire of the face except those around the whole domain. `surface` is the face's, in
-// metres, over the face's own parameters; `scale` is the length of one unit of the face in metres. The cubic
-// pieces of a loop are within a millionth of the domain of the edges' curves, or closer where a millionth
-// would exceed the tolerance on the surface; splines of degree 3 and less are exact. The parts of a curve
-// beyond an open end of the domain are moved to that end. Refused: edges that have no curves over the
+// Returns a loop for each wire of the face except wires around the whole domain. `surface` is the surface of
+// the face, in metres, over the face's own parameters. `scale` is the length of one unit of the face in
+// metres. The cubic pieces of a loop are within a millionth of the domain of the edges' curves, or closer if
+// a millionth would exceed the tolerance on the surface. Splines of degree 3 and less are exact. The parts of
+// a curve beyond an open end of the domain are moved to that end. Refused: edges that have no curves over the
 // parameters or are not connected, and loops that bound no area.
 Result<FaceTrims> read_trim_loops(const TopoDS_Face& face, const Surface& surface, double scale,
                                   double tolerance_m);
 
-// Returns the largest distance, in metres, of the sides of an untrimmed face's surface from the 3D curves of
-// its edges.
+// Returns the largest distance, in metres, from the 3D curves of an untrimmed face's edges to the sides of
+// its surface.
 double measure_sides(const TopoDS_Face& face, const Surface& surface, double scale, double tolerance_m);
 
 }  // namespace spoonbill

@@ -92,7 +92,7 @@ Status write_stl(const std::vector<NamedMesh>& meshes, double unit_m, const Byte
 Status write_obj(const std::vector<NamedMesh>& meshes, double unit_m, const ByteSink& sink) {
   PartBuffer parts(sink);
   parts.text("# by Spoonbill\n");
-  std::size_t first = 1;  // index of the mesh's first vertex; vertices count from 1 through the whole file
+  std::size_t first = 1;  // number of the mesh's first vertex; OBJ counts vertices of the whole file from 1
   for (const NamedMesh& part : meshes) {
     parts.text("o ").text(part.name).text("\n");
     for (const Vector3& vertex : part.mesh.vertices_m) {
@@ -169,7 +169,7 @@ std::string escape_attribute(const std::string& text) {
   return escaped;
 }
 
-// Asks the sink whether to continue. The first error is stored.
+// Asks the sink whether to continue, and stores the first error.
 class StopCheck {
  public:
   explicit StopCheck(const ByteSink& sink) : sink_(sink) {}

@@ -15,18 +15,18 @@ namespace spoonbill {
 struct NamedMesh {
   std::string name;
   TriangleMesh mesh;
-  bool closed = true;  // 3MF distinguishes solids from sheets
+  bool closed = true;  // true for a solid, false for a sheet; only 3MF stores it
 };
 
-// Receiver of a file's bytes, part by part. An empty part asks whether to continue, between steps that have
-// nothing to write yet; an error stops the writer.
+// Receiver of a file's bytes, part by part. The writer also sends empty parts, between steps that have
+// nothing to write yet, to ask whether to continue. An error stops the writer.
 using ByteSink = std::function<Status(std::string_view)>;
 
-// Writes meshes to a file. STL is binary in single precision, as the format requires; OBJ is text with all
-// digits and an object for each mesh; PLY is binary in double precision, with all meshes merged; 3MF (3D
-// Manufacturing Format, core specification 1.3) is a zip with an object for each mesh, always in millimetres.
-// `format` must be one of these. `unit_m` is the length of one unit of the file. Refused: more triangles than
-// the format can index, errors of libzip and of the sink.
+// Writes meshes to a file. STL is binary in single precision, as the format requires. OBJ is text with all
+// digits and one object for each mesh. PLY is binary in double precision, with all meshes merged. 3MF (3D
+// Manufacturing Format, core specification 1.3) is a zip with one object for each mesh, always in
+// millimetres. `format` must be one of these four. `unit_m` is the length of one unit of the file. Refused:
+// more triangles than the format can index, errors of libzip and of the sink.
 Status write_meshes(const std::vector<NamedMesh>& meshes, FileFormat format, double unit_m,
                     const ByteSink& sink);
 

@@ -24,7 +24,7 @@
 namespace spoonbill {
 namespace {
 
-// Height below which a triangle is a sliver; also the distance below which vertices are merged.
+// Height below which a triangle is a sliver, and distance at or below which vertices are merged.
 constexpr double smallest_height_m = 1e-9;
 constexpr std::size_t no_triangle = std::numeric_limits<std::size_t>::max();
 
@@ -190,9 +190,9 @@ void remove_slivers(TriangleMesh& mesh) {
 
 // Distance below which coordinates are equal after rounding in a file.
 constexpr double coincidence_m = 1e-9;
-// Fraction of the chord error that the bend along one direction may use; the rest is for the twist.
+// Fraction of the chord error that the curvature along one direction may use; the rest is for the twist.
 constexpr double direction_fraction = 0.4;
-// Smallest fraction of the chord error that remains for the cells when the edges of loops use the rest.
+// Smallest fraction of the chord error that remains for the cells; the edges of trim loops may use the rest.
 constexpr double smallest_cell_fraction = 0.5;
 
 // Number of cells of each polynomial piece of one direction.
@@ -264,8 +264,8 @@ Result<Sheet> sample_sheet(const Surface& surface, const Cells& cells) {
   return sheet;
 }
 
-// Returns the largest error of the cells of each polynomial piece, in metres. After a stop request, the
-// errors that are not yet measured are 0.
+// Returns the largest error of the cells of each polynomial piece, in metres. If a stop is requested, the
+// errors not yet measured are 0.
 Eigen::MatrixXd measure_errors(const Sheet& sheet, const SurfaceBounds& bounds, const Cells& cells,
                                const Progress& progress) {
   Eigen::MatrixXd errors = Eigen::MatrixXd::Zero(bounds.elements_u(), bounds.elements_v());
@@ -320,7 +320,7 @@ class Welding {
     return (u_closed_ || (first_row_ && last_row_)) && (v_closed_ || (first_column_ && last_column_));
   }
 
-  // Returns the index within the grid of the vertex that replaces (i, j).
+  // Returns the grid index of the vertex that replaces (i, j).
   std::size_t vertex(std::size_t i, std::size_t j) const {
     if (u_closed_ && i == rows_ - 1) i = 0;
     if (v_closed_ && j == columns_ - 1) j = 0;
@@ -386,7 +386,7 @@ std::vector<GridTriangle> triangulate_cells(const Sheet& sheet, const Welding& w
   return triangles;
 }
 
-// Returns the mesh of triangles between grid points; indices beyond those of the sheet refer to `more`.
+// Returns the mesh of triangles between grid points. Indices beyond the points of the sheet refer to `more`.
 TriangleMesh make_mesh(const Sheet& sheet, const std::vector<Vector3>& more,
                        const std::vector<GridTriangle>& triangles) {
   const std::size_t columns = sheet.grid.v.parameters.size(), samples = sheet.samples.x.size();
@@ -459,7 +459,8 @@ Result<Tessellation> make_tessellation(const Sheet& sheet, const Surface& surfac
   return result;
 }
 
-// Largest fraction of the area whose triangles may turn over; slivers may turn over by rounding.
+// Largest fraction of the area whose triangles may turn over when a shell is made; slivers may turn over by
+// rounding.
 constexpr double turned_fraction = 1e-3;
 
 Vector3 twice_area(const std::vector<Vector3>& points_m, const TriangleCorners& corners) {

@@ -19,10 +19,10 @@ struct Tessellation {
   // of the surface is a seam or a pole.
   TriangleMesh mesh;
   bool closed = false;  // every side is a seam or a pole, and no trim loop cuts the surface
-  // Largest distance of a point of the surface from the point of its triangle at the same parameters, and of
-  // a trim loop from the edges that replace it. Exceeds the requested error by at most closing_tolerance_m
-  // because of welding, and by the error of the loops' edges if that is more than half of the requested
-  // error.
+  // Largest distance of a point of the surface from the point of its triangle at the same parameters, or of a
+  // trim loop from the edges that replace it. It may exceed the requested error by closing_tolerance_m
+  // because of welding. If the error of the loops' edges is more than half of the requested error, it may
+  // also exceed it by the error of these edges.
   double chord_error_m = 0.0;
 };
 
@@ -30,11 +30,11 @@ inline constexpr Range<double> chord_range_m{1e-7, 0.1};
 inline constexpr std::size_t exported_triangle_limit = 10'000'000;
 
 // Tessellates the part of a surface that the trim loops keep, on a grid over its polynomial pieces that is
-// finer where it bends. A cell of sides h_u and h_v is within (h_u^2 |S_uu| + h_v^2 |S_vv|) / 8 of the
-// bilinear patch through its corners (surface_levels.h), and the patch within |P00 - P10 - P01 + P11| / 4 of
-// its triangles; both hold for cells that loops cut. A loop's polygon is within polygon_error_fraction() of
-// the domain of the loop, and the surface stretches this distance by at most its first derivatives. Refused:
-// more triangles than the limit, loops that bound no area, a request to stop.
+// finer where the surface bends. A cell of sides h_u and h_v is within (h_u^2 |S_uu| + h_v^2 |S_vv|) / 8 of
+// the bilinear patch through its corners (surface_levels.h). The patch is within |P00 - P10 - P01 + P11| / 4
+// of its triangles, for corners P. Both bounds hold for cells that loops cut. A loop's polygon is within
+// polygon_error_fraction() of the domain of the loop, and the surface stretches this distance by at most its
+// first derivatives. Refused: more triangles than the limit, loops that bound no area, a request to stop.
 Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLoop>& trims, double chord_m,
                                 std::size_t triangle_limit = exported_triangle_limit,
                                 const Progress& progress = {});
@@ -43,12 +43,12 @@ Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLo
 // inward.
 double enclosed_volume_m3(const TriangleMesh& mesh);
 
-// Returns a shell: the outer mesh, a copy of it `thickness_m` (above 0) behind along the vertex normals, and
-// walls between the boundary edges of both. A vertex normal is the area-weighted mean of the normals of its
-// triangles. The shell is closed if no edge of the outer mesh has more than two triangles. On a face of
-// radius r, the distance between both meshes differs from the thickness by about the square of a triangle's
-// side divided by r. Refused: a shell thicker than the radius of curvature, whose inner triangles turn over;
-// the message gives the position.
+// Returns a shell: the outer mesh, a copy of it moved back by `thickness_m` (above 0) along the vertex
+// normals, and walls between the boundary edges of both. A vertex normal is the area-weighted mean of the
+// normals of its triangles. The shell is closed if no edge of the outer mesh has more than two triangles. On
+// a face of radius r, the distance between both meshes differs from the thickness by about the square of a
+// triangle's side divided by r. Refused: a shell thicker than the radius of curvature, whose inner triangles
+// would turn over; the message gives the position.
 Result<TriangleMesh> thicken_mesh(const TriangleMesh& outer, double thickness_m);
 
 }  // namespace spoonbill

@@ -55,7 +55,7 @@ std::optional<double> parse_number(std::string_view word) {
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
   if (end != word.data() + word.size() || word.empty()) return {};
   if (error == std::errc::result_out_of_range) {
-    // Numbers that are too small become zero; numbers that are too large become infinite.
+    // A number that is too small becomes zero; a number that is too large becomes infinite.
     return word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos
                ? 0.0
                : std::numeric_limits<double>::infinity();

@@ -148,7 +148,7 @@ Error truncated_error(std::uint64_t point, std::uint64_t points) {
                                          " of " + std::to_string(points) + "; it is cut or damaged"};
 }
 
-// Returns an error if anything but padding (blanks or zeros) follows the last point.
+// Returns an error if anything other than padding (blanks or zeros) follows the last point.
 Status check_rest(std::string_view rest, std::uint64_t points) {
   constexpr std::string_view padding("\0 \t\r\v\f\n", 7);
   if (rest.find_first_not_of(padding) == std::string_view::npos) return {};
@@ -214,7 +214,7 @@ Result<PointCloud> read_text_body(PcdHeader header) {
 
 constexpr bool swapped = std::endian::native == std::endian::big;
 
-// Reads numbers that are stored point by point.
+// Reads a binary body, in which all numbers of a point are stored together.
 Result<PointCloud> read_binary_body(PcdHeader header) {
   std::size_t stride = 0;
   for (PcdField& field : header.fields) {
@@ -235,8 +235,8 @@ Result<PointCloud> read_binary_body(PcdHeader header) {
   });
 }
 
-// Reads the compressed and the full size, then LZF data: all values of the first field, then all values of
-// the second, and so on.
+// Reads a compressed body: the compressed size, the full size, then LZF data with all values of the first
+// field, all values of the second, and so on.
 Result<PointCloud> read_compressed_body(PcdHeader header) {
   if (header.points > point_limit) {
     return collect_points(header, [](auto, auto) { return std::optional<double>(); });

@@ -15,8 +15,8 @@
 namespace spoonbill {
 namespace {
 
-// Reads the numbers after the header of a PLY file, one by one. Its functions return false at the end or
-// where there is no number.
+// Reads the numbers after the header of a PLY file, one by one. The functions return false at the end of the
+// file or if there is no number.
 class PlyNumbers {
  public:
   explicit PlyNumbers(const PlyHeader& header)
@@ -93,7 +93,7 @@ Error row_error(const PlyNumbers& numbers, const PlyElement& element, std::uint6
                                          "; it is cut or damaged"};
 }
 
-// Returns the smallest size of a row in bytes.
+// Returns the smallest number of bytes that a row can have.
 std::size_t least_row_bytes(const PlyNumbers& numbers, const PlyElement& element) {
   std::size_t bytes = 0;
   for (const PlyProperty& property : element.properties) {
@@ -167,7 +167,8 @@ bool is_face(const PlyElement& element) {
   return element.name == "face" || element.name == "tristrips";
 }
 
-// Builder of a mesh from the elements of a file. Polygons wait for the vertices, which may follow them.
+// Builder of a mesh from the elements of a file. Polygons are stored until all vertices are read, because the
+// vertices may follow them.
 class PlyMeshBuilder {
  public:
   Status read_vertices_of(PlyNumbers& numbers, const PlyElement& element) {

@@ -16,21 +16,21 @@ namespace spoonbill {
 // Largest number of corners of one face.
 inline constexpr std::size_t face_corner_limit = 4096;
 
-// Vertices in the file's own unit, any of which may be NaN or infinite, and triangles with valid indices.
+// Vertices in the file's own unit, and triangles with valid indices. Coordinates may be NaN or infinite.
 struct PlyMesh {
   std::vector<Vector3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-// Reads a file of text or of numbers in either byte order: a mesh if its header declares faces or triangle
-// strips, otherwise a cloud with the normals of its vertices. The elements may be in any order and of any
-// number type. Faces are lists named vertex_indices or vertex_index; polygons are cut into triangles, and
-// faces of one or two corners are ignored. The index -1 ends a strip and starts the next. Other elements and
-// properties are ignored.
+// Reads a PLY file of text or of numbers in either byte order. The result is a mesh if the header declares
+// faces or triangle strips, otherwise a cloud with the normals of its vertices. The elements may be in any
+// order and of any number type. Faces are lists named vertex_indices or vertex_index. Polygons are cut into
+// triangles, and faces of one or two corners are ignored. The index -1 ends a strip and starts the next.
+// Other elements and properties are ignored.
 //
 // Refused: what read_ply_header() refuses; vertices without x, y and z; faces without a list of indices; an
-// index that no vertex has; a face with more corners than the limit; rows that the file does not hold, or
-// numbers after the last row.
+// index without a vertex; a face with more corners than the limit; missing rows, or numbers after the last
+// row.
 Result<std::variant<PlyMesh, PointCloud>> parse_ply(std::string_view bytes);
 
 }  // namespace spoonbill

@@ -85,8 +85,8 @@ std::optional<PlyFormat> find_format(std::string_view name) {
   return {};
 }
 
-// Removes and returns the next line. If the first line ends with a lone carriage return, all lines of the
-// header do; a line feed right after the header is then the first byte of the data.
+// Removes the next line and returns it. If the first line of the header ends with a lone carriage return, all
+// its lines do. A line feed right after the header is then the first byte of the data.
 std::string_view extract_header_line(std::string_view& rest, bool ends_with_return) {
   if (!ends_with_return) return extract_line(rest);
   const std::size_t end = std::min(rest.find('\r'), rest.size());

@@ -30,7 +30,7 @@ struct PlyElement {
 
 enum class PlyFormat { text, little_endian, big_endian };
 
-// Views of the file's bytes, which must outlive it.
+// Header of a PLY file, as views of the file's bytes. The bytes must outlive it.
 struct PlyHeader {
   PlyFormat format = PlyFormat::text;
   std::vector<PlyElement> elements;
@@ -38,8 +38,7 @@ struct PlyHeader {
 };
 
 // Reads a header whose lines end with a line feed, a carriage return or both. Refused: a header that does not
-// end within 64 KiB, an unknown format or type, a number of rows that is not a number, two elements of
-// vertices.
+// end within 64 KiB, an unknown format or type, a row count that is not a number, two elements of vertices.
 Result<PlyHeader> read_ply_header(std::string_view bytes);
 
 }  // namespace spoonbill

@@ -86,8 +86,8 @@ bool has_inner_comma(std::string_view line) {
 }
 
 // Parses numbers separated by blanks, commas or semicolons. If semicolons separate the words, a comma within
-// a word is a decimal comma. If blanks separate them, such a comma may also separate thousands or columns,
-// and the row is ambiguous.
+// a word is a decimal comma. If blanks separate the words, a comma within a word may also separate thousands
+// or columns, and the row is ambiguous.
 Row parse_text_row(std::string_view line) {
   Row row = parse_row(line, ",;");
   line = trim_separators(line);
@@ -168,7 +168,8 @@ Result<PointCloud> parse_text_points(std::string_view bytes) {
   bool has_heading = false;
   std::optional<double> promised;  // number of points that the line before the first point states
   bytes = without_byte_order_mark(bytes);
-  bool are_unit_normals = true;  // columns 4 to 6 of all points so far have length 1
+  // True while columns 4 to 6 of all points have length 1.
+  bool are_unit_normals = true;
   while (!bytes.empty()) {
     const std::string_view line = extract_line(bytes);
     ++line_number;

@@ -21,8 +21,8 @@ inline constexpr std::size_t point_file_bytes_limit = std::size_t{1} << 30;
 
 struct PointCloud {
   std::vector<Vector3> points;   // in the file's own unit
-  std::vector<Vector3> normals;  // one for each point, of any length; or empty
-  // number of points skipped because a coordinate is NaN, which depth cameras write
+  std::vector<Vector3> normals;  // one normal for each point, of any length; may be empty
+  // Number of points skipped because a coordinate is NaN, which depth cameras write.
   std::size_t skipped = 0;
 };
 
@@ -33,8 +33,8 @@ class PointCollector {
   // Reserves memory for `count` points. Refused: more points than the limit.
   Status begin(std::uint64_t count, bool with_normals);
 
-  // Appends a point; one with a NaN is skipped and counted. Refused: infinite coordinates, more points than
-  // the limit.
+  // Appends a point. A point with a NaN coordinate is skipped and counted. Refused: infinite coordinates,
+  // more points than the limit.
   Status add(const Vector3& point, const Vector3& normal);
 
   // Returns the cloud. Refused: a cloud without points.
@@ -51,19 +51,20 @@ class PointCollector {
 // more points than the header names.
 Result<PointCloud> parse_pcd_points(std::string_view bytes);
 
-// Reads one point from each line: x, y, z separated by blanks, commas or semicolons, followed by a normal if
-// three further columns have length 1 in all lines. Between semicolons "12,5" is a number with a decimal
-// comma. Ignored: other columns, comments (#, //), a byte order mark, and before the first point one line of
-// words or of the number of points. Refused: a stated number that differs from the number of points; a comma
-// within a word where blanks separate the words, because it may be a separator or a decimal comma.
+// Reads one point from each line: x, y, z separated by blanks, commas or semicolons. Three further columns
+// are the normal if they have length 1 in all lines. Between semicolons, "12,5" is a number with a decimal
+// comma. Ignored: other columns, comments (#, //), a byte order mark, and one line of words or of the number
+// of points before the first point. Refused: a stated number that differs from the number of points. Also
+// refused: a comma within a word where blanks separate the words, because it may be a separator or a decimal
+// comma.
 Result<PointCloud> parse_text_points(std::string_view bytes);
 
-// Reads the `v` lines of an OBJ file; its `vn` lines are their normals if there are as many of them.
+// Reads the `v` lines of an OBJ file. Its `vn` lines are the normals if there is one for each point.
 Result<PointCloud> parse_obj_points(std::string_view bytes);
 bool obj_has_faces(std::string_view bytes);
 
-// Reads a file's content with the reader that the ending of its name selects, text by default. Not for PLY,
-// which may hold a mesh (parse_ply()). Errors name the file.
+// Reads the content of a point file. The ending of the file's name selects the reader; the default is text.
+// PLY files, which may hold a mesh, are read by parse_ply() instead. Errors name the file.
 Result<PointCloud> points_of(std::string_view bytes, const std::filesystem::path& file);
 
 }  // namespace spoonbill

@@ -7,7 +7,7 @@
 namespace spoonbill {
 namespace {
 
-// Number of ears tested per corner; when all tests are used up, the rest of the polygon is cut without tests.
+// Number of ears tested per corner. When all tests are used up, the rest of the polygon is cut without tests.
 constexpr std::size_t tests_per_corner = 64;
 
 // Returns twice the area vector of the polygon (Newell 1972).

@@ -14,8 +14,8 @@ namespace spoonbill {
 using CellVector = Eigen::Matrix<double, 24, 1>;
 using CellMatrix = Eigen::Matrix<double, 24, 24>;
 
-// Displacements of a cell's corners from the rest shape, m. Positions would lose the digits that the forces
-// of stiff cells depend on.
+// Displacements of a cell's corners from the rest shape, m. Positions would lose digits on which the forces
+// of stiff cells depend.
 using CellMoves = std::array<Vector3, 8>;
 
 // Energy, forces and tangent of a deformed cell.

@@ -30,7 +30,7 @@ CellVector from_centre(const CellCorners& corners) {
   return result;
 }
 
-// Returns H of the deformation gradient 1 + H.
+// Returns the displacement gradient H; the deformation gradient is 1 + H.
 Eigen::Matrix3d displacement_gradient(const CellMoves& moves, const CellGradients& gradients) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (int c = 0; c < 8; ++c) sum += moves[static_cast<std::size_t>(c)] * gradients.row(c);
@@ -48,19 +48,20 @@ CellMatrix rotate_blocks(const CellMatrix& matrix, const Eigen::Matrix3d& rotati
   return result;
 }
 
-// Returns R - 1 = 2 w [v] + 2 [v]^2 for the unit quaternion w + v.
+// Returns R - 1 = 2 w [v] + 2 [v]^2 for the unit quaternion w + v, where [v] is the cross-product matrix of
+// v.
 Eigen::Matrix3d turn_from(const Eigen::Quaterniond& quaternion) {
   const Eigen::Quaterniond unit = quaternion.normalized();
   const Eigen::Matrix3d v = cross_matrix(unit.vec());
   return 2.0 * unit.w() * v + 2.0 * v * v;
 }
 
-// Returns the vector a for which [a] = A - A^T.
+// Returns the vector a whose cross-product matrix is [a] = A - A^T.
 Vector3 axial(const Eigen::Matrix3d& a) {
   return {a(2, 1) - a(1, 2), a(0, 2) - a(2, 0), a(1, 0) - a(0, 1)};
 }
 
-// Returns (tr S - S)^-1.
+// Returns (tr S - S)^-1 for the symmetric part of the stretch S.
 Eigen::Matrix3d spin_map(const Eigen::Matrix3d& stretch) {
   return (stretch.trace() * Eigen::Matrix3d::Identity() - 0.5 * (stretch + stretch.transpose())).inverse();
 }
@@ -73,8 +74,8 @@ Eigen::Matrix3d nearest_turn(const Eigen::Matrix3d& change) {
   Eigen::Matrix3d left = svd.matrixU();
   if ((left * svd.matrixV().transpose()).determinant() < 0.0) left.col(2) *= -1.0;
   const Eigen::Quaterniond near(Eigen::Matrix3d(left * svd.matrixV().transpose()));
-  // The product above is accurate to the rounding of 1. The residual skew part of S = R^T F, computed from
-  // small numbers alone, corrects it: [w] S + S [w] = S - S^T.
+  // The quaternion `near` is accurate to the rounding of 1. The residual skew part of S = R^T F, computed
+  // from small numbers alone, corrects it: [w] S + S [w] = S - S^T.
   const Eigen::Matrix3d turn = turn_from(near);
   const Eigen::Matrix3d stretch_change = turn.transpose() + change + turn.transpose() * change;
   const Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity() + stretch_change;
@@ -90,7 +91,8 @@ Eigen::Matrix3d CorotatedCell::turn(const CellMoves& moves) const {
   return nearest_turn(displacement_gradient(moves, gradients_));
 }
 
-// Returns R^T (X + d) - X.
+// Returns the displacements of the corners without the rotation: R^T (X + d) - X for the corners X and
+// displacements d.
 CellVector CorotatedCell::strained(const CellMoves& moves, const Eigen::Matrix3d& turn) const {
   const Eigen::Matrix3d rotated_back = turn.transpose();
   CellVector result = from_centre(moves);

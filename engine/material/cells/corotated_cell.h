@@ -20,14 +20,15 @@ class CorotatedCell {
   CorotatedCell(const CellCorners& rest, const CellMatrix& stiffness);
 
   const CellMatrix& stiffness() const { return stiffness_; }
-  // Rotation of the whole cell, R - 1.
+  // Returns R - 1 for the rotation R of the whole cell.
   Eigen::Matrix3d turn(const CellMoves& moves) const;
 
   // Computes energy, forces and tangent.
   //
-  // R is the rotation closest to the deformation gradient F = R S at the centre of the cell, x~ = R^T x and
-  // u = x~ - X. The energy is 1/2 u^T K u. R^T dR = [w] with w = (tr S - S)^-1 sum g_i x dx~_i = G dx~ for
-  // the gradients g_i of the shape functions, so du = (1 + [x~] G) dx~ = P dx~.
+  // X are the corners at rest, x the moved ones, and K is the stiffness. R is the rotation closest to the
+  // deformation gradient F = R S at the centre of the cell, x~ = R^T x and u = x~ - X. The energy is 1/2 u^T
+  // K u. R^T dR = [w] with w = (tr S - S)^-1 sum g_i x dx~_i = G dx~ for the gradients g_i of the shape
+  // functions, so du = (1 + [x~] G) dx~ = P dx~.
   //
   // The force is R P^T K u; it exerts no torque on a free body. The tangent is R (P^T K P - [f~] G + G^T
   // [n] P) R^T with n = K u and f~ = P^T n, made symmetric (Felippa and Haugen 2005), without the effect of
@@ -36,7 +37,8 @@ class CorotatedCell {
   double energy_j(const CellMoves& moves) const;
 
  private:
-  // Returns u = R^T (X + d) - X, the deformation without the rotation, in the axes of the rest shape.
+  // Returns u = R^T (X + d) - X: the deformation without the rotation, in the axes of the rest shape, for the
+  // corners X and displacements d.
   CellVector strained(const CellMoves& moves, const Eigen::Matrix3d& turn) const;
 
   CellVector rest_ = CellVector::Zero();  // corners relative to their mean

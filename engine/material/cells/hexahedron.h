@@ -11,8 +11,8 @@
 
 namespace spoonbill {
 
-// Returns the stiffness of a cell, from small displacements, m, to forces, N, in the axes of the rest
-// shape. It is symmetric, and the six rigid motions are its only null space.
+// Returns the stiffness of a cell: the matrix that maps small displacements, m, to forces, N, in the axes of
+// the rest shape. It is symmetric, and the six rigid motions are its only null space.
 //
 // The element is trilinear with three quadratic displacements per axis that are internal to the cell and
 // condensed out. A plain trilinear cell shears in bending and is too stiff: by half if a beam of L/H = 10 has

@@ -61,7 +61,7 @@ Components fourth_power(const Vector3& direction) {
   return result;
 }
 
-// Returns mu (delta_ij delta_kl + delta_ik delta_jl + delta_il delta_jk).
+// Returns the isotropic tensor mu (delta_ij delta_kl + delta_ik delta_jl + delta_il delta_jk).
 Components isotropic_components(double shear_modulus_pa) {
   Components result = Components::Zero();
   for (int c = 0; c < component_count; ++c) {
@@ -73,7 +73,8 @@ Components isotropic_components(double shear_modulus_pa) {
   return result;
 }
 
-// Stiffnesses of a cube's springs within one cell; four cells share an edge, two share a face diagonal.
+// Returns the stiffnesses of a cube's springs in one cell; four cells share an edge, two share a face
+// diagonal.
 Stiffnesses cube_stiffnesses(double edge_m, double shear_modulus_pa) {
   const double youngs_modulus_pa = 2.5 * shear_modulus_pa;
   const double body = 0.4 * 0.3 * youngs_modulus_pa * edge_m;
@@ -95,13 +96,13 @@ ComponentMatrix spring_components(const CellCorners& corners, double volume) {
   return matrix;
 }
 
-// Smallest stiffness of a spring relative to that of a cube. A corner whose diagonals vanish can snap
-// through the plane of its neighbours, and a cell without diagonals has zero-energy modes.
+// Smallest stiffness of a spring relative to that of a cube. A corner whose diagonals vanish can snap through
+// the plane of its neighbours, and a cell without diagonals has zero-energy modes.
 constexpr double min_spring_fraction = 0.1;
 
-// Returns the stiffnesses closest to `start` that satisfy `matrix * k = target`. Sets stiffnesses below their
-// minimum to it and solves again for the others, until none is below. A negligible multiple of the identity
-// keeps the normal matrix regular where springs of a distorted cell are dependent.
+// Returns the stiffnesses closest to `start` that satisfy `matrix * k = target`. If some are below their
+// minimum, fixes them there and solves again for the others, until none is below. A negligible multiple of
+// the identity keeps the normal matrix regular where springs of a distorted cell are dependent.
 Stiffnesses nearest_admissible(const ComponentMatrix& matrix, const Components& target,
                                const Stiffnesses& start) {
   Stiffnesses weight = start, from = start;
@@ -212,7 +213,8 @@ CellSprings material_springs(const CellCorners& corners, double youngs_modulus_p
   for (std::size_t c = 0; c < 8; c += 2) along_k += corners[c + 1] - corners[c];
   CellSprings scaled = fitted;
   double factor = 1.0;
-  // The modulus is nearly proportional to the springs, so that the factor converges in few rounds.
+  // The modulus is nearly proportional to the stiffness of the springs, so the factor converges in few
+  // rounds.
   for (int round = 0; round < rounds; ++round) {
     factor *= youngs_modulus_pa / modulus_along(along_k, corners, scaled, bulk_pa);
     if (!(std::abs(factor - 1.0) <= max_spring_correction)) return fitted;

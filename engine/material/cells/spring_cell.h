@@ -30,18 +30,19 @@ struct CellSprings {
 // Central forces alone have lambda = mu, Poisson's ratio 1/4 exactly (Golec et al. 2019). The springs get
 // the target shear modulus mu = E / (2 (1 + nu)); a volume force adds bulk_stiffness().
 //
-// The stiffnesses solve 15 equations: the sum over springs of k L^2 n n n n = V mu (delta delta + 2
-// permutations). The solution is the one closest to a cube of the same volume whose body diagonals have two
-// fifths of their largest possible stiffness. With none of it or all of it, zero-energy modes appear.
+// The stiffnesses k solve 15 equations: the sum over springs of k L^2 n n n n = V mu (delta delta + 2
+// permutations), for springs of length L and direction n. The solution is the one closest to a cube of the
+// same volume whose body diagonals have two fifths of their largest possible stiffness. With body diagonals
+// of zero or of the largest stiffness, zero-energy modes appear.
 //
 // Eq. 6 of Pungotra et al. 2013, K = A E / L with A = a^2, is the stiffness of a bar; applied to every
 // spring, it makes a lattice 2.09 to 2.25 times too stiff.
 CellSprings cell_springs(const CellCorners& corners, double shear_modulus_pa);
 
-// Returns the springs of a cell of a material, as cell_springs() with its shear modulus. Where they miss the
-// elasticity of a distorted cell, all are scaled until the cell, with the volume force, has the material's
-// Young's modulus in tension along k. Cells that need a larger correction than max_spring_correction are too
-// slender, and are left as they are.
+// Returns the springs of a cell of a material: those of cell_springs() for the material's shear modulus. If
+// they miss the elasticity of a distorted cell, all are scaled by one factor, so that the cell with its
+// volume force has the material's Young's modulus in tension along k. Cells that need a larger correction
+// than max_spring_correction are too slender and are not scaled.
 CellSprings material_springs(const CellCorners& corners, double youngs_modulus_pa, double poissons_ratio);
 inline constexpr double max_spring_correction = 0.2;
 
@@ -54,7 +55,7 @@ double modulus_along(const Vector3& direction, const CellCorners& corners, const
 double bulk_stiffness(double youngs_modulus_pa, double poissons_ratio);
 double shear_modulus(double youngs_modulus_pa, double poissons_ratio);
 
-// Elasticity of a cell with these springs and a volume force.
+// Returns the elasticity of a cell with these springs and a volume force.
 AchievedElasticity achieved_elasticity(const CellCorners& corners, const CellSprings& springs,
                                        double bulk_stiffness_pa);
 
@@ -76,9 +77,9 @@ class SpringCell {
   // Returns the length of a spring minus its rest length, m.
   double extension_m(std::size_t spring, const CellMoves& moves) const;
 
-  CellCorners rest_{};  // relative to the centre
+  CellCorners rest_{};  // corners at rest, relative to the centre
   std::array<double, cell_spring_count> stiffness_{}, rest_length_{};
-  double bulk_ = 0.0, rest_volume_ = 0.0;  // K_v V0, V0
+  double bulk_ = 0.0, rest_volume_ = 0.0;  // K_v V0 and V0, see respond()
 };
 
 }  // namespace spoonbill

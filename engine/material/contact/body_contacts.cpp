@@ -11,8 +11,9 @@
 namespace spoonbill {
 namespace {
 
-// The surfaces follow their nodes through the refit and may move slightly more or less than the constrained
-// points. Closing at most half of a gap leaves a margin for this difference.
+// Pace of contacts between bodies. The surfaces follow their nodes through the refit and may move slightly
+// more or less than the constrained points. Closing at most half of a gap in a substep leaves a margin for
+// this difference.
 constexpr ContactPace body_pace{0.5, 700.0};
 
 Vector3 current_displacement(const BodyPoint& side) {
@@ -23,8 +24,8 @@ Vector3 current_displacement(const BodyPoint& side) {
   return sum;
 }
 
-// Returns the velocity change per impulse between two points, 1/kg. Within one body the impulses overlap in
-// the nodes that both points use.
+// Returns the relative velocity change of two points per impulse between them, 1/kg. Within one body, the
+// impulses overlap in the nodes that both points use.
 double mutual_compliance(const BodyPoint& first, const BodyPoint& second) {
   if (first.body != second.body) {
     return first.point.compliance(*first.lattice) + second.point.compliance(*second.lattice);
@@ -129,8 +130,8 @@ auto contact_key(const GroundContact& contact) {
   return std::make_tuple(contact.body, contact.node);
 }
 
-// Updates the mean push: the plain mean since the node touched down, exponentially weighted after
-// friction_memory_s.
+// Updates the mean push. It is the plain mean since the node touched the ground, and exponentially weighted
+// after friction_memory_s.
 void remember(GroundContact& contact, double push_n, double h_s) {
   contact.time_s = std::min(contact.time_s + h_s, friction_memory_s + h_s);
   contact.mean_push_n += h_s / contact.time_s * (push_n - contact.mean_push_n);

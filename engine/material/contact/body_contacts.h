@@ -16,9 +16,9 @@ struct BodyPoint {
   EmbeddedPoint point;
 };
 
-// Contacts between two deformable bodies, or of one with itself: velocity constraints between points of their
-// surfaces, solved in each substep after those of tools. Impulses are equal and opposite, so momentum is
-// conserved.
+// Contacts between two deformable bodies, or of a body with itself: velocity constraints between points of
+// their surfaces. They are solved in each substep after the contacts of tools. Impulses are equal and
+// opposite, so momentum is conserved.
 //
 // Working memory for the contacts of one tick. One owner, one thread; allocates only in its constructor.
 class BodyContacts {
@@ -26,9 +26,9 @@ class BodyContacts {
   explicit BodyContacts(int capacity);
 
   void clear();
-  // Adds a constraint that keeps the first point on the side of the second to which the unit vector `normal`
-  // points. `gap_m` is the present distance of the first point beyond the second along `normal`, negative
-  // for a penetration. Both points may be of the same body and share nodes. Returns false when full.
+  // Adds a constraint that keeps the first point on one side of the second: the side to which the unit vector
+  // `normal` points. `gap_m` is the present distance of the first point beyond the second along `normal`,
+  // negative for a penetration. Both points may be of the same body and share nodes. Returns false when full.
   bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m);
 
   // Starts a tick: marks all constraints as not having acted.
@@ -51,7 +51,7 @@ class BodyContacts {
     EmbeddedPoint first, second;
     Vector3 normal = Vector3::UnitY();
     double compliance = 0.0;  // velocity change per impulse between the points, 1/kg
-    double base_m = 0.0;      // gap minus the part due to displacements
+    double base_m = 0.0;      // gap minus the part due to displacements since rest
     double friction = 0.0;    // the smaller coefficient of the two surfaces
     bool acted = false;
   };
@@ -64,7 +64,7 @@ class BodyContacts {
 // Contact of one node with the ground. Plain data.
 //
 // Friction is limited by the coefficient times the mean push of the last `friction_memory_s`, not by the
-// present push. Friction that followed every oscillation of the push would amplify the oscillation, and a
+// present push. If friction followed every oscillation of the push, it would amplify the oscillation, and a
 // body would hop down a slope on which it should stick.
 //
 // In experiments, friction follows a change of pressure gradually (Prakash 1998), which makes sliding well
@@ -74,7 +74,7 @@ struct GroundContact {
   double gap_m = 0.0;
   Vector3 at_m = Vector3::Zero();  // displacement of the node when gap_m was measured
   double friction = 0.0;
-  Vector3 impulse_ns = Vector3::Zero();  // in the present tick
+  Vector3 impulse_ns = Vector3::Zero();  // impulse on the node in the present tick
   // Carried from tick to tick: the mean force in the last tick, the mean push and the contact time.
   Vector3 force_n = Vector3::Zero();
   double mean_push_n = 0.0;
@@ -86,7 +86,7 @@ struct GroundContact {
 inline constexpr double friction_memory_s = 0.01;
 
 // Rigid ground under bodies: velocity constraints on their nodes. Lattices with springs solve them in each
-// substep, after all other contacts; the implicit solver once a tick.
+// substep, after all other contacts. Implicit solvers solve them once a tick.
 //
 // Stores the contacts of one tick and the friction state that the next tick continues from. Each contact
 // constrains a single node, so one pass solves the contacts of spring-stepped lattices exactly, and sticking
@@ -130,8 +130,8 @@ class GroundContacts {
  private:
   std::size_t capacity_;
   std::vector<GroundContact> contacts_, last_;  // contacts of this tick, and of the last one
-  std::size_t search_position_ = 0;             // search position in last_
-  double last_time_s_ = 0.0, time_s_ = 0.0;     // time of the last tick and of this one
+  std::size_t search_position_ = 0;             // position in last_ at which the next search starts
+  double last_time_s_ = 0.0, time_s_ = 0.0;     // durations of the last tick and of this one
   Vector3 normal_ = Vector3::UnitY();
 };
 

@@ -9,8 +9,8 @@
 namespace spoonbill {
 namespace {
 
-// A push starts from the force of the last substep, so a slow correction suffices; a fast one would shake the
-// force.
+// Pace of a tool's contacts. A push starts from the force of the last substep, so a slow correction suffices;
+// a fast one would shake the force.
 constexpr ContactPace tool_pace{0.5, 10.0};
 // Pace on implicitly stepped lattices, whose pushes start from zero.
 constexpr ContactPace stiff_body_pace{1.0, 300.0};
@@ -130,7 +130,8 @@ void ContactConstraints::pass(std::span<const LatticeView> lattices, ToolState& 
     Constraint& constraint = constraints_[pass.is_reversed ? count_ - 1 - c : c];
     if (constraint.is_implicit != by_solver) continue;
     const LatticeView& lattice = lattices[constraint.body];
-    // Grips last for many ticks, in which the inertia may change.
+    // The compliance is computed in each pass, because a grip lasts for many ticks, in which the inertia may
+    // change.
     constraint.compliance = motion_.body_yields ? constraint.point.compliance(lattice) : 0.0;
     if (constraint.compliance + response_compliance_ == 0.0) continue;
     const auto cap = static_cast<double>(pass.push_speed_caps_m_per_s[constraint.body]);
@@ -152,8 +153,8 @@ void ContactConstraints::shorten_pass(ToolState& tool, double fraction) {
   }
 }
 
-// Moves the tool by its coupling spring and critical damper, implicit in the tool's velocity: x'' = w^2
-// (hand - x) + 2 w (hand' - x').
+// Sets the tool's velocity by its coupling spring and critical damper, x'' = w^2 (hand - x) + 2 w (hand' -
+// x'), implicit in the velocity x'. A tool without coupling moves with the hand.
 void ContactConstraints::follow_hand(ToolState& tool, double h, double fraction) const {
   const Vector3 hand = motion_.start_m + fraction * (motion_.end_m - motion_.start_m);
   if (tool_compliance_ == 0.0) {
@@ -195,7 +196,7 @@ std::optional<ContactPush> ContactConstraints::find_push(const LatticeView& latt
   return push;
 }
 
-// Pushes with the force of the last substep.
+// Starts the push of this substep with the force of the last substep.
 void ContactConstraints::start_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
                                     double h) {
   const std::optional<ContactPush> push = find_push(lattice, constraint, tool);

@@ -1,5 +1,5 @@
 // Contacts of a tool with the lattices that it touches: velocity constraints on points of their surfaces,
-// solved in each substep. Stable at any stiffness, where a penalty force would have its own step limit.
+// solved in each substep. They are stable at any stiffness, whereas a penalty force would limit the step.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace spoonbill {
 
-// Limits on the change of a gap.
+// Limits on how fast a contact changes its gap.
 struct ContactPace {
   double closing;           // largest fraction of a gap that may close in a substep
   double correction_per_s;  // rate at which a penetration is corrected, at most max_correction in a substep
@@ -31,7 +31,7 @@ inline constexpr ContactPace ground_pace{1.0, 4200.0};
 // State of a contact between two points before the drift of a substep, and the impulse that keeps the points
 // from passing each other.
 struct ContactPush {
-  double gap_m;      // negative: penetration depth
+  double gap_m;      // distance of the points; negative if they penetrate
   Vector3 normal;    // unit vector along which the points separate
   Vector3 relative;  // separation velocity, m/s
   double mass_kg;    // effective mass: 1 / the sum of the compliances
@@ -78,7 +78,7 @@ struct ToolState {
 };
 
 // Fixed nodes of a lattice that moves rigidly with the tool. Their rest positions are in the tool's frame.
-// For tools without a coupling spring only.
+// Used only for tools without a coupling spring.
 struct CarriedNodes {
   int body = -1;  // index of the lattice in the views; -1 for none
   std::span<const int> nodes;
@@ -96,19 +96,20 @@ struct ToolMotion {
   CarriedNodes carried;
 };
 
-// Identifies a pushed point from tick to tick, so that its push starts from the force of the last substep.
-// Points of samples are numbered by sample. The keys of points that were or are nearest to the tool count
-// down from nearest_point_key.
+// Keys identify a pushed point from tick to tick, so that its push starts from the force of the last substep.
+// A point at a sample of the surface has the sample's number as its key. The keys of points that are or were
+// nearest to the tool count down from nearest_point_key.
 inline constexpr int nearest_point_key = -1;
-inline constexpr int changing_point_key = -1000;  // another point in every tick, whose push starts from zero
+inline constexpr int changing_point_key =
+    -1000;  // a point that differs in every tick; its push starts at zero
 
-// Contacts of one tick, and the forces of the last one. One owner, one thread; allocates only in its
-// constructor.
+// Contacts of one tool in one tick, and their forces in the last tick. One owner, one thread; allocates only
+// in its constructor.
 class ContactConstraints {
  public:
   explicit ContactConstraints(int capacity);
 
-  // Removes the constraints, and remembers their forces for those that are added next.
+  // Removes the constraints, and remembers their forces for the constraints that are added next.
   void clear();
   // Removes the constraints and their forces.
   void forget();
@@ -135,24 +136,25 @@ class ContactConstraints {
   // Sets the force of the carried nodes on the tool in the coming substep, N.
   void set_carried_force(const Vector3& force_n) { carried_force_ = force_n; }
 
-  // Parts of a substep of h_s, after the kick and before the drift of the lattices. `fraction` [0, 1) is the
-  // part of the tick that has passed. start() moves the tool's velocity towards the hand and pushes with the
-  // forces of the last substep; pass() solves the constraints once, those with lattices that springs or that
-  // the implicit solver moves; finish() moves the tool. Impulses on nodes and tool are equal and opposite.
+  // Parts of a substep of h_s, after the kick and before the drift of the lattices. start() moves the tool's
+  // velocity towards the hand and pushes with the forces of the last substep; `fraction` [0, 1) is the part
+  // of the tick that has passed. pass() solves once the constraints with lattices that springs move, or those
+  // with lattices that implicit solvers move. finish() moves the tool. Impulses on nodes and tool are equal
+  // and opposite.
   enum class Moved { by_springs, by_solver };
   struct Pass {
     double h_s;
     Moved moved;
-    bool is_reversed;  // solves the last constraint first: one pass favours those that come later
-    std::span<const float> push_speed_caps_m_per_s;  // by body
+    bool is_reversed;  // true: solves the last constraint first, because a pass favours the later ones
+    std::span<const float> push_speed_caps_m_per_s;  // largest correction speed for each body
   };
   void start(std::span<const LatticeView> lattices, ToolState& tool, double h_s, double fraction);
   void pass(std::span<const LatticeView> lattices, ToolState& tool, const Pass& pass);
   void finish(ToolState& tool, double h_s) { tool.position_m += h_s * tool.velocity_m_per_s; }
-  // Shortens the impulses of the last pass() on the tool to this fraction. The caller does so with those on
-  // the nodes.
+  // Scales the impulses of the last pass() on the tool by `fraction`. The caller must scale those on the
+  // nodes.
   void shorten_pass(ToolState& tool, double fraction);
-  // Product of the last pass()'s impulses on the tool and the tool's velocity change, J.
+  // Returns the sum of products of the last pass()'s impulses on the tool and the tool's velocity change, J.
   double pass_work_j(const ToolState& tool) const {
     return (tool.velocity_m_per_s - passed_.velocity_m_per_s).squaredNorm() /
            std::max(response_compliance_, std::numeric_limits<double>::min());
@@ -180,12 +182,14 @@ class ContactConstraints {
     EmbeddedPoint point;
     Vector3 rest_m = Vector3::Zero();     // position in the rest shape
     Vector3 direction = Vector3::Zero();  // plane push: normal; grip: offset in the tool's frame
-    double offset_m = 0.0;                // plane push only
-    double compliance = 0.0;  // velocity change per impulse in the last pass(), 1/kg; 0 if it does not yield
-    double friction = 0.0;    // coefficient of the body's surface; tools have none
+    double offset_m = 0.0;                // distance of the plane from the tool's centre; plane push only
+    // Velocity change of the point per impulse in the last pass(), 1/kg; 0 if the body does not yield.
+    double compliance = 0.0;
+    double friction = 0.0;  // friction coefficient of the body's surface; tools have none
     int key = changing_point_key;
-    bool is_implicit = false;  // on a lattice that the implicit solver moves
-    // False on such a lattice, whose contact mass is an estimate: a kept force would amplify its error.
+    bool is_implicit = false;  // true if the implicit solver moves the lattice
+    // True if the next push starts from this push's force. False on lattices that the implicit solver moves:
+    // their contact mass is an estimate, and a kept force would amplify its error.
     bool keeps_force = false;
     double force_n = 0.0;  // push in the last substep
     bool acted = false;
@@ -210,7 +214,7 @@ class ContactConstraints {
   ToolMotion motion_;
   Vector3 hand_velocity_ = Vector3::Zero();  // m/s
   Vector3 carried_force_ = Vector3::Zero();
-  double tool_compliance_ = 0.0;  // 1/kg; 0 if the hand holds the tool rigidly
+  double tool_compliance_ = 0.0;  // 1 / mass of the tool, 1/kg; 0 if the hand holds the tool rigidly
   // Velocity change of the tool per impulse by the end of a substep, including the response of its spring
   // and damper, 1/kg.
   double response_compliance_ = 0.0;

@@ -9,7 +9,7 @@ inline void subtract_scaled(double* __restrict c, const double* a, double by, in
   for (int i = 0; i < count; ++i) c[i] -= by * a[i];
 }
 
-// Subtracting four columns at once takes a quarter of the reads and writes of c.
+// Subtracts four scaled columns from c. Four at once take a quarter of the reads and writes of c.
 inline void subtract_scaled(double* __restrict c, const double* a0, const double* a1, const double* a2,
                             const double* a3, int count) {
   const double b0 = a0[0], b1 = a1[0], b2 = a2[0], b3 = a3[0];

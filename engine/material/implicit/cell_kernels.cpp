@@ -35,7 +35,7 @@ inline void gather(const CellBatch& b, const double* from, Field& to) {
   }
 }
 
-// Adds the field, rotated by R = 1 + turn and scaled, to the nodes.
+// Rotates the field by R = 1 + turn, scales it and adds it to the nodes.
 inline void scatter(const CellBatch& b, const Field& from, double scale, double* to) {
   for (int c = 0; c < 8; ++c) {
     Lanes x, y, z;
@@ -71,7 +71,8 @@ struct Matrix {
   double at[9][lanes];
 };
 
-// Computes the displacement gradient sum d_i g_i^T.
+// Computes the displacement gradient sum d_i g_i^T from the displacements d_i and the shape function
+// gradients g_i of the corners.
 inline void compute_gradient(const CellBatch& b, const Field& moved, Matrix& change) {
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
@@ -84,7 +85,8 @@ inline void compute_gradient(const CellBatch& b, const Field& moved, Matrix& cha
   }
 }
 
-// Computes R - 1 = 2 w [v] + 2 [v]^2 from the unit quaternion w + v.
+// Computes R - 1 = 2 w [v] + 2 [v]^2 from the unit quaternion w + v, where [v] is the cross-product matrix of
+// v.
 inline void compute_turn(CellBatch& b) {
   for (int l = 0; l < lanes; ++l) {
     const double w = b.quaternion[0][l], x = b.quaternion[1][l], y = b.quaternion[2][l],
@@ -101,8 +103,8 @@ inline void compute_turn(CellBatch& b) {
   }
 }
 
-// Computes S - 1 = T^T + H + T^T H for the turn T and the displacement gradient H, in a form that keeps the
-// digits of small values.
+// Computes S - 1 = T^T + H + T^T H for the stretch S, the turn T = R - 1 and the displacement gradient H.
+// This form keeps the digits of small values.
 inline void compute_stretch(const CellBatch& b, const Matrix& h, Matrix& stretch) {
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
@@ -115,8 +117,8 @@ inline void compute_stretch(const CellBatch& b, const Matrix& h, Matrix& stretch
   }
 }
 
-// Computes (tr S - S)^-1 for the symmetric part of S. A crushed cell, whose matrix has no inverse, gets the
-// inverse of an unstrained cell.
+// Computes (tr S - S)^-1 for the symmetric part of the stretch S. A crushed cell, whose matrix has no
+// inverse, gets the inverse of an unstrained cell.
 inline void compute_spin_map(CellBatch& b, const Matrix& s) {
   for (int l = 0; l < lanes; ++l) {
     const double xx = 1.0 + s.at[0][l], yy = 1.0 + s.at[4][l], zz = 1.0 + s.at[8][l];
@@ -151,8 +153,8 @@ inline void spin_map_times(const CellBatch& b, const Rotation& a, Rotation& resu
   }
 }
 
-// Rotates by at most half a radian per step: a longer Newton step has a useful direction, but no useful
-// length.
+// Rotates the cells by one Newton step, limited to half a radian: the direction of a longer step is useful,
+// but not its length.
 inline void rotate_further(CellBatch& b, const Matrix& s) {
   Rotation skew, w;
   for (int l = 0; l < lanes; ++l) {
@@ -193,7 +195,7 @@ inline void update_turn(CellBatch& b, const Field& moved) {
   compute_spin_map(b, stretch);
 }
 
-// Computes K times a field, from the lower half of K.
+// Computes K times a field, where only the lower half of the stiffness K is stored.
 inline void stiffness_times(const CellBatch& b, const Field& field, Field& result) {
   for (int a = 0; a < cell_axes; ++a) {
     for (int l = 0; l < lanes; ++l) result[a][l] = 0.0;
@@ -214,7 +216,8 @@ inline void stiffness_times(const CellBatch& b, const Field& field, Field& resul
   }
 }
 
-// Sets f to P^T f = f + G^T [x~]^T f. With m = sum x~_i x f_i, f_i becomes f_i + g_i x (T m).
+// Sets f to P^T f = f + G^T [x~]^T f (see CorotatedCell::respond()). With the moment m = sum x~_i x f_i and
+// the spin map A, f_i becomes f_i + g_i x (A m).
 inline void project_transposed(const CellBatch& b, Field& f) {
   Rotation moment, m;
   for (int l = 0; l < lanes; ++l) moment.x[l] = moment.y[l] = moment.z[l] = 0.0;
@@ -236,7 +239,8 @@ inline void project_transposed(const CellBatch& b, Field& f) {
   }
 }
 
-// Sets d to P d = d - w x x~, with w = T sum g_i x d_i.
+// Sets d to P d (see CorotatedCell::respond()): d_i becomes d_i - w x x~_i, with w = A sum g_i x d_i and the
+// spin map A.
 inline void project(const CellBatch& b, Field& d) {
   Rotation spin, w;
   for (int l = 0; l < lanes; ++l) spin.x[l] = spin.y[l] = spin.z[l] = 0.0;
@@ -259,7 +263,8 @@ inline void project(const CellBatch& b, Field& d) {
   }
 }
 
-// Computes R^T (X + d) - X = d + T^T (X + d), and x~.
+// Computes the corner displacements without the rotation, R^T (X + d) - X = d + (R - 1)^T (X + d), and the
+// rotated-back corners x~ = R^T (X + d).
 inline void compute_strain(CellBatch& b, const Field& moved, Field& strain) {
   for (int c = 0; c < 24; c += 3) {
     for (int l = 0; l < lanes; ++l) {

@@ -6,19 +6,20 @@
 namespace spoonbill {
 
 inline constexpr int cell_lanes = 8;
-inline constexpr int cell_axes = 24;             // x, y and z, corner by corner
-inline constexpr int cell_stiffness_size = 300;  // lower half, row by row
+inline constexpr int cell_axes = 24;             // coordinates of a cell: x, y and z, corner by corner
+inline constexpr int cell_stiffness_size = 300;  // lower half of a cell's stiffness, row by row
 
-// Eight cells side by side. Lanes without a cell have zero stiffness and the nodes of another cell.
+// Eight cells side by side. Lanes without a cell have zero stiffness and refer to the nodes of another cell.
 struct CellBatch {
   int node[8][cell_lanes];
   // Stiffness of each cell, N/m, in double precision, because the rounding errors in a rigid motion must stay
   // far below the mass terms.
   double stiffness[cell_stiffness_size][cell_lanes];
-  double rest[cell_axes][cell_lanes];      // relative to the centre, m
-  double gradient[cell_axes][cell_lanes];  // of the shape functions at the centre, 1/m
+  double rest[cell_axes][cell_lanes];      // corners at rest relative to the cell's centre, m
+  double gradient[cell_axes][cell_lanes];  // gradients of the shape functions at the centre, 1/m
 
-  // State of the cells at the last compute_forces().
+  // State of the cells at the last compute_forces(): the rotation R, the stretch S and the displacements d of
+  // the corners X.
   double quaternion[4][cell_lanes];            // w, x, y, z
   double turn[9][cell_lanes];                  // R - 1, row by row
   double spin_map[9][cell_lanes];              // (tr S - S)^-1
@@ -26,11 +27,12 @@ struct CellBatch {
 };
 
 struct CellKernels {
-  // Updates the rotations of the cells for the displacements `moved` (3 n + axis, m) and subtracts the
-  // forces that hold the cells in this shape from `force`, N. A few Newton steps from the last rotation find
-  // the new one.
+  // Updates the rotations of the cells for the displacements `moved`, m, and subtracts the elastic forces of
+  // the cells from `force`, N. Both arrays have entry 3 n + axis for node n. A few Newton steps from the last
+  // rotation find the new one.
   void (*compute_forces)(CellBatch* batches, int count, const double* moved, double* force);
-  // Adds `scale` times the product of the plain tangent R P^T K P R^T and `field` to `out`.
+  // Adds `scale` times the product of the plain tangent R P^T K P R^T (see CorotatedCell::respond()) and
+  // `field` to `out`.
   void (*apply)(const CellBatch* batches, int count, double scale, const double* field, double* out);
 };
 

@@ -1,5 +1,5 @@
-// Body whose material is too stiff for springs in a tick: corotated hexahedra under an implicit Euler method,
-// stable at any step.
+// Body whose material is too stiff for springs at the length of a tick: corotated hexahedra, stepped by the
+// implicit Euler method, which is stable at any step length.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace spoonbill {
 // Overlap of a cell of the coarse grid with a cell of the lattice, along one axis.
 struct Overlap {
   int cell;          // index in the lattice
-  double low, high;  // in the coarse cell, -1 to 1
+  double low, high;  // ends of the overlap in the coarse cell, from -1 to 1
 
   // Fraction of the coarse cell, 0 to 1.
   double fraction() const { return 0.5 * (high - low); }
@@ -45,8 +45,9 @@ struct BlockMaterials {
   BlockMaterials(const Material& material) : materials{material} {}
 
   std::vector<Material> materials;
-  std::vector<std::vector<Part>> parts_by_cell;  // by LatticeMesh::cell_index(); the parts of a cell fill
-                                                 // it; empty if all cells have the first material
+  // Parts of each cell, by LatticeMesh::cell_index(); they fill the cell. Empty if all cells have the first
+  // material.
+  std::vector<std::vector<Part>> parts_by_cell;
 };
 
 // Returns the materials of a coarser grid over the same body. Each cell of the grid consists of the parts of
@@ -77,7 +78,7 @@ std::vector<BlockMaterials::Part> cell_parts(const BlockMaterials& materials, st
 
 struct ImplicitStep {
   double step_s = 1e-3;
-  double drag_per_s = 0.0;  // mass-proportional
+  double drag_per_s = 0.0;  // mass-proportional drag
   Vector3 gravity_m_per_s2 = Vector3::Zero();
 };
 
@@ -90,18 +91,18 @@ struct ImplicitReport {
 //
 //   (r M + (h^2 + h t) K) w = r M v / (1 + h a) + h (f - f_el(x)),  x <- x + h w,
 //
-// with the inertia scale r, the drag a and the damping time t. Drag acts on the old velocity alone, so that a
-// body at rest balances its true forces. This is one step of Newton's method. K is the plain tangent at x,
-// which is never indefinite, so the matrix is positive definite. The method itself damps every mode like a
-// further damping time of h; t damps changes of volume as well.
+// with the inertia scale r, the masses M, the old velocities v, the drag a, the damping time t, the applied
+// forces f and the elastic forces f_el. Drag acts only on the old velocity, so that a body at rest balances
+// its true forces. This is one step of Newton's method. K is the plain tangent at the positions x, which is
+// never indefinite, so the matrix is positive definite. The method itself damps every mode like an additional
+// damping time of h. Unlike the damping of springs, t also damps changes of volume.
 //
-// The conjugate gradients may stop early: at every iteration the quadratic form that they minimise is at
-// most its value at w = 0. Their preconditioner is the Cholesky factor of the same matrix a few ticks
-// earlier, updated in parts. Bodies are long and their nodes are numbered along them, so the matrix is a
-// narrow band.
+// The conjugate gradients may stop early: at every iteration the quadratic form that they minimise is at most
+// its value at w = 0. Their preconditioner is the Cholesky factor of the same matrix a few ticks earlier,
+// updated in parts. Bodies are long and their nodes are numbered along them, so the matrix is a narrow band.
 //
-// The velocities of fixed nodes that move are prescribed; their pull on free nodes is on the right-hand
-// side.
+// Fixed nodes may move at prescribed velocities. The forces that they thereby exert on free nodes are on the
+// right-hand side.
 //
 // A node moves at most half a cell per step, relative to the rigid motion of a free body. Faster motion
 // could crush cells irreversibly.
@@ -128,7 +129,7 @@ class ImplicitBody {
   void set_inertia_scale(double scale);
   const LatticeReport& report() const { return report_; }
 
-  // Fixes the nodes whose byte is 1, one byte per node, and discards the factor.
+  // Fixes the nodes whose byte is 1, one byte per node, and discards the Cholesky factor.
   void fix_nodes(std::span<const std::uint8_t> fixed);
   bool is_fixed(int node) const { return free_[3 * static_cast<std::size_t>(mesh_.joined(node))] == 0.0; }
 
@@ -149,18 +150,18 @@ class ImplicitBody {
     put(fixed_velocity_, mesh_.joined(node), velocity_m_per_s);
     fixed_moves_ = true;
   }
-  // Force of cells and loads on a fixed node at the start of the last step, N.
+  // Force of the cells and loads on a fixed node at the start of the last step, N.
   Vector3 force_on_fixed(int node) const { return at(force_, mesh_.joined(node)); }
 
-  // Rayleigh quotient (v.Kv) / (v.Mv) of the free nodes' velocities, with the scaled inertia M and the
-  // tangent of the last step; 0 at rest.
+  // Rayleigh quotient (v.Kv) / (v.Mv) of the free nodes' velocities v, with the scaled inertia M and the
+  // tangent K of the last step; 0 at rest.
   double rayleigh_quotient();
 
   // Parts of a step, to be called in order. solve_velocities() computes the velocities at the end of the
-  // step; `known_ns` are contact impulses, N s, by coordinate; those on joined nodes belong to the first of
-  // the pair. respond_to() computes the velocity changes of the whole body due to further impulses and
-  // returns their product with the impulses, J; apply_response() applies this fraction of the changes. move()
-  // advances the nodes and returns whether one reached the speed cap.
+  // step; `known_ns` are contact impulses, N s, by coordinate, and those on two joined nodes belong to the
+  // first. respond_to() computes the velocity changes of the whole body due to further impulses and returns
+  // the sum of their products with the impulses, J. apply_response() adds `fraction` of these changes to the
+  // velocities. move() advances the nodes and returns whether one reached the speed cap.
   ImplicitReport solve_velocities(const ImplicitStep& step, std::span<const double> known_ns = {});
   double respond_to(const std::vector<double>& impulses);
   void apply_response(double fraction);
@@ -225,9 +226,10 @@ class ImplicitBody {
   Vector3 momentum_ = Vector3::Zero();  // momentum of a free body at the end of the step
   RollingFactor factor_;
   CellBlock block_;
-  Doubles mass_, mass3_, free_;  // by node; by coordinate, 0 if fixed; 1 or, if fixed, 0
+  // mass_ is by node; mass3_ is by coordinate, 0 if fixed; free_ is by coordinate, 1 if free and 0 if fixed.
+  Doubles mass_, mass3_, free_;
   Doubles moved_, velocity_, applied_;
-  Doubles fixed_velocity_;                                      // 0 for free nodes
+  Doubles fixed_velocity_;  // prescribed velocities of fixed nodes; 0 for free nodes
   Doubles force_, residual_, direction_, image_, conditioned_;  // working memory
 };
 

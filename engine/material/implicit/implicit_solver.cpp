@@ -13,17 +13,17 @@
 namespace spoonbill {
 namespace {
 
-// Largest number of steps in a tick. Each costs one solve with the factor, as an iteration of the conjugate
-// gradients does.
+// Largest number of iterations for the ground contacts in a tick. Each costs one solve with the Cholesky
+// factor, as much as an iteration of the conjugate gradients.
 constexpr int step_limit = 4;
-// Velocity error below which a tick is solved: a nanometre per second.
+// Velocity error below which the ground contacts of a tick are solved: a nanometre per second.
 constexpr double accepted_error_m_per_s = 1e-9;
 constexpr double min_diagonal_fraction = 0.1;
-// Bounds of the spectral mass, relative to the body's mass.
+// Bounds of the spectral mass (see ImplicitGroundContacts), relative to the body's mass.
 constexpr double min_mass_ratio = 1e-5, max_mass_ratio = 10.0;
 
-// Smallest sum of the weights of free nodes at which a point can respond. A point attached mostly to fixed
-// nodes would hardly move, or would throw its few free nodes.
+// Smallest sum of the weights of free nodes at which a contact point responds. A point attached mostly to
+// fixed nodes would hardly move, or would move its few free nodes far too much.
 constexpr double min_free_fraction = 0.5;
 
 double free_fraction(const GridPoint& point, const ImplicitBody& body) {
@@ -119,8 +119,8 @@ void ImplicitGroundContacts::solve(const GroundContacts& ground, std::span<Groun
 
 namespace {
 
-// Largest number of entries in the band. Each solve multiplies every entry twice, and a tick needs about five
-// solves.
+// Largest number of entries in the band of the matrix. Each solve multiplies every entry twice, and a tick
+// needs about five solves.
 constexpr double max_band = 1.3e5;
 constexpr int min_budget = 30;
 // Inverse mass in contacts, relative to that of the whole body: the value before the first contact, and the
@@ -139,7 +139,7 @@ GridPosition locate_in(int at, int count, int other_count) {
   return {first, coordinate - first};
 }
 
-// Mean extents of a lattice along i, j and k, m.
+// Returns the mean extents of a lattice along i, j and k, m.
 Vector3 extents(const LatticeMesh& mesh, const std::vector<Vector3>& nodes) {
   Vector3 size = Vector3::Zero();
   for (int axis = 0; axis < 3; ++axis) {
@@ -157,7 +157,7 @@ Vector3 extents(const LatticeMesh& mesh, const std::vector<Vector3>& nodes) {
   return size;
 }
 
-// Expresses a node of one grid as a weighted sum of the nodes of another, trilinear in the grid indices.
+// Returns a node of one grid as a weighted sum of the nodes of another, trilinear in the grid indices.
 GridPoint embed_node(const LatticeMesh& of, int node, const LatticeMesh& by) {
   const std::array<int, 3> at = of.grid_index(node);
   std::array<GridPosition, 3> positions{};
@@ -185,7 +185,7 @@ std::size_t find_heaviest_node(const GridPoint& follower) {
   return static_cast<std::size_t>(follower.node[static_cast<std::size_t>(most)]);
 }
 
-// Number of entries of the band; each solve multiplies all of them.
+// Returns the number of entries in the band of the matrix.
 double band_size(const LatticeMesh& block) {
   return 9.0 * block.node_count() * (node_reach(block) + 1);
 }
@@ -194,8 +194,8 @@ Vector3 applied_force_n(const SpringLattice& lattice, int node) {
   return {lattice.applied_force(0)[node], lattice.applied_force(1)[node], lattice.applied_force(2)[node]};
 }
 
-// Chooses the largest counts that respect the node budget and the limit of the band and do not exceed the
-// counts of the lattice.
+// Chooses the largest node counts that respect the node budget and the limit of the band and do not exceed
+// the counts of the lattice.
 Result<LatticeMesh> choose_coarse_counts(const LatticeMesh& mesh, const Vector3& size_m) {
   LatticeMesh block;
   block.closed = mesh.closed;
@@ -212,8 +212,8 @@ Result<LatticeMesh> choose_coarse_counts(const LatticeMesh& mesh, const Vector3&
   }
 }
 
-// Fraction of a coarse cell that belongs to the body, from the overlapping cells of the lattice. Cells of a
-// box are congruent, so the body's mass is conserved.
+// Returns the fraction of a coarse cell that belongs to the body, from the overlapping cells of the lattice.
+// Cells of a box are congruent, so the body's mass is conserved.
 double overlapped_fraction(const LatticeMesh& mesh, const std::array<std::vector<Overlap>, 3>& overlaps) {
   double fraction = 0.0;
   for (const Overlap& k : overlaps[2]) {
@@ -255,7 +255,7 @@ Result<LatticeMesh> make_coarse_mesh(const LatticeMesh& mesh, const std::vector<
   if (!mesh.filled.empty()) {
     set_box_fractions(mesh, coarse);
   } else {
-    // Longer chords would lose volume where the body is bent or round.
+    // Restores the volume that the longer chords of the coarse mesh lose where the body is bent or round.
     scale_layers_to(redistribute_layers(layer_volumes_m3(mesh), coarse.count[2] - 1), coarse);
   }
   return coarse;
@@ -434,8 +434,8 @@ void ImplicitSolver::respond(double fraction, SpringLattice& lattice) {
   write_velocities(lattice);
 }
 
-// Updates the inverse mass in contacts to the geometric mean of the old and the measured one, so that two
-// bodies that adapt to each other converge.
+// Updates the inverse mass in contacts to the geometric mean of its old value and the measured one, so that
+// two bodies that adapt to each other converge.
 void ImplicitSolver::update_contact_mass(SpringLattice& lattice) {
   const double measured = std::exchange(measured_inverse_mass_, 0.0);
   if (measured == 0.0 || !std::isfinite(measured)) return;

@@ -15,7 +15,7 @@
 
 namespace spoonbill {
 
-// A node of one grid as a weighted sum of the nodes of another.
+// A node of one grid, expressed as a weighted sum of the nodes of another.
 struct GridPoint {
   std::array<int, 8> node{};
   std::array<double, 8> weight{};
@@ -39,21 +39,21 @@ struct GridPoint {
 
 // Contacts of an implicitly stepped body with the ground, solved all together once a tick.
 //
-// Impulses r on points of the body change their velocities by W r, where W is the response of the whole
-// body. The solution satisfies these complementarity conditions, with Coulomb friction:
+// Impulses r on points of the body change their velocities by W r, where W is the response of the whole body.
+// The solution satisfies these complementarity conditions, with Coulomb friction, for the normal parts r_n,
+// v_n and the tangential parts r_t, v_t of the impulses and velocities:
 //
 //   r_n >= 0,  v_n >= target,  with equality in one of them;
 //   |r_t| <= friction r_n,  v_t = 0 or r_t opposite to v_t.
 //
-// This is the fixed point of r <- P(r - m (v - target)) with the projection P onto the cone, for every mass
-// m. Starting from the forces of the last tick, a few of these steps are taken with the spectral mass
-// |dr|^2 / (dr.W dr) (Barzilai and Borwein 1988). Each step is shortened where it would pass the minimum of
-// the
-// energy along its direction (Birgin, Martinez and Raydan 2000). A body at rest is at the fixed point and
-// does not creep.
+// This is the fixed point of r <- P(r - m (v - target)) with the projection P onto the friction cone, for
+// every mass m. Starting from the forces of the last tick, a few of these steps are taken with the spectral
+// mass m = |dr|^2 / (dr.W dr) (Barzilai and Borwein 1988). A step that would pass the minimum of the energy
+// along its direction is shortened to it (Birgin, Martinez and Raydan 2000). A body at rest is at the fixed
+// point and does not creep.
 //
-// The functions index `points` by nodes of the lattice to which the contacts belong. Points that are
-// attached mostly to fixed nodes do not respond.
+// The functions index `points` by nodes of the lattice to which the contacts belong. Points that are attached
+// mostly to fixed nodes do not respond.
 //
 // One owner, the implicit solver of the body; allocates only at construction.
 class ImplicitGroundContacts {
@@ -62,8 +62,8 @@ class ImplicitGroundContacts {
   // Adapts to a body whose inertia has changed by this factor.
   void scale_inertia(double factor);
 
-  // Gives the contacts their impulses of the last tick, from which the step starts, and sums these impulses
-  // by coordinate of the body, N s.
+  // Sets the impulses of the contacts to those of the last tick, from which the step starts, and sums them by
+  // coordinate of the body, N s.
   void restore_last_impulses(std::span<GroundContact> contacts, std::span<const GridPoint> points,
                              double time_s, std::vector<double>& impulses_ns);
   // Solves the contacts after everything else that pushes the body. Changes the impulses and the body's
@@ -87,8 +87,8 @@ class ImplicitGroundContacts {
 
   double mass_, min_mass_, max_mass_;
   Vector3 normal_ = Vector3::UnitY();
-  std::vector<double> target_;                              // target speed along the normal by contact, m/s
-  std::vector<Vector3> velocity_errors_, impulse_changes_;  // by contact, m/s and N s
+  std::vector<double> target_;                              // smallest speed along the normal by contact, m/s
+  std::vector<Vector3> velocity_errors_, impulse_changes_;  // for each contact, m/s and N s
 };
 
 // Node budget of the hexahedral block: the largest number that a tick can solve for a long body with a narrow
@@ -98,8 +98,8 @@ inline constexpr int implicit_node_budget = 500;
 // An instantaneous rigid displacement of a body, which also subtracts a rigid motion from the body's
 // velocities.
 struct RigidMove {
-  Vector3 from_m = Vector3::Zero(), to_m = Vector3::Zero();  // position of the centre, before and after
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();        // about the centre
+  Vector3 from_m = Vector3::Zero(), to_m = Vector3::Zero();  // centre before and after the move
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();        // rotation about the centre
   Vector3 velocity_m_per_s = Vector3::Zero(), spin_rad_per_s = Vector3::Zero();  // subtracted before the turn
 
   Vector3 moved(const Vector3& position_m) const { return to_m + turn * (position_m - from_m); }
@@ -109,68 +109,72 @@ struct RigidMove {
   }
 };
 
-// Implicit solver of a lattice: a coarser block of hexahedra that the lattice's nodes follow. Drawing,
-// contacts and supports use the lattice.
+// Implicit solver of a lattice: a coarser block of hexahedra, whose motion the lattice's nodes follow.
+// Drawing, contacts and supports use the lattice.
 //
 // Contacts push the lattice's nodes as if each were free, with an inverse mass that matches the block's
-// response to the last contacts. The block then responds as a whole: after each pass over the contacts of a
-// tool, which is shortened where the nodes would respond more than that, and at the end of the tick. The
-// ground comes last and pushes the block directly. One owner, the body; built outside the tick, allocates
-// nothing afterwards.
+// response to the last contacts. The block then responds as a whole, after each pass over the contacts of a
+// tool and at the end of the tick. If the block responds more than the contacts assumed, the impulses of the
+// pass are scaled down. The ground comes last and pushes the block directly.
+//
+// One owner, the body; built outside the tick, allocates nothing afterwards.
 class ImplicitSolver {
  public:
-  // Builds the solver, unstrained where the lattice's nodes are at `rest_m`.
+  // Builds the solver of a lattice, unstrained when the lattice's nodes are at `rest_m`.
   static Result<ImplicitSolver> make(const LatticeMesh& mesh, const std::vector<Vector3>& rest_m,
                                      const LatticeMaterials& materials, InstructionSet set);
 
   const LatticeMesh& mesh() const { return body_.mesh(); }
   const LatticeReport& report() const { return body_.report(); }
   const std::vector<Vector3>& rest_m() const { return rest_m_; }
-  // Sets the body's inertia divided by its mass, at least 1. Tell the lattice the new contact_inverse_mass().
+  // Sets the body's inertia divided by its mass, at least 1. The caller must pass the new
+  // contact_inverse_mass() to the lattice.
   void set_inertia_scale(double scale);
 
-  // Velocity change of a lattice node per impulse in contacts, 1/kg.
+  // Velocity change of a lattice node per impulse that contacts assume, 1/kg.
   double contact_inverse_mass() const { return contact_inverse_mass_; }
 
-  // Fixes nodes of the lattice, one byte per node. Each node of the block is fixed if its nearest lattice
-  // node is. A fixed lattice node that would then follow only free block nodes also fixes the one that it
-  // follows most.
+  // Fixes nodes of the lattice, one byte per node. Each node of the block is fixed if the lattice node
+  // nearest to it is. If a fixed lattice node would then follow only free block nodes, the block node with
+  // the largest weight in it is fixed too.
   void fix_nodes(std::span<const std::uint8_t> fixed);
   // Sets displacements and velocities from the lattice.
   void adopt_shape(const SpringLattice& lattice);
 
-  // Moves the block and the lattice that follows it. No node may be fixed.
+  // Moves the block rigidly, and the lattice that follows it. No node may be fixed.
   void move_rigidly(const RigidMove& move, SpringLattice& lattice);
 
-  // Adopts the positions of lattice nodes that something else has moved permanently, relative to the block.
+  // Adopts the positions of lattice nodes that were moved permanently without the block, as
+  // SpringLattice::reform() does: they become the rest positions relative to the block.
   void adopt_moved_nodes(const SpringLattice& lattice);
 
   // Rayleigh quotient (v.Kv) / (v.Mv) of the block's velocities; 0 at rest.
   double rayleigh_quotient() { return body_.rayleigh_quotient(); }
-  // Replaces all node forces by the forces on these nodes of the lattice, N. Fixed nodes bear their forces
+  // Replaces all node forces by those that the lattice has on `nodes`, N. Fixed nodes bear their forces
   // directly.
   void set_node_forces(const SpringLattice& lattice, std::span<const int> nodes);
-  // Moves the nodes of the block that follow these fixed nodes of the lattice, in ascending order, at the
-  // given velocity in the coming step.
+  // Sets the velocity in the coming step of those fixed nodes of the block that these lattice nodes fix.
+  // `nodes` are in ascending order.
   void move_fixed(std::span<const int> nodes, const Vector3& velocity_m_per_s);
-  // Force of cells, loads and gravity on these fixed nodes of the lattice and on the block nodes that follow
-  // them, at the start of the last step, N.
+  // Force of cells, loads and gravity on these fixed nodes of the lattice and on the block nodes that they
+  // fix, at the start of the last step, N.
   Vector3 force_on_fixed(const SpringLattice& lattice, std::span<const int> nodes,
                          const Vector3& gravity_m_per_s2) const;
 
-  // Sets the lattice's velocities to those at the end of a step without contacts. The present ground
-  // contacts act with their impulses of the last tick. Contacts then change the velocities.
+  // Sets the lattice's velocities to those at the end of a step with the ground contacts' impulses of the
+  // last tick and without other contacts. Contacts then change the velocities.
   ImplicitReport begin_step(const ImplicitStep& step, SpringLattice& lattice,
                             std::span<GroundContact> on_ground = {});
-  // Products of the contacts' impulses since the last response with the velocity changes that the contacts
+  // Work of the contacts' impulses since the last response: with the velocity changes that the contacts
   // assumed, and with those of the block.
   struct ContactResponse {
     double assumed_work_j = 0.0, work_j = 0.0;
   };
   ContactResponse find_response(const SpringLattice& lattice);
-  // Lets the block respond to this fraction of the impulses of find_response(), and the lattice follow.
+  // Applies this fraction of the response that find_response() computed to the block, and updates the
+  // lattice's velocities.
   void respond(double fraction, SpringLattice& lattice);
-  // Ground contacts of the lattice for end_step().
+  // Ground contacts of the lattice, as end_step() needs them.
   struct GroundPush {
     const GroundContacts* ground = nullptr;
     std::span<GroundContact> contacts;
@@ -201,17 +205,19 @@ class ImplicitSolver {
   bool is_fixed_by(int node, std::span<const int> nodes) const;
 
   ImplicitBody body_;
-  std::vector<Vector3> rest_m_;       // of the lattice's nodes
-  std::vector<GridPoint> followers_;  // by node of the lattice
-  std::vector<int> nearest_;          // by node of the block: nearest node of the lattice in the grid
-  std::vector<int> fixing_node_;      // by node of the block: the lattice node that fixes it, or -1
-  std::vector<std::array<float, 3>> velocity_;  // of the lattice's nodes, before contacts
-  std::vector<double> impulse_;                 // by coordinate of the block, N s: working memory
+  std::vector<Vector3> rest_m_;       // rest positions of the lattice's nodes
+  std::vector<GridPoint> followers_;  // each lattice node as a weighted sum of block nodes
+  std::vector<int> nearest_;          // for each block node: nearest lattice node in the grid
+  std::vector<int> fixing_node_;      // for each block node: lattice node that fixes it, or -1 if none
+  // Velocities of the lattice's nodes before contacts.
+  std::vector<std::array<float, 3>> velocity_;
+  std::vector<double> impulse_;  // working memory: impulses by coordinate of the block, N s
   ImplicitGroundContacts ground_contacts_;
   double step_s_ = 0.0;
-  double measured_inverse_mass_ = 0.0;  // in the first response of the tick, 1/kg; 0 if there was none
+  // Inverse mass in the first response of the tick, 1/kg; 0 if there was none.
+  double measured_inverse_mass_ = 0.0;
   double inertia_scale_ = 1.0;
-  double contact_inverse_mass_ = 0.0, min_inverse_mass_ = 0.0;  // with the scaled inertia
+  double contact_inverse_mass_ = 0.0, min_inverse_mass_ = 0.0;  // 1/kg, with the scaled inertia
 };
 
 }  // namespace spoonbill

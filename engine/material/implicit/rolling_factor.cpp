@@ -41,7 +41,7 @@ void RollingFactor::begin(double inertia, double stiffness) {
   next_.layers = next_.columns = 0;
 }
 
-// Clears the columns of the nodes at one k and sets their mass terms.
+// Clears the columns of the nodes with one grid index k and sets their mass terms.
 void RollingFactor::clear_slice(const MatrixParts& parts, int k) {
   const int columns = slice_columns_;
   double* column = next_.band.columns + static_cast<std::ptrdiff_t>(k) * columns * next_.band.stride;
@@ -95,7 +95,7 @@ void RollingFactor::add_layer(const MatrixParts& parts, int k) {
   }
 }
 
-// Factorises further columns. A column needs the cells on both sides of its nodes.
+// Factorises further columns. A column is complete when the cells on both sides of its nodes have been added.
 void RollingFactor::factorise_columns(const MatrixParts& parts, int count) {
   const int to = std::min(next_.band.size, next_.columns + count);
   const int all_layers = static_cast<int>(parts.cells->layers.size()) - 1;

@@ -14,15 +14,15 @@ namespace spoonbill {
 // Cells of a body in batches, layer by layer along it.
 struct CellBlock {
   std::vector<CellBatch> batches;
-  std::vector<int> layers;  // first batch of each layer, and the end
+  std::vector<int> layers;  // index of the first batch of each layer, and the number of batches
   int layer_cells = 0;      // cells per layer; the last batch of a layer may have unused lanes
 };
 
 // Terms of the matrix inertia * M + stiffness * K, without the rows and columns of fixed coordinates.
 struct MatrixParts {
   const CellBlock* cells;
-  const double* mass;  // by node, kg
-  const double* free;  // by coordinate: 1, or 0 if fixed
+  const double* mass;  // mass of each node, kg
+  const double* free;  // for each coordinate: 1 if free, 0 if fixed
   double inertia, stiffness;
 };
 
@@ -42,12 +42,13 @@ class RollingFactor {
   RollingFactor(const RollingFactor&) = delete;
   RollingFactor& operator=(const RollingFactor&) = delete;
 
-  // Length of vectors, with zeros after the last coordinate.
+  // Length of the vectors passed to solve(); they have zeros after the last coordinate.
   int padded_size() const;
 
   // Discards the factor: the next advance() factorises the whole matrix.
   void forget() { next_.stiffness = 0.0; }
-  // Factorises a part of the present matrix. A complete factor replaces the one in use.
+  // Factorises the next part of the present matrix. When the new factor is complete, it replaces the one in
+  // use.
   void advance(const MatrixParts& parts);
   // Sets `to` to A^-1 `from` with the matrix A of a few ticks ago; 0 at fixed coordinates.
   void solve(const double* from, const double* free, double* to) const;
@@ -65,12 +66,12 @@ class RollingFactor {
   void add_cell(const MatrixParts& parts, const CellBatch& batch, int lane);
 
   const BandKernels* kernels_;
-  int slice_columns_;  // number of columns of the nodes at one k
+  int slice_columns_;  // number of columns of the nodes with one grid index k
   BandView used_;
   struct Next {
     BandView band;
     double inertia = 0.0, stiffness = 0.0;
-    int layers = 0, columns = 0;  // finished so far
+    int layers = 0, columns = 0;  // layers added and columns factorised so far
   } next_;
   Doubles columns_[2];
 };

@@ -11,7 +11,7 @@
 namespace spoonbill {
 namespace {
 
-// Adds both halves of the quad of four nodes, except those without area, as at a pole.
+// Adds both halves of a quad, except halves without area, as at a pole.
 void add_quad(const std::array<Vector3, 4>& corners, std::vector<Triangle>& triangles) {
   for (const Triangle& half :
        {Triangle{corners[0], corners[1], corners[2]}, Triangle{corners[0], corners[2], corners[3]}}) {
@@ -19,7 +19,7 @@ void add_quad(const std::array<Vector3, 4>& corners, std::vector<Triangle>& tria
   }
 }
 
-// Adds the faces at both ends of one of the block's axes.
+// Adds the faces at both ends of one axis of the block.
 void add_faces(const LatticeMesh& mesh, std::size_t axis, std::vector<Triangle>& triangles) {
   const std::size_t first = (axis + 1) % 3, second = (axis + 2) % 3;
   const auto node = [&](int end, int a, int b) {
@@ -78,11 +78,11 @@ class Hull {
 
   std::vector<Triangle> triangles_;
   std::vector<Sphere> spheres_;
-  std::size_t last_ = 0;  // nearest triangle of the last point
+  std::size_t last_ = 0;  // index of the triangle nearest to the previous point
 };
 
-// Distance of a node from the centre line of the block, 0 to 1, in node steps. Shells have no centre line
-// and return 1.
+// Returns the distance of a node from the centre line of the block in its grid: 0 on the line, 1 on the hull.
+// Shells have no centre line; the distance is 1.
 double distance_from_centre_line(const LatticeMesh& mesh, int node) {
   if (mesh.thin) return 1.0;
   const std::array<int, 3> at = mesh.grid_index(node);
@@ -90,14 +90,14 @@ double distance_from_centre_line(const LatticeMesh& mesh, int node) {
   return std::max(std::abs(s), std::abs(t));
 }
 
-// Returns the faces of the block that are faces of the body. A closed block has none at its seam.
+// Returns the faces of the block that are faces of the body. A closed block has no faces at its seam.
 Hull make_hull(const LatticeMesh& mesh) {
   std::vector<Triangle> faces;
   for (std::size_t axis = mesh.closed ? 1 : 0; axis < 3; ++axis) add_faces(mesh, axis, faces);
   return Hull(std::move(faces));
 }
 
-// Returns the body coordinates of all nodes, without depths unless the mesh stores them.
+// Returns the body coordinates of all nodes; depths are set only if the mesh stores them.
 std::vector<BodyCoordinates> block_coordinates(const LatticeMesh& mesh) {
   std::vector<BodyCoordinates> coordinates(mesh.nodes.size());
   for (int n = 0; n < mesh.node_count(); ++n) {
@@ -114,8 +114,8 @@ const BodyCoordinates& at(const std::vector<BodyCoordinates>& nodes, int node) {
   return nodes[static_cast<std::size_t>(node)];
 }
 
-// Largest angular range, in turns, of points on one side of the axis. Points spread over more than half a
-// turn surround the axis; four points that surround it span at least three quarters.
+// Largest angular range, in turns, of points that are taken to be on one side of the axis. Points on one side
+// span at most half a turn; the corners of a face or cell around the axis span about three quarters.
 constexpr double max_range_on_one_side = 0.6;
 
 std::array<int, 8> corner_nodes(const LatticeMesh& mesh, int i, int j, int k) {

@@ -10,17 +10,17 @@
 
 namespace spoonbill {
 
-// Returns the body coordinates of each node at rest. The depth is the distance to the hull of the block, or
-// to the surface in a box about a surface. Nodes outside the body are in no region. In a block that is not a
-// tube, `along` is measured along the block and `around` is 0.
+// Returns the body coordinates of each node at rest. The depth is the distance to the hull of the block; in a
+// box about a surface it is the distance to the surface. Nodes outside the body are in no region. In a block
+// that is not a tube, `along` is measured along the block and `around` is 0.
 std::vector<BodyCoordinates> find_node_coordinates(const LatticeMesh& mesh);
 
 // Returns the mean body coordinates of some nodes, given those of all nodes: the mean of `along`, and the
 // mean of `around`, weighted by the distance from the centre line. `around` is 0 if the nodes surround the
 // axis. The depth is not set.
 //
-// Uses sums only: the C library's trigonometric functions differ between processors, and the cells of a
-// region are part of the state.
+// Uses sums only: the C library's trigonometric functions differ between processors, and the assignment of
+// cells to regions must not.
 BodyCoordinates mean_coordinates(const LatticeMesh& mesh, const std::vector<BodyCoordinates>& nodes,
                                  std::span<const int> selected);
 

@@ -23,12 +23,12 @@ namespace spoonbill {
 namespace {
 
 constexpr int sweeps = 60, halvings = 10;
-// Largest move of a node in the last sweep, relative to the mean edges.
+// The sweeps of unfold() end when no node moves farther than this, relative to the mean edges.
 constexpr double still_fraction = 1e-3;
-// Determinant below which corners are regularised by the d of unfold(), relative to a box of the mean edges.
+// Determinant below which unfold() regularises a corner by its d, relative to a box of the mean edges.
 constexpr double min_determinant = 1e-2;
 
-// Nodes of a cell, and the corner at which the moving node is.
+// The nodes of a cell, and the corner of the cell at which the moving node is.
 struct CellAround {
   std::array<int, 8> nodes;
   int corner;
@@ -72,15 +72,15 @@ Vector3 mean_edges(const LatticeMesh& mesh) {
   return sums.cwiseQuotient(edges);
 }
 
-// A corner of a cell: its edges, each divided by the mean edge of its axis, and their derivatives with
-// respect to the moving node, 0 or +-1 divided by that mean edge.
+// A corner of a cell: its edges, each divided by the mean edge of its axis. The derivatives of the edges with
+// respect to the moving node are 0 or +-1 divided by that mean edge.
 struct Corner {
   std::array<Vector3, 3> edges;
   Vector3 follows;
   double determinant() const { return edges[0].dot(edges[1].cross(edges[2])); }
 };
 
-// Sum of the terms, its gradient and its second derivatives.
+// Sum of the terms of unfold() over corners, its gradient and its second derivatives.
 struct Sum {
   double value = 0.0;
   Vector3 gradient = Vector3::Zero();
@@ -118,8 +118,8 @@ void add_term(const Corner& corner, double lift_square, Sum& sum) {
                     determinant_gradient.transpose();
 }
 
-// The corners of cells whose terms depend on a given node: it is the corner itself or the other end of one of
-// the corner's three edges.
+// The cell corners whose terms in unfold() depend on a given node. The node is the corner itself, or the
+// other end of one of the corner's three edges.
 class Around {
  public:
   Around(const LatticeMesh& mesh, int node, const Vector3& mean_edge)
@@ -180,7 +180,7 @@ Vector3 newton_step(const Sum& sum) {
   return -sum.gradient / size;
 }
 
-// Moves a node downhill. Returns the distance.
+// Moves a node so that the sum decreases. Returns the distance.
 double move_node(const Around& around, double lift_square, Vector3& node) {
   const Sum sum = around.sum(lift_square);
   if (!std::isfinite(sum.value)) return 0.0;
@@ -203,7 +203,7 @@ void fill_from_hull(LatticeMesh& mesh) {
     const std::array<int, 3> at = mesh.grid_index(n);
     if (mesh.node_location(at[0], at[1], at[2]) != NodeLocation::in_body) continue;
     Vector3 point = Vector3::Zero();
-    // The Boolean sum adds faces, subtracts edges and adds corners: nodes at an end of one, two or three
+    // The Boolean sum adds faces, subtracts edges and adds corners, which are at an end of one, two or three
     // axes.
     for (int ends = 1; ends < 27; ++ends) {
       const std::array<int, 3> end = {ends / 9, ends / 3 % 3, ends % 3};  // 0: not at an end of this axis
@@ -364,7 +364,7 @@ void fill_ring(const Surface& surface, const RingParameters& ring, LatticeMesh& 
   }
 }
 
-// A block of nodes and the parameters of its slices and rings.
+// A block of nodes in a tube, and the parameters of its slices and rings.
 struct TubeBlock {
   LatticeMesh mesh;
   TubeStations stations;
@@ -426,10 +426,10 @@ std::vector<int> nodes_inside(const LatticeMesh& mesh) {
   return inside;
 }
 
-// Builds a block for a body whose block folds when it is filled slice by slice: the caps reach to the
-// shoulders, and the interior is filled from the whole hull. First tries the near rims or the shoulders,
-// whichever are further from the end, then the shoulders. The near rim of a narrow nose may be on a flank as
-// steep as the side. Returns nothing if both blocks fold.
+// Builds a block for a body whose block folds when it is filled slice by slice. The caps reach to the
+// shoulders, and the interior is filled from the whole hull. First tries caps up to the near rims or the
+// shoulders, whichever are further from the end, then up to the shoulders. The near rim of a narrow nose may
+// be on a flank as steep as the side. Returns nothing if both blocks fold.
 std::optional<TubeBlock> make_unfolded_block(const Surface& surface, const Profile& profile,
                                              const LatticeRequest& request) {
   const Rims shoulders = shoulder_rims(profile);

@@ -29,7 +29,7 @@ constexpr int samples_a_side = 5;
 
 struct CellPosition {
   std::array<int, 3> cell;
-  Vector3 local;  // 0 to 1 each
+  Vector3 local;  // position in the cell, 0 to 1 in each coordinate
 };
 
 CellPosition locate(const LatticeMesh& box, const Vector3& point) {
@@ -153,8 +153,8 @@ double shortest_edge_m(const LatticeMesh& box) {
 }
 
 // Drops parameters as long as no step becomes longer than `longest_m` and at least `min_pieces` steps remain.
-// `step_m(from, to)` returns the largest distance between the surface's points at two parameters, given by
-// their indices.
+// `step_m(from, to)` returns the largest distance between the surface's points at two parameters, which are
+// given by their indices.
 template <class StepOf>
 std::vector<double> thin_out(const std::vector<double>& parameters, double longest_m, const StepOf& step_m) {
   const std::size_t last = parameters.size() - 1, most = std::max<std::size_t>(last / min_pieces, 1);
@@ -225,7 +225,8 @@ Status check_thick(const ClosedSkin& skin, double volume_m3, double size_m) {
                "surface"};
 }
 
-// Returns the fraction of the body's length, or of the turn of a ring, as a function of v.
+// Returns the position along the body as a function of v: the fraction of its length, or of a full turn for a
+// ring.
 LinearTable fractions_along(const Surface& surface) {
   if (surface.v.is_periodic()) return {{surface.v.domain_start(), surface.v.domain_end()}, {0.0, 1.0}};
   const Profile profile = sample_profile(surface);
@@ -328,9 +329,9 @@ std::vector<Vector3> sample_skin(const ClosedSkin& skin, const Vector3& size,
   return points;
 }
 
-// Returns whether the body is thinner than two cells at a point of the skin: whether the line straight
-// inwards leaves the body within two cells, through a side that faces the other way to within 45 degrees. A
-// face beyond a sharp edge may be closer, but is not an opposite side.
+// Returns whether the body is thinner than two cells at a point of the skin. It is if the line straight
+// inwards leaves the body within two cells, through a side that faces the opposite direction to within 45
+// degrees. A face beyond a sharp edge may be closer, but is not an opposite side.
 bool is_thin_at(const ShellDistance& inside, const Vector3& skin_m, const Vector3& normal, double cell_m) {
   constexpr double far_side = -std::numbers::sqrt2 / 2.0;
   constexpr int bisections = 20;

@@ -28,13 +28,13 @@ struct EmbeddedPoint {
   // Velocity change of the point per impulse, 1/kg; 0 if all of its nodes are fixed.
   double compliance(const SpringLattice& lattice) const;
   double compliance(const LatticeView& lattice) const;
-  // Mean friction of the nodes, weighted, and within the range of their values.
+  // Returns the weighted mean of the nodes' friction, within the range of their values.
   double friction(const SpringLattice& lattice) const;
   Vector3 displacement_m(const LatticeView& lattice) const;
   Vector3 velocity_m_per_s(const LatticeView& lattice) const;
   // Distributes an impulse, N s, to the nodes.
   void push(const LatticeView& lattice, const Vector3& impulse) const;
-  // Sets the bytes of nodes with a significant weight.
+  // Sets to 1 the bytes of nodes with a significant weight.
   void mark(std::uint8_t* touched) const;
 };
 

@@ -13,8 +13,8 @@ namespace spoonbill {
 namespace {
 
 constexpr int draws_per_report = 4096;
-// Radius of the neighbourhood that is updated, relative to its width; nodes beyond it would follow by less
-// than a ninetieth.
+// Radius of the neighbourhood that is updated, relative to its width. Nodes beyond it would move by less than
+// a ninetieth of the nearest node's move.
 constexpr double neighbourhood_reach = 3.0;
 // Halvings of a node's move before it is rejected, and number of passes over all nodes.
 constexpr int grid_halvings = 4, passes = 3;
@@ -62,7 +62,7 @@ class Draws {
     CellCorners corners;
   };
   std::vector<Cell> cells_;
-  std::vector<double> volumes_;  // cumulative
+  std::vector<double> volumes_;  // cumulative volumes of the cells
 };
 
 class FeatureMap {
@@ -133,7 +133,7 @@ class FeatureMap {
   std::vector<int> inside_;
 };
 
-// Smallest Jacobian ratio of the cells around a node.
+// Returns the smallest Jacobian ratio of the cells around a node, at most 1.
 double worst_around(const LatticeMesh& mesh, const std::array<int, 3>& at) {
   double worst = 1.0;
   for (int c = 0; c < 8; ++c) {
@@ -166,7 +166,7 @@ double apply_moves(const std::vector<Vector3>& targets, double worst, LatticeMes
   return requested > 0.0 ? 1.0 - remaining / requested : 0.0;
 }
 
-// Interpolates geometrically.
+// Interpolates geometrically from `first` to `last`.
 double interpolate(double first, double last, double progress) {
   return first * stable_exp(progress * stable_log(last / first));
 }

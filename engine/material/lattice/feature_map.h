@@ -30,7 +30,7 @@ struct FeatureMapWatch {
   std::function<void(const FeatureMapReport&)> done;  // called on the computing thread; may be empty
 };
 
-// Distributes the nodes inside the body evenly; those on its surface stay. The same seed gives the same
+// Distributes the nodes inside the body evenly; nodes on its surface stay. The same seed gives the same
 // nodes. The worst Jacobian never falls.
 FeatureMapReport order_by_feature_map(LatticeMesh& mesh, const FeatureMapSettings& settings,
                                       const FeatureMapWatch& watch = {});

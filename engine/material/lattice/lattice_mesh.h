@@ -48,14 +48,14 @@ struct LatticeMesh {
   std::vector<double> cell_fractions;
   std::vector<bool> filled;  // whether a cell contains any of the body, by cell_index(); empty if all do
   std::vector<NodeLocation> node_locations;  // by node; empty if the block is the body
-  // Position around a tube or ring by node, 0 to 1 in the direction of u; 0 on the axis.
+  // Position of each node around a tube or ring, 0 to 1 in the direction of u; 0 on the axis.
   std::vector<double> turns;
-  // Position along the body by node, 0 to 1, and depth in it, for a box about a surface. NaN for nodes
-  // outside the body. Empty for other lattices.
+  // For a box about a surface: position of each node along the body, 0 to 1, and its depth in the body. NaN
+  // for nodes outside the body. Empty for other lattices.
   std::vector<double> along, depth_m;
-  // Data of a box about a surface: body coordinates of the surface point nearest to each cell's centre, with
-  // the centre's depth (0 outside); the skin that bears pressure; whether the body is thinner than two cells
-  // anywhere.
+  // Data of a box about a surface. `cell_centres` are the body coordinates of the surface point nearest to
+  // each cell's centre, with the depth of the centre (0 outside). `skin` bears pressure. `slender` is true if
+  // the body is thinner than two cells anywhere.
   std::vector<BodyCoordinates> cell_centres;
   BodySkin skin;
   bool slender = false;

@@ -29,8 +29,8 @@ std::vector<int> rim_nodes(const LatticeMesh& mesh, int k) {
   return nodes;
 }
 
-// Returns the volume between the apex and the cells' faces of a slice, positive where they face away from it
-// along k.
+// Returns the volume between the apex and the cell faces of a slice. It is positive where the faces look away
+// from the apex along k.
 double slice_volume(const LatticeMesh& mesh, int k, const Vector3& apex_m) {
   double volume = 0.0;
   for (int i = 0; i + 1 < mesh.count[0]; ++i) {
@@ -44,7 +44,7 @@ double slice_volume(const LatticeMesh& mesh, int k, const Vector3& apex_m) {
   return volume;
 }
 
-// Returns the volume between the apex and the ribbon between the rim of a slice and the ring at v.
+// Returns the volume of the cone from the apex to the ribbon between the rim of a slice and the ring at v.
 double ribbon_volume(const Surface& surface, const RingParameters& ring, double v, const LatticeMesh& mesh,
                      int k, const Vector3& apex_m) {
   const std::vector<int> nodes = rim_nodes(mesh, k);

@@ -1,5 +1,5 @@
-// Volumes of the layers of a lattice, between the nodes of consecutive k, and cell fractions that correct
-// them.
+// Volumes of the layers of a lattice, which are between nodes of consecutive k, and cell fractions that
+// correct these volumes.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct TubeStations {
 };
 
 // Returns the volume of a closed tube between consecutive slices of its lattice, m^3. Their sum is the volume
-// of the tube. A slice reaches to the surface in the form of triangles between its outer edges and the ring.
+// of the tube. Triangles between the outer edges of a slice and the ring extend it to the surface.
 std::vector<double> tube_layer_volumes_m3(const Surface& surface, const TubeStations& stations,
                                           const LatticeMesh& mesh);
 

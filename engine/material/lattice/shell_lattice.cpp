@@ -19,8 +19,8 @@
 namespace spoonbill {
 namespace {
 
-// Surface of a shell as a function of two fractions of its domain. One runs around or across the shell, the
-// other along it. One owner; immutable. The surface must outlive it.
+// Surface of a shell as a function of two fractions of its domain: one around or across the shell, the other
+// along it. One owner; immutable. The surface must outlive it.
 class ShellSurface {
  public:
   // Kind of shell, see shell_lattice.h.
@@ -182,7 +182,7 @@ constexpr int length_stations = 200, lines = 16, volume_stations = 48;
 // Relative tolerance for the farthest point, so that the start of a ring does not depend on rounding.
 constexpr double farthest_tolerance = 1.0 - 1e-6;
 
-// Returns a table that maps arc length, averaged over the lines `over`, to the stations.
+// Returns a table from arc length to the stations. The arc length is averaged over the lines `over`.
 template <class PositionAt>
 LinearTable length_to_fraction(const ShellSurface& face, const std::vector<double>& stations,
                                const std::vector<double>& over, const PositionAt& position_at) {
@@ -248,8 +248,8 @@ class Spread {
   }
 
  private:
-  // Starts the grid at the point of the rim that is farthest from its centre, so that it is aligned with a
-  // long bowl.
+  // Starts the grid at the point of the rim that is farthest from the rim's centre, so that the grid is
+  // aligned with a long bowl.
   void lay_bowl() {
     across_ = across_table(*face_, {1.0});
     along_ = along_table(*face_, face_->across_fractions(lines));
@@ -303,7 +303,7 @@ FaceNodes face_nodes(const ShellSurface& face, const Spread& spread, int rows, i
   const bool closed = face.form() == ShellSurface::Form::ring;
   for (int i = 0; i < rows; ++i) {
     for (int k = 0; k < columns; ++k) {
-      // The last row repeats the first, so that joined nodes are equal to the last bit.
+      // The last row of a closed face repeats the first, so that joined nodes are equal to the last bit.
       const int from = closed && i == rows - 1 ? 0 : i;
       const Position position =
           spread.at(static_cast<double>(from) / (rows - 1), static_cast<double>(k) / (columns - 1));
@@ -380,8 +380,8 @@ std::vector<double> halve_fractions(const std::vector<double>& fractions) {
   return finer;
 }
 
-// Returns the volume of the shell, m^3. The error of chords falls with the square of their length, so two
-// lengths are extrapolated (Richardson 1911).
+// Returns the volume of the shell, m^3. The error of chords falls with the square of their length, so the
+// results for two lengths are extrapolated (Richardson 1911).
 double shell_volume_m3(const ShellSurface& face, double thickness_m) {
   const std::vector<double> across = face.across_fractions(volume_stations),
                             along = face.along_fractions(volume_stations);
@@ -405,7 +405,7 @@ LatticeMesh make_mesh(const FaceNodes& nodes, double thickness_m, const std::arr
   return mesh;
 }
 
-// Scales the cell fractions to the given volume.
+// Scales the cell fractions so that the lattice has the given volume.
 void set_cell_fractions(double volume_m3, LatticeMesh& mesh) {
   double cell_volume_sum = 0.0;
   for (int k = 0; k + 1 < mesh.count[2]; ++k) {

@@ -9,14 +9,14 @@
 
 namespace spoonbill {
 
-// Returns the lattice of a shell. The surface is the face that its normals (along du x dv) point out of: the
-// one that is shaped, touched, drawn and exported. The material is behind it, against the normals, to a
-// depth of the thickness.
+// Returns the lattice of a shell. The surface is the outer face of the shell: the face that is shaped,
+// touched, drawn and exported. Its normals point along du x dv, and the material is behind it, against the
+// normals, to a depth of the thickness.
 //
-// i runs along u, j from the surface through the thickness, k along v. If only v is periodic, i runs along
-// v and k along u. A surface open in both directions makes a sheet; one periodic in one direction makes a
-// closed ring (LatticeMesh::closed). One periodic in u with a pole at one end of v makes a bowl, covered by
-// a square grid. Nodes are spaced by arc length.
+// i runs along u, j from the surface through the thickness, k along v. If only v is periodic, i runs along v
+// and k along u. A surface open in both directions makes a sheet. A surface periodic in one direction makes a
+// closed ring (LatticeMesh::closed), or a bowl if it is periodic in u and has a pole at one end of v. A bowl
+// is covered by a square grid. Nodes are spaced by arc length.
 //
 // Cells have straight edges; their fractions correct the volume of the lattice to that between the surface
 // and its offset. Fails on a thickness out of range or beyond the radius of curvature, surfaces periodic in

@@ -13,8 +13,8 @@ inline float max(float a, float b) {
   return a > b ? a : b;
 }
 
-// Flow and creep rules of a block. All springs share one rule in CommonFlow and CommonCreep; each spring has
-// its own in OwnFlow and OwnCreep.
+// Flow and creep rules of a block of springs. In CommonFlow and CommonCreep all springs share one rule; in
+// OwnFlow and OwnCreep each spring has its own.
 struct CommonFlow {
   FlowRule rule;
   float yield(int) const { return rule.yield; }
@@ -43,9 +43,9 @@ struct OwnCreep {
   float rate_step(int l) const { return 1.0f / (1.0f + times[l] / time); }
 };
 
-// Returns the cube root, by two Newton steps from the tangent at 1: within 1e-4 for J from 0.5 to 2, exact at
-// 1. Returns 0 for J outside 0.3 to 3, because flow would adopt the distortion of crushed or torn cells as
-// the new shape.
+// Returns the cube root of the volume ratio J by two Newton steps from the tangent at 1. The error is below
+// 1e-4 for J from 0.5 to 2, and 0 at 1. Returns 0 for J outside 0.3 to 3, because flow would adopt the
+// distortion of crushed or torn cells as the new shape.
 inline float cube_root(float j) {
   const float a = min(max(j, 0.3f), 3.0f);
   float y = 1.0f + (a - 1.0f) * (1.0f / 3.0f);

@@ -57,7 +57,7 @@ struct Stiffened {
   float secant, tangent;  // stiffness relative to that of a linear spring
 };
 
-// Computes the stiffening factors for `by` = b e^2.
+// Computes the stiffening factors; `by` is b e^2 for the stiffening b and the strain e.
 template <Springs springs>
 inline Stiffened stiffened(float by) {
   const Stiffened more = {1.0f + min(by, 1.0f), by < 1.0f ? 1.0f + 3.0f * by : 2.0f};
@@ -303,8 +303,8 @@ inline float find_norm_scale(const float* x, const float* y, const float* z, int
   return __builtin_bit_cast(float, inverse << exponent_bits);
 }
 
-// Returns the square root of the sum of mass times square. Squares of the fastest lattices' accelerations
-// would overflow without the scale.
+// Returns sqrt(sum m (x^2 + y^2 + z^2)) with the masses m. The sum is scaled, because squares of the
+// accelerations of fast lattices would overflow.
 inline float mass_norm(const float* mass, const float* x, const float* y, const float* z, int count) {
   const float scale = find_norm_scale(x, y, z, count);
   alignas(64) float lanes[16] = {};
@@ -332,7 +332,8 @@ inline void divide_by_mass(float* __restrict f, const float* __restrict inverse_
   for (int i = 0; i < count; ++i) f[i] *= inverse_mass[i];
 }
 
-// Finishes a power step after the springs have added their part of -K w to the forces.
+// Finishes a power step after the springs have added their part of -K w to the forces. K is the stiffness, w
+// the vector of the power iteration.
 float finish_power_step(const LatticeView& view, const float* mass) {
   const int count = view.padded_count;
   multiply(view.fx, view.spring_weight, count);

@@ -41,9 +41,9 @@ struct SpringArrays {
   const float* relaxation_time = nullptr;  // s
 };
 
-// Flow of rest lengths: each step removes the fraction `rate_step` of the strain beyond the yield strain.
-// The yield strain grows with the strain already yielded. Where springs differ, each has its own yield
-// strain and hardening, and its rate step is its flow rate times `time_s`.
+// Plastic flow of rest lengths: each step removes the fraction `rate_step` of the strain beyond the yield
+// strain. The yield strain grows with the strain already yielded. Where springs differ, each has its own
+// yield strain and hardening, and its rate step is its flow rate times `time_s`.
 struct FlowRule {
   float yield = 0.0f;
   float hardening = 0.0f;  // added yield strain per |L0 / first L0 - 1|
@@ -54,9 +54,9 @@ struct FlowRule {
 // Largest fraction of the strain beyond yield that one flow step removes.
 inline constexpr double largest_flow_step = 0.5;
 
-// Creep of rest lengths: in each step, the difference of the creep strain from `fraction` of the strain
-// shrinks by the fraction `rate_step`. If springs differ, each has its own fraction and relaxation time, and
-// its rate step follows from `time_s`.
+// Creep of rest lengths: the creep strain approaches `fraction` times the strain, and each step reduces the
+// difference by the fraction `rate_step`. If springs differ, each has its own fraction and relaxation time,
+// and its rate step follows from `time_s`.
 struct CreepRule {
   float fraction = 0.0f;
   float rate_step = 0.0f;  // 1 / (1 + relaxation time / time_s)
@@ -65,7 +65,7 @@ struct CreepRule {
 
 // View of arrays that a SpringLattice owns.
 struct LatticeView {
-  int padded_count = 0;         // nodes, a whole number of blocks
+  int padded_count = 0;         // number of nodes including padding, a whole number of blocks
   float stiffening = 0.0f;      // see linearise_springs(); the largest value where springs differ
   bool volume_softens = false;  // true if any K_v is negative, see volume_forces()
   float *dx = nullptr, *dy = nullptr, *dz = nullptr;  // displacement from the rest shape, m
@@ -74,11 +74,12 @@ struct LatticeView {
   // Node displacements extrapolated by the damping time at the present velocity: d + tau v, m. Spring forces
   // evaluated there are damped: f(x + tau v) is f(x) + tau df/dt, a Voigt element for each spring.
   float *ahead_x = nullptr, *ahead_y = nullptr, *ahead_z = nullptr;
-  float *reference_x = nullptr, *reference_y = nullptr,
-        *reference_z = nullptr;  // extrapolated displacements at the linearisation, m
-  float *moved_x = nullptr, *moved_y = nullptr, *moved_z = nullptr;  // change since the linearisation, m
-  float *spring_x = nullptr, *spring_y = nullptr,
-        *spring_z = nullptr;            // spring forces at the linearisation, N
+  // Extrapolated displacements at the linearisation, m.
+  float *reference_x = nullptr, *reference_y = nullptr, *reference_z = nullptr;
+  // Change of the extrapolated displacements since the linearisation, m.
+  float *moved_x = nullptr, *moved_y = nullptr, *moved_z = nullptr;
+  // Spring forces at the linearisation, N.
+  float *spring_x = nullptr, *spring_y = nullptr, *spring_z = nullptr;
   const float* inverse_mass = nullptr;  // 1 / inertia, 1/kg; 0 for fixed nodes
   // Weight of the springs' stiffness in power steps and row sums: 1 + 2 tau / h for substeps of h, because
   // h^2 K + 2 h tau K limits the stable substep of damped springs.
@@ -93,28 +94,30 @@ struct LatticeView {
   const unsigned char* active_block = nullptr;
   const unsigned char* free_block = nullptr;  // per block: 0 if every node is fixed
   SpringArrays springs[lattice_direction_count];
-  int corner_offset[8] = {};     // from a cell's first corner; bit 0 = k, bit 1 = j, bit 2 = i
+  int corner_offset[8] = {};     // index of a corner minus that of the first; bit 0 = k, bit 1 = j, bit 2 = i
   int corner_direction[8] = {};  // spring direction from the first corner to each other corner; [0] is unused
-  const float* bulk_stiffness = nullptr;     // K_v V0, J
+  const float* bulk_stiffness = nullptr;     // K_v V0 of each cell, J; see volume_forces()
   const float* crushed_stiffness = nullptr;  // additional stiffness of a crushed cell, J; see volume_forces()
   const float* inverse_volume = nullptr;     // 1/V0, 1/m^3
-  float* rest_volume_sum = nullptr;  // 12 V0 as volume_forces() computes it, so that the rest shape has
-                                     // exactly zero strain; changed by reforming
-  const float* has_cell = nullptr;   // 1 or 0
+  // 12 V0 as volume_forces() computes it, so that the rest shape has exactly zero strain. Changed by
+  // reforming.
+  float* rest_volume_sum = nullptr;
+  const float* has_cell = nullptr;            // 1 at the first corner of a cell, otherwise 0
   const float* inverse_cell_count = nullptr;  // 1 / the number of cells around a node
   float* node_dilation = nullptr;             // working memory of flow(): mean J of the cells around a node
   float* power_x = nullptr;                   // vector of the power iteration
   float* power_y = nullptr;
   float* power_z = nullptr;
-  const float* power_noise = nullptr;  // added at each step so that no mode vanishes from the vector
+  // Added to the vector at each step so that no mode vanishes from it.
+  const float* power_noise = nullptr;
 };
 
 // Parameters of one drift of the nodes.
 struct Drift {
   float h_s = 0.0f;
   float cap_m_per_s = 0.0f;
-  float mean_x = 0.0f, mean_y = 0.0f,
-        mean_z = 0.0f;  // m/s; the cap applies to speeds relative to this velocity
+  // The cap applies to speeds relative to this velocity, m/s.
+  float mean_x = 0.0f, mean_y = 0.0f, mean_z = 0.0f;
   float tau_s = 0.0f;
 };
 
@@ -124,7 +127,7 @@ struct Drifted {
   float moved_square = 0.0f;  // largest squared distance from the linearisation, m^2
 };
 
-// Result of a linearisation: the spring forces alone, which suffice if no further substep uses the
+// Results that a linearisation stores: only the spring forces, which suffice if no further substep uses the
 // linearisation, or the forces and their derivatives.
 enum class Linearised { forces, tangents };
 
@@ -132,53 +135,54 @@ struct LatticeKernels {
   // Extrapolates all nodes by the damping time tau.
   void (*look_ahead)(const LatticeView&, float tau_s);
   // Linearises the springs at the present extrapolated positions: F = k (L - L0) s n for every spring, and
-  // its derivative. With the strain e = L / L0 - 1 and a stiffening b, s = 1 + b e^2 up to 2 for b > 0, s =
-  // (1 - b e^2)^(-1/2) for b < 0, and s = 1 for b = 0. A softening spring's force still grows with its
-  // length, so no lattice snaps through.
+  // its derivative. s depends on the strain e = L / L0 - 1 and the stiffening b: s = 1 + b e^2, at most 2,
+  // for b > 0; s = (1 - b e^2)^(-1/2) for b < 0; and s = 1 for b = 0. A softening spring's force still grows
+  // with its length, so no lattice snaps through.
   //
-  // Eq. 7 of Pungotra et al. 2013 damps the whole velocity, rotations included. The extrapolation of a
-  // rotating body is the same body rotated further, so rotations are not damped here.
+  // Eq. 7 of Pungotra et al. 2013 damps the whole velocity, rotations included. Here rotations are not
+  // damped, because the extrapolation of a rotating body is the same body rotated further.
   void (*linearise_springs)(const LatticeView&, Linearised stored);
   // Sets the forces to the spring forces of the linearisation.
   void (*start_forces)(const LatticeView&);
   // Adds the first-order change of the spring forces since the linearisation. This function, damp_further()
   // and power_step() need Linearised::tangents.
   void (*spring_forces)(const LatticeView&);
-  // Adds f = -p dV/dx with p = K_v x, x = J - 1, with the exact volume of each trilinear cell. Changes of
-  // volume are not damped: the damping of these fast modes would cost ten times the substeps. For Poisson's
-  // ratios below 1/4, K_v is negative and this energy unbounded below; then p = K_v x / (1 + (x / 0.1)^2),
-  // which the springs outweigh. A cell below 0.3 of its volume also pushes back with crushed_stiffness,
-  // because springs cannot tell an inverted cell from a regular one.
+  // Adds the force f = -p dV/dx of each cell's pressure p on its corners x, with the exact volume V of the
+  // trilinear cell. The pressure is p = K_v q for the dilation q = J - 1. Changes of volume are not damped:
+  // damping these fast modes would need ten times the substeps. For Poisson's ratios below 1/4, K_v is
+  // negative and the energy would be unbounded below. There p = K_v q / (1 + (q / 0.1)^2), which the springs
+  // outweigh. A cell below 0.3 of its volume also pushes back with crushed_stiffness, because springs cannot
+  // tell an inverted cell from a regular one.
   void (*volume_forces)(const LatticeView&);
-  // Adds the damping of springs beyond the damping time of look_ahead(): the force c ((v' - v).n) n of a
-  // spring along n at the linearisation.
+  // Adds the damping of springs beyond the damping time of look_ahead(). A spring with the further damping c,
+  // the direction n at the linearisation and the end velocities v and v' gets the force c ((v' - v).n) n.
   void (*damp_further)(const LatticeView&);
   // Sets v = v * decay + h f / m, after adding the forces of each seam pair. The decay does not apply to the
-  // new impulse, so that a body at rest balances its true forces.
+  // new impulse h f / m, so that a body at rest balances its true forces.
   void (*kick)(const LatticeView&, float h_s, float decay);
-  // Caps speeds relative to the mean velocity, sets d += h v and extrapolates. The second node of a seam
-  // pair gets the velocity of the first.
+  // Caps speeds relative to the mean velocity, sets d += h v and extrapolates the positions by the damping
+  // time. The second node of a seam pair gets the velocity of the first.
   Drifted (*drift)(const LatticeView&, const Drift&);
   // Computes mass-weighted sums of velocity over free nodes: sum = {x, y, z, mass}. `mass` must be 0 for
   // fixed nodes.
   void (*momentum)(const LatticeView&, const float* mass, float sum[4]);
-  // Sets L0 += rate_step * (|e| - yield) sign(e) L0 for e = L / (L0 J^(1/3)) - 1 beyond yield, with L0
-  // within 1/2 to 2 of its initial value. Springs at a node whose cells are crushed or torn (J outside 0.3
-  // to 3) do not flow.
+  // Flows the springs: sets L0 += rate_step * (|e| - yield) sign(e) L0 where the strain e = L / (L0 J^(1/3))
+  // - 1 is beyond yield. L0 stays within 1/2 to 2 of its initial value. Springs at a node whose cells are
+  // crushed or torn (J outside 0.3 to 3) do not flow.
   void (*flow)(const LatticeView&, const FlowRule&);
-  // Creeps the springs of one direction: q += rate_step * (fraction * e - q) for the creep strain q in the
-  // rest length L0 = L00 (1 + q), with e = L / (L00 J^(1/3)) - 1, within the bounds of flow(). At constant
-  // strain the stress falls by `fraction` of itself, as in a standard linear solid.
+  // Creeps the springs of one direction: sets q += rate_step * (fraction * e - q) for the creep strain q in
+  // the rest length L0 = L00 (1 + q). The strain is e = L / (L00 J^(1/3)) - 1, and L0 and J are bounded as in
+  // flow(). At constant strain the stress falls by `fraction` of itself, as in a standard linear solid.
   void (*creep)(const LatticeView&, int direction, const CreepRule&);
-  // Computes Gershgorin's row sums of the weighted stiffness by node: 2 k for a spring, K_v/V0 |g_i| sum
-  // |g_j| for a cell. The largest sum bounds the largest eigenvalue from above; for a whole lattice it is 1.4
-  // to 1.9 times as large.
+  // Computes Gershgorin's row sums of the weighted stiffness by node. A spring adds 2 k. A cell adds K_v/V0
+  // |g_i| sum |g_j| at corner i, with the gradients g of its volume. The largest sum bounds the largest
+  // eigenvalue from above; for a whole lattice it is 1.4 to 1.9 times as large.
   void (*row_sums)(const LatticeView&, float* sum_n_per_m);
   // Sets rest_volume_sum from the present shape.
   void (*measure_rest_volumes)(const LatticeView&);
-  // Performs one normalised step w <- M^-1 K w of the power iteration, with the linearised K, in which the
-  // springs count spring_weight times. M is the inertia. Returns |M^-1 K w| / |w| in the norm of `mass`, an
-  // estimate of the largest omega^2. Overwrites the forces.
+  // Performs one normalised step w <- M^-1 K w of the power iteration. K is the linearised stiffness, in
+  // which the springs count spring_weight times, and M is the inertia. Returns |M^-1 K w| / |w| in the norm
+  // of `mass`, an estimate of the largest omega^2. Overwrites the forces.
   float (*power_step)(const LatticeView&, const float* mass);
   // Performs linearise_springs() and then power_step() in one pass over the springs, with the same results.
   float (*linearise_with_power_step)(const LatticeView&, Linearised stored, const float* mass);
@@ -201,7 +205,7 @@ extern const LatticeKernels lattice_kernels;
 // comment are described at the members of LatticeKernels with the same names.
 namespace spoonbill::SPOONBILL_KERNELS {
 
-// Adds a nodal field over each seam pair and gives both nodes the sum.
+// Adds the two values of a nodal field at each seam pair and gives both nodes the sum.
 void join_seam(const LatticeView& view, float* field);
 void join_seam_forces(const LatticeView& view);
 

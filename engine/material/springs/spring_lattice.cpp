@@ -86,9 +86,9 @@ struct SpringLattice::Assembly {
   std::size_t leading_material(int direction, std::size_t node) const;
 
   std::vector<Stiffness> materials;
-  std::vector<double> mass, cell_count;  // per node
+  std::vector<double> mass, cell_count;  // mass, kg, and number of cells around each node
   BySpring stiffness;
-  // Contribution of each material to the stiffness; empty for a single material.
+  // Contribution of each material to the stiffness of each spring; empty for a single material.
   std::vector<BySpring> by_material;
 };
 
@@ -173,7 +173,7 @@ void SpringLattice::allocate(const LatticeMesh& mesh) {
   }
 }
 
-// Measures the largest square of a frequency by power iteration at the present shape.
+// Measures the square of the largest angular frequency by power iteration at the present shape.
 void SpringLattice::measure_fastest_square() {
   const LatticeView lattice = view();
   for (int n = 0; n < mesh_.node_count(); ++n) {
@@ -189,7 +189,7 @@ void SpringLattice::measure_fastest_square() {
   }
 }
 
-// Returns a copy with every node free, in the rest shape as it was built, in real time.
+// Returns a copy in the rest shape at construction, with every node free and an inertia scale of 1.
 SpringLattice SpringLattice::at_rest() const {
   SpringLattice copy = *this;
   for (Floats* a : {&copy.dx_, &copy.dy_, &copy.dz_, &copy.vx_, &copy.vy_, &copy.vz_}) {
@@ -205,7 +205,8 @@ SpringLattice SpringLattice::at_rest() const {
   return copy;
 }
 
-// Returns the fastest square at rest in real time, with springs weighted for substeps of step_s.
+// Returns fastest_square() of the lattice at rest with an inertia scale of 1 and with the springs weighted
+// for substeps of step_s.
 double SpringLattice::rest_square(double step_s) {
   const double weight = spring_weight(step_s);
   for (const auto& [measured_weight, square] : rest_squares_) {
@@ -226,8 +227,8 @@ double SpringLattice::find_inertia_scale(double step_s) {
 
 double SpringLattice::find_real_time_step_s(double longest_s) {
   SPOONBILL_ASSERT(longest_s > 0.0);
-  // Damping lets the square grow with the number of substeps, so that several attempts may be necessary. Each
-  // assumes that it does not grow, and therefore never takes more substeps than are necessary.
+  // With damping, the squared frequency grows with the number of substeps, so several attempts may be
+  // necessary. Each attempt assumes that it does not grow, and so never takes more substeps than necessary.
   constexpr double most_substeps = 1e9;
   double count = 1.0;
   while (count < most_substeps) {
@@ -263,9 +264,10 @@ double SpringLattice::fastest_frequency() const {
   return std::sqrt(fastest_square());
 }
 
-// A substep h is stable while h^2 (K_v + K_s) + 2 h tau K_s is below 4 M for every mode, with the parts K_v
-// of the cells and K_s of the springs. Of the square q = K_v + (1 + 2 tau / h0) K_s, the springs may have any
-// part; the two cases are q = K_v and q = (1 + 2 tau / h0) K_s.
+// A substep h is stable while h^2 (K_v + K_s) + 2 h tau K_s is below 4 M for every mode, where K_v is the
+// stiffness of the cells and K_s that of the springs. Only the sum q = K_v + (1 + 2 tau / h0) K_s has been
+// measured, for substeps of h0. The result is therefore the smaller of two steps: one as if q came from the
+// cells alone, one as if it came from the springs alone.
 double SpringLattice::stable_step_s(double fraction) const {
   if (!(fastest_square() > 0.0)) return std::numeric_limits<double>::infinity();
   const double tau = static_cast<double>(step_damping_time_);
@@ -393,8 +395,8 @@ const float* SpringLattice::stabilise_strained_nodes(float h_s, float fraction) 
     const float stable = limit / std::max(row_sum_[i], 1e-30f);
     stable_inverse_mass_[i] = std::min(inverse_mass_[i], stable);
     if (!(stable < inverse_mass_[i])) continue;
-    // The velocity falls so that the momentum stays the same: at the old velocity, the forces could not stop
-    // the larger inertia.
+    // The velocity is reduced so that the momentum stays the same. At the old velocity, the forces could not
+    // stop the larger inertia.
     const float slower = stable / inverse_mass_[i];
     for (Floats* v : {&vx_, &vy_, &vz_}) (*v)[i] *= slower;
   }
@@ -561,8 +563,8 @@ void SpringLattice::store_flow_and_creep(const Assembly& sum) {
     const std::size_t size = stiffness_[d].size();
     if (own_flow) {
       for (Floats* a : {&yield_[d], &hardening_[d], &flow_rate_[d]}) a->assign(size, 0.0f);
-      std::fill(yield_[d].begin(), yield_[d].end(),
-                1.0f);  // springs that do not flow never reach their yield strain
+      // Springs that do not flow never reach this yield strain.
+      std::fill(yield_[d].begin(), yield_[d].end(), 1.0f);
     }
     if (own_creep) {
       relaxing_fraction_[d].assign(size, 0.0f);

@@ -20,13 +20,13 @@
 namespace spoonbill {
 
 // Fraction of the stability limit that a substep uses at rest. Strain and flow raise the fastest frequency by
-// 1.2 to 1.6 times; a tick then takes more substeps.
+// a factor of 1.2 to 1.6; a tick then takes more substeps.
 inline constexpr double rest_stability_fraction = 0.75;
 
 class SpringLattice {
  public:
-  // Builds the lattice at rest, in real time: the inertia of each node is its mass. Fails on fewer than 2
-  // nodes in a direction, folded cells and materials outside their ranges.
+  // Builds the lattice at rest with an inertia scale of 1: the inertia of each node is its mass. Fails on
+  // fewer than 2 nodes in a direction, folded cells and materials outside their ranges.
   //
   // Cells that share a spring add their stiffness, damping and stiffening to it. The spring flows and
   // creeps as the material that contributes most of its stiffness does.
@@ -49,24 +49,26 @@ class SpringLattice {
   // Returns the smallest inertia scale with which a substep of step_s is stable at rest, with a reserve
   // (rest_stability_fraction). Allocates.
   double find_inertia_scale(double step_s);
-  // Returns the largest whole fraction of longest_s that is stable in real time, with the same reserve.
-  // Allocates.
+  // Returns the largest longest_s / n, with a whole n, that is stable at an inertia scale of 1, with the same
+  // reserve as find_inertia_scale(). Allocates.
   double find_real_time_step_s(double longest_s);
 
-  // Largest square of an angular frequency, rad^2/s^2, of the lattice with its inertia and its springs
-  // weighted for the step of set_inertia(): measured at rest and tracked while the lattice deforms.
+  // Square of the largest angular frequency, rad^2/s^2, of the lattice with its inertia scale and with its
+  // springs weighted for the step of set_inertia(). It is measured at rest and tracked while the lattice
+  // deforms.
   double fastest_square() const { return static_cast<double>(fastest_square_); }
   void set_fastest_square(double square) { fastest_square_ = static_cast<float>(square); }
-  // Bound of the fastest angular frequency of the undamped lattice, rad/s.
+  // Upper bound of the largest angular frequency of the undamped lattice, rad/s.
   double fastest_frequency() const;
   // Returns the largest stable substep, s, at the present strain; `fraction` is the fraction of the stability
   // limit to use.
   double stable_step_s(double fraction) const;
-  // Weight of the springs in power steps and row sums for substeps of step_s (LatticeView::spring_weight).
+  // Weight of the springs in power steps and row sums for substeps of step_s (see
+  // LatticeView::spring_weight).
   double spring_weight(double step_s) const {
     return 1.0 + 2.0 * static_cast<double>(step_damping_time_) / step_s;
   }
-  // Damping time of every spring, s. In a body of several materials this is the smallest of their times;
+  // Damping time that all springs have, s. In a body of several materials it is the shortest of their times;
   // LatticeKernels::damp_further() adds the rest.
   float damping_time_s() const { return damping_time_; }
   bool is_damped_further() const { return is_damped_further_; }
@@ -78,8 +80,8 @@ class SpringLattice {
   bool creeps() const { return creeps_; }
   float cell_size_m() const { return cell_size_; }
 
-  // Sets the inverse inertia of every free node in contacts, 1/kg, for a lattice that the implicit solver
-  // moves. 0 restores each node's own inertia.
+  // Sets the inverse inertia that contacts use for every free node, 1/kg, in a lattice that the implicit
+  // solver moves. 0 restores each node's own inertia.
   void set_contact_inverse_mass(double inverse_mass_per_kg);
   bool moved_by_solver() const { return contact_inverse_mass_ > 0.0f; }
   // Fixes the nodes whose byte is 1 at their present displacements; one byte per node.
@@ -112,11 +114,12 @@ class SpringLattice {
   // Returns a view of the state. Its pointers stay valid until the lattice is moved or destroyed.
   LatticeView view();
   const LatticeKernels& kernels() const { return *kernels_; }
-  // Masses of the nodes, kg, as mass(); of the free nodes only, 0 for fixed ones.
+  // masses() returns the masses of all nodes, kg, like mass(). free_mass() is the same, but 0 for fixed
+  // nodes.
   const float* masses() const { return node_mass_.data(); }
   const float* free_mass() const { return free_mass_.data(); }
   // Makes a substep of h_s stable at any strain: a node that is too light for its present stiffness gets a
-  // larger inertia at the same momentum. Returns the inverse inertias to step with, valid until the next
+  // larger inertia at the same momentum. Returns the inverse inertias for this substep, valid until the next
   // call. `fraction` is the fraction of the stability limit to use.
   const float* stabilise_strained_nodes(float h_s, float fraction);
   const float* applied_force(int axis) const { return applied_[axis].data(); }
@@ -178,11 +181,12 @@ class SpringLattice {
   double total_mass_ = 0.0, rest_volume_ = 0.0;
   LatticeMaterials materials_{Material{}};
   float fastest_square_ = 0.0f, inertia_scale_ = 1.0f, spring_weight_ = 1.0f, cell_size_ = 0.0f;
-  float damping_time_ = 0.0f, step_damping_time_ = 0.0f;  // shortest and longest damping time, s
+  // Shortest and longest damping time of the materials, s.
+  float damping_time_ = 0.0f, step_damping_time_ = 0.0f;
   float contact_inverse_mass_ = 0.0f;
   bool has_applied_force_ = false, flows_ = false, creeps_ = false, is_damped_further_ = false;
-  std::vector<std::pair<double, double>>
-      rest_squares_;  // spring weight and fastest square at rest, in real time
+  // Pairs of a spring weight and the fastest square at rest for it, at an inertia scale of 1.
+  std::vector<std::pair<double, double>> rest_squares_;
   int fixed_count_ = 0, padded_count_ = 0;
   std::vector<int> seam_;  // pairs of joined nodes, see LatticeView::seam
   int offset_[lattice_direction_count] = {};
@@ -196,7 +200,8 @@ class SpringLattice {
   Floats stiffness_[lattice_direction_count], rest_length_[lattice_direction_count];
   Floats square_difference_[lattice_direction_count], first_rest_length_[lattice_direction_count];
   Floats crept_[lattice_direction_count], tangent_[lattice_direction_count];
-  // Arrays for properties in which the materials of the body differ; empty otherwise.
+  // Arrays by spring of the properties in which the materials of the body differ; empty if they do not
+  // differ.
   Floats stiffening_[lattice_direction_count], further_damping_[lattice_direction_count];
   Floats yield_[lattice_direction_count], hardening_[lattice_direction_count];
   Floats flow_rate_[lattice_direction_count], relaxing_fraction_[lattice_direction_count];

@@ -40,7 +40,7 @@ inline Vector difference(const float* x, const float* y, const float* z, int fro
   return {x[to] - x[from], y[to] - y[from], z[to] - z[from]};
 }
 
-// Differences of a nodal field along the face diagonals of the cell at node n.
+// Returns the differences of a nodal field along the face diagonals of the cell at node n.
 inline FaceDiagonals field_diagonals(const LatticeView& view, const float* x, const float* y, const float* z,
                                      int n) {
   const int* o = view.corner_offset;
@@ -53,7 +53,7 @@ inline Vector rest_vector(const SpringArrays& s, int n) {
   return {s.rest_x[n], s.rest_y[n], s.rest_z[n]};
 }
 
-// Present face diagonals; their rest vectors are those of springs.
+// Returns the present face diagonals of the cell at node n, computed from the springs along them.
 inline FaceDiagonals present_diagonals(const LatticeView& view, int n) {
   const SpringArrays& jk = view.springs[view.corner_direction[3]];
   const SpringArrays& ik = view.springs[view.corner_direction[5]];
@@ -65,12 +65,12 @@ inline FaceDiagonals present_diagonals(const LatticeView& view, int n) {
           rest_vector(ik, n) + moved.e,        rest_vector(ij, n + o[1]) + moved.f};
 }
 
-// Returns 12 V.
+// Returns 12 times the volume of a cell with the face diagonals `p`.
 inline float volume_sum(const FaceDiagonals& p) {
   return dot(p.a + p.b, cross(p.c, p.d)) + dot(p.c + p.e, cross(p.f, p.b)) + dot(p.f + p.d, cross(p.a, p.e));
 }
 
-// Gradient of 12 V with respect to the diagonals.
+// Returns the gradient of 12 V, 12 times the cell's volume, with respect to the diagonals.
 inline FaceDiagonals volume_gradient(const FaceDiagonals& p) {
   const Vector ab = p.a + p.b, ce = p.c + p.e, fd = p.f + p.d;
   const Vector cd = cross(p.c, p.d), fb = cross(p.f, p.b), ae = cross(p.a, p.e);
@@ -78,7 +78,8 @@ inline FaceDiagonals volume_gradient(const FaceDiagonals& p) {
           cross(ab, p.c) + ae, fb + cross(fd, p.a), cross(p.b, ce) + ae};
 }
 
-// Rate of 12 V along a nodal field, to first order.
+// Returns the first-order change of 12 V, 12 times the cell's volume, due to the nodal displacements x, y and
+// z.
 inline float volume_rate(const LatticeView& view, const FaceDiagonals& gradient, const float* x,
                          const float* y, const float* z, int n) {
   const FaceDiagonals v = field_diagonals(view, x, y, z, n);
@@ -144,7 +145,7 @@ inline void add_corner_forces(const LatticeView& view, int start, const BlockCel
   }
 }
 
-// Returns J - 1.
+// Returns J - 1, where J is the volume of a cell divided by its rest volume.
 inline float cell_dilation(const LatticeView& view, const FaceDiagonals& p, int n) {
   return (volume_sum(p) - view.rest_volume_sum[n]) * (1.0f / 12.0f) * view.inverse_volume[n];
 }
@@ -152,7 +153,8 @@ inline float cell_dilation(const LatticeView& view, const FaceDiagonals& p, int 
 // Dilation below which a cell is crushed.
 constexpr float crushed_dilation = -0.7f;
 
-// Derivative of a cell's pressure with respect to J, times its rest volume.
+// Returns the derivative of a cell's pressure with respect to J, times its rest volume. For a negative bulk
+// stiffness it is the derivative at J = 1, the largest in size.
 inline float volume_tangent(const LatticeView& view, const FaceDiagonals& p, int n) {
   const float crushed = view.crushed_stiffness[n];  // read unconditionally, so that the loop vectorises
   return view.bulk_stiffness[n] + (cell_dilation(view, p, n) < crushed_dilation ? crushed : 0.0f);

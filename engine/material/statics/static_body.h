@@ -52,10 +52,10 @@ class PressedSkin {
   };
   void update_point_forces();
 
-  std::vector<CellPoint> points_;  // corners of the triangles
+  std::vector<CellPoint> points_;  // corners of the pressed triangles
   std::vector<Pressed> triangles_;
-  std::vector<int> point_index_;               // index in points_ by point of the skin, or -1
-  std::vector<Vector3> position_m_, force_n_;  // by point: working memory
+  std::vector<int> point_index_;               // index in points_ for each point of the skin, or -1
+  std::vector<Vector3> position_m_, force_n_;  // working memory: one entry for each point
 };
 
 enum class CellKind : std::uint8_t {

@@ -17,7 +17,7 @@ using Coordinates = StaticSystem::Coordinates;
 // Smallest pivot relative to the largest; below it, a rigid motion is free.
 constexpr double min_pivot = 1e-13;
 constexpr double min_load_step = 1e-3;
-// Newton steps for one load step.
+// Largest number of Newton steps for one load step.
 constexpr int steps_per_load = 40;
 constexpr int step_halvings = 12;
 // Accepted decrease of the energy, relative to the decrease that the slope predicts.
@@ -64,8 +64,8 @@ class Equilibrium {
   bool cancelled() const { return cancelled_; }
 
  private:
-  // Measures the progress as the orders of magnitude by which the unbalanced force has fallen, relative to
-  // the number required: Newton's method gains more orders with each step.
+  // Sets the progress to the orders of magnitude by which the unbalanced force has fallen, divided by the
+  // orders required. Newton's method gains more orders with each step.
   void set_done(double fraction, double unbalanced, double first) {
     const double orders = std::log(first / settings_->tolerance);
     done_ = orders > 0.0 ? fraction * std::log(first / unbalanced) / orders : 0.0;
@@ -81,8 +81,8 @@ class Equilibrium {
     return !cancelled_;
   }
 
-  // Factorises the tangent. Where stress makes it indefinite, Newton's step may not descend; then the plain
-  // tangent is used.
+  // Factorises the tangent. If stress makes the tangent indefinite, Newton's step may not descend; the plain
+  // tangent is then used instead.
   bool factor_tangent(const Coordinates& at) {
     if (!factor()) return false;
     if (factors_.has_pivots_above(0.0)) return true;

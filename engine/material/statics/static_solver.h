@@ -13,23 +13,24 @@ struct StaticSettings {
   // Largest number of multiplications for one factor of the stiffness matrix. A body that needs more is
   // refused beforehand. At the default, a factor takes a few seconds, and a body needs about five factors.
   double work_limit = 1e10;
-  // Progress, reported several times a second, also within a factorisation. It may decrease where the loads
-  // must grow more slowly. Cancelling it makes rest_under_load() fail.
+  // Progress, reported several times a second, also within a factorisation. It may decrease when the loads
+  // must be applied in smaller steps. Cancelling it makes rest_under_load() fail.
   Progress progress = {};
 };
 
 struct StaticResult {
-  std::vector<Vector3> displacement_m;  // by node
-  std::vector<Vector3> reaction_n;      // by node: reaction of its fixed axes; 0 for free nodes
-  double energy_j = 0.0;                // stored in the cells
+  std::vector<Vector3> displacement_m;  // displacement of each node
+  std::vector<Vector3> reaction_n;      // reaction of the fixed axes of each node; 0 for free nodes
+  double energy_j = 0.0;                // energy stored in the cells
   int newton_steps = 0;
-  bool is_fixed_everywhere = false;  // no node is free to move
+  bool is_fixed_everywhere = false;  // true if no node is free to move
 };
 
 // Minimises the potential energy by Newton's method with sparse Cholesky factors, halving each step until the
-// energy falls. If the method does not converge for the whole loads, they grow in steps. Fails on a fixed
-// axis outside the body, supports that leave the body free to move, a body too large for the work limit, and
-// loads without an equilibrium. A body that is fixed everywhere has the displacement of its fixed axes.
+// energy falls. If the method does not converge for the full loads, they are applied in steps. Fails on a
+// fixed axis outside the body, supports that leave the body free to move, a body too large for the work
+// limit, and loads without an equilibrium. A body that is fixed everywhere gets the displacements of its
+// fixed axes.
 Result<StaticResult> rest_under_load(const StaticBody& body, const StaticLoads& loads,
                                      const std::vector<FixedAxis>& fixed,
                                      const StaticSettings& settings = {});

@@ -27,7 +27,7 @@ class StaticSystem {
   void move(const Coordinates& free_step, double fraction, Coordinates& at) const;
 
   double energy_j(const Coordinates& at) const;
-  // Elastic restoring forces by coordinate. `size` is the root of the sum of squares over the cells.
+  // Elastic restoring forces by coordinate. `size` is the root of the sum of the squared forces of all cells.
   struct Forces {
     Coordinates restoring;
     double size = 0.0;
@@ -44,12 +44,12 @@ class StaticSystem {
   void add(std::size_t cell, const CellMatrix& tangent);
 
   const StaticBody* body_;
-  std::vector<FixedAxis> fixed_;    // on both nodes of a joined pair
-  std::vector<Eigen::Index> free_;  // by coordinate: index of the free coordinate, or -1 if fixed
+  std::vector<FixedAxis> fixed_;    // fixed axes; each axis of a joined node is listed for both nodes
+  std::vector<Eigen::Index> free_;  // for each coordinate: index among the free ones, or -1 if fixed
   Eigen::Index free_count_ = 0;
   Stiffness stiffness_;
-  // Positions of each cell's tangent entries (the lower half, 300 per cell) in the values of the stiffness,
-  // or -1.
+  // Positions of each cell's tangent entries (the lower half, 300 per cell) in the values of the stiffness;
+  // -1 for entries of fixed coordinates.
   std::vector<Eigen::Index> value_index_;
 };
 

@@ -8,12 +8,12 @@
 namespace spoonbill {
 namespace {
 
-// Multiplications between two calls of may_continue(): some milliseconds.
+// Number of multiplications between two calls of may_continue(); they take some milliseconds.
 constexpr double work_between_calls = 5e6;
 
 }  // namespace
 
-// Row of L that is computed next.
+// Working memory for the next row of L.
 struct StiffnessFactors::Workspace {
   explicit Workspace(int size)
       : values(static_cast<std::size_t>(size)),
@@ -21,10 +21,11 @@ struct StiffnessFactors::Workspace {
         path(values.size()),
         visited(values.size(), -1) {}
 
-  std::vector<double> values;  // by column; 0 outside the pattern
-  std::vector<int> pattern;    // from `top`: columns of the row's entries, each before those that it changes
-  std::vector<int> path;       // up the elimination tree
-  std::vector<int> visited;    // by column: the last row that has an entry there
+  std::vector<double> values;  // values of the row by column; 0 outside the pattern
+  // From index `top` on: the columns of the row's entries, each before the columns that depend on it.
+  std::vector<int> pattern;
+  std::vector<int> path;     // path up the elimination tree
+  std::vector<int> visited;  // for each column: the last row that has an entry there
   std::size_t top = 0;
   double multiplications = 0.0;
 };

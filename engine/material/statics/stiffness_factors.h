@@ -15,8 +15,8 @@ class StiffnessFactors : public Eigen::SimplicialLDLT<StaticSystem::Stiffness> {
   // Returns the number of multiplications of a factorisation. Valid after analyzePattern().
   double work() const { return m_nonZerosPerCol.cast<double>().squaredNorm(); }
 
-  // Factors the matrix, as factorize() does, and calls may_continue() several times a second. Returns false,
-  // without factors, if that function did.
+  // Factors the matrix, as factorize() does, and calls may_continue() several times a second. If
+  // may_continue() returns false, stops without factors and returns false.
   bool factor(const StaticSystem::Stiffness& matrix, const std::function<bool()>& may_continue);
 
   // Returns whether the last matrix has factors and all pivots are larger than this fraction of the largest
