@@ -1,5 +1,5 @@
-// Child processes: programs that are started with given pipes, and a reader of a child's output that limits
-// its memory and time.
+// Child processes: starts programs with given pipes, and reads a child's output with limits on its memory and
+// time.
 #pragma once
 
 #include <sys/types.h>
@@ -62,7 +62,7 @@ class ChildOutput {
   ChildOutput(pid_t process, int pipe, Clock::time_point deadline)
       : process_(process), pipe_(pipe), deadline_(deadline) {}
 
-  pid_t process_;  // -1 after it has ended
+  pid_t process_;  // -1 after the child has ended
   int pipe_;
   Clock::time_point deadline_;
 };

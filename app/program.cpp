@@ -12,7 +12,7 @@ const char* const program_description =
     "Spoonbill: shape B-spline surfaces by touch.\n"
     "`spoonbill COMMAND --help` describes a command and its options.";
 
-// The order here is the order of the commands and their groups in --help.
+// Adds all commands, in the order in which --help lists them and their groups.
 std::vector<CommandEntry> add_commands(const OptionSet& root) {
   struct Group {
     const char* name;

@@ -122,7 +122,7 @@ class Editor {
   SurfacePick pick_;
   MouseHand hand_;
   std::optional<SpaceMouse> space_mouse_;
-  HandInputs inputs_;  // hand_ and space_mouse_
+  HandInputs inputs_;  // refers to hand_ and space_mouse_
   double strength_m_ = 0.004;
   std::optional<Tool> before_stroke_;  // tool to restore after a stroke with Ctrl or Shift
   bool stroke_began_here_ = false;     // the press began on the picture, not on the panel
@@ -143,7 +143,8 @@ class Editor {
   bool is_finished_ = false;
   bool shows_keys_ = false;
   bool screenshot_due_ = false;
-  std::vector<std::optional<PendingOpen>> pending_jobs_;  // in order; nullopt: the start of a recording
+  // in the order of the requests; nullopt stands for the start of a recording
+  std::vector<std::optional<PendingOpen>> pending_jobs_;
   std::uint64_t completed_jobs_ = 0;
 };
 

@@ -48,7 +48,7 @@ struct KeyBinding {
   bool shift;
   const char* chord;  // as shown, such as "Ctrl+S"
   const char* text;
-  // Used by choose_tool only.
+  // Used only if `action` is choose_tool.
   ToolKind kind = ToolKind::sphere;
   ToolAction tool_action = ToolAction::push;
 };

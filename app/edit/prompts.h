@@ -75,7 +75,7 @@ class ShapePrompt {
   void ask();
   void close() { is_open_ = false; }
   bool is_open() const { return is_open_; }
-  // Reopens the prompt with the reason why the choice cannot be made.
+  // Reopens the prompt with the reason why the chosen shape cannot be made.
   void refuse(std::string problem);
 
   // Draws the prompt, between begin_frame() and end_frame(). Returns the choice once.

@@ -86,8 +86,8 @@ const ImDrawData& FramePainter::lay_out(const Snapshot& snapshot, const ViewSett
 
 namespace {
 
-// Number of painters. The same on every machine, because a painter retains the edges of a mesh from its first
-// frame.
+// Number of painters, the same on every machine: a deforming mesh is drawn with the edges of the first shape
+// that its painter drew, so the number of painters affects the pictures.
 constexpr std::size_t painter_count = 3;
 
 // Jobs per painter: one in progress and one waiting.

@@ -23,8 +23,9 @@
 
 namespace spoonbill {
 
-// Consumes the session's marks. Writes the requested documents into the folder and returns the names of the
-// requested screenshots of the next frame. If there is no folder, writes nothing and returns no names.
+// Removes the marks (requests for files) from the session. Writes the requested documents into the folder and
+// returns the names of the requested screenshots of the next frame. If there is no folder, writes nothing and
+// returns no names.
 Result<std::vector<std::string>> consume_marks(Session& session,
                                                const std::optional<std::filesystem::path>& folder);
 
@@ -57,7 +58,7 @@ class FrameWriter {
   void write_frames();
 
   const std::filesystem::path folder_;
-  std::mutex mutex_;  // guards the members below
+  std::mutex mutex_;  // guards the members that follow
   std::condition_variable changed_;
   std::deque<std::pair<int, Image>> queue_;
   bool finishing_ = false;
@@ -65,8 +66,8 @@ class FrameWriter {
   std::thread thread_;  // declared last, because it uses all members above
 };
 
-// A video file that an ffmpeg process encodes from raw pictures. The file appears under its name in finish(),
-// or not at all. One owner, one thread. The program must ignore SIGPIPE (see main).
+// A video file that an ffmpeg process encodes from raw pictures. The complete file appears under its name in
+// finish(), or not at all. One owner, one thread. The program must ignore SIGPIPE (see main).
 class VideoEncoder {
  public:
   // Returns true if ffmpeg is on the PATH.
@@ -101,11 +102,12 @@ class VideoEncoder {
 struct PictureRequest {
   int width_px = 0;
   int height_px = 0;
-  std::uint64_t frame_count = 0;                // frames of the whole replay, 60 per second
-  std::uint64_t every = 1;                      // interval between drawn frames
-  std::optional<std::filesystem::path> folder;  // for frames and contact sheet
+  std::uint64_t frame_count = 0;  // frames of the whole replay, 60 per second
+  std::uint64_t every = 1;        // interval between drawn frames
+  // receives the frames and the contact sheet; empty: none are written
+  std::optional<std::filesystem::path> folder;
   std::optional<std::filesystem::path> video;
-  bool replaces_read_only = false;  // files of earlier runs
+  bool replaces_read_only = false;  // also replaces read-only files of earlier runs
 };
 
 // Writes the pictures of a replay. One owner, one thread.

@@ -36,7 +36,7 @@ namespace spoonbill {
 // A session on loan to the worker, with the results of the job.
 struct LentSession {
   std::unique_ptr<Session> session;
-  bool is_new_session = false;                 // true if a new session has replaced it
+  bool is_new_session = false;                 // true if the job has replaced the session by a new one
   bool is_other_document = false;              // true if the new session shows another document
   std::unique_ptr<RecordingWriter> recording;  // starts with the session's next tick
 };
@@ -106,7 +106,7 @@ class SessionWorker {
   bool is_done_ = false;
   std::atomic<bool> finished_{false};
   std::atomic<bool> stopping_{false};
-  std::counting_semaphore<2> pending_{0};  // released for a loan and for the stop
+  std::counting_semaphore<2> pending_{0};  // released once per loan, and once to stop the thread
   std::thread thread_;
 };
 
@@ -119,10 +119,10 @@ struct LiveExchange {
   explicit LiveExchange(const LiveFrame& first)
       : commands(command_capacity), frames(first), forces(force_capacity), failures(failure_capacity) {}
 
-  BoundedQueue<LiveCommand> commands;             // main -> haptic
-  std::atomic<bool> force_cut{false};             // main -> haptic: switch the force off, whatever is queued
-  TripleBuffer<LiveFrame> frames;                 // haptic -> main
-  BoundedQueue<ForceSample> forces;               // haptic -> main; dropped when full
+  BoundedQueue<LiveCommand> commands;  // main -> haptic
+  std::atomic<bool> force_cut{false};  // main -> haptic: switch the force off before queued commands run
+  TripleBuffer<LiveFrame> frames;      // haptic -> main
+  BoundedQueue<ForceSample> forces;    // haptic -> main; dropped when full
   std::atomic<std::uint64_t> recordings_lost{0};  // recordings that ended because the disk was too slow
   // haptic -> main: the first failure of each series of failed ticks.
   BoundedQueue<std::optional<FailedAssertion>> failures;
@@ -137,8 +137,8 @@ class HapticSide {
              Journal& journal, SessionWorker& worker);
 
   // Runs one tick. Called by the haptic thread, once per period. A failed assertion abandons the tick: the
-  // device gets no force and the next frame has tick_flag_failed. A recording ends, because its replay could
-  // not stop at the same point.
+  // device gets no force and the next frame has tick_flag_failed. A recording ends, because its replay would
+  // not be abandoned at the same point.
   void tick(const LoopTick& tick) noexcept;
 
   // Leaves the device without force, ends a recording as LiveSession::stop_recording() does, and passes the
@@ -175,7 +175,7 @@ class HapticSide {
   std::unique_ptr<Device> device_;
   WatchedDevice watched_device_;
   SafeDevice safe_device_;  // the only access to the device
-  bool force_on_ = true;    // kept when another session takes over
+  bool force_on_ = true;    // stays the same when another session takes over
 
   LiveExchange* exchange_;
   Journal* journal_;
@@ -186,7 +186,7 @@ class HapticSide {
   bool recording_ = false;
   std::uint64_t recorded_ticks_ = 0;
   std::uint64_t recorded_missed_ = 0;  // periods without a tick since the first tick of the recording
-  bool state_recorded_ = false;        // the state hash at recorded_ticks_ is recorded
+  bool state_recorded_ = false;        // true if the state hash at recorded_ticks_ is recorded
 
   std::uint64_t session_count_ = 0;
   std::uint64_t document_count_ = 0;

@@ -46,7 +46,7 @@ struct PanelModel {
   double force_n = 0.0;
   double force_limit_n = 0.0;
   double rate_hz = 0.0;
-  bool rate_is_nominal = true;  // true in lock-step, where no clock measures it
+  bool rate_is_nominal = true;  // true in lock-step, where no clock measures the rate
   int substeps = 0;
   std::uint32_t flags = tick_flag_none;
   std::optional<bool> force_on;  // switch of the device's force; empty in a replay, which has no device
@@ -68,7 +68,8 @@ Rectangle picture_panel_rectangle(int width_px, int height_px);
 // Returns the interface's scale for a frame of this height: 1 at 720 pixels, in steps of a half.
 double panel_scale(int height_px);
 
-// The user's requests of one frame, and the reason why a value was rejected, which is empty if no value was.
+// The user's requests of one frame. `refusal` is the reason why a value was rejected; it is empty if none
+// was.
 struct PanelAnswer {
   std::vector<Request> requests;
   std::string refusal;
