@@ -94,7 +94,8 @@ class EditWindow : public testing::Test {
            });
   }
 
-  // Holds the keys down until frames have seen them, because a text field reads only their current state.
+  // Holds the keys down until frames have seen them, because a text field reads only the present state of the
+  // keys.
   void press(const std::string& keys) const {
     std::string down, up;
     std::istringstream words(keys);
@@ -193,7 +194,8 @@ TEST_F(EditWindow, AStrokeIsUndoneRedoneSavedReopenedAndReplays) {
   start({place_.text("handle.json"), "--record", place_.text("session.jsonl")});
   const Document original = saved("handle.json", time_of("handle.json"));
   stroke();
-  ASSERT_TRUE(wait_ticks(4000));  // at rest
+  // After 4000 ticks the body is at rest.
+  ASSERT_TRUE(wait_ticks(4000));
   const Document bent = saved("handle.json", time_of("handle.json"));
   EXPECT_GT(largest_difference(bent, original), 1e-3);
 

@@ -133,7 +133,8 @@ TEST(LiveSession, ARefusedRequestIsSaidAndChangesNothing) {
   EXPECT_NE(live->frame().facts.material.poissons_ratio, 0.7);
 }
 
-// Returns a handle that springs step, of this stiffness.
+// Returns a handle of this stiffness. Its material is plastic, so it is stepped explicitly as a mass-spring
+// lattice.
 Document handle_of_stiffness(double youngs_modulus_pa, bool real_time) {
   Document document = held_handle();
   document.scene.bodies[0].material.plastic = true;
@@ -244,7 +245,7 @@ TEST(LiveSession, AFileThatChangedOnTheDiskIsNotReplacedUnasked) {
   const auto file = place.path("model.json");
   Live live(held_handle());
   live->set_known_content(file_content_hash(file));
-  // Repeated saves know what the last one wrote.
+  // A repeated save is no conflict, because the session knows the content of its last save.
   for (int n = 0; n < 2; ++n) {
     ASSERT_TRUE(live->save(file));
     EXPECT_TRUE(waits_for_save(*live));
@@ -261,7 +262,7 @@ TEST(LiveSession, AFileThatChangedOnTheDiskIsNotReplacedUnasked) {
   ASSERT_TRUE(live->save(file, Replaced::any));
   EXPECT_TRUE(waits_for_save(*live));
   EXPECT_EQ(content_of(file.string() + ".bak"), theirs);
-  // Neither is a file that a person names by mistake.
+  // The file of another document, named by mistake, is not replaced either.
   const auto other = place.write("other.json", "theirs");
   ASSERT_TRUE(live->save(other));
   EXPECT_TRUE(waits_for_conflict(*live));
@@ -275,7 +276,7 @@ TEST(LiveSession, ASaveDoesNotPassToADocumentThatWasOpenedMeanwhile) {
   Document other = held_handle();
   other.name = "another";
   ASSERT_TRUE(live->open(other, "other"));
-  ASSERT_TRUE(live->save(place.path("model.json"), Replaced::any));  // the document that is still shown
+  ASSERT_TRUE(live->save(place.path("model.json"), Replaced::any));  // the first document is still shown
   EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.facts.title == "another"; }));
   wait_ticks(*live, 1000);
   EXPECT_FALSE(live->consume_saved_document().has_value());

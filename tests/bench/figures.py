@@ -26,8 +26,8 @@ VERTICES, CONTROLS = "same vertices", "from control points"
 SPHERE_PEERS = ("sphere_fcl_boxes", "sphere_fcl_turned_boxes")
 SURFACES_PEERS = ("surfaces_fcl_boxes", "surfaces_fcl_turned_boxes")
 
-# Names of Google Benchmark's cases for each figure (by name, or by name and case): our case, then those of its peers,
-# of which the fastest is compared.
+# Names of Google Benchmark's cases for each figure, by the figure's name, or by its name and case.
+# Each row has our case, then those of its peers. The fastest peer is compared.
 PAIRS = {
     "eval_vs_sisl": ("evaluate_ours/200/8", "evaluate_sisl/200/8"),
     "eval_vs_occt": ("evaluate_ours/200/8", "evaluate_occt_cached/200/8"),
