@@ -1,4 +1,5 @@
-// The number of cases that a test tries. A sanitizer is ten times slower, and fewer cases run the same code.
+// Numbers of cases that tests try. Under a sanitizer, which is ten times slower, fewer cases run the same
+// code.
 #pragma once
 
 #include <cstdlib>

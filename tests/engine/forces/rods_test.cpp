@@ -22,9 +22,9 @@ Vector3 mean_of_slice(const LatticeMesh& mesh, int k, const std::vector<Vector3>
   return sum / (mesh.count[0] * mesh.count[1]);
 }
 
-// Returns Young's modulus of a straight rod along an axis that is pulled by a force, divided by that of its
+// Returns the Young's modulus of a straight rod that a force pulls along an axis, divided by that of its
 // material. It follows from the strain between a third and two thirds of the length, where the stress is
-// uniform. `section_m2(k, length_m)` is the area of the section of a layer.
+// uniform. `section_m2(k, length_m)` returns the area of the section of a layer.
 template <class SectionOf>
 double modulus_ratio(const LatticeMesh& mesh, const Material& material, CellKind kind, int axis,
                      const SectionOf& section_m2) {

@@ -16,8 +16,8 @@ namespace {
 
 using std::numbers::pi;
 
-// Solid r^2 = (h^2 - z^2)(1 + c z) about the y axis, with volume 4/3 pi h^3 and its centre c h^2 / 5 above
-// the origin.
+// Returns the solid of revolution r^2 = (h^2 - z^2)(1 + c z) with its axis along y. Its volume is 4/3 pi h^3,
+// and its centre is c h^2 / 5 above the origin.
 Surface egg(double h, double c) {
   ExactShape shape;
   shape.u.periodic = true;
@@ -140,7 +140,7 @@ TEST(ShellMass, OfASheetLiesBelowIt) {
   EXPECT_LT((sheet.centre_m - Vector3(0.0, -0.002, 0.0)).norm(), 1e-9);
 }
 
-// Upright cylinder of 60 mm with its centre at the origin; its lower half is lighter.
+// Returns an upright cylinder of 60 mm with its centre at the origin. Its lower half is lighter.
 Body weighted() {
   Body body;
   body.surface = fitted(cylinder_shape({0.01, 0.06, 0.001})).surface;

@@ -205,7 +205,7 @@ TEST(Ring, StopsWhereverItIsAskedTo) {
     const auto merged = merge(square_tube(), request);
     ASSERT_FALSE(merged.ok()) << stop;
     EXPECT_EQ(merged.error().code, ErrorCode::cancelled);
-    EXPECT_LE(asked, stop + 2);  // stops immediately
+    EXPECT_LE(asked, stop + 2);  // merging stops at once
   }
 }
 

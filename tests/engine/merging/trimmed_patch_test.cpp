@@ -12,7 +12,8 @@
 namespace spoonbill {
 namespace {
 
-// z = 10 sin(20 x) mm over 0.1 x 0.1 m, so that each point shows if it is on the sheet.
+// Returns the sheet z = 10 sin(20 x) mm over 0.1 x 0.1 m. Its equation shows for each point whether it is on
+// the sheet.
 Surface wave() {
   const auto knots = KnotVector::clamped_uniform(3, 16).value();
   PointGrid points{uniform_parameters(knots, 60), uniform_parameters(knots, 60), {}};

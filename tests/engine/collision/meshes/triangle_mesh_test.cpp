@@ -177,7 +177,7 @@ TEST(TriangleMesh, ACavityStaysOneAndASolidInASolidIsNone) {
   EXPECT_EQ(both.report.cavities, 0u);
   EXPECT_EQ(both.report.closed_parts, 2u);
 
-  // Two boxes are beside each other, and one is inside out: the latter is turned.
+  // Two boxes are beside each other. The one that is inside out gets the opposite orientation.
   const CleanMesh beside = cleaned(joined(turned(box_of_triangles({2, 0, 0}, {2.5, 0.5, 0.5})), outer));
   EXPECT_EQ(beside.report.cavities, 0u);
   EXPECT_EQ(beside.report.parts_flipped, 1u);

@@ -10,8 +10,7 @@ namespace {
 
 constexpr int sample_count = 4000;
 constexpr double unit_tolerance = 1e-6;
-// `growth_tolerance` is relative to the distance between two samples; `rounding` is relative to the box's
-// size.
+// `growth_tolerance` is relative to the distance between two samples, `rounding` to the size of the box.
 constexpr double growth_tolerance = 1e-6, rounding = 1e-11;
 constexpr double difference_step = 1e-6;  // relative to the box's size
 constexpr double difference_tolerance = 1e-3, most_misfits = 0.02;

@@ -95,7 +95,7 @@ TEST_F(CrossingTubes, RefineEachKeptCellInFour) {
   }
 }
 
-// Far from the curve all cells are dropped: a remaining cell is no farther from the curve than its own size.
+// Cells far from the curve are dropped: each remaining cell is no farther from the curve than its own size.
 TEST_F(CrossingTubes, DropWhatIsFarFromTheCurve) {
   for (const StageTriangle& triangle : stages_.triangles) {
     double nearest = 1e30, longest = 0.0;

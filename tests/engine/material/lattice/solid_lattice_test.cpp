@@ -69,8 +69,7 @@ TEST(SolidLattice, OfARingHasItsVolumeAndKnowsWhereItsNodesLie) {
   EXPECT_GT(inside, 100);
 }
 
-// The test also covers cells across the seams, and cells whose corners are on both sides of the tube's centre
-// line.
+// The test includes cells across the seams, and cells with corners on both sides of the tube's centre line.
 TEST(SolidLattice, OfARingKnowsWhereItsCellsLie) {
   const Surface ring = round_torus(round_ring_m, round_tube_m);
   const LatticeMesh mesh = solid_lattice(ring, {4000, {}}).value();
@@ -94,7 +93,7 @@ TEST(SolidLattice, OfARingKnowsWhereItsCellsLie) {
   EXPECT_GT(filled, 500);
 }
 
-// The foot is ten thousand times as stiff as the wall: cells in the hollow must be as soft as the wall around
+// The foot is ten thousand times as stiff as the wall. Cells in the hollow must be as soft as the wall around
 // them.
 TEST(SolidLattice, TheHollowOfABowlIsOfWhatIsAboutIt) {
   const LatticeMesh mesh = solid_lattice(walled_bowl(0.05, 0.003, 0.65), {2000, {}}).value();
