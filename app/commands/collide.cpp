@@ -395,7 +395,9 @@ CommandEntry add_collide(OptionSet root) {
       "Example: spoonbill collide assets/models/spoon-handle.json assets/models/spoon-handle.json "
       "--pose 0,5mm,0,1,0,0,0");
   parser.add_option("A", options->first, "Document (.json) or mesh (.obj, .stl, .ply)").require();
-  parser.add_option("B", options->second, "Second model, also A again; default: A, a document, with itself");
+  parser.add_option(
+      "B", options->second,
+      "Second model, which may be the same file; default: none, a document is tested against itself");
   parser
       .add_parsed(
           "--pose",

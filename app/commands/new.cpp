@@ -374,9 +374,10 @@ void add_radius_facts(FactSheet& facts, const Surface& surface, double asked_m) 
   constexpr double flat_per_m = 1e-3;
   if (!(sharpest > flat_per_m)) return;
   const bool is_asked = asked_m > 0.0 && std::isfinite(asked_m);
-  facts.add("Smallest radius",
-            short_length_text(1.0 / sharpest) + (is_asked ? ", asked: " + short_length_text(asked_m) : ""),
-            "smallest_radius_m", 1.0 / sharpest);
+  facts.add(
+      "Smallest radius",
+      short_length_text(1.0 / sharpest) + (is_asked ? ", requested: " + short_length_text(asked_m) : ""),
+      "smallest_radius_m", 1.0 / sharpest);
   if (is_asked) facts.add("", "", "asked_radius_m", asked_m);
 }
 

@@ -28,7 +28,7 @@ Result<std::unique_ptr<Session>> make_session(const Document& document, const st
 std::string describe_real_time_limit(int substeps) {
   return "this material needs " + std::to_string(substeps) +
          " substeps a tick in real time; a live session can take " + std::to_string(live_substeps_limit) +
-         "; replay runs it";
+         "; a replay can take any number";
 }
 
 // Switches real time off if a live session cannot run it. Returns the reason, or an empty text.
