@@ -24,7 +24,8 @@ std::vector<CommandEntry> add_commands(const OptionSet& root) {
       {"Exchange with other programs", {add_convert}},
       {"Sculpt", {add_edit, add_record, add_replay}},
       {"Try a model", {add_rest}},
-      {"", {add_read_mesh, add_read_points}},  // hidden: the program runs these itself
+      // Hidden commands, which the program itself runs as child processes.
+      {"", {add_read_mesh, add_read_points}},
   };
   std::vector<CommandEntry> entries;
   for (const Group& group : groups) {

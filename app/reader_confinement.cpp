@@ -91,7 +91,7 @@ std::vector<sock_filter> reader_filter() {
   for (const std::uint32_t call : denied_calls) deny(BPF_JEQ, call, denied);
   deny(BPF_JEQ, __NR_clone3, SECCOMP_RET_ERRNO | ENOSYS);
   deny(BPF_JEQ, __NR_clone, SECCOMP_RET_ALLOW);
-  // clone is allowed only for threads. Both processor families pass its flags in the low half of the first
+  // `clone` is allowed only for threads. Both processor families pass its flags in the low half of the first
   // argument.
   filter.back() = BPF_JUMP(BPF_JMP | BPF_JA, 1, 0, 0);
   filter.push_back(answer(SECCOMP_RET_ALLOW));

@@ -99,7 +99,7 @@ Result<Json> check_solids(FactSheet& facts, const CadSolids& solids, const std::
 
 struct CheckedBodies {
   Json facts = Json::array();  // one entry per body
-  // indices of the bodies that enclose their material and are not faces of a solid
+  // Indices of the bodies that enclose their material and are not faces of a solid.
   std::vector<std::size_t> solids;
 };
 

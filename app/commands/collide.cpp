@@ -50,8 +50,8 @@ struct CollisionModel {
 
 // Bounding boxes and names of a model's bodies, for the search for close pairs.
 struct BodyBoxes {
-  std::vector<Box> boxes;          // one per body, at least one
-  std::vector<std::string> names;  // one per body, or none for a single body
+  std::vector<Box> boxes;          // bounding box of each body; at least one
+  std::vector<std::string> names;  // name of each body; empty for a single body
 };
 
 // Returns enlarged boxes. The boxes of bodies that touch within the tolerance overlap.

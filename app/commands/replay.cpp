@@ -61,7 +61,7 @@ Error stopped_replay(const Replay& replay, InterruptWatch& interrupt) {
 }
 
 Status run_without_pictures(const Replay& replay) {
-  constexpr std::uint64_t ticks_between_checks = 10;  // checks of progress and Ctrl+C
+  constexpr std::uint64_t ticks_between_checks = 10;  // ticks between checks of progress and Ctrl+C
   replay.session.keeps_documents = false;
   InterruptWatch interrupt;
   ProgressBar progress(replay.console, "Replaying", replay.options.progress);

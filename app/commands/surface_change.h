@@ -15,7 +15,7 @@
 namespace spoonbill {
 
 struct ChangedSurfaces {
-  std::vector<Surface> surfaces;  // two after a split
+  std::vector<Surface> surfaces;  // two after a split of an open direction, otherwise one
   std::vector<TrimLoop> trims = {};
   double deviation_m = 0.0;      // bound of the deviation; 0 if the change is exact
   bool keeps_parameters = true;  // false if regions, loads and supports would move on the surface

@@ -69,9 +69,9 @@ struct ShownFrame {
   bool in_stroke = false;
   bool can_undo = false;
   bool can_redo = false;
-  bool pressing = false;                          // the stroke button is down on the picture
-  std::string prompt;                             // "file", "shape", "question", or empty
-  std::string typed;                              // text of the file prompt
+  bool pressing = false;  // true while the stroke button is down on the picture
+  std::string prompt;     // prompt that is open: "file", "shape", "question", or empty
+  std::string typed;      // text of the file prompt
   std::vector<std::array<double, 2>> answers_px;  // centres of the buttons of the question
   double pointer_x_px = 0.0;
   double pointer_y_px = 0.0;

@@ -30,9 +30,9 @@ Result<NavigationPreset> find_navigation(const std::string& name);
 // State of the mouse in a frame. Positions in pixels from the upper left corner.
 struct Pointer {
   Eigen::Vector2d position_px = Eigen::Vector2d::Zero();
-  Eigen::Vector2d moved_px = Eigen::Vector2d::Zero();  // since the last frame
-  double wheel = 0.0;                                  // notches; positive away from the user
-  bool left = false, middle = false, right = false;    // pressed
+  Eigen::Vector2d moved_px = Eigen::Vector2d::Zero();  // motion since the last frame
+  double wheel = 0.0;  // turn of the wheel in notches, positive away from the user
+  bool left = false, middle = false, right = false;  // true while the button is pressed
   bool ctrl = false, shift = false;
 };
 
@@ -88,7 +88,7 @@ struct MouseStroke {
 // Input of one frame: the mouse, the view and the surfaces.
 struct MouseFrame {
   Pointer pointer;
-  bool is_stroking = false;  // the stroke button is down and was pressed on the picture
+  bool is_stroking = false;  // true while the stroke button is down and was pressed on the picture
   Camera camera;
   Viewport viewport;
   const SurfacePick* pick = nullptr;  // must outlive the frame

@@ -63,7 +63,7 @@ class FilePrompt {
   bool is_open_ = false;
   bool appearing_ = false;
   std::filesystem::path folder_;
-  std::vector<std::filesystem::path> entries_;  // folders first
+  std::vector<std::filesystem::path> entries_;  // entries of the folder, subfolders first
   std::array<char, 1024> text_{};
   std::string problem_;
 };

@@ -13,9 +13,9 @@ namespace spoonbill {
 
 // The settings of the child process.
 struct CadChild {
-  std::filesystem::path program;                // default: spoonbill-cad in this program's folder
-  std::chrono::milliseconds patience{300'000};  // time limit
-  Progress progress;                            // reported several times a second
+  std::filesystem::path program;  // program to run; default: spoonbill-cad in this program's folder
+  std::chrono::milliseconds patience{300'000};  // time limit of the child
+  Progress progress;                            // reported to several times a second
 };
 
 // Reads a CAD file of at most 512 MiB. Every error names the file. Errors: a file that is missing,

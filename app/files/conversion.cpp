@@ -192,13 +192,13 @@ bool is_face_of_solid(const CadSurface& surface) {
 
 struct ModelMeshing {
   double chord_m = default_chord_m;
-  std::filesystem::path file;  // named in messages
-  CadChild child;              // joins the faces of solids
+  std::filesystem::path file;  // file whose name messages contain
+  CadChild child;              // child process that joins the faces of solids
   Progress progress;           // progress of the meshing
 };
 
 struct ModelMeshes {
-  std::vector<NamedMesh> meshes;  // with unique names
+  std::vector<NamedMesh> meshes;  // meshes with unique names
   double chord_error_m = 0.0;
   std::vector<std::string> notes;
 };

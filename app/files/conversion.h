@@ -23,19 +23,19 @@ struct ConversionRequest {
   // a CAD file declares.
   std::optional<LengthUnit> unit;
   std::optional<double> chord_m;      // chord error of meshes; default: 0.05 mm
-  std::optional<double> tolerance_m;  // for fitting CAD geometry that is not a B-spline; default: 0.01 mm
-  std::optional<StepSchema> schema;   // default: AP214
+  std::optional<double> tolerance_m;  // tolerance for CAD geometry that is not a B-spline; default: 0.01 mm
+  std::optional<StepSchema> schema;   // schema of a STEP file; default: AP214
   std::vector<int> bodies;            // bodies to convert, numbered from 1; all if empty
   OutputOptions how;                  // how `out` replaces an existing file
-  std::filesystem::path cad_program;  // see CadChild::program
+  std::filesystem::path cad_program;  // program of the CAD child, see CadChild::program
 };
 
 struct ConversionReport {
   std::string unit_in, unit_out;
   bool unit_declared = true;  // false if the CAD file declared no unit
   std::vector<CadSurface> surfaces;
-  std::optional<int> solids, open_shells;                       // in the CAD file that was written
-  std::optional<std::size_t> triangles, meshes, closed_meshes;  // in the mesh file that was written
+  std::optional<int> solids, open_shells;                       // counts in the CAD file that was written
+  std::optional<std::size_t> triangles, meshes, closed_meshes;  // counts in the mesh file that was written
   double chord_error_m = 0.0;  // upper bound of the chord errors of all meshes
   std::vector<std::string> notes;
 };

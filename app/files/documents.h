@@ -45,7 +45,7 @@ struct StockShapeField {
 
 // A stock shape of the window's New shape prompt.
 struct StockShapeKind {
-  const char* name;  // "Sphere"
+  const char* name;  // name of the kind, such as "Sphere"
   std::vector<StockShapeField> fields;
 };
 
@@ -54,7 +54,7 @@ std::span<const StockShapeKind> stock_shape_kinds();
 
 struct StockShapeChoice {
   std::size_t kind = 0;          // index into stock_shape_kinds()
-  std::vector<double> sizes_mm;  // one per field
+  std::vector<double> sizes_mm;  // size of each field of the kind
 };
 
 StockShapeChoice default_stock_shape(std::size_t kind);

@@ -30,7 +30,7 @@ struct MeshReading {
 };
 
 struct MeshFile {
-  TriangleMesh mesh;  // in metres; neither cleaned nor checked for invalid indices
+  TriangleMesh mesh;  // mesh in metres; neither cleaned nor checked for invalid indices
   LengthUnit unit = millimetre;
 };
 

@@ -65,7 +65,7 @@ struct PaintingJob {
   ViewSettings view;
   PanelModel panel;
   std::vector<std::string> extra_names;  // names of further files that get a copy of this picture
-  bool is_frame = true;                  // false if it is painted only for the files of `extra_names`
+  bool is_frame = true;  // false if the picture is painted only for the files of `extra_names`
 };
 
 // A painted frame.

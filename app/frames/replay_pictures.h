@@ -46,7 +46,7 @@ Status prepare_frame_folder(const std::filesystem::path& folder, bool replaces_r
 class FrameWriter {
  public:
   explicit FrameWriter(std::filesystem::path folder);
-  ~FrameWriter();  // writes all frames that were added
+  ~FrameWriter();  // waits until all added frames are written
   FrameWriter(const FrameWriter&) = delete;
   FrameWriter& operator=(const FrameWriter&) = delete;
 
@@ -63,7 +63,7 @@ class FrameWriter {
   std::deque<std::pair<int, Image>> queue_;
   bool finishing_ = false;
   Status failure_;
-  std::thread thread_;  // declared last, because it uses all members above
+  std::thread thread_;  // declared last, because the thread uses all other members
 };
 
 // A video file that an ffmpeg process encodes from raw pictures. The complete file appears under its name in
@@ -93,8 +93,8 @@ class VideoEncoder {
 
   std::filesystem::path file_;
   std::filesystem::path unfinished_;
-  pid_t process_;  // -1 when no process runs
-  int pipe_;       // -1 when closed
+  pid_t process_;  // process of ffmpeg; -1 when it does not run
+  int pipe_;       // pipe to ffmpeg; -1 when it is closed
   UnfinishedFile ending_;
 };
 
@@ -103,8 +103,8 @@ struct PictureRequest {
   int width_px = 0;
   int height_px = 0;
   std::uint64_t frame_count = 0;  // frames of the whole replay, 60 per second
-  std::uint64_t every = 1;        // interval between drawn frames
-  // receives the frames and the contact sheet; empty: none are written
+  std::uint64_t every = 1;        // interval between drawn frames, in frames
+  // Receives the frames and the contact sheet. If empty, none are written.
   std::optional<std::filesystem::path> folder;
   std::optional<std::filesystem::path> video;
   bool replaces_read_only = false;  // also replaces read-only files of earlier runs
@@ -130,7 +130,7 @@ class ReplayPictures {
   bool belongs_on_sheet(std::uint64_t index) const;
 
   PictureRequest request_;
-  std::unique_ptr<FrameWriter> frames_;  // null without a folder
+  std::unique_ptr<FrameWriter> frames_;  // null if there is no folder
   std::optional<VideoEncoder> video_;
   ContactSheet sheet_;
   std::uint64_t count_ = 0;

@@ -32,8 +32,8 @@ std::filesystem::path canonical_path(const std::filesystem::path& path) {
   return problem ? path : canonical;
 }
 
-// Returns the first name of the form FILE BEFORE -N AFTER that is free, such as a.autosave.json.kept-1.json.
-// The claim's lock prevents other windows from choosing the same name.
+// Returns the first file name of the form `file` + `before` + "-N" + `after` that is free, such as
+// a.autosave.json.kept-1.json. The claim's lock prevents other windows from choosing the same name.
 std::filesystem::path find_free_name(const std::filesystem::path& file, const std::string& before,
                                      const std::string& after) {
   for (int number = 1;; ++number) {

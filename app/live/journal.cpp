@@ -129,7 +129,8 @@ bool Journal::process_pending() {
   bool worked = false;
   for (int i = 0; i < 1000 && entries_.pop(entry); ++i) {
     write(entry);
-    entry = std::monostate{};  // freed here, because the queue returns the slot to the haptic thread
+    // Freed on this thread, because the queue returns the slot to the haptic thread.
+    entry = std::monostate{};
     worked = true;
   }
   if (!scenes_.update_reading()) return worked;

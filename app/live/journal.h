@@ -83,13 +83,13 @@ struct RecordedCommand {
   Json command;
   bool recorded = true;
 };
-struct RecordedReset {};  // reset of the proxy after a pause
+struct RecordedReset {};  // records a reset of the proxy after a pause
 struct RecordedForceSwitch {
   bool on = true;
 };
 struct RecordedState {
   std::uint64_t state_hash = 0;
-  bool last = false;         // ends the recording
+  bool last = false;         // true if this entry ends the recording
   std::uint64_t missed = 0;  // valid if `last` is true: periods without a tick during the recording
 };
 
@@ -109,7 +109,7 @@ struct LiveScene {
   std::uint64_t document = 0;    // number of the document, see LiveFrame::document
   std::uint64_t change = 0;      // number of changes of the scene so far, including motion after a touch
   std::uint64_t edit_count = 0;  // see LiveFrame::edit_count
-  // number of the last save request that was received before the scene was written
+  // Number of the last save request that was received before the scene was written.
   std::uint64_t request = 0;
 };
 
@@ -200,7 +200,7 @@ class Journal {
   BoundedQueue<JournalEntry> entries_;
   TripleBuffer<LiveScene> scenes_;
 
-  std::mutex mutex_;  // guards the nine members below
+  std::mutex mutex_;  // guards the nine members that follow
   Json view_ = Json::object();
   std::optional<Autosave> autosave_;
   std::optional<SaveRequest> save_;
@@ -211,7 +211,7 @@ class Journal {
   std::uint64_t autosave_document_ = 0;  // number of the document that autosave_ holds
   std::uint64_t saved_change_ = 0;       // LiveScene::change of the last saved scene
 
-  // used only by the journal's thread, as are the four members that follow
+  // recording_ and the four members that follow are used only by the journal's thread.
   std::unique_ptr<RecordingWriter> recording_;
   std::uint64_t autosaved_change_ = 0;
   bool autosave_failed_ = false;

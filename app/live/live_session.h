@@ -31,7 +31,7 @@ class LiveSession {
   static Result<std::unique_ptr<LiveSession>> start(const Document& document, const std::string& source,
                                                     const LiveSettings& settings,
                                                     std::unique_ptr<Device> device);
-  ~LiveSession();  // stops the threads after all pending writes
+  ~LiveSession();  // waits for all pending writes, then stops the threads
 
   // Queues a request. Requests are applied in order before the next tick. Returns false if the queue is full
   // because the haptic thread is far behind. A request for real time is refused with a notice if a tick would

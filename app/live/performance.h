@@ -15,7 +15,7 @@ namespace spoonbill {
 // Settings of a performance.
 struct PerformanceSettings {
   LiveSettings live;
-  bool draw = false;  // draws 60 frames per second at 1280x720 into memory
+  bool draw = false;  // if true, draws 60 frames per second at 1280x720 into memory
   std::filesystem::path recording;
   OutputOptions output;  // how the recording replaces an older file
 };

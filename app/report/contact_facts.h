@@ -24,7 +24,7 @@ struct SurfaceParameters {
 // One model's side of a contact or of the nearest pair of points.
 struct ContactSide {
   Vector3 point_m = Vector3::Zero();
-  std::optional<SurfaceParameters> parameters;  // empty on a mesh
+  std::optional<SurfaceParameters> parameters;  // parameters on the surface; empty on a mesh
   std::string body;                             // name of the body; empty if the model has only one
 };
 
@@ -32,13 +32,13 @@ struct ModelContact {
   ContactSide a, b;                   // deepest point on each side
   Vector3 normal = Vector3::UnitY();  // unit direction in which A moves away from B
   double depth_m = 0.0;
-  // unit vectors, perpendicular to the normal
+  // Unit vectors, perpendicular to the normal.
   Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();
 };
 
 struct CollisionAnswer {
   bool touching = false;
-  bool contained = false;  // one model is inside the other
+  bool contained = false;  // true if one model is inside the other
   bool complete = true;    // false if contacts may be missing
   // Distance between models that do not touch; infinite if a model is collided with itself.
   double distance_m = 0.0;

@@ -24,9 +24,9 @@ std::uint64_t frame_count(std::uint64_t tick_count);
 
 // Input of a lock-step run.
 struct LockstepInput {
-  Device* device = nullptr;  // read once a tick; must not be null
+  Device* device = nullptr;  // device that is read once a tick; must not be null
   std::uint64_t tick_count = 0;
-  std::vector<TimedCommand> commands;  // ascending by tick
+  std::vector<TimedCommand> commands;  // commands in ascending order of ticks
   // Expected states, ascending by tick; may be empty. Each is compared before the commands of its tick are
   // applied.
   std::vector<Checkpoint> expected;

@@ -253,7 +253,7 @@ bool needs_rebuild(const Session& session, const Request& request) {
   const auto* command = std::get_if<Command>(&request);
   if (command == nullptr) return false;
   const auto* tool = std::get_if<SetTool>(command);
-  // A solid tool may be soft. A change of such a tool changes the size of snapshots.
+  // A solid tool may be soft, so a change from or to a solid tool can change the size of snapshots.
   const bool is_solid = session.simulation.scene().tool.kind == ToolKind::solid;
   return (tool != nullptr && (is_solid || tool->tool.kind == ToolKind::solid)) ||
          (changes_shape_meaning(*command) || std::holds_alternative<SetMaterial>(*command));

@@ -64,7 +64,7 @@ std::string make_mark_name(const std::string& text);
 // A requested file with its contents.
 struct FileMark {
   MarkFile mark;
-  std::shared_ptr<const Document> document;  // the document at that tick; null for a screenshot
+  std::shared_ptr<const Document> document;  // document at the tick of the mark; null for a screenshot
 };
 
 // A simulation and all state that belongs to a session. Plain struct with one owner: the lock-step loop or
@@ -78,11 +78,12 @@ struct Session {
   std::vector<BodyMass> masses = {};  // masses of the document's bodies; sculpting does not change them
 
   DeviceSpecification device;
-  DeviceReading reading;                 // from the last tick
+  DeviceReading reading;                 // reading of the last tick
   std::uint32_t flags = tick_flag_none;  // TickFlag bits, accumulated until the reader clears them
-  std::vector<FileMark> marks;           // accumulated until consume_marks(); the last of each name
+  // Requests for files until consume_marks(); a new one replaces one of the same name.
+  std::vector<FileMark> marks;
   bool keeps_documents = true;  // false if nothing writes the documents of marks, which then stay empty
-  // document of the last mark; null once anything has changed since
+  // Document of the last mark; null once anything has changed since.
   std::shared_ptr<const Document> saved = {};
   std::size_t saves_at_tick = 0;  // number of different documents saved at this tick
   bool force_on = true;           // false while the user has switched the device's force off
@@ -124,7 +125,7 @@ struct SessionFacts {
   std::string title;
   Tool tool;
   Material material;
-  int region_count = 0;  // regions of the first body, which also gives the material
+  int region_count = 0;  // number of regions of the first body, which also gives the material
   double mass_kg = 0.0;  // mass of all bodies
   Sculpting sculpting;
   Symmetry symmetry;

@@ -25,10 +25,10 @@ namespace spoonbill {
 // Camera, overlays and ground of a view.
 struct ViewChoice {
   Camera camera;
-  bool shows_whole_body = true;  // target and distance are computed from the body
+  bool shows_whole_body = true;  // true if target and distance are computed from the body
   Overlays overlays;
   bool see_through_body = false;
-  std::optional<double> ground_y_m;  // default: just below the body
+  std::optional<double> ground_y_m;  // height of the ground; default: just below the body
 };
 
 // Reads a view. `source` names the file in messages. An empty object gives the defaults.

@@ -202,7 +202,7 @@ TEST_F(EditWindow, AStrokeIsUndoneRedoneSavedReopenedAndReplays) {
   ASSERT_TRUE(hands("key ctrl+z"));
   ASSERT_TRUE(wait_shown([](const Json& frame) { return frame["can_redo"].get<bool>(); }));
   const Document undone = saved("handle.json", time_of("handle.json"));
-  EXPECT_EQ(largest_difference(undone, original), 0.0);  // bit for bit
+  EXPECT_EQ(largest_difference(undone, original), 0.0);  // equal bit for bit
 
   ASSERT_TRUE(hands("key ctrl+y"));
   ASSERT_TRUE(wait_shown([](const Json& frame) { return !frame["can_redo"].get<bool>(); }));
@@ -363,7 +363,7 @@ TEST_F(RecoveryQuestion, RecoveredWorkIsKeptWhenItIsNotSaved) {
   ASSERT_TRUE(wait_frames(2));
   ASSERT_TRUE(hands("key ctrl+q"));
   ASSERT_TRUE(wait_question());
-  answer(1);  // Don't save
+  answer(1);  // answers "Don't save"
   EXPECT_EQ(wait_for_end(), exit_done);
   EXPECT_EQ(read_document(file_)->scene.planes.size(), 1U);
   ASSERT_EQ(kept().size(), 1U);

@@ -67,7 +67,7 @@ TEST_F(FitTest, CloudBecomesADocumentThatOpens) {
   const auto document = read_document(out());
   ASSERT_TRUE(document) << document.error().message;
   EXPECT_EQ(document->scene.bodies[0].material.name, "modelling-clay");
-  EXPECT_EQ(document->scene.planes.size(), 1U);  // has a fixing plane, as documents made by `new` have
+  EXPECT_EQ(document->scene.planes.size(), 1U);  // one fixing plane, as in documents made by `new`
   const Outcome info = run_process(SPOONBILL_PROGRAM, {"info", out(), "--json"});
   EXPECT_EQ(info.code, 0) << info.err;
   EXPECT_FALSE(json_of(info.out).at("lattice").is_null()) << info.out;

@@ -306,7 +306,7 @@ TEST(LiveSession, AutosavesUnsavedWorkUntilItIsSaved) {
   Live live(held_handle());
   live->set_autosave(autosave);
   wait_ticks(*live, 600);
-  EXPECT_FALSE(std::filesystem::exists(autosave.file()));  // no changes yet
+  EXPECT_FALSE(std::filesystem::exists(autosave.file()));  // there are no changes to save yet
   stroke(live);
   EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) { return std::filesystem::exists(autosave.file()); }));
   const auto found = autosave.recovered_document();

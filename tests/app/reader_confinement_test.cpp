@@ -167,7 +167,7 @@ TEST(StartReader, GivesACleanEnvironmentAndNoDescriptors) {
   if (!are_readers_confined) GTEST_SKIP() << "sanitizers read their environment";
   int out[2];
   ASSERT_EQ(pipe2(out, O_CLOEXEC), 0);
-  const int secret = dup2(out[0], 77);  // without O_CLOEXEC
+  const int secret = dup2(out[0], 77);  // a descriptor without O_CLOEXEC
   setenv("SPOONBILL_SECRET", "1", 1);
   const pid_t reader =
       start_reader({"/bin/sh", "-c", "test -e /proc/self/fd/77 && echo 77; env"}, -1, out[1]);

@@ -10,8 +10,8 @@ namespace spoonbill {
 
 // The tables hold one row per sample and one column per control point, in row-major order.
 struct DenseSheet {
-  int samples = 0;   // in each direction
-  int controls = 0;  // in each direction
+  int samples = 0;   // number of samples in each direction
+  int controls = 0;  // number of control points in each direction
   const float* values = nullptr;
   const float* derivatives = nullptr;
 };

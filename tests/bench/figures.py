@@ -7,10 +7,10 @@ from dataclasses import dataclass
 class Figure:
     name: str
     unit: str
-    judged: str  # "ratio" (peer / ours) or "ours"
-    sense: str  # "at least" or "at most"
-    target: float | None  # None: reported beside another figure
-    compared: str  # what both sides do
+    judged: str  # what is judged: "ratio" (peer / ours) or "ours"
+    sense: str  # sense of the target: "at least" or "at most"
+    target: float | None  # None for a figure that is reported beside another one
+    compared: str  # what both sides do in the comparison
     case: str = ""  # distinguishes rows of the same name
 
     def met(self, ours, ratio):

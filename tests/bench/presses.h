@@ -13,7 +13,7 @@ namespace spoonbill {
 struct Press {
   Scene scene;
   DeviceSpecification device;
-  std::vector<DeviceReading> readings;  // one per tick
+  std::vector<DeviceReading> readings;  // input of the hand, one reading per tick
   std::vector<TimedCommand> commands;   // commands to the simulation
 };
 

@@ -71,7 +71,7 @@ class FaultyDevice : public Device {
     position_m_.y() += std::clamp(target_y_m_ - position_m_.y(), -2e-4, 2e-4);
   }
 
-  bool fails() const { return fails_; }  // true if the last read() returned a fault
+  bool fails() const { return fails_; }  // true if the reading of the last read() is faulty
   const Vector3& force_n() const { return force_n_; }
 
  private:

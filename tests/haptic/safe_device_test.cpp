@@ -107,7 +107,7 @@ TEST(SafeDevice, AsksForTheProxyToBeResetAfterAStall) {
   EXPECT_EQ(stub.given_n, Vector3(1, 0, 0));
   EXPECT_FALSE(safe.consume_proxy_reset());
   EXPECT_EQ(safe.read(9).missed, 9U);
-  EXPECT_TRUE(safe.consume_proxy_reset());  // before the simulation advances
+  EXPECT_TRUE(safe.consume_proxy_reset());  // the reset comes before the simulation advances
   safe.give(Vector3(1, 0, 0));
   EXPECT_EQ(stub.given_n, Vector3::Zero());
   EXPECT_EQ(safe.flags(), safety_flag_stalled | safety_flag_cut);
@@ -131,11 +131,11 @@ TEST(SafeDevice, AHandThatJumpsOnlyPointsAndGetsNoForce) {
   EXPECT_EQ(safe.read(), reading_at_x(0.045, button_main));
   EXPECT_TRUE(safe.consume_proxy_reset());
   run(safe, 1.0, 100);
-  EXPECT_EQ(stub.given_n, Vector3::Zero());  // waits for a small requested force, as at the start
+  EXPECT_EQ(stub.given_n, Vector3::Zero());  // the force waits until the request is small, as at the start
   engage(safe);
   EXPECT_EQ(stub.given_n, Vector3(1, 0, 0));
   stub.reading = reading_at_x(0.045 + 1.01 * 3.0 * limit_m, button_main);
-  EXPECT_EQ(safe.read(2).buttons, button_hover);  // too fast even in three ticks
+  EXPECT_EQ(safe.read(2).buttons, button_hover);  // the motion is too fast even for three ticks
   stub.reading = reading_at_x(0.045 + 4.0 * limit_m, button_main);
   EXPECT_EQ(safe.read().buttons, button_main);
 }

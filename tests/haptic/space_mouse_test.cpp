@@ -76,7 +76,7 @@ TEST(SpaceMouse, FollowsTheDaemonsEventsUntilItLeaves) {
   EXPECT_TRUE(motion->translation.isApprox(Vector3(1.0, -0.5, -0.2), 1e-12));
   EXPECT_TRUE(motion->rotation.isApprox(Vector3(0.0, 0.0, -0.1), 1e-12));
   EXPECT_EQ(motion->buttons, 2u);
-  // the daemon sends nothing while the cap is held still
+  // The daemon sends nothing while the cap is held still.
   EXPECT_EQ(mouse->poll()->translation, motion->translation);
 
   daemon.move({9, 9, 9, 9, 9, 9});

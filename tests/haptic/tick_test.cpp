@@ -68,7 +68,7 @@ TEST(Tick, PushedMaterialPushesBackAndTheForceScalesIt) {
     force[which] = result.force_n.y();
   }
   EXPECT_GT(force[0], 1e-4);
-  // not exact, because the proxy is a little farther off the surface
+  // The ratio is not exact, because the proxy is a little farther off the surface.
   EXPECT_NEAR(force[1] / force[0], 2.0, 0.1);
 }
 

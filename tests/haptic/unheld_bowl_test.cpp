@@ -20,7 +20,7 @@ struct ScriptedStroke {
   double scene_size_m = 0.0;
   double farthest_m = 0.0;  // largest distance of a node from the centre of the scene
   double travel_m = 0.0;    // distance of the hand from its first contact, at the last tick with contact
-  // largest displacement of nodes near the hand along the hand's travel, at that tick
+  // Largest displacement of nodes near the hand along the hand's travel, at the last tick with contact.
   double followed_m = 0.0;
 };
 

@@ -33,8 +33,8 @@ TEST(VirtualDevice, GivesWayByForceOverStiffness) {
 }
 
 // A critically damped hand moves by x(t) = F/k (1 - (1 + w t) exp(-w t)), where F is the force, k the
-// stiffness and w the natural frequency. A first-order integrator with step h has a relative error of about w
-// h / 2.
+// stiffness and w the natural frequency. A first-order integrator with step h has a relative error of about
+// w h / 2.
 TEST(VirtualDevice, FollowsTheClosedForm) {
   VirtualDevice device = device_at_origin();
   device.set_force(Vector3(3.0, 0.0, 0.0));

@@ -184,7 +184,7 @@ TEST(Document, RefusesWrongMaterialsWithTheRange) {
             Refusal(ErrorCode::out_of_range, "body.material.youngs_modulus_pa"));
   EXPECT_EQ(with("youngs_modulus_pa", "200 kPa"),
             Refusal(ErrorCode::wrong_type, "body.material.youngs_modulus_pa"));
-  EXPECT_EQ(with("youngs_modulus_pa", nullptr),  // JSON writes a number that is not finite as null
+  EXPECT_EQ(with("youngs_modulus_pa", nullptr),  // JSON writes null for a number that is not finite
             Refusal(ErrorCode::wrong_type, "body.material.youngs_modulus_pa"));
   EXPECT_EQ(with("density_kg_per_m3", 0),
             Refusal(ErrorCode::out_of_range, "body.material.density_kg_per_m3"));

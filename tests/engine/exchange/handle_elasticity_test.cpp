@@ -60,9 +60,9 @@ struct Measured {
   double youngs_modulus_pa, poissons_ratio;
 };
 
-// Measures a bar whose cross section changes along it. A force F strains a layer of length l and area A by F
-// / (E A), so F / E = stretch / sum (l / A) over all layers. The volume of a layer grows by the fraction (1 -
-// 2 nu) F / (E A).
+// Measures a bar whose cross section changes along it. A force F strains a layer of length l and area A by
+// F / (E A), so F / E = stretch / sum (l / A) over all layers. The volume of a layer grows by the fraction
+// (1 - 2 nu) F / (E A).
 Measured tension_test(const LatticeMesh& mesh, const StaticBody& body) {
   const Result<StaticResult> found = rest_under_load(body, {}, drawn_ends(mesh));
   EXPECT_TRUE(found.ok()) << found.error().message;

@@ -13,7 +13,7 @@ namespace spoonbill {
 namespace {
 
 struct Pair {
-  const char *left, *right;  // bundled materials
+  const char *left, *right;  // names of bundled materials
   double press_m;            // distance of the press: a fraction of that at which a block would bend aside
   int node_budget;
   ForceRun run;
@@ -61,7 +61,7 @@ std::vector<FacePoint> sample_face(const BodyState& body) {
       const double u = surface.u.parameter_at((a + 0.5) / steps),
                    v = surface.v.parameter_at((b + 0.5) / steps_along);
       const SurfacePoint at = evaluate(surface, u, v);
-      if (std::abs(at.position_m.x()) > 1.5 * tolerance_m) continue;  // beside the flat part
+      if (std::abs(at.position_m.x()) > 1.5 * tolerance_m) continue;  // this point is beside the flat part
       points.push_back({body.mapping().at(u, v), at.du.cross(at.dv).norm()});
       area += points.back().fraction;
     }

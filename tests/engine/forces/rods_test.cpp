@@ -29,7 +29,7 @@ template <class SectionOf>
 double modulus_ratio(const LatticeMesh& mesh, const Material& material, CellKind kind, int axis,
                      const SectionOf& section_m2) {
   const int last = mesh.count[2] - 1, from = last / 3, to = last - last / 3;
-  const double force_n = 1e-8 * material.youngs_modulus_pa;  // a strain of 1e-4 for a section of 1 cm2
+  const double force_n = 1e-8 * material.youngs_modulus_pa;  // strains a section of 1 cm2 by 1e-4
   std::vector<FixedAxis> fixed;
   StaticLoads loads;
   const int ends = mesh.count[0] * mesh.count[1];

@@ -104,7 +104,8 @@ TEST(EnclosedMass, AreaOfAPartOfATube) {
   // The hole crosses the seam.
   const auto part = polygon_loop(tube.u, tube.v, rectangle(-0.25, 0.2, 0.25, 0.6));
   const EnclosedMass mass = compute_enclosed_mass(tube, TrimmedArea::make(tube.u, tube.v, {part}).value());
-  EXPECT_NEAR(mass.area_m2 / (pi * r * 0.4 * length), 1.0, 2e-5);  // fit within 1e-7 m; the radius is 1e-2 m
+  // The fit is within 1e-7 m of a radius of 1e-2 m.
+  EXPECT_NEAR(mass.area_m2 / (pi * r * 0.4 * length), 1.0, 2e-5);
 }
 
 TEST(EnclosedMass, IsBelowZeroInsideOut) {
@@ -171,7 +172,7 @@ TEST(MaterialMix, IsTheMeanOverTheBody) {
 
 TEST(MaterialMix, RefusesWhatHasNoLattice) {
   Body body = weighted();
-  for (double& y : body.surface.net.y) y = -y;  // inside out
+  for (double& y : body.surface.net.y) y = -y;  // turns the surface inside out
   EXPECT_FALSE(compute_material_mix(body));
 }
 

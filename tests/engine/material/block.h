@@ -20,7 +20,7 @@ void plain_substep(SpringLattice& lattice, float h_s);
 
 struct Momentum {
   Vector3 sum = Vector3::Zero();
-  double size = 0.0;  // sum of m |v|
+  double size = 0.0;  // sum of the magnitudes m |v| of the nodes' momenta
   double energy_j = 0.0;
 };
 Momentum momentum_of(const SpringLattice& lattice);

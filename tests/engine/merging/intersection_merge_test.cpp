@@ -124,7 +124,7 @@ TEST_P(RodInBall, BecomesOneSurface) {
       const Vector3 start = position(merged->surface, 0.3, corner.blend_start);
       EXPECT_NEAR(start.dot(direction), std::sin(turn) * (ball_radius + fillet), 2e-4);
     }
-    // Both parts have the rod's parameters u, without duplicate knots beside its own.
+    // Both parts have the rod's parameter u, and no two knots are nearly equal.
     EXPECT_EQ(merged->surface.u.domain_start(), 0.0);
     const std::vector<double> knots = merged->surface.u.breakpoints();
     for (std::size_t k = 1; k < knots.size(); ++k) EXPECT_GT(knots[k] - knots[k - 1], 1e-3);

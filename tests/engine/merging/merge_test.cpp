@@ -233,7 +233,7 @@ TEST(Merge, EdgesWhoseParametersDifferAreMatched) {
   EXPECT_LE(merged->deviation_m, 5e-5);
   for (double u = 0.0; u <= 1.0; u += 0.1) {
     const Vector3 p = position(merged->surface, u, 0.9 * merged->surface.v.domain_end());
-    EXPECT_NEAR(p.x(), 0.1 * u, 1e-4);  // the first patch's parameters everywhere
+    EXPECT_NEAR(p.x(), 0.1 * u, 1e-4);  // the result has the first patch's parameters everywhere
   }
 }
 

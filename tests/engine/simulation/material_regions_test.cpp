@@ -137,7 +137,7 @@ TEST(MaterialRegions, AToolSticksToOneHalfAndSlidesOnTheOther) {
   EXPECT_LT(stuck, 0.05e-3);
 }
 
-// Coulomb friction: the drag on a moving tool is the friction of the region times the push.
+// Coulomb friction: the drag on a moving tool is the friction coefficient of the region times the push.
 TEST(MaterialRegions, ADraggedToolFeelsTheFrictionOfTheRegion) {
   MaterialRegion rough;
   rough.region.along = {0.5, 1.0};

@@ -95,7 +95,7 @@ TEST(OnGround, ABlockSlidesDownAnInclineAsCoulombSays) {
       Incline incline(30.0 * degree_rad, friction, stepping);
       const double allowed = stepping == Stepping::springs ? 0.01 : 1e-3;
       EXPECT_NEAR(acceleration(incline) / coulomb(30.0 * degree_rad, friction), 1.0, allowed) << friction;
-      EXPECT_LT(incline.deepest_m(), 5e-6);  // a thousandth of a cell
+      EXPECT_LT(incline.deepest_m(), 5e-6);  // the bound is a thousandth of a cell
     }
   }
 }

@@ -277,8 +277,8 @@ TEST(Simulation, NoSettingBlowsItUp) {
   }
 }
 
-// This worst case is rare among random settings: no damping, and a rigid oversized sphere hits a gel at 5
-// m/s.
+// This worst case is rare among random settings: no damping, and a rigid oversized sphere hits a gel
+// at 5 m/s.
 TEST(Simulation, AnUndampedGelStaysNearWhateverHitsIt) {
   const int trials = random_cases(8, 40);
   Random random(9);

@@ -13,7 +13,7 @@ TEST(Tool, SymmetryMirrorsTheStroke) {
     Scene scene = small_handle();
     scene.tool.substeps = 1;
     scene.bodies[0].material.flow_rate_per_s = 50.0;
-    scene.sculpting.free = !symmetric;  // so that a one-sided stroke turns the handle
+    scene.sculpting.free = !symmetric;  // a free body turns under a one-sided stroke
     scene.tool.radius_m = 0.0015;
     scene.symmetry.on = symmetric;  // mirrors at z = 0
     Simulation simulation = simulate(scene);
@@ -100,9 +100,10 @@ TEST(Tool, AHoveringToolTouchesNothingUntilItIsOutside) {
     input.hovering = hovering;
     return simulation.advance(input).touching;
   };
-  for (int tick = 0; tick < 100; ++tick) ASSERT_FALSE(hover(0.02 - 4e-4 * tick, true));  // passes through
+  // The tool passes through the surface.
+  for (int tick = 0; tick < 100; ++tick) ASSERT_FALSE(hover(0.02 - 4e-4 * tick, true));
   for (int tick = 0; tick < 20; ++tick) ASSERT_FALSE(hover(0.0, true));
-  for (int tick = 0; tick < 20; ++tick) ASSERT_FALSE(hover(0.0, false));  // is still inside
+  for (int tick = 0; tick < 20; ++tick) ASSERT_FALSE(hover(0.0, false));  // the tool is still inside
   for (int tick = 0; tick < 50; ++tick) hover(0.02, false);
   bool touching = false;
   for (int tick = 0; tick < 60; ++tick) touching = hover(0.009 - 6e-5 * tick, false);

@@ -177,13 +177,13 @@ TEST(MeshDistance, WhatOverlapsIsOneBody) {
   const MeshDistance balls(
       cleaned(joined(ball_mesh(40, 80, 0.7, {0.4, 0, 0}), ball_mesh(40, 80, 0.7, {-0.4, 0, 0}))));
   EXPECT_NEAR(balls.at({0.0, 0.0, 0.0}).distance_m, -0.3, 2e-3);
-  // near the surface of the other ball, but inside this one
+  // This point is near the surface of the other ball, but inside this one.
   EXPECT_NEAR(balls.at({-0.3, 0.0, 0.0}).distance_m, -0.6, 2e-3);
   const MeshDistance spindle(cleaned(torus_mesh(60, 60, 0.4, 0.7)));
   // The surface winds around this point once in each orientation, so the point is outside.
   EXPECT_GT(spindle.at({0.0, 0.0, 0.0}).distance_m, 0.2);
   EXPECT_LT(spindle.at({0.5, 0.0, 0.0}).distance_m, -0.1);
-  EXPECT_GT(spindle.at({0.0, 0.65, 0.0}).distance_m, 0.01);  // in the dimple of the spindle
+  EXPECT_GT(spindle.at({0.0, 0.65, 0.0}).distance_m, 0.01);  // a point in the dimple of the spindle
   const MeshDistance crossing(cleaned(crossing_tube(60, 24)));
   // The surface winds around this point twice.
   EXPECT_NEAR(crossing.at({0.0, 0.0, 0.0}).distance_m, -0.2, 0.01);

@@ -39,8 +39,8 @@ TEST(CellSprings, BricksGiveTheMaterialExactly) {
 }
 
 // A cubic lattice of spacing a, with springs k1 along edges, k2 along face diagonals and k3 along body
-// diagonals, has C11 = (k1 + 2 k2 + 4 k3 / 3) / a and C12 = C44 = (k2 + 4 k3 / 3) / a. It is isotropic if k1
-// = k2 + 8 k3 / 3. A cell has a quarter of each k1, half of each k2 and all of each k3.
+// diagonals, has C11 = (k1 + 2 k2 + 4 k3 / 3) / a and C12 = C44 = (k2 + 4 k3 / 3) / a. It is isotropic if
+// k1 = k2 + 8 k3 / 3. A cell has a quarter of each k1, half of each k2 and all of each k3.
 TEST(CellSprings, CubeStiffnessesMeetTheClosedForm) {
   const double a = 2e-3, mu = 700.0;
   const CellSprings springs = cell_springs(brick(a, a, a), mu);

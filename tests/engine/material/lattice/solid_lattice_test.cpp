@@ -63,7 +63,7 @@ TEST(SolidLattice, OfARingHasItsVolumeAndKnowsWhereItsNodesLie) {
     if (depth < 0.0 || depth > 0.8 * round_tube_m) continue;
     ++inside;
     const Vector3 nearest = middle + round_tube_m * (at - middle).normalized();
-    // The bound is half the diagonal of a cell of the samples, of which there are 160 and 180 per turn.
+    // The bound is half the diagonal of a cell between samples. A turn has 160 or 180 samples.
     EXPECT_LT((position(ring, places[n].around, places[n].along) - nearest).norm(), 0.0012);
   }
   EXPECT_GT(inside, 100);
@@ -85,7 +85,7 @@ TEST(SolidLattice, OfARingKnowsWhereItsCellsLie) {
         if (!mesh.is_filled(i, j, k) || depth > 0.8 * round_tube_m) continue;
         ++filled;
         const Vector3 nearest = middle + round_tube_m * (at - middle).normalized();
-        // The bound is half the diagonal of a cell of the samples, of which there are 160 and 180 per turn.
+        // The bound is half the diagonal of a cell between samples. A turn has 160 or 180 samples.
         EXPECT_LT((position(ring, place.around, place.along) - nearest).norm(), 0.0012) << i << j << k;
       }
     }

@@ -163,7 +163,7 @@ TEST(CompositeSprings, RigidMotionsAreNotDampedFurther) {
   std::fill_n(view.fz, view.padded_count, 0.0f);
   lattice.kernels().damp_further(view);
   EXPECT_GT(largest_force(), 0.0);
-  EXPECT_LT(rigid, 1e-5 * largest_force());  // rounding of single precision
+  EXPECT_LT(rigid, 1e-5 * largest_force());  // the bound allows for rounding of single precision
 }
 
 // A material in a composite is damped as in a lattice of that material alone: each half of a bar rings down

@@ -201,8 +201,8 @@ TEST(Integration, SelfWeightOnASlippingBase) {
   }
 }
 
-// A weight of 10 g on a bar of stiffness E A / L = 50 N/m, carried at its top without friction, hangs 1.962
-// mm lower.
+// A weight of 10 g on a bar of stiffness E A / L = 50 N/m, carried at its top without friction, hangs
+// 1.962 mm lower.
 TEST(Integration, HangingWeight) {
   const double length = 1.0, side = 0.02, stiffness = 50.0;
   SpringLattice lattice = block({side, length, side}, {2, 51, 2},
@@ -231,7 +231,7 @@ TEST(Integration, HangingWeight) {
     relax(std::array{RelaxedLattice{&lattice}}, settings, std::array{TouchingTool{at_top, &tool, &contacts}});
   }
   EXPECT_NEAR(lattice.displacement(mesh.index(0, 0, 0)).y(), -1.962e-3,
-              0.01e-3);  // allows for the squares of a strain of 0.2 %
+              0.01e-3);  // the bound allows for the square of a strain of 0.2 %
 }
 
 // A block slides down an incline with the acceleration a = g (sin t - mu cos t).

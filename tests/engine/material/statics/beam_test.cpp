@@ -15,7 +15,7 @@ namespace {
 struct Beam {
   Vector3 size_m;
   std::array<int, 3> counts;
-  double force_n;  // acts at the far end of x, towards -z
+  double force_n;  // force at the far end along x, in the direction -z
 };
 
 // Returns the mean deflection of the far end of a cantilever whose near end is fixed in all directions.
