@@ -397,7 +397,7 @@ TEST_F(FitTest, WrongUseIsExitTwo) {
   }
 }
 
-// Tests real scans in the folder that an environment variable names; see README.
+// Tests real scans in the folder that SPOONBILL_SCANS names. Skipped if the variable is not set.
 class RealScans : public FitTest {
  protected:
   void SetUp() override {

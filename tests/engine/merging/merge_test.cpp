@@ -89,7 +89,7 @@ TEST(Merge, GridsInAnyOrderAndHeldInAnyWay) {
   }
 }
 
-// The edges at z = 0 have unrelated degrees and counts.
+// The edges at z = 0 differ in their degrees and numbers of control points.
 TEST(Merge, PatchesOfOtherDegreesAndCounts) {
   const auto sheet = [](int degree, int count, double start, double end) {
     const auto u = KnotVector::clamped_uniform(degree, count).value();

@@ -235,7 +235,8 @@ Material random_material(Random& random, bool plainly_elastic) {
   return material;
 }
 
-// Random materials in random regions and strokes at up to 5 m/s keep everything finite and near.
+// With random materials in random regions and strokes at up to 5 m/s, all values stay finite and all nodes
+// stay near their places.
 TEST(MaterialRegions, NoStrokeBlowsThemUp) {
   const int trials = random_cases(12, 100);
   Random random(31);

@@ -25,8 +25,8 @@ struct Station {
   Vector3 centre, along;
 };
 
-// Returns a point of the centre line of a hairpin in the x-y plane: an arm at y = -bend_radius_m towards x =
-// 0, half a circle about the origin, and an arm back at y = bend_radius_m.
+// Returns a point of the centre line of a hairpin in the x-y plane: an arm at y = -bend_radius_m towards
+// x = 0, half a circle about the origin, and an arm back at y = bend_radius_m.
 Station hairpin_station(double way) {
   const double turn = std::clamp((way - arm_m) / bend_radius_m, 0.0, std::numbers::pi);
   const double beyond = std::max(arm_m - way, way - arm_m - std::numbers::pi * bend_radius_m);

@@ -231,7 +231,8 @@ struct RandomStroke {
   }
 };
 
-// Random materials, tools and strokes at up to 5 m/s keep everything finite and near.
+// With random materials, tools and strokes at up to 5 m/s, all values stay finite and all nodes stay near
+// their places.
 TEST(Simulation, NoSettingBlowsItUp) {
   const int trials = random_cases(12, 100);
   Random random(77);

@@ -64,8 +64,8 @@ TEST(Hexahedron, UniformStrainsCostWhatTheMaterialAsks) {
 }
 
 // End moments bend a cell of length L to the curvature k with the energy E I / 2 k^2 L. Without its inner
-// displacements, a trilinear cell of height h would overestimate the energy by the factor (L/h)^2 / (2 (1 +
-// nu)): more than a hundred here.
+// displacements, a trilinear cell of height h would overestimate the energy by the factor
+// (L/h)^2 / (2 (1 + nu)): more than a hundred here.
 TEST(Hexahedron, BendsAsABeam) {
   const double length = 20.0, wide = 1.0, high = 1.0, curvature = 1e-3;
   const CellCorners corners = box_mesh({length, wide, high}, {2, 2, 2}).cell(0, 0, 0);

@@ -232,8 +232,8 @@ TEST(CompositeSprings, OnlyThePlasticHalfKeepsItsLength) {
 }
 
 // A bar of two materials is held stretched, and one half creeps and yields to the other half. In the end,
-// half of its shear stress is gone and none of its pressure. With K = E / 1.2 and half the shear modulus, G =
-// E / 5.2, its modulus is 9 K G / (3 K + G) = 0.536 E.
+// half of its shear stress is gone and none of its pressure. With K = E / 1.2 and half the shear modulus,
+// G = E / 5.2, its modulus is 9 K G / (3 K + G) = 0.536 E.
 TEST(CompositeSprings, OnlyTheGelCreeps) {
   Material gel = elastic_material(4e3, 0.3, 1000.0), rubber = elastic_material(4e3, 0.3, 1000.0);
   gel.relaxing_fraction = 0.5;

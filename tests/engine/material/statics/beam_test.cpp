@@ -133,8 +133,8 @@ TEST(Beam, SpoonLikeBeamsSinkAsTimoshenkoSays) {
 }
 
 // Returns the deflection of the tip of a cantilever of length 1 under a large force P that keeps its
-// direction, where load = P L^2 / E I. Solves E I t'' = -P cos(t) for the slope t along the arc, with t(0) =
-// 0 and t'(L) = 0, by shooting with the curvature at the root.
+// direction, where load = P L^2 / E I. Solves E I t'' = -P cos(t) for the slope t along the arc, with
+// t(0) = 0 and t'(L) = 0, by shooting with the curvature at the root.
 double elastica_sinking(double load) {
   const auto march = [&](double curvature) {
     constexpr int steps = 4000;
