@@ -122,7 +122,7 @@ TEST(StiffBodies, KeepTheShapeInWhichTheyAreCast) {
   EXPECT_NEAR(sunk_m(simulation), bent, 1e-7);
 }
 
-// Among the hands is one without coupling that moves at 5 m/s.
+// One of the hands has no coupling and moves at 5 m/s.
 TEST(StiffBodies, NoHandBlowsThemUp) {
   for (const double youngs : {2e6, 2e9, 193e9}) {
     if (sanitized && youngs != 2e9) continue;
