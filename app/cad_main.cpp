@@ -123,7 +123,8 @@ void answer_write(const std::vector<std::string>& arguments, std::ostream& out) 
   write_frame(out, FrameKind::ending, json_to_line(ending));
 }
 
-// Sends one frame per solid, then the indices of the surfaces that belong to no solid.
+// Sends one frame per solid. The last frame has the indices of the surfaces that belong to no solid, and the
+// notes.
 void answer_solids(const SolidMeshing& meshing, std::ostream& out) {
   const auto model = read_model(std::cin);
   if (!model) return write_failure(out, model.error().message);

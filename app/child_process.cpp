@@ -27,7 +27,8 @@ constexpr bool is_sanitized = false;
 #endif
 
 constexpr int first_free_descriptor = STDERR_FILENO + 1;
-constexpr int descriptors_limit = 65536;  // for kernels older than 5.11
+// Number of descriptors to close one by one on kernels older than 5.11, which lack close_range().
+constexpr int descriptors_limit = 65536;
 constexpr int exit_not_started = 127;
 
 // Everything that the child needs between fork and exec, where it must not allocate.
@@ -35,14 +36,14 @@ struct Start {
   char* const* arguments;
   char* const* environment;
   int input, output;
-  int failure;       // the end of a pipe that tells the parent that exec failed
-  bool with_parent;  // the child ends with the parent
+  int failure;       // write end of the pipe through which the child reports that exec failed
+  bool with_parent;  // true if the child must end when its parent ends
   pid_t parent;
-  sigset_t signals;  // the parent's mask
+  sigset_t signals;  // signal mask of the parent
 };
 
-// Handlers of the parent must not run in the child, which shares the parent's memory until exec. Ignored
-// signals stay ignored.
+// Resets all signal handlers to the default. Handlers of the parent must not run in the child, which shares
+// the parent's memory until exec. Ignored signals stay ignored.
 void forget_handlers() {
   for (int signal = 1; signal < NSIG; ++signal) {
     struct sigaction action {};
@@ -61,14 +62,16 @@ void inherit_no_descriptors() {
   }
 }
 
-// Returns a descriptor above the standard ones, so that redirecting one cannot overwrite another's source.
+// Returns a duplicate of the descriptor, or of /dev/null if it is negative. The duplicate is above the three
+// standard descriptors, so that the following calls of dup2() do not close it.
 int source(int descriptor, int mode) {
   if (descriptor < 0) descriptor = open("/dev/null", mode | O_CLOEXEC);
   return fcntl(descriptor, F_DUPFD_CLOEXEC, first_free_descriptor);
 }
 
 [[noreturn]] void become(const Start& start) {
-  // The parent may end before the kernel receives the request; the kernel then sends no signal.
+  // The parent may have ended before this call of prctl(). The kernel then sends no signal, but getppid() has
+  // changed.
   if (start.with_parent && (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != start.parent)) {
     _exit(exit_not_started);
   }
@@ -86,7 +89,8 @@ int source(int descriptor, int mode) {
   _exit(told == 1 ? exit_not_started : exit_not_started + 1);
 }
 
-// A child of vfork() shares the memory until exec: a copy would make the haptic thread fault on each page.
+// Starts a child with vfork(), so that it shares the parent's memory until exec. After fork(), which copies
+// the page tables, the haptic thread would have a page fault at each page that it writes.
 pid_t spawn(const std::vector<std::string>& arguments, int input, int output, bool with_parent,
             char* const* environment) {
   std::vector<char*> pointers;

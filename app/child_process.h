@@ -1,5 +1,5 @@
-// Child processes: programs that are started with given pipes, and a reader of a child's output that limits
-// its memory and time.
+// Child processes: starts programs with given pipes, and reads a child's output with limits on its memory and
+// time.
 #pragma once
 
 #include <sys/types.h>
@@ -30,15 +30,16 @@ int wait_for_process(pid_t process);
 // Describes how a child process ended.
 struct ChildEnd {
   int exit_code = 0;         // valid when no signal ended the process
-  int signal = 0;            // 0 for none
-  bool out_of_time = false;  // killed at the deadline, or for exceeding its processor time
+  int signal = 0;            // signal that ended the process; 0 for none
+  bool out_of_time = false;  // true if killed at the deadline, or for exceeding its processor time
 };
 
 // The standard output of a child process with limited memory and time, started by start_reader(). One owner;
 // one thread, which outlives the object.
 class ChildOutput {
  public:
-  static constexpr std::size_t memory_limit = std::size_t{4} << 30;  // address space of the child, in bytes
+  // Limit on the child's address space, in bytes.
+  static constexpr std::size_t memory_limit = std::size_t{4} << 30;
 
   // Starts the child. `patience` limits both its wall-clock time and its processor time. `input` becomes its
   // standard input; a negative one gives it none. Returns an error if no pipe can be created or the program
@@ -62,7 +63,7 @@ class ChildOutput {
   ChildOutput(pid_t process, int pipe, Clock::time_point deadline)
       : process_(process), pipe_(pipe), deadline_(deadline) {}
 
-  pid_t process_;  // -1 after it has ended
+  pid_t process_;  // -1 after the child has ended
   int pipe_;
   Clock::time_point deadline_;
 };

@@ -25,9 +25,9 @@ struct Console {
 // send control sequences to the terminal.
 std::string one_line(const std::string& text);
 
-// Blocks the signals that stop a command (Ctrl+C, TERM and HUP) while it exists, so that they wait until the
-// work reaches a point where it can stop. Work of the program that does not reach such a point is ended by
-// watch_stop_signals(). Create the watch before other threads start: they inherit the signal mask.
+// Blocks the signals that stop a command (Ctrl+C, TERM and HUP) while the object exists. A signal stays
+// pending until the work reaches a point where it can stop. watch_stop_signals() ends work that does not
+// reach such a point. Create the object before other threads start: they inherit the signal mask.
 class InterruptWatch {
  public:
   InterruptWatch();
@@ -35,7 +35,7 @@ class InterruptWatch {
   InterruptWatch(const InterruptWatch&) = delete;
   InterruptWatch& operator=(const InterruptWatch&) = delete;
 
-  // Returns true once one of these signals has arrived.
+  // Returns true once a blocked signal has arrived.
   bool requested() const;
 
   // Discards the pending signal, so that the process can still report that it stopped the work.
@@ -68,7 +68,8 @@ class ProgressBar {
   int shown_percent_ = -1;
 };
 
-// A long job of a command: it shows a progress bar, and Ctrl+C stops it. The console must outlive it.
+// Runs a long job of a command with a progress bar; Ctrl+C stops the job. The console must outlive the
+// object.
 class CancellableJob {
  public:
   // `out` is the file that is not written if the job is stopped; empty if the job writes none.
@@ -98,7 +99,8 @@ class CancellableJob {
   ProgressBar bar_;
 };
 
-// The error of a command that Ctrl+C stopped before it wrote the file; empty if it writes none.
+// Returns the error of a command that Ctrl+C stopped before it wrote `file`; `file` is empty if the command
+// writes none.
 Error stopped_before_writing(const std::filesystem::path& file);
 
 }  // namespace spoonbill

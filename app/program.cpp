@@ -12,7 +12,7 @@ const char* const program_description =
     "Spoonbill: shape B-spline surfaces by touch.\n"
     "`spoonbill COMMAND --help` describes a command and its options.";
 
-// The order here is the order of the commands and their groups in --help.
+// Adds all commands, in the order in which --help lists them and their groups.
 std::vector<CommandEntry> add_commands(const OptionSet& root) {
   struct Group {
     const char* name;
@@ -24,7 +24,8 @@ std::vector<CommandEntry> add_commands(const OptionSet& root) {
       {"Exchange with other programs", {add_convert}},
       {"Sculpt", {add_edit, add_record, add_replay}},
       {"Try a model", {add_rest}},
-      {"", {add_read_mesh, add_read_points}},  // hidden: the program runs these itself
+      // Hidden commands, which the program itself runs as child processes.
+      {"", {add_read_mesh, add_read_points}},
   };
   std::vector<CommandEntry> entries;
   for (const Group& group : groups) {

@@ -45,13 +45,13 @@ constexpr std::uint32_t processor = AUDIT_ARCH_X86_64;
 constexpr std::uint32_t processor = AUDIT_ARCH_AARCH64;
 #endif
 
-// Numbers from here on belong to the x32 interface, whose calls would evade the numbers below.
+// System calls from this number on are those of the x32 interface, which denied_calls does not cover.
 constexpr std::uint32_t first_foreign_call = 0x40000000;
 
 constexpr std::uint32_t denied = SECCOMP_RET_ERRNO | EPERM;
 
-// io_uring can open sockets without the call `socket`, and clone3 hides its flags from a filter. Without
-// clone3, the C library uses clone.
+// io_uring_setup is denied because io_uring can open sockets without the call `socket`. clone3 is handled
+// separately.
 constexpr std::uint32_t denied_calls[] = {
 #if defined(__x86_64__)
     __NR_fork,
@@ -74,7 +74,7 @@ sock_filter answer(std::uint32_t action) {
   return BPF_STMT(BPF_RET | BPF_K, action);
 }
 
-// Skips the next instruction unless the comparison holds.
+// Skips the next instruction if the comparison is false.
 sock_filter next_if(std::uint16_t comparison, std::uint32_t value) {
   return BPF_JUMP(static_cast<std::uint16_t>(BPF_JMP | BPF_K | comparison), value, 0, 1);
 }
@@ -91,7 +91,7 @@ std::vector<sock_filter> reader_filter() {
   for (const std::uint32_t call : denied_calls) deny(BPF_JEQ, call, denied);
   deny(BPF_JEQ, __NR_clone3, SECCOMP_RET_ERRNO | ENOSYS);
   deny(BPF_JEQ, __NR_clone, SECCOMP_RET_ALLOW);
-  // A clone may only make threads. Both processor families have its flags in the low half of the first
+  // `clone` is allowed only for threads. Both processor families pass its flags in the low half of the first
   // argument.
   filter.back() = BPF_JUMP(BPF_JMP | BPF_JA, 1, 0, 0);
   filter.push_back(answer(SECCOMP_RET_ALLOW));

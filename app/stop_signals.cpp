@@ -11,7 +11,8 @@
 namespace spoonbill {
 namespace {
 
-// Short enough for the process to end within a second, even on a busy machine.
+// Time in which a command may end by itself after a signal. Short enough for the process to end within a
+// second, even on a busy machine.
 constexpr std::chrono::milliseconds patience{600};
 
 std::atomic<bool> stop_signal_arrived{false};
@@ -30,7 +31,7 @@ void wait_for_stop_signal(const sigset_t& watched) {
   std::string text = "stopped by a signal";
   for (const std::string& line : end_unfinished_files()) text += "; " + line;
   print_line(text);
-  // The default effect of the signal tells the caller why the process has ended.
+  // The process ends by the default effect of the signal, so that the caller sees which signal ended it.
   std::signal(number, SIG_DFL);
   sigset_t only;
   sigemptyset(&only);

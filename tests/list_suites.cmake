@@ -16,7 +16,7 @@ endif()
 
 set(text "")
 set(suite "")
-# Adds the suite whose cases were read last, unless all of them are left out.
+# Adds the suite whose cases were read last, unless all its cases are left out.
 macro(add_suite)
   if(suite AND cases)
     list(FIND first "${suite}" position)

@@ -24,7 +24,7 @@ struct ChangeOptions {
   OutputOptions how;
   std::filesystem::path model, out;
   ChangeRequest change;
-  std::optional<int> continuity;  // if the option is given
+  std::optional<int> continuity;  // empty if --continuity is not given
   int body = 1;
   double tolerance_m = 1e-5;
   bool json = false;
@@ -142,7 +142,7 @@ CommandEntry add_change(OptionSet root) {
       parser, "--continuity", "C0..C8", parse_continuity,
       [options](int order) { options->continuity = order; },
       "Continuity of the seam that `close` makes; default: C2. C0 keeps an edge");
-  // CHANGE and --continuity may be in any order, so this is checked after both.
+  // CHANGE and --continuity may be given in any order, so the check runs after both are parsed.
   parser.set_final_check([options]() -> Status {
     if (options->continuity && options->change.kind != ChangeKind::close) {
       return Error{ErrorCode::inconsistent,

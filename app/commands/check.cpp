@@ -62,7 +62,7 @@ Result<CadSolids> join_solids(const CheckOptions& options, const std::vector<Bod
   const double chord_m =
       std::clamp(solid_chord_fraction * size_of(all), solid_chord_range_m.low, solid_chord_range_m.high);
   auto solids = make_cad_solids(model, {chord_m, solid_triangle_limit}, options.model, child);
-  // If the model has too many triangles, it is measured less exactly.
+  // If the mesh has too many triangles, the solids are meshed again with the largest allowed chord error.
   if (solids || interrupt.requested() || chord_m == solid_chord_range_m.high) return solids;
   return make_cad_solids(model, {solid_chord_range_m.high, solid_triangle_limit}, options.model, child);
 }
@@ -73,7 +73,7 @@ std::vector<const Surface*> surfaces_of(const CadSolid& solid, const std::vector
   return surfaces;
 }
 
-// Adds the solids and returns their JSON.
+// Adds the facts of the solids and returns their JSON.
 Result<Json> check_solids(FactSheet& facts, const CadSolids& solids, const std::vector<Body>& all,
                           InterruptWatch& interrupt, Console& console) {
   ProgressBar bar(console, "Checking solids", false);
@@ -98,8 +98,9 @@ Result<Json> check_solids(FactSheet& facts, const CadSolids& solids, const std::
 }
 
 struct CheckedBodies {
-  Json facts = Json::array();       // one entry per body
-  std::vector<std::size_t> solids;  // bodies that enclose their material and are not faces of a solid
+  Json facts = Json::array();  // one entry per body
+  // Indices of the bodies that enclose their material and are not faces of a solid.
+  std::vector<std::size_t> solids;
 };
 
 Result<CheckedBodies> check_bodies(FactSheet& facts, const std::vector<Body>& all,
@@ -130,7 +131,7 @@ Result<CheckedBodies> check_bodies(FactSheet& facts, const std::vector<Body>& al
   return checked;
 }
 
-// Adds the overlaps of solid bodies.
+// Adds the facts of overlapping solid bodies.
 Status check_overlaps(FactSheet& facts, const std::vector<std::size_t>& solids, const std::vector<Body>& all,
                       InterruptWatch& interrupt) {
   std::vector<const Surface*> surfaces;

@@ -48,10 +48,10 @@ struct CollisionModel {
   std::optional<CleanMesh> mesh;
 };
 
-// The bodies of a model for the search for close pairs.
+// Bounding boxes and names of a model's bodies, for the search for close pairs.
 struct BodyBoxes {
-  std::vector<Box> boxes;          // one per body, at least one
-  std::vector<std::string> names;  // one per body, or none for a single body
+  std::vector<Box> boxes;          // bounding box of each body; at least one
+  std::vector<std::string> names;  // name of each body; empty for a single body
 };
 
 // Returns enlarged boxes. The boxes of bodies that touch within the tolerance overlap.
@@ -107,8 +107,8 @@ class CombinedAnswer {
   CollisionAnswer answer_;
 };
 
-// Collides body a of A with body b of B. The distance of bodies that do not touch must be exact up to
-// `reach_m` and may be infinite beyond.
+// Collides body `a` of model A with body `b` of model B. If they do not touch, their distance must be exact
+// up to `reach_m`; a larger distance may be returned as infinite.
 using PairCollision = std::function<Result<CollisionAnswer>(std::size_t a, std::size_t b, double reach_m)>;
 
 // Collides the close pairs of bodies of two models, or finds the nearest pair if none touches. The first
@@ -149,8 +149,7 @@ ContactSide surface_side(const SurfaceContact& contact) {
   return {contact.point_m, SurfaceParameters{contact.u, contact.v, {}}, {}};
 }
 
-// Returns a contact of a mesh with a body. The normal of the surface is the direction in which the two
-// separate.
+// Returns the contact of a mesh with a surface. Both separate along the normal of the surface.
 ModelContact make_contact(const ToolShape& tool, const SurfaceContact& at, bool mesh_is_a) {
   ModelContact contact{surface_side(at), mesh_side(tool, at.point_m), -at.normal, at.depth_m, at.tangent_u,
                        at.tangent_v};
@@ -160,9 +159,9 @@ ModelContact make_contact(const ToolShape& tool, const SurfaceContact& at, bool 
   return contact;
 }
 
-// Collides a mesh in its pose with the closed surface of a body. `mesh_is_a` tells which side of the answer
-// is the mesh's. A depth is that of the surface inside the mesh or, for a mesh inside the body, that of the
-// mesh.
+// Collides a mesh in its pose with the closed surface of a body. `mesh_is_a` is true if the mesh is side A of
+// the answer. The depth of a contact is that of the surface inside the mesh; if the mesh is inside the body,
+// it is the depth of the mesh.
 Result<CollisionAnswer> collide_mesh(const SignedDistance& mesh, const Pose& mesh_pose,
                                      const Surface& surface, bool mesh_is_a) {
   const auto grid = make_nested_grid(surface.u, surface.v, collision_levels);
@@ -186,8 +185,8 @@ Result<CollisionAnswer> collide_mesh(const SignedDistance& mesh, const Pose& mes
     side.parameters->range = region.range;
   }
   answer.complete = answer.complete && !collider.regions_overflow();
-  // A mesh without contact regions is inside the body. A mesh that is inside and also touches has the depth
-  // of the deepest point overall.
+  // A mesh that is found without contact regions is inside the body. Otherwise the first contact gets the
+  // largest depth of all.
   answer.contained = answer.contacts.empty();
   if (answer.contained) {
     answer.contacts.push_back(nearest);
@@ -197,7 +196,8 @@ Result<CollisionAnswer> collide_mesh(const SignedDistance& mesh, const Pose& mes
   return answer;
 }
 
-// Moves the surface out of a solid, untrimmed and closed body. `context` names the body in errors.
+// Returns the surface of the body, which must be a closed solid without trims. `context` names the body in
+// errors.
 Result<Surface> extract_closed_surface(Body& body, const std::string& context) {
   if (body.shell_thickness_m) {
     return Error{ErrorCode::unsupported,
@@ -229,7 +229,7 @@ Result<CollisionModel> read_bodies(const std::filesystem::path& file) {
   return model;
 }
 
-// The mesh's member in the JSON and the suffix of its labels.
+// Name of a mesh's member in the JSON, and suffix of the labels of its facts.
 struct MeshLabel {
   const char* field;
   const char* suffix;
@@ -293,7 +293,7 @@ std::vector<Box> boxes_of(const std::vector<Surface>& bodies) {
   return boxes;
 }
 
-// Collides each body with itself and with the others.
+// Collides each body of a document with itself and with the other bodies.
 Result<CollisionAnswer> collide_document_with_itself(const CollisionModel& model, const std::string& file) {
   CombinedAnswer combined(model.names, model.names);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -320,7 +320,7 @@ Result<CollisionAnswer> collide_documents(const CollisionModel& a, const Collisi
                         });
 }
 
-// Collides a mesh with the bodies of a document. Either may be A; the pose moves B.
+// Collides a mesh with the bodies of a document. Either of the two may be A; the pose moves B.
 Result<CollisionAnswer> collide_with_mesh(const CollisionModel& a, const CollisionModel& b,
                                           const Pose& pose) {
   const bool mesh_is_a = a.mesh.has_value();
@@ -395,7 +395,9 @@ CommandEntry add_collide(OptionSet root) {
       "Example: spoonbill collide assets/models/spoon-handle.json assets/models/spoon-handle.json "
       "--pose 0,5mm,0,1,0,0,0");
   parser.add_option("A", options->first, "Document (.json) or mesh (.obj, .stl, .ply)").require();
-  parser.add_option("B", options->second, "Second model, also A again; default: A, a document, with itself");
+  parser.add_option(
+      "B", options->second,
+      "Second model, which may be the same file; default: none, a document is tested against itself");
   parser
       .add_parsed(
           "--pose",

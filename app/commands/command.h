@@ -36,7 +36,8 @@ CommandEntry add_rest(OptionSet root);
 CommandEntry add_read_mesh(OptionSet root);
 CommandEntry add_read_points(OptionSet root);
 
-// The targets of the options below must exist until the command line has been parsed.
+// The variables into which the following options are parsed must exist until the command line has been
+// parsed.
 
 // --json: prints one JSON object and nothing else on standard output.
 void add_json_option(OptionSet parser, bool& json);

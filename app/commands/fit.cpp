@@ -23,7 +23,7 @@ namespace {
 
 constexpr Range<int> fit_control_range{4, 200};
 constexpr Range<double> fit_tolerance_range_m{1e-6, 0.1};
-// Smallest distance at the end of the colour scale.
+// Smallest distance that the end of the colour scale may stand for.
 constexpr double least_scale_m = 1e-6;
 
 struct FitOptions {

@@ -42,7 +42,7 @@ bool has_lattices(const Scene& scene) {
                      [](const Body& body) { return make_body_lattice(body).ok(); });
 }
 
-// Makes the simulation that a session would make, without reserving memory for undo.
+// Makes the simulation of a document as a session does, but without reserving memory for undo.
 Result<Simulation> make_simulation(const Document& document, const std::string& source,
                                    const FeatureMapWatch& watch) {
   const auto view = view_from_json(document.view, source);
@@ -52,9 +52,9 @@ Result<Simulation> make_simulation(const Document& document, const std::string& 
   return simulation;
 }
 
-// Adds the document and its simulation. A document without a lattice, or with more bodies than can be
-// sculpted together, can still be viewed, merged and exported; its facts then say why there is no lattice.
-// Any other failure is an error.
+// Adds the facts of the document and of its simulation. A document without a lattice, or with more bodies
+// than can be sculpted together, can still be viewed, merged and exported; its facts then state why there is
+// no lattice. Any other failure is an error.
 Status add_document_and_simulation(FactSheet& facts, const Document& document, const std::string& source,
                                    Console& console) {
   add_document_facts(facts, document);

@@ -44,7 +44,7 @@ struct MergeOptions {
   std::filesystem::path out;
   std::string name;
   MergeRequest request;
-  std::optional<int> continuity;  // if the option is given
+  std::optional<int> continuity;  // empty if --continuity is not given
   bool crossing = false;
   double fillet_m = 0.0;
   bool json = false;
@@ -52,19 +52,19 @@ struct MergeOptions {
 
 // The input of a merge.
 struct MergeParts {
-  std::optional<Document> first;  // the merged document takes its material, tool and view
+  std::optional<Document> first;  // first document, whose material, tool and view the merged document takes
   std::vector<Body> bodies;
-  std::vector<Surface> patches;  // surfaces of the bodies without trims
+  std::vector<Surface> patches;  // surfaces of the bodies, resampled so that they have no trims
   double untrimmed_m = 0.0;      // largest deviation that removing the trims caused
   std::vector<std::string> notes;
 };
 
 struct MergeOutcome {
   Merged merged;
-  // corner k is between patch k + 1 and the result of merging the patches before it
+  // corners[k] is between patches[k + 1] and the result of merging patches[0] to patches[k].
   std::vector<Joint> corners;
-  std::vector<std::string> tight_fillets;     // notes
-  std::vector<std::size_t> reversed_patches;  // patches whose normals pointed inwards
+  std::vector<std::string> tight_fillets;     // notes on fillets that are tighter than requested
+  std::vector<std::size_t> reversed_patches;  // indices of patches whose normals pointed inwards
 };
 
 // Parses "-0.25".
@@ -113,8 +113,8 @@ Result<ChosenEdges> parse_edges(const std::string& text) {
   return edges;
 }
 
-// Returns the continuity of the joints. Default: C0 for a sharp corner; C1 for a fillet, because a fillet
-// that joins its neighbours with C2 is tighter than the requested radius.
+// Returns the continuity of the joints. The default is C0 for a sharp corner and C1 for a fillet. A C2 fillet
+// would be tighter than the requested radius.
 int continuity_of(const MergeOptions& options) {
   if (options.crossing && options.fillet_m == 0.0) return 0;
   if (options.continuity) return *options.continuity;
@@ -173,8 +173,8 @@ std::string corner_text(const Joint& corner, bool is_last) {
          (is_last ? " from v = " + start + " to " + end : "");
 }
 
-// Adds the corners between crossing bodies. Only the last corner is at constant v in the result, so only its
-// position is reported.
+// Adds the facts of the corners between crossing bodies. Only the last corner is at constant v in the result,
+// so only its position is reported.
 void add_corners(FactSheet& facts, const std::vector<Joint>& corners) {
   Json list = Json::array();
   for (std::size_t k = 0; k < corners.size(); ++k) {
@@ -200,8 +200,7 @@ void add_unused_blends(const std::vector<MergedJoint>& joints, std::vector<std::
   }
 }
 
-// Returns four parameters in every span that overlaps the range. They are at the centres of the span's
-// quarters.
+// Returns the centres of the four quarters of every knot span that overlaps the range.
 std::vector<double> sample_spans(const KnotVector& knots, double start, double end) {
   constexpr int parts = 4;
   const std::vector<double> ends = knots.breakpoints();
@@ -228,8 +227,8 @@ double tightest_radius_m(const Surface& merged, const Joint& corner) {
   return least;
 }
 
-// Adds a note if the fillet is tighter than requested. `which` distinguishes it from others, like " with
-// patch 3".
+// Adds a note if the fillet is tighter than requested. `which` follows the words "the fillet" in the note,
+// such as " with patch 3".
 void add_tight_fillet(const Surface& merged, const Joint& corner, const std::string& which, double fillet_m,
                       int continuity, std::vector<std::string>& notes) {
   const double least_m = tightest_radius_m(merged, corner);
@@ -323,7 +322,7 @@ Result<MergeParts> read_parts(const MergeOptions& options) {
   return parts;
 }
 
-// Merges crossing patches one after the other. Each merge may use an equal part of the tolerance.
+// Merges crossing patches one after the other. Each merge may use an equal fraction of the tolerance.
 Result<MergeOutcome> merge_crossing_patches(const MergeParts& parts, const MergeOptions& options,
                                             MergeRequest request, const Progress& progress) {
   const std::vector<Surface>& patches = parts.patches;
@@ -458,7 +457,7 @@ CommandEntry add_merge(OptionSet root) {
       [options](double length_m) { options->fillet_m = length_m; },
       "Radius of the fillet where patches cross, up to 1 m; default: none, a sharp edge")
       .need(crossing);
-  // The options may be in any order, so this is checked after all of them.
+  // The options may be given in any order, so the check runs after all are parsed.
   parser.set_final_check([options]() -> Status {
     if (options->crossing && options->fillet_m == 0.0 && options->continuity.value_or(0) > 0) {
       return Error{ErrorCode::inconsistent,

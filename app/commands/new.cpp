@@ -34,7 +34,7 @@ namespace {
 
 constexpr Range<int> new_control_range{4, control_point_count_range.high};
 constexpr Range<double> new_tolerance_range_m{1e-8, 1e-2};
-// Range of all sizes as the parser checks them. Each shape checks its own, narrower ranges.
+// Range that the parser allows for all sizes. Each shape checks a narrower range of its own.
 constexpr Range<double> size_range_m{-1e3, 1e3};
 constexpr double default_shell_thickness_m = 0.002;
 // Fraction of the work that is fitting; the rest is the search for self-intersections.
@@ -42,8 +42,8 @@ constexpr double fit_fraction = 0.8;
 
 struct NewShape {
   ExactShape shape;
-  std::optional<double> shell_thickness_m = {};  // for an open shape
-  double reach_m = 0.0;                          // see reach_m() of a stock shape; 0 if unknown
+  std::optional<double> shell_thickness_m = {};  // empty for a closed shape
+  double reach_m = 0.0;  // reach of the shape as in reach_m() of stock shapes; 0 if unknown
   int degree = 3;
 };
 
@@ -188,7 +188,8 @@ LengthOption add_shell_thickness(OptionSet parser) {
   return add_length(parser, "--thickness", "Thickness of the shell that an open shape becomes; default: 2mm");
 }
 
-// Makes an open shape a shell. A thickness of a closed shape is an error.
+// Gives an open shape its thickness, which makes it a shell. Returns an error if a closed shape has a
+// thickness.
 Result<NewShape> apply_thickness(ExactShape shape, const LengthOption& thickness) {
   const bool open = !shape.is_closed();
   if (!open && *thickness) {
@@ -363,8 +364,8 @@ void add_shape_facts(FactSheet& facts, const ExactShape& shape, const FittedShap
   if (closed) facts.add("Volume", volume_text(mass.volume_m3), "volume_m3", mass.volume_m3);
 }
 
-// Adds the smallest radius of curvature and the radius that the sizes request. A fit whose tolerance applies
-// to positions may miss the radius.
+// Adds the smallest radius of curvature of the surface and, for comparison, the radius `asked_m` that the
+// sizes request. The fit's tolerance limits the deviation in position but not in curvature.
 void add_radius_facts(FactSheet& facts, const Surface& surface, double asked_m) {
   const CurvatureRange range = find_curvature_range(surface);
   const double sharpest = range.exists ? std::max(std::abs(range.smallest.curvature_per_m),
@@ -373,9 +374,10 @@ void add_radius_facts(FactSheet& facts, const Surface& surface, double asked_m) 
   constexpr double flat_per_m = 1e-3;
   if (!(sharpest > flat_per_m)) return;
   const bool is_asked = asked_m > 0.0 && std::isfinite(asked_m);
-  facts.add("Smallest radius",
-            short_length_text(1.0 / sharpest) + (is_asked ? ", asked: " + short_length_text(asked_m) : ""),
-            "smallest_radius_m", 1.0 / sharpest);
+  facts.add(
+      "Smallest radius",
+      short_length_text(1.0 / sharpest) + (is_asked ? ", requested: " + short_length_text(asked_m) : ""),
+      "smallest_radius_m", 1.0 / sharpest);
   if (is_asked) facts.add("", "", "asked_radius_m", asked_m);
 }
 

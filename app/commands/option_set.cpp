@@ -161,7 +161,7 @@ CommandLine::Parsed CommandLine::parse(const std::vector<std::string>& arguments
   hide_types_of_positionals(*root_);
   try {
     root_->parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-  } catch (const CLI::Success& request) {  // --help, --version
+  } catch (const CLI::Success& request) {  // thrown for --help and --version
     std::ostringstream answer;
     root_->exit(request, answer, answer);
     return {Outcome::answered, answer.str()};

@@ -1,4 +1,4 @@
-// The options of the command line. CLI11 parses them behind this header, because its templates take eight
+// The options of the command line. Only option_set.cpp includes CLI11, because its templates take eight
 // seconds to compile.
 //
 //   CommandLine line("Shape B-spline surfaces by touch.", "spoonbill");

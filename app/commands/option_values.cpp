@@ -185,7 +185,7 @@ class TableReader {
   const std::vector<std::string>& columns_;
   bool with_section_;
   std::size_t line_ = 0;
-  std::vector<double> units_;  // metres per unit of each column; empty before the header
+  std::vector<double> units_;  // metres per unit of each column; empty until the header is read
   PointTable table_;
 };
 

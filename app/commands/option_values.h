@@ -32,8 +32,8 @@ Result<Pose> parse_pose(std::string_view text);
 // Parses a length within the range, with a unit unless it is 0: "5mm", "0.2in", "2inch".
 Result<double> parse_length(std::string_view text, Range<double> range_m);
 
-// Parses `count` lengths within the range: "60x40x20mm", "6cmx40mmx20mm". The last length must have a unit.
-// Any other length without a unit gets the unit of the next length that has one.
+// Parses `count` lengths within the range: "60x40x20mm", "6cmx40mmx20mm". The last length must have a unit. A
+// length without a unit has the unit of the next length that has one.
 Result<std::vector<double>> parse_lengths(std::string_view text, std::size_t count, Range<double> range_m);
 
 // Parses an order of continuity, from "C0" to "C8"; the highest degree allows no higher order.
@@ -65,14 +65,14 @@ Result<std::vector<Vector3>> parse_points(const std::string& text);
 
 // A table of lengths in metres, optionally with a leading column of whole numbers named "section".
 struct PointTable {
-  std::vector<int> sections;                // one per row; empty without the column
-  std::vector<std::vector<double>> rows_m;  // one length per column
+  std::vector<int> sections;                // section of each row; empty if the table has no such column
+  std::vector<std::vector<double>> rows_m;  // per row, one length per column
 };
 
 // Reads a CSV file of at most 16 MiB and 100,000 rows. The first line has the names of the columns in the
 // given order, each with mm, cm, m or in: "x_mm,y_mm,z_mm". Empty lines, lines that begin with # and a byte
-// order mark are ignored. An error names the line: unexpected columns, a wrong number of values, text that is
-// not a number, a length beyond 100 m.
+// order mark are ignored. Errors, which name the line: unexpected columns, a wrong number of values, text
+// that is not a number, a length beyond 100 m.
 Result<PointTable> read_point_table(const std::filesystem::path& file,
                                     const std::vector<std::string>& columns, bool with_section);
 

@@ -37,7 +37,7 @@ Status send_mesh(const std::filesystem::path& file, Console& console) {
   return mesh.error().in(file.string());
 }
 
-// Sends the mesh or the cloud that a PLY file holds.
+// Sends the mesh or the point cloud that a PLY file contains.
 Status send_ply(const std::string& bytes, Console& console) {
   auto content = parse_ply(bytes);
   if (!content) return content.error();
@@ -49,7 +49,8 @@ Status send_ply(const std::string& bytes, Console& console) {
   return {};
 }
 
-// Sends a cloud, the mesh of a PLY file, or a frame of kind `faces` for an OBJ file that is a mesh.
+// Sends the point cloud of a file, or the mesh of a PLY file. For an OBJ file that is a mesh, sends only a
+// frame of kind `faces`.
 Status send_cloud(const std::filesystem::path& file, Console& console) {
   const FileFormat format = format_from_name(file);
   const auto bytes = read_file(file, point_file_bytes_limit);

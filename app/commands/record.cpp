@@ -32,7 +32,7 @@ struct RecordOptions {
   bool json = false;
 };
 
-constexpr std::uint64_t ticks_between_checks = 10;  // checks of progress and Ctrl+C
+constexpr std::uint64_t ticks_between_checks = 10;  // ticks between checks of progress and Ctrl+C
 
 Error stopped_recording(std::uint64_t ticks, const std::filesystem::path& file) {
   return Error{ErrorCode::cancelled, "stopped after " + std::to_string(ticks) + " ticks; the recording is " +
@@ -45,7 +45,7 @@ Status run_recording(Lockstep& lockstep, Session& session, const std::filesystem
   ProgressBar progress(console, "Recording", false);
   while (lockstep.tick() < lockstep.tick_count()) {
     if (Status ran = lockstep.run_to(lockstep.tick() + ticks_between_checks); !ran) return ran;
-    session.marks.clear();  // requested files, which only the replay writes
+    session.marks.clear();  // discards requests for files, because only a replay writes them
     progress.show(lockstep.tick(), lockstep.tick_count());
     if (!interrupt.requested()) continue;
     interrupt.answer();
@@ -68,7 +68,7 @@ Status record_input(const RecordOptions& options, const RecordingHeader& header,
   if (!writer) return writer.error();
   if (!writer->notice().empty()) console.err << "spoonbill: " << writer->notice() << '\n';
   const std::size_t command_count = input.commands.size();
-  session->keeps_documents = false;  // the replay writes them
+  session->keeps_documents = false;  // documents are written only by a replay
   Lockstep lockstep(session.value(), std::move(input), &writer.value());
   if (Status ran = run_recording(lockstep, session.value(), writer->written_file(), console); !ran)
     return ran;

@@ -61,7 +61,7 @@ Error stopped_replay(const Replay& replay, InterruptWatch& interrupt) {
 }
 
 Status run_without_pictures(const Replay& replay) {
-  constexpr std::uint64_t ticks_between_checks = 10;  // checks of progress and Ctrl+C
+  constexpr std::uint64_t ticks_between_checks = 10;  // ticks between checks of progress and Ctrl+C
   replay.session.keeps_documents = false;
   InterruptWatch interrupt;
   ProgressBar progress(replay.console, "Replaying", replay.options.progress);
@@ -69,7 +69,7 @@ Status run_without_pictures(const Replay& replay) {
   while (lockstep.tick() < lockstep.tick_count()) {
     if (interrupt.requested()) return stopped_replay(replay, interrupt);
     if (Status ran = lockstep.run_to(lockstep.tick() + ticks_between_checks); !ran) return ran;
-    replay.session.marks.clear();  // requested files, for which there is no folder
+    replay.session.marks.clear();  // discards requests for files, because there is no output folder
     progress.show(lockstep.tick(), lockstep.tick_count());
   }
   return lockstep.finish();
@@ -147,8 +147,8 @@ Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPi
     PaintingJob job = make_painting_job(frame, replay.session, framed, request);
     job.extra_names = std::exchange(names, {});
     job.is_frame = is_frame;
-    // The flags are cleared only at frames: a picture between two frames must not take a flag from the next
-    // frame.
+    // Flags of ticks are cleared only at numbered frames. A screenshot between two frames must not remove a
+    // flag from the next frame.
     if (is_frame) replay.session.flags = tick_flag_none;
     if (crew.is_full()) {
       if (Status written = write_oldest_frame(crew, request, pictures); !written) return written;
@@ -158,7 +158,7 @@ Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPi
   };
   for (std::uint64_t frame = 0; frame < request.frame_count && !interrupt.requested(); ++frame) {
     if (Status ran = run_and_save(replay, request, frame_tick(frame), interrupt, names); !ran) return ran;
-    if (interrupt.requested()) break;  // before the tick of the frame was reached
+    if (interrupt.requested()) break;  // stopped before the tick of the frame
     const bool is_frame = frame % request.every == 0;
     if (!is_frame && names.empty()) continue;
     if (Status painted = paint(frame, is_frame); !painted) return painted;

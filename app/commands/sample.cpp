@@ -41,7 +41,7 @@ void append_number(std::string& line, double number) {
   line.append(text.data(), end);
 }
 
-// Passes the rows of a body to `write` in chunks, and stops at its first error.
+// Passes the rows of a body to `write` in chunks, and stops at the first error of `write`.
 template <class Write>
 Status sample_body(const Body& body, Extent counts, Write write) {
   const Surface& surface = body.surface;

@@ -20,13 +20,13 @@ namespace {
 constexpr int control_points_limit = 200;
 constexpr Range<double> cap_height_range_m{0.0, 1.0};
 
-// Tolerance for a change that is not exact, and the progress that can stop the change.
+// Tolerance of a change that is not exact, and the observer that can stop the change.
 struct Allowed {
   double tolerance_m;
   Progress progress;
 };
 
-// One parser for each word of a change, in order.
+// Parsers of the words of a change, one per word, in order.
 using WordParsers = std::vector<Status (*)(const std::string& word, ChangeRequest& request)>;
 
 struct Change {
@@ -35,7 +35,8 @@ struct Change {
   std::size_t fewest_words;
   Result<ChangedSurfaces> (*make)(const Surface& surface, const ChangeRequest& request,
                                   const Allowed& allowed);
-  // Maps a trim loop if the change moves parameters; null if the change cannot keep trims.
+  // Maps a trim loop to the parameters of the changed surface. Null if the change moves parameters but cannot
+  // map trims.
   TrimLoop (*map_trim)(const Surface& surface, const ChangeRequest& request, const TrimLoop& loop);
   const char *name, *form, *description;
 };

@@ -15,9 +15,9 @@
 namespace spoonbill {
 
 struct ChangedSurfaces {
-  std::vector<Surface> surfaces;  // two after a split
+  std::vector<Surface> surfaces;  // two after a split of an open direction, otherwise one
   std::vector<TrimLoop> trims = {};
-  double deviation_m = 0.0;      // 0 if the change is exact
+  double deviation_m = 0.0;      // bound of the deviation; 0 if the change is exact
   bool keeps_parameters = true;  // false if regions, loads and supports would move on the surface
 };
 
@@ -31,15 +31,15 @@ struct ChangeRequest {
   int number = 1;          // a degree, or the number of copies of a knot
   Side side = Side::v_end;
   double height_m = 0.0;  // height of a cap
-  int continuity = 2;     // continuity of the seam that close makes
+  int continuity = 2;     // continuity of the seam that the change `close` makes
 };
 
 // Parses words such as {"insert", "v=0.3", "2"}. Returns an error for words that are invalid on every
 // surface.
 Result<ChangeRequest> parse_change(const std::vector<std::string>& words);
 
-// Applies the change to a surface and its trims. `tolerance_m` bounds the changes that are not exact, which
-// `progress` can stop. Returns an error if the change would lose the trims.
+// Applies the change to a surface and its trims. A change that is not exact deviates by at most
+// `tolerance_m`, and `progress` can stop it. Returns an error if the change would lose the trims.
 Result<ChangedSurfaces> change_surface(const Surface& surface, const std::vector<TrimLoop>& trims,
                                        const ChangeRequest& request, double tolerance_m,
                                        const Progress& progress = {});

@@ -59,23 +59,23 @@ class EditWindow {
   std::optional<double> chosen_scale_;
 };
 
-// State of the editor in a frame. Each member is a field of the same name in the log line; the line also has
-// the frame's number.
+// State of the editor in a frame. Each member is written to the log under its own name; a line of the log
+// also has the number of the frame.
 struct ShownFrame {
   std::uint64_t tick = 0;
   std::uint64_t session = 0;     // number of sessions opened so far
-  std::uint64_t edit_count = 0;  // number of touched ticks and commands so far
+  std::uint64_t edit_count = 0;  // number of commands, and of ticks with contact, so far
   bool recording = false;
   bool in_stroke = false;
   bool can_undo = false;
   bool can_redo = false;
-  bool pressing = false;                          // the stroke button is down on the picture
-  std::string prompt;                             // "file", "shape", "question", or empty
-  std::string typed;                              // text of the file prompt
+  bool pressing = false;  // true while the stroke button is down on the picture
+  std::string prompt;     // prompt that is open: "file", "shape", "question", or empty
+  std::string typed;      // text of the file prompt
   std::vector<std::array<double, 2>> answers_px;  // centres of the buttons of the question
   double pointer_x_px = 0.0;
   double pointer_y_px = 0.0;
-  double hand_lag_m = 0.0;  // distance from the device to the target of the mouse
+  double hand_lag_m = 0.0;  // distance from the device's position to the mouse's target
 };
 
 // Log of the frames shown, one JSON object per line, for a program that controls the window from outside and

@@ -46,7 +46,7 @@ Result<std::optional<std::filesystem::path>> EditedDocument::switch_to(std::file
   file_ = std::move(file);
   document_ = live.last_frame().document;
   saved_edit_count_ = live.last_frame().edit_count;
-  claim_.reset();  // released first, because the same file may be opened again
+  claim_.reset();  // the old claim must be released first, because the same file may be opened again
   claim_ = claim();
   return kept;
 }

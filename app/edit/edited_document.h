@@ -30,11 +30,11 @@ class EditedDocument {
   bool is_open_elsewhere() const { return claim_ && claim_->is_open_elsewhere(); }
 
   // Ends autosaving, because the user discards the unsaved changes. Work that was recovered and not saved
-  // since is kept as a document, whose name is returned.
+  // since is stored as a document, whose name is returned.
   Result<std::optional<std::filesystem::path>> discard_changes(LiveSession& live);
 
   // Switches to a file that the session has opened, and discards the changes of the previous one. Nothing is
-  // autosaved before begin(), because a recovered document must be kept until the user has decided about it.
+  // autosaved before begin(), because a recovered document must stay until the user has decided about it.
   Result<std::optional<std::filesystem::path>> switch_to(std::filesystem::path file, LiveSession& live);
 
   // Marks the document as unchanged and starts to autosave.
@@ -60,7 +60,7 @@ class EditedDocument {
   std::optional<std::filesystem::path> state_folder_;
   std::filesystem::path file_;
   std::optional<AutosaveClaim> claim_;
-  std::uint64_t document_ = 0;  // as in LiveFrame
+  std::uint64_t document_ = 0;  // number of the document, see LiveFrame::document
   std::uint64_t saved_edit_count_ = 0;
   bool is_recovered_ = false;
 };

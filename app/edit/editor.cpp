@@ -256,7 +256,7 @@ void Editor::receive_updates(const LiveFrame& frame, double seconds) {
   }
   if (const auto saved = live_->consume_saved_document()) {
     document_.note_saved(*saved, *live_);
-    // A save that was made before the last edit does not allow the next step.
+    // The next step is taken only if the saved document contains the last edit.
     if (continues_after_save_ && frame.edit_count <= saved->edit_count) start_next_step(next_step_);
   }
   if (auto conflict = live_->consume_save_conflict()) ask_about_conflict(std::move(*conflict));
@@ -687,7 +687,8 @@ void Editor::offer_recovery() {
 
 void Editor::begin_without_recovery() {
   const auto kept = document_.set_recovered_aside();
-  if (!kept) return messages_.add_problem(kept.error().message);  // without autosaves, which would replace it
+  // Autosaving does not begin after an error, because it would overwrite the recovered document.
+  if (!kept) return messages_.add_problem(kept.error().message);
   report_kept(std::optional(kept.value()));
   document_.begin(*live_);
 }

@@ -24,13 +24,13 @@ namespace spoonbill {
 
 // Settings of the editor.
 struct EditSettings {
-  std::filesystem::path model;  // default: the spoon handle, as an untitled document
+  std::filesystem::path model;  // model to open; default: the spoon handle, as an untitled document
   int width = 1280;
   int height = 720;
   std::optional<double> scale;
   NavigationPreset navigation = NavigationPreset::rhino;
   std::filesystem::path recording;  // recording from the start of the session; empty for none
-  std::filesystem::path log;        // file of a FrameLog; empty for none
+  std::filesystem::path log;        // file of the FrameLog; empty for none
   InstructionSet instruction_set = best_instruction_set();
   bool real_time = true;
 };
@@ -122,10 +122,10 @@ class Editor {
   SurfacePick pick_;
   MouseHand hand_;
   std::optional<SpaceMouse> space_mouse_;
-  HandInputs inputs_;  // hand_ and space_mouse_
+  HandInputs inputs_;  // refers to hand_ and space_mouse_
   double strength_m_ = 0.004;
   std::optional<Tool> before_stroke_;  // tool to restore after a stroke with Ctrl or Shift
-  bool stroke_began_here_ = false;     // the press began on the picture, not on the panel
+  bool stroke_began_here_ = false;     // true if the press began on the picture, not on the panel
   FrameBudget budget_;
   LivePlots plots_;
   MessageLine messages_;
@@ -143,7 +143,8 @@ class Editor {
   bool is_finished_ = false;
   bool shows_keys_ = false;
   bool screenshot_due_ = false;
-  std::vector<std::optional<PendingOpen>> pending_jobs_;  // in order; nullopt: the start of a recording
+  // In the order of the requests; nullopt stands for the start of a recording.
+  std::vector<std::optional<PendingOpen>> pending_jobs_;
   std::uint64_t completed_jobs_ = 0;
 };
 

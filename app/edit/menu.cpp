@@ -59,7 +59,8 @@ constexpr std::size_t tool_key_count = [] {
   return count;
 }();
 
-// Key bindings of the tools, ordered by key. GLFW's codes of digits and letters are their ASCII characters.
+// Key bindings of the tools, ordered by key. GLFW's key codes of digits and letters are their ASCII
+// characters.
 constexpr auto tool_bindings = [] {
   std::array<KeyBinding, tool_key_count> made{};
   auto next = made.begin();

@@ -43,12 +43,12 @@ enum class EditAction {
 // A key with its action and the texts of the list of keys. Keys of tools come from the table of tool actions.
 struct KeyBinding {
   EditAction action;
-  int key;  // GLFW_KEY_
+  int key;  // a key code of GLFW (GLFW_KEY_...)
   bool ctrl;
   bool shift;
-  const char* chord;  // as shown, such as "Ctrl+S"
+  const char* chord;  // text that is shown for the key, such as "Ctrl+S"
   const char* text;
-  // Used by choose_tool only.
+  // Used only if `action` is choose_tool.
   ToolKind kind = ToolKind::sphere;
   ToolAction tool_action = ToolAction::push;
 };
@@ -76,7 +76,7 @@ struct MenuState {
   bool see_through_body = false;
 };
 
-// Choices of one frame, and the height of the menu bar.
+// The choices that the user made in the menu in one frame, and the height of the menu bar.
 struct MenuChoice {
   std::vector<EditAction> actions;
   NavigationPreset navigation;

@@ -71,7 +71,7 @@ Camera zoom_camera(const Camera& camera, double notches) {
 
 namespace {
 
-// Sampling for picking: cells of 1 mm, at most 0.1 mm from the true surface.
+// Sampling of surfaces for picking: cells of 1 mm whose deviation from the surface is at most 0.1 mm.
 constexpr double picking_px_per_m = 1000.0;
 constexpr SamplingTarget target{1.0, 0.1};
 
@@ -91,8 +91,8 @@ Vector3 position(const GridSamples<float>& samples, std::size_t i) {
   return {samples.x[i], samples.y[i], samples.z[i]};
 }
 
-// Returns half of the longest edge of the triangles, which is half of a cell's diagonal, because cells are
-// nearly square.
+// Returns half of the longest triangle edge. This edge is a cell's diagonal, because the cells are nearly
+// square.
 double ball_radius(const TessellatedSurface& surface) {
   double longest_squared = 0.0;
   const auto& corners = surface.indices();
@@ -155,15 +155,15 @@ namespace {
 // Gap between the hovering tool and the surface.
 constexpr double hover_gap_m = 0.001;
 
-// Frames until a press reaches its depth: a quarter of a second.
+// Number of frames until a press reaches its full depth: a quarter of a second at 60 frames per second.
 constexpr int frames_to_depth = 15;
 constexpr double depth_per_notch_m = 0.001;
 
-// Depth of a grip: enough to touch the surface, whatever the strength.
+// Depth of a press with a tool that grips: enough to touch the surface, whatever the strength.
 constexpr double grip_depth_m = 2.0 * hover_gap_m;
 
-// Returns the point where the ray meets the screen plane of `point_m`: the plane through it that faces the
-// camera. Returns `point_m` if the ray is parallel to the plane.
+// Returns the point where the ray meets the plane through `point_m` that faces the camera. Returns `point_m`
+// if the ray is parallel to the plane.
 Vector3 project_to_screen_plane(const Ray& ray, const Camera& camera, const Vector3& point_m) {
   const Vector3 back = eye_axes(camera).col(2);
   const double slope = ray.direction.dot(back);

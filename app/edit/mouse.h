@@ -30,9 +30,9 @@ Result<NavigationPreset> find_navigation(const std::string& name);
 // State of the mouse in a frame. Positions in pixels from the upper left corner.
 struct Pointer {
   Eigen::Vector2d position_px = Eigen::Vector2d::Zero();
-  Eigen::Vector2d moved_px = Eigen::Vector2d::Zero();  // since the last frame
-  double wheel = 0.0;                                  // notches; positive away from the user
-  bool left = false, middle = false, right = false;    // pressed
+  Eigen::Vector2d moved_px = Eigen::Vector2d::Zero();  // motion since the last frame
+  double wheel = 0.0;  // turn of the wheel in notches, positive away from the user
+  bool left = false, middle = false, right = false;  // true while the button is pressed
   bool ctrl = false, shift = false;
 };
 
@@ -54,8 +54,8 @@ struct PickedPoint {
   Vector3 outward;   // unit vector from the body to the tool's centre
 };
 
-// Finds where a tool that moves along a ray first touches a body, which is the depth that a mouse cannot
-// give. One owner: the thread that draws.
+// Finds where a tool that moves along a ray first touches a body. This gives the depth, which the mouse does
+// not. One owner: the thread that draws.
 class SurfacePick {
  public:
   // Samples the current surfaces. Grids are reused until the knots of a surface change. Surfaces that cannot
@@ -63,15 +63,15 @@ class SurfacePick {
   void update(const Snapshot& snapshot);
 
   // Returns the first contact of a sphere of this radius that moves along the ray; empty if it misses. Each
-  // sample of a surface counts as a small ball, so that the sphere does not sink between samples.
+  // sample point of a surface counts as a small ball, so that the sphere cannot sink in between the samples.
   std::optional<PickedPoint> first_touch(const Ray& ray, double radius_m) const;
 
  private:
   struct Sampled {
     TessellatedSurface surface;
-    double ball_m = 0.0;  // radius of the balls: half a cell's diagonal
+    double ball_m = 0.0;  // radius of the ball at each vertex
     std::vector<std::uint32_t> vertices;
-    std::uint64_t topology = 0;  // topology version of `vertices`
+    std::uint64_t topology = 0;  // topology_version() of the surface when `vertices` was made
   };
   static void update_vertices(Sampled& sampled);
 
@@ -82,13 +82,13 @@ class SurfacePick {
 struct MouseStroke {
   double radius_m = 0.0;    // radius of the tool, 0 for a point
   double strength_m = 0.0;  // depth of a press
-  bool grips = false;       // the tool attaches at first touch, as for a pull
+  bool grips = false;       // true if the tool attaches to the body at first touch, as for a pull
 };
 
 // Input of one frame: the mouse, the view and the surfaces.
 struct MouseFrame {
   Pointer pointer;
-  bool is_stroking = false;  // the stroke button is down and was pressed on the picture
+  bool is_stroking = false;  // true while the stroke button is down and was pressed on the picture
   Camera camera;
   Viewport viewport;
   const SurfacePick* pick = nullptr;  // must outlive the frame
@@ -116,7 +116,7 @@ class MouseHand : public InputSource {
 
   bool is_pressing() const { return press_.has_value(); }
   const Vector3& target_m() const { return target_m_; }  // last target of the handle
-  bool on_model() const { return is_on_model_; }         // the last hover was over the body
+  bool on_model() const { return is_on_model_; }         // true if the last hover was over the body
 
  private:
   struct Press {

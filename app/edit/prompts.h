@@ -63,7 +63,7 @@ class FilePrompt {
   bool is_open_ = false;
   bool appearing_ = false;
   std::filesystem::path folder_;
-  std::vector<std::filesystem::path> entries_;  // folders first
+  std::vector<std::filesystem::path> entries_;  // entries of the folder, subfolders first
   std::array<char, 1024> text_{};
   std::string problem_;
 };
@@ -75,7 +75,7 @@ class ShapePrompt {
   void ask();
   void close() { is_open_ = false; }
   bool is_open() const { return is_open_; }
-  // Reopens the prompt with the reason why the choice cannot be made.
+  // Reopens the prompt with the reason why the chosen shape cannot be made.
   void refuse(std::string problem);
 
   // Draws the prompt, between begin_frame() and end_frame(). Returns the choice once.

@@ -13,9 +13,9 @@ namespace spoonbill {
 
 // The settings of the child process.
 struct CadChild {
-  std::filesystem::path program;                // default: spoonbill-cad in this program's folder
-  std::chrono::milliseconds patience{300'000};  // time limit
-  Progress progress;                            // reported several times a second
+  std::filesystem::path program;  // program to run; default: spoonbill-cad in this program's folder
+  std::chrono::milliseconds patience{300'000};  // time limit of the child
+  Progress progress;                            // reported to several times a second
 };
 
 // Reads a CAD file of at most 512 MiB. Every error names the file. Errors: a file that is missing,
@@ -28,8 +28,9 @@ Result<CadModel> read_cad_file(const std::filesystem::path& file, const CadReadi
 Result<CadFileContent> make_cad_file(const CadModel& model, const CadWriting& writing,
                                      const std::filesystem::path& file, const CadChild& child = {});
 
-// Joins the faces of each solid that several surfaces bound, and returns these solids as watertight meshes.
-// `file` names the model in messages. Errors: those of make_cad_file(), more triangles than the limit.
+// Joins the faces of each solid that consists of several surfaces, and returns these solids as watertight
+// meshes. `file` names the model in messages. Errors: those of make_cad_file(), more triangles than the
+// limit.
 Result<CadSolids> make_cad_solids(const CadModel& model, const SolidMeshing& meshing,
                                   const std::filesystem::path& file, const CadChild& child = {});
 

@@ -7,7 +7,8 @@
 namespace spoonbill {
 namespace {
 
-constexpr std::size_t bytes_limit = std::size_t{1} << 30;  // far beyond the largest document
+// Limit on the size of a file, far beyond the largest document.
+constexpr std::size_t bytes_limit = std::size_t{1} << 30;
 
 }  // namespace
 

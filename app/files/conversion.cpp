@@ -22,7 +22,7 @@ namespace spoonbill {
 namespace {
 
 constexpr double default_chord_m = 5e-5, default_cad_tolerance_m = 1e-5;
-// Fractions of the work that are done after reading, and after joining solids for a mesh.
+// Fractions of the work that are complete after the file is read, and after the solids of a mesh are joined.
 constexpr double read_fraction = 0.5, joined_fraction = 0.7;
 
 // A request with the formats of its files.
@@ -134,7 +134,7 @@ Result<CadModel> read_model(const ConversionJob& job, const CadChild& child) {
   return model;
 }
 
-// Replaces the items by the selection in request.bodies, in the order of the selection.
+// Replaces the items by those selected in request.bodies, in the order of the selection.
 template <class Item>
 Status select_bodies(const ConversionRequest& request, std::vector<Item>& items) {
   if (request.bodies.empty()) return {};
@@ -192,13 +192,13 @@ bool is_face_of_solid(const CadSurface& surface) {
 
 struct ModelMeshing {
   double chord_m = default_chord_m;
-  std::filesystem::path file;  // named in messages
-  CadChild child;              // joins the faces of solids
-  Progress progress;           // progress of the meshing that follows
+  std::filesystem::path file;  // file whose name messages contain
+  CadChild child;              // child process that joins the faces of solids
+  Progress progress;           // progress of the meshing
 };
 
 struct ModelMeshes {
-  std::vector<NamedMesh> meshes;  // with unique names
+  std::vector<NamedMesh> meshes;  // meshes with unique names
   double chord_error_m = 0.0;
   std::vector<std::string> notes;
 };
@@ -302,8 +302,9 @@ class Mesher {
   std::size_t triangles_ = 0;
 };
 
-// Meshes all surfaces in their order. A solid that several surfaces bound becomes one mesh, at the position
-// of its first face. A shell becomes both of its faces and the walls between them.
+// Meshes all surfaces in their order. A solid that consists of several surfaces becomes one mesh, at the
+// position of its first surface. The mesh of a shell has both sides of the surface and the walls between
+// them.
 Result<ModelMeshes> mesh_model(const CadModel& model, const ModelMeshing& meshing) {
   Mesher mesher(model, meshing);
   if (Status meshed = mesher.mesh(); !meshed) return meshed.error();

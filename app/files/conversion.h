@@ -19,37 +19,37 @@ namespace spoonbill {
 
 struct ConversionRequest {
   std::filesystem::path in, out;
-  // Unit of the numbers in a CAD file that is read, whatever unit it declares, or in the file that is
-  // written.
+  // Unit of the numbers in the CAD file that is read, or in the file that is written. Replaces the unit that
+  // a CAD file declares.
   std::optional<LengthUnit> unit;
   std::optional<double> chord_m;      // chord error of meshes; default: 0.05 mm
-  std::optional<double> tolerance_m;  // for fitting CAD geometry that is not a B-spline; default: 0.01 mm
-  std::optional<StepSchema> schema;   // default: AP214
+  std::optional<double> tolerance_m;  // tolerance for CAD geometry that is not a B-spline; default: 0.01 mm
+  std::optional<StepSchema> schema;   // schema of a STEP file; default: AP214
   std::vector<int> bodies;            // bodies to convert, numbered from 1; all if empty
-  OutputOptions how;                  // to write `out`
-  std::filesystem::path cad_program;  // see CadChild::program
+  OutputOptions how;                  // how `out` replaces an existing file
+  std::filesystem::path cad_program;  // program of the CAD child, see CadChild::program
 };
 
 struct ConversionReport {
   std::string unit_in, unit_out;
   bool unit_declared = true;  // false if the CAD file declared no unit
   std::vector<CadSurface> surfaces;
-  std::optional<int> solids, open_shells;                       // in the CAD file that was written
-  std::optional<std::size_t> triangles, meshes, closed_meshes;  // in the mesh file that was written
-  double chord_error_m = 0.0;                                   // bound for all meshes
+  std::optional<int> solids, open_shells;                       // counts in the CAD file that was written
+  std::optional<std::size_t> triangles, meshes, closed_meshes;  // counts in the mesh file that was written
+  double chord_error_m = 0.0;  // upper bound of the chord errors of all meshes
   std::vector<std::string> notes;
 };
 
-// Converts a file to another format. The ending selects the format: .json; .step, .stp, .iges, .igs; .stl,
+// Converts a file to another format. The extension selects the format: .json; .step, .stp, .iges, .igs; .stl,
 // .obj, .ply, .3mf.
 //
-// Faces of one solid are joined to this solid in CAD files and meshes if they close; otherwise a note reports
-// that they do not. `out` appears complete or not at all; on an error an existing file stays as it is.
-// Errors: a mesh as input; two documents without a choice of bodies; options that have no effect on these
-// formats; errors of the readers and writers.
+// In CAD files and meshes, faces of one solid become a solid if they close it; otherwise a note reports that
+// they do not. `out` appears complete or not at all; on an error an existing file stays as it is. Errors: a
+// mesh as input; two documents without a choice of bodies; options that have no effect on these formats;
+// errors of the readers and writers.
 Result<ConversionReport> convert_file(const ConversionRequest& request, const Progress& progress);
 
-// Returns true if the ending is that of a CAD file or a mesh.
+// Returns true if the extension is that of a CAD file or a mesh.
 bool is_exported_to(const std::filesystem::path& file);
 
 // Writes bodies that are in memory, as convert_file() writes the bodies of a document.

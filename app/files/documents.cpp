@@ -24,10 +24,10 @@ namespace {
 
 // Radius of the tool as a fraction of the body's median extent, like a thumb on a piece of clay of this size.
 constexpr double tool_fraction = 0.15;
-// Force that the hand should feel when it presses the ball in by half of the ball's radius r. With a force
-// scale of 1 the force is about E r^2 / 2 (Hertz 1881).
+// Force that the hand should feel when it presses the ball tool in by half of the ball's radius r. With a
+// force scale of 1 the force is about E r^2 / 2, where E is Young's modulus (Hertz 1881).
 constexpr double target_force_n = 1.5;
-// Fraction of the body's extent that the plane fixes.
+// Fraction of the body's extent that is fixed by the plane of a new document.
 constexpr double fixed_fraction = 0.1;
 // A body lower than this fraction of its median extent is fixed at its end, not at its foot.
 constexpr double flat_fraction = 0.25;
@@ -103,8 +103,8 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-// Returns the largest shell thickness for which the body has a lattice. If the body has a lattice at no
-// thickness, returns the smallest one tried.
+// Returns the largest shell thickness with which the body has a lattice. If there is none, returns the
+// smallest thickness tried.
 double find_shell_thickness(Body body, double size_m) {
   double thickness = shell_thickness_range_m.low;
   for (int halving = 0; halving <= thickness_halvings; ++halving) {
@@ -122,9 +122,9 @@ bool has_lattice_along(const Body& body) {
                                 : tube_lattice(body.surface, body.lattice).ok();
 }
 
-// Sets the largest node budget with which a lattice can follow the body. Cells of the default size may fold
-// in details of a scan. Keeps the default if no budget works, because a box of cells is better than a lattice
-// of few nodes.
+// Sets the largest node budget with which a lattice can follow the shape of the body. Cells of the default
+// size may fold in the details of a scan. The default stays if no budget works, because the body then gets a
+// box of cells, which is better than a coarse lattice.
 void choose_node_budget(Body& body) {
   const int usual = body.lattice.node_budget;
   const int most = body.shell_thickness_m ? 16 : 4;

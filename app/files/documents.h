@@ -1,5 +1,5 @@
-// Documents that the program reads or makes. Reading gives a hint for files of other formats. New documents
-// are made around a surface, a stock shape, a CAD model or a fitted scan.
+// Reads documents and makes new ones. The error for a file of another format suggests a command. New
+// documents are made around a surface, a stock shape, a CAD model or a fitted scan.
 #pragma once
 
 #include <cstddef>
@@ -45,7 +45,7 @@ struct StockShapeField {
 
 // A stock shape of the window's New shape prompt.
 struct StockShapeKind {
-  const char* name;  // "Sphere"
+  const char* name;  // name of the kind, such as "Sphere"
   std::vector<StockShapeField> fields;
 };
 
@@ -54,7 +54,7 @@ std::span<const StockShapeKind> stock_shape_kinds();
 
 struct StockShapeChoice {
   std::size_t kind = 0;          // index into stock_shape_kinds()
-  std::vector<double> sizes_mm;  // one per field
+  std::vector<double> sizes_mm;  // size of each field of the kind
 };
 
 StockShapeChoice default_stock_shape(std::size_t kind);
@@ -70,7 +70,7 @@ Result<Document> make_cad_document(const CadModel& model, const std::string& nam
 
 struct FittedDocument {
   Document document;
-  std::vector<std::string> notes;  // bodies that cannot be simulated, or only in a box of cells
+  std::vector<std::string> notes;  // notes on bodies that cannot be simulated, or only in a box of cells
 };
 
 // Returns a starting_document() of clay bodies for a fitted scan. Closed surfaces become solids. Other

@@ -17,13 +17,13 @@
 
 namespace spoonbill {
 
-// The job of a child, and the words of its error messages.
+// The job of a child process, and the words that its error messages use.
 struct ForeignTask {
   enum class Work { reading, writing };
 
   std::filesystem::path file;
-  std::string thing;   // the result: "mesh"
-  std::string remedy;  // for a file that exceeds the limits: "reduce the mesh"
+  std::string thing;   // what the child returns, such as "mesh"
+  std::string remedy;  // advice for a file that exceeds the limits, such as "reduce the mesh"
   Work work = Work::reading;
   // Message after "FILE: " when memory runs out; a number of GiB follows.
   std::string too_much = "reading it needs more than ";
@@ -37,7 +37,7 @@ struct ForeignTask {
   static std::string printable(const std::string& reason);
 };
 
-// The parent's side of the conversation. One owner, one thread. Every error names the file.
+// The parent's side of the exchange with a child process. One owner, one thread. Every error names the file.
 class ForeignChild {
  public:
   // Starts the program `arguments[0]`. `patience` limits its time, ChildOutput::memory_limit its memory.

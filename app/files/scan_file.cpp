@@ -16,11 +16,11 @@ namespace spoonbill {
 namespace {
 
 constexpr std::size_t mesh_file_bytes_limit = std::size_t{512} << 20;
-// Remedies for files that exceed the child's limits.
+// Remedies for error messages about files that exceed the child's limits.
 const char* const reduce_mesh = "reduce the mesh";
 const char* const thin_cloud = "thin it out";
 
-// Index of a removed vertex.
+// Marks a removed vertex in a table of new indices.
 constexpr std::uint32_t no_vertex = 0xffffffffU;
 
 std::string upper_case_ending(FileFormat format) {
@@ -165,7 +165,8 @@ Result<PointCloud> receive_cloud(ForeignChild& child, const FrameHead& head) {
   return cloud;
 }
 
-// A cloud; the mesh of a PLY file; or nothing for an OBJ file that is a mesh, which another reader reads.
+// A point cloud, the mesh of a PLY file, or nothing. Nothing stands for the mesh of an OBJ file, which
+// read_mesh_scan() reads.
 using ScanContent = std::variant<std::monostate, PointCloud, MeshFile>;
 
 Result<ScanContent> read_content(const std::filesystem::path& file, const MeshReading& reading) {

@@ -28,7 +28,7 @@ class FileLock {
   void release();
 
   std::filesystem::path file_;
-  int descriptor_ = -1;  // -1 after a move
+  int descriptor_ = -1;  // descriptor of the lock file; -1 after a move
 };
 
 }  // namespace spoonbill

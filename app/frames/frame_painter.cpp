@@ -57,7 +57,7 @@ Result<FramePainter> FramePainter::make(int width_px, int height_px, std::mutex*
 }
 
 FramePainter::~FramePainter() {
-  if (!context_) return;  // the object was moved from
+  if (!context_) return;  // nothing to destroy after a move
   const auto turn = lock_interface(interface_turn_);
   interface_.reset();
 }
@@ -86,8 +86,8 @@ const ImDrawData& FramePainter::lay_out(const Snapshot& snapshot, const ViewSett
 
 namespace {
 
-// Number of painters. The same on every machine, because a painter retains the edges of a mesh from its first
-// frame.
+// Number of painters, the same on every machine: a deforming mesh is drawn with the edges of the first shape
+// that its painter drew, so the number of painters affects the pictures.
 constexpr std::size_t painter_count = 3;
 
 // Jobs per painter: one in progress and one waiting.
@@ -161,13 +161,13 @@ class PaintingCrew::Painter {
   const int width_px_;
   const int height_px_;
   std::mutex& interface_turn_;
-  std::mutex mutex_;  // guards the members below
+  std::mutex mutex_;  // guards the members that follow
   std::condition_variable changed_;
   std::deque<PaintingJob> jobs_;
   std::deque<PaintedFrame> done_;
   std::optional<Error> failure_;
   bool stopping_ = false;
-  std::thread thread_;  // declared last, because it uses all members above
+  std::thread thread_;  // declared last, because the thread uses all other members
 };
 
 PaintingCrew::PaintingCrew(int width_px, int height_px) {

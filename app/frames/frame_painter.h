@@ -23,7 +23,7 @@ namespace spoonbill {
 // touch determines the camera and the ground.
 Box framed_box(const Snapshot& start);
 
-// Returns the settings that show the choice in a frame of this size, with room for the panel. The
+// Returns the settings that show the view choice in a frame of this size, with room for the panel. The
 // tessellation does not depend on earlier frames.
 ViewSettings frame_view(const ViewChoice& choice, const Box& framed, int width_px, int height_px);
 
@@ -52,7 +52,7 @@ class FramePainter {
   const ImDrawData& lay_out(const Snapshot& snapshot, const ViewSettings& view, const PanelModel& panel);
 
   std::unique_ptr<OsmesaContext> context_;
-  std::optional<InterfaceContext> interface_;  // empty only while it is destroyed
+  std::optional<InterfaceContext> interface_;  // empty only while the painter is destroyed
   Renderer renderer_;                          // declared after the context, which must outlive it
   std::mutex* interface_turn_;
   StageFinder stages_;
@@ -65,7 +65,7 @@ struct PaintingJob {
   ViewSettings view;
   PanelModel panel;
   std::vector<std::string> extra_names;  // names of further files that get a copy of this picture
-  bool is_frame = true;                  // false if it is painted only for the files of `extra_names`
+  bool is_frame = true;  // false if the picture is painted only for the files of `extra_names`
 };
 
 // A painted frame.
@@ -98,7 +98,7 @@ class PaintingCrew {
   // Queues a job. The crew must not be full.
   void start(PaintingJob job);
 
-  // Waits for the oldest started frame; there must be one. After an error of its painter the crew is
+  // Waits for the oldest frame in progress; there must be one. After an error of its painter the crew is
   // unusable.
   Result<PaintedFrame> receive();
 

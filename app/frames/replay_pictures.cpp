@@ -86,7 +86,7 @@ Status prepare_frame_folder(const std::filesystem::path& folder, bool replaces_r
     if (is_output_of_earlier_run(entry.path().filename().string())) old.push_back(entry.path());
   }
   for (const fs::path& file : old) {
-    // A link is removed itself, whatever its target allows.
+    // The link itself is removed, so the permissions of its target do not matter.
     if (replaces_read_only || fs::is_symlink(fs::symlink_status(file, error))) continue;
     if (Status checked = check_replaceable(file); !checked) return checked;
   }
@@ -153,7 +153,7 @@ namespace {
 
 std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& file, const std::string& size,
                                           const std::string& rate) {
-  // Most players need even side lengths, hence the padding.
+  // The filter pads the picture to even width and height, which most players need.
   return {"ffmpeg",
           "-y",
           "-loglevel",
@@ -175,13 +175,14 @@ std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& file, con
           "file:" + file.string()};
 }
 
-// The file that ffmpeg writes, and the file that it becomes. Both are the same for a pipe or a device.
+// `unfinished` is the file that ffmpeg writes; it is renamed to `target` at the end. For a pipe or a device,
+// both are the same.
 struct VideoPlace {
   std::filesystem::path unfinished, target;
 };
 
-// Makes the empty file that ffmpeg will fill. It is created exclusively, so that no link of this name is
-// followed, and with the permissions of the file that it will replace.
+// Makes the empty file that ffmpeg will fill, with the permissions of the file that it will replace. It is
+// created exclusively, so that a link with its name is not followed.
 Result<VideoPlace> prepare_video(const std::filesystem::path& file) {
   VideoPlace place{file, file};
   std::error_code ignored;
@@ -262,7 +263,7 @@ VideoEncoder::VideoEncoder(VideoEncoder&& other) noexcept
 
 VideoEncoder::~VideoEncoder() {
   if (process_ < 0) return;
-  kill(process_, SIGKILL);  // the rest of the video would be encoded only to be removed
+  kill(process_, SIGKILL);  // the unfinished video is removed, so encoding the rest is useless
   close_and_wait();
   remove_unfinished();
 }

@@ -23,8 +23,9 @@
 
 namespace spoonbill {
 
-// Consumes the session's marks. Writes the requested documents into the folder and returns the names of the
-// requested screenshots of the next frame. If there is no folder, writes nothing and returns no names.
+// Removes the marks (requests for files) from the session. Writes the requested documents into the folder and
+// returns the names of the requested screenshots of the next frame. If there is no folder, writes nothing and
+// returns no names.
 Result<std::vector<std::string>> consume_marks(Session& session,
                                                const std::optional<std::filesystem::path>& folder);
 
@@ -45,7 +46,7 @@ Status prepare_frame_folder(const std::filesystem::path& folder, bool replaces_r
 class FrameWriter {
  public:
   explicit FrameWriter(std::filesystem::path folder);
-  ~FrameWriter();  // writes all frames that were added
+  ~FrameWriter();  // waits until all added frames are written
   FrameWriter(const FrameWriter&) = delete;
   FrameWriter& operator=(const FrameWriter&) = delete;
 
@@ -57,16 +58,16 @@ class FrameWriter {
   void write_frames();
 
   const std::filesystem::path folder_;
-  std::mutex mutex_;  // guards the members below
+  std::mutex mutex_;  // guards the members that follow
   std::condition_variable changed_;
   std::deque<std::pair<int, Image>> queue_;
   bool finishing_ = false;
   Status failure_;
-  std::thread thread_;  // declared last, because it uses all members above
+  std::thread thread_;  // declared last, because the thread uses all other members
 };
 
-// A video file that an ffmpeg process encodes from raw pictures. The file appears under its name in finish(),
-// or not at all. One owner, one thread. The program must ignore SIGPIPE (see main).
+// A video file that an ffmpeg process encodes from raw pictures. The complete file appears under its name in
+// finish(), or not at all. One owner, one thread. The program must ignore SIGPIPE (see main).
 class VideoEncoder {
  public:
   // Returns true if ffmpeg is on the PATH.
@@ -92,8 +93,8 @@ class VideoEncoder {
 
   std::filesystem::path file_;
   std::filesystem::path unfinished_;
-  pid_t process_;  // -1 when no process runs
-  int pipe_;       // -1 when closed
+  pid_t process_;  // process of ffmpeg; -1 when it does not run
+  int pipe_;       // pipe to ffmpeg; -1 when it is closed
   UnfinishedFile ending_;
 };
 
@@ -101,11 +102,12 @@ class VideoEncoder {
 struct PictureRequest {
   int width_px = 0;
   int height_px = 0;
-  std::uint64_t frame_count = 0;                // frames of the whole replay, 60 per second
-  std::uint64_t every = 1;                      // interval between drawn frames
-  std::optional<std::filesystem::path> folder;  // for frames and contact sheet
+  std::uint64_t frame_count = 0;  // frames of the whole replay, 60 per second
+  std::uint64_t every = 1;        // interval between drawn frames, in frames
+  // Receives the frames and the contact sheet. If empty, none are written.
+  std::optional<std::filesystem::path> folder;
   std::optional<std::filesystem::path> video;
-  bool replaces_read_only = false;  // files of earlier runs
+  bool replaces_read_only = false;  // also replaces read-only files of earlier runs
 };
 
 // Writes the pictures of a replay. One owner, one thread.
@@ -128,7 +130,7 @@ class ReplayPictures {
   bool belongs_on_sheet(std::uint64_t index) const;
 
   PictureRequest request_;
-  std::unique_ptr<FrameWriter> frames_;  // null without a folder
+  std::unique_ptr<FrameWriter> frames_;  // null if there is no folder
   std::optional<VideoEncoder> video_;
   ContactSheet sheet_;
   std::uint64_t count_ = 0;

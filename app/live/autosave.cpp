@@ -16,7 +16,8 @@ constexpr std::size_t bytes_limit = std::size_t{65} << 20;
 constexpr int autosave_version = 1;
 constexpr int windows_limit = 99;  // largest number of windows that show the same document
 
-// The hash of the path keeps documents of the same name in different folders apart.
+// Returns the name of an autosave file. The hash of the path distinguishes documents of the same name in
+// different folders.
 std::string file_name_for(const std::filesystem::path& of, int number) {
   const std::string ending = (number > 1 ? "-" + std::to_string(number) : "") + ".autosave.json";
   if (of.empty()) return "untitled" + ending;
@@ -31,8 +32,8 @@ std::filesystem::path canonical_path(const std::filesystem::path& path) {
   return problem ? path : canonical;
 }
 
-// Returns FILE-N with two endings around the number, the first such name that is free. The claim's lock keeps
-// other windows from choosing the same name.
+// Returns the first file name of the form `file` + `before` + "-N" + `after` that is free, such as
+// a.autosave.json.kept-1.json. The claim's lock prevents other windows from choosing the same name.
 std::filesystem::path find_free_name(const std::filesystem::path& file, const std::string& before,
                                      const std::string& after) {
   for (int number = 1;; ++number) {
@@ -42,8 +43,8 @@ std::filesystem::path find_free_name(const std::filesystem::path& file, const st
   }
 }
 
-// Returns true if the file holds the same document. Times tell nothing: a copy, a checkout or a
-// synchronisation gives a file a newer time without the user's work. The view alone is not work.
+// Returns true if the file contains the same document, whatever its view. Modification times are not
+// compared, because a copy, a checkout or a synchronisation makes a file newer without any work by the user.
 bool holds_same(const std::filesystem::path& file, Document recovered) {
   auto saved = read_document(file);
   if (!saved) return false;
@@ -94,7 +95,7 @@ Result<std::filesystem::path> Autosave::set_aside() const {
       return kept;
     }
   }
-  // Renaming needs no space on the disk.
+  // A file that cannot be read or copied is renamed, which needs no space on the disk.
   const std::filesystem::path kept = find_free_name(file_, ".unread", "");
   std::error_code problem;
   std::filesystem::rename(file_, kept, problem);
@@ -115,7 +116,7 @@ AutosaveClaim AutosaveClaim::acquire(const std::filesystem::path& folder, const 
     Autosave autosave(folder, of, number);
     auto lock = FileLock::acquire(autosave.file().string() + ".lock");
     if (!lock) {
-      // Untitled documents share a name, but they are not the same document.
+      // Untitled documents share a name but are different documents.
       is_open_elsewhere = is_open_elsewhere || (!of.empty() && lock.error().code == ErrorCode::in_use);
       continue;
     }

@@ -62,7 +62,7 @@ class AutosaveClaim {
       : autosave_(std::move(autosave)), lock_(std::move(lock)) {}
 
   Autosave autosave_;
-  std::optional<FileLock> lock_;  // empty where the folder does not support locks
+  std::optional<FileLock> lock_;  // lock of the autosave; empty if the folder does not support locks
   bool is_open_elsewhere_ = false;
 };
 

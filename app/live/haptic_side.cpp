@@ -107,7 +107,7 @@ void HapticSide::abandon_tick(const FailedAssertion& failure) {
 
 void HapticSide::run_tick(const LoopTick& tick) {
   if (journal_->consume_recording_failure()) recording_ = false;
-  // A force that the watchdog has cut comes back as after any other stall.
+  // If the watchdog has cut the force, the tick is treated as one after a stall.
   const std::uint64_t cut_ticks = watched_device_.consume_cut() ? stall_ticks - 1 : 0;
   const DeviceReading reading = safe_device_.read(std::max(tick.dropped, cut_ticks));
   if (lent_.session == nullptr) reclaim_if_done();
@@ -125,7 +125,7 @@ void HapticSide::close() {
   safe_device_.give_none();
   if (lent_.session == nullptr) return;
   if (recording_) end_recording();
-  // Publishes the newest state, so that a session that ends in a fault has it in its autosave.
+  // The autosave of a session that ends with a fault then contains the newest state.
   if (published_change_ != change_) publish_scene();
 }
 
@@ -135,8 +135,8 @@ void HapticSide::run_commands() {
   }
 }
 
-// Switches the force of the device, and records that as the replay needs it: a new session starts with the
-// force on.
+// Switches the force of the device. A replay starts each session with the force on, so the recording gets
+// every difference from the session's own switch.
 void HapticSide::update_force_switch() {
   if (exchange_->force_cut.exchange(false, std::memory_order_acq_rel)) force_on_ = false;
   safe_device_.switch_force(force_on_);
@@ -186,7 +186,7 @@ void HapticSide::reclaim_if_done() {
   }
   if (lent_.is_other_document) {
     ++document_count_;
-    // The workspace of a virtual handle moves to the new body.
+    // The workspace of a virtual handle is centred on the new body.
     if (lent_.session->device.workspace_follows_model) {
       const Box box = bounding_box(lent_.session->simulation.surface().net);
       safe_device_.set_workspace_centre(box.centre());
@@ -257,7 +257,7 @@ void HapticSide::push(JournalEntry&& entry) {
 void HapticSide::advance_session(DeviceReading reading) {
   if (safe_device_.consume_proxy_reset()) reset_proxy();
   if (recording_) {
-    if (recorded_ticks_ == 0) reading.missed = 0;  // the recording begins with this tick
+    if (recorded_ticks_ == 0) reading.missed = 0;  // periods before the recording do not count
     push(RecordedReading{reading});
     recorded_missed_ += reading.missed;
     ++recorded_ticks_;

@@ -36,9 +36,9 @@ namespace spoonbill {
 // A session on loan to the worker, with the results of the job.
 struct LentSession {
   std::unique_ptr<Session> session;
-  bool is_new_session = false;                 // true if a new session has replaced it
+  bool is_new_session = false;                 // true if the job has replaced the session by a new one
   bool is_other_document = false;              // true if the new session shows another document
-  std::unique_ptr<RecordingWriter> recording;  // starts with the session's next tick
+  std::unique_ptr<RecordingWriter> recording;  // recording that starts with the session's next tick
 };
 
 // A job that may take long. It runs on the worker's thread while the haptic thread ticks its device without
@@ -71,11 +71,11 @@ struct LiveFrame {
   SessionFacts facts;
   std::uint32_t safety_flags = 0;  // SafetyFlag bits of the last tick
   bool recording = false;
-  std::uint64_t session = 0;         // number of sessions opened or restarted so far
-  std::uint64_t edit_count = 0;      // number of touched ticks and commands so far: edits worth saving
-  std::uint64_t document = 0;        // number of documents opened so far
+  std::uint64_t session = 0;     // number of sessions opened or restarted so far
+  std::uint64_t edit_count = 0;  // number of commands, and of ticks with contact, so far: edits worth saving
+  std::uint64_t document = 0;    // number of documents opened so far
   std::uint64_t completed_jobs = 0;  // number of completed jobs: open, start recording
-  std::uint64_t failed_jobs = 0;     // bit n % 64: job n failed, counted from 0
+  std::uint64_t failed_jobs = 0;     // bit n % 64 is set if job n failed; jobs are counted from 0
 };
 
 // Force on the device at one tick, for a plot.
@@ -89,7 +89,7 @@ class SessionWorker {
  public:
   // The notices must outlive the worker. An error of a job becomes a notice.
   explicit SessionWorker(Notices& notices);
-  ~SessionWorker();  // finishes the current job first
+  ~SessionWorker();  // waits for the end of the current job
 
   // lend() and reclaim() are called by the haptic thread; neither waits nor allocates. reclaim() returns true
   // once per loan, after the job has ended; lend() must not be called again before that. `job` is the
@@ -106,7 +106,7 @@ class SessionWorker {
   bool is_done_ = false;
   std::atomic<bool> finished_{false};
   std::atomic<bool> stopping_{false};
-  std::counting_semaphore<2> pending_{0};  // released for a loan and for the stop
+  std::counting_semaphore<2> pending_{0};  // released once per loan, and once to stop the thread
   std::thread thread_;
 };
 
@@ -119,12 +119,14 @@ struct LiveExchange {
   explicit LiveExchange(const LiveFrame& first)
       : commands(command_capacity), frames(first), forces(force_capacity), failures(failure_capacity) {}
 
-  BoundedQueue<LiveCommand> commands;             // main -> haptic
-  std::atomic<bool> force_cut{false};             // main -> haptic: switch the force off, whatever is queued
-  TripleBuffer<LiveFrame> frames;                 // haptic -> main
-  BoundedQueue<ForceSample> forces;               // haptic -> main; dropped when full
-  std::atomic<std::uint64_t> recordings_lost{0};  // recordings that ended because the disk was too slow
-  // haptic -> main: the first failure of each series of failed ticks.
+  BoundedQueue<LiveCommand> commands;  // from the main thread to the haptic thread
+  // Set by the main thread: switches the force off before queued commands run.
+  std::atomic<bool> force_cut{false};
+  TripleBuffer<LiveFrame> frames;    // from the haptic thread to the main thread
+  BoundedQueue<ForceSample> forces;  // from the haptic thread to the main thread; dropped when full
+  // Number of recordings that ended because the disk was too slow.
+  std::atomic<std::uint64_t> recordings_lost{0};
+  // From the haptic thread to the main thread: the first failure of each series of failed ticks.
   BoundedQueue<std::optional<FailedAssertion>> failures;
 };
 
@@ -137,8 +139,8 @@ class HapticSide {
              Journal& journal, SessionWorker& worker);
 
   // Runs one tick. Called by the haptic thread, once per period. A failed assertion abandons the tick: the
-  // device gets no force and the next frame has tick_flag_failed. A recording ends, because its replay could
-  // not stop at the same point.
+  // device gets no force and the next frame has tick_flag_failed. A recording ends, because its replay would
+  // not be abandoned at the same point.
   void tick(const LoopTick& tick) noexcept;
 
   // Leaves the device without force, ends a recording as LiveSession::stop_recording() does, and passes the
@@ -171,11 +173,11 @@ class HapticSide {
   void publish(std::uint64_t index);
   void publish_scene();
 
-  LentSession lent_;  // the session is null while the worker has it
+  LentSession lent_;  // the session in `lent_` is null while the worker has it
   std::unique_ptr<Device> device_;
   WatchedDevice watched_device_;
   SafeDevice safe_device_;  // the only access to the device
-  bool force_on_ = true;    // kept when another session takes over
+  bool force_on_ = true;    // not changed when another session takes over
 
   LiveExchange* exchange_;
   Journal* journal_;
@@ -186,7 +188,7 @@ class HapticSide {
   bool recording_ = false;
   std::uint64_t recorded_ticks_ = 0;
   std::uint64_t recorded_missed_ = 0;  // periods without a tick since the first tick of the recording
-  bool state_recorded_ = false;        // the state hash at recorded_ticks_ is recorded
+  bool state_recorded_ = false;        // true if the state hash at recorded_ticks_ is recorded
 
   std::uint64_t session_count_ = 0;
   std::uint64_t document_count_ = 0;

@@ -79,7 +79,8 @@ void Journal::set_autosave(std::optional<Autosave> autosave, std::uint64_t docum
   ++autosave_count_;
 }
 
-// A write in progress waits in was_superseded() until the file has its new name.
+// Holds the mutex until the file has its new name. A thread that is writing the autosave waits for it in
+// was_superseded().
 Result<std::filesystem::path> Journal::set_autosave_aside() {
   const std::lock_guard lock(mutex_);
   if (!autosave_) return Error{ErrorCode::unavailable, "there is no autosave"};
@@ -128,7 +129,8 @@ bool Journal::process_pending() {
   bool worked = false;
   for (int i = 0; i < 1000 && entries_.pop(entry); ++i) {
     write(entry);
-    entry = std::monostate{};  // freed here, because the queue returns the slot to the haptic thread
+    // Freed on this thread, because the queue returns the slot to the haptic thread.
+    entry = std::monostate{};
     worked = true;
   }
   if (!scenes_.update_reading()) return worked;
@@ -215,7 +217,7 @@ void Journal::store(const LiveScene& scene) {
   if (autosave_) autosave_->remove();
 }
 
-// A file that cannot be read is not known.
+// Returns true if the save may replace its file. A file that cannot be read is not known and is not replaced.
 bool Journal::may_replace(const SaveRequest& save) {
   std::error_code ignored;
   if (save.replaced == Replaced::any || !std::filesystem::is_regular_file(save.file, ignored)) return true;
@@ -245,7 +247,7 @@ void Journal::autosave(const LiveScene& scene) {
   }
   if (!target || scene.change == autosaved_change_) return;
   const Status written = target->write(make_document(scene));
-  if (was_superseded(count)) return target->remove();  // replaced during the write
+  if (was_superseded(count)) return target->remove();  // another autosave was set during the write
   if (written) autosaved_change_ = scene.change;
   // Only the first failure of a series is reported, because later autosaves fail in the same way.
   if (!written && !autosave_failed_) {

@@ -1,5 +1,5 @@
-// The journal of a live session, which writes recordings, documents and autosaves on a thread that may wait
-// for the disk; the exporter to foreign formats; and the notices to the user.
+// The journal of a live session, which writes recordings, documents and autosaves on its own thread, because
+// the disk may be slow; the exporter to foreign formats; and the notices to the user.
 #pragma once
 
 #include <atomic>
@@ -27,7 +27,7 @@ struct Notice {
   std::string text;
 };
 
-// Messages from the threads that may wait; the haptic thread never adds one. Thread-safe.
+// Messages to the user. Only threads that may wait add one, never the haptic thread. Thread-safe.
 class Notices {
  public:
   void add(Notice::Kind kind, std::string text) {
@@ -71,8 +71,8 @@ class Exporter {
   std::thread thread_;
 };
 
-// Entries of a recording, in order. Commands pass through the journal even if they are not recorded, so that
-// their memory is freed outside the haptic thread.
+// The types from RecordingStart to RecordedState are the entries of a recording. Commands pass through the
+// journal even if they are not recorded, so that their memory is freed outside the haptic thread.
 struct RecordingStart {
   std::unique_ptr<RecordingWriter> recording;
 };
@@ -83,14 +83,14 @@ struct RecordedCommand {
   Json command;
   bool recorded = true;
 };
-struct RecordedReset {};  // reset of the proxy after a pause
+struct RecordedReset {};  // records a reset of the proxy after a pause
 struct RecordedForceSwitch {
   bool on = true;
 };
 struct RecordedState {
   std::uint64_t state_hash = 0;
-  bool last = false;         // ends the recording
-  std::uint64_t missed = 0;  // with `last`: periods without a tick during the recording
+  bool last = false;         // true if this entry ends the recording
+  std::uint64_t missed = 0;  // valid if `last` is true: periods without a tick during the recording
 };
 
 // Number of ticks of a recording, and of periods of 1 ms without a tick during it.
@@ -106,27 +106,29 @@ using JournalEntry = std::variant<std::monostate, RecordingStart, RecordedReadin
 struct LiveScene {
   std::string title;
   Scene scene;
-  std::uint64_t document = 0;    // as in LiveFrame
+  std::uint64_t document = 0;    // number of the document, see LiveFrame::document
   std::uint64_t change = 0;      // number of changes of the scene so far, including motion after a touch
-  std::uint64_t edit_count = 0;  // as in LiveFrame
-  std::uint64_t request = 0;     // number of the last save request before this scene was written
+  std::uint64_t edit_count = 0;  // see LiveFrame::edit_count
+  // Number of the last save request that was received before the scene was written.
+  std::uint64_t request = 0;
 };
 
 // A document that was saved.
 struct SavedDocument {
   std::filesystem::path file;
-  std::uint64_t document = 0;  // as in LiveFrame
+  std::uint64_t document = 0;  // number of the document, see LiveFrame::document
   std::uint64_t edit_count = 0;
 };
 
-// The files that a save may replace: those whose content this session has read or saved last, or any. Another
-// program may have changed the file in the meantime, or a person may have named an existing one.
+// Existing files that a save may replace. `known`: only a file with the content that this session read or
+// saved last. `any`: every file. Unknown content comes from another program, or the user has named the file
+// of another document.
 enum class Replaced { known, any };
 
 // A request to save or export the document that is shown.
 struct SaveRequest {
   std::uint64_t request = 0;
-  std::uint64_t document = 0;  // the document shown at the time of the request
+  std::uint64_t document = 0;  // number of the document shown at the time of the request
   std::filesystem::path file;
   Replaced replaced = Replaced::known;
 };
@@ -137,12 +139,12 @@ class Journal {
   // Number of entries that may wait for the disk before a recording is abandoned, about one per tick.
   static constexpr std::size_t entry_capacity = 16384;
 
-  // The notices must outlive the journal. `first` sets the sizes of the scenes.
+  // The notices must outlive the journal. The scene buffers are allocated with the sizes of `first`.
   Journal(Notices& notices, const LiveScene& first);
   ~Journal();
 
-  // Writes all pending entries and ends the thread; an unfinished recording remains without its end. Called
-  // by the thread that made the journal, after the last push().
+  // Writes all pending entries and ends the thread. An unfinished recording remains without its end. Must be
+  // called after the last push(), by the thread that made the journal.
   void stop();
   // Returns true if the last recording was written to its end and closed. Valid after stop().
   bool is_last_recording_complete() const { return is_last_complete_; }
@@ -161,7 +163,7 @@ class Journal {
   // Returns true if a recording has been abandoned since the last call.
   bool consume_recording_failure() { return recording_failed_.exchange(false, std::memory_order_acq_rel); }
 
-  // Sets the view that is saved with documents. Called by the main thread, as are the functions below.
+  // Sets the view that is saved with documents. Called by the main thread, as are all functions after it.
   void set_view(Json view);
   // Sets the autosave of a document, numbered as in LiveFrame, or disables it if empty. The previous file is
   // removed.
@@ -174,10 +176,11 @@ class Journal {
   void save(SaveRequest save);
   // Returns the last document that was saved since the previous call, or nullopt.
   std::optional<SavedDocument> consume_saved_document();
-  // Returns the file of a save since the last call that was not written, because the file exists with content
-  // that this session does not know.
+  // Returns the file that a save since the last call did not replace, because its content is not known to
+  // this session; nullopt if there is none.
   std::optional<std::filesystem::path> consume_save_conflict();
-  // Sets the content of the document's file as it was read, see content_hash(); empty if there is no file.
+  // Sets the hash of the content of the document's file as it was read, see content_hash(); empty if there is
+  // no file.
   void set_known_content(std::optional<std::uint64_t> content);
 
  private:
@@ -197,18 +200,19 @@ class Journal {
   BoundedQueue<JournalEntry> entries_;
   TripleBuffer<LiveScene> scenes_;
 
-  std::mutex mutex_;  // guards the nine members below
+  std::mutex mutex_;  // guards the nine members that follow
   Json view_ = Json::object();
   std::optional<Autosave> autosave_;
   std::optional<SaveRequest> save_;
   std::optional<SavedDocument> saved_;
   std::optional<std::filesystem::path> save_conflict_;
   std::optional<std::uint64_t> known_content_;
-  std::uint64_t autosave_count_ = 0;     // number of changes of autosave_
-  std::uint64_t autosave_document_ = 0;  // the document that it holds
-  std::uint64_t saved_change_ = 0;       // last change that is already in the file
+  std::uint64_t autosave_count_ = 0;     // number of times that autosave_ was replaced
+  std::uint64_t autosave_document_ = 0;  // number of the document that autosave_ holds
+  std::uint64_t saved_change_ = 0;       // LiveScene::change of the last saved scene
 
-  std::unique_ptr<RecordingWriter> recording_;  // used only by the journal's thread, like the members below
+  // recording_ and the four members that follow are used only by the journal's thread.
+  std::unique_ptr<RecordingWriter> recording_;
   std::uint64_t autosaved_change_ = 0;
   bool autosave_failed_ = false;
   bool is_last_complete_ = false;

@@ -28,7 +28,7 @@ Result<std::unique_ptr<Session>> make_session(const Document& document, const st
 std::string describe_real_time_limit(int substeps) {
   return "this material needs " + std::to_string(substeps) +
          " substeps a tick in real time; a live session can take " + std::to_string(live_substeps_limit) +
-         "; replay runs it";
+         "; a replay can take any number";
 }
 
 // Switches real time off if a live session cannot run it. Returns the reason, or an empty text.
@@ -41,7 +41,8 @@ std::string limit_real_time(Simulation& simulation) {
   return "real time is off: " + describe_real_time_limit(substeps);
 }
 
-// Returns true for a change that leaves real time on but may need more substeps than the last frame reports.
+// Returns true for a change of the material while real time is on. The new material may need more substeps
+// than the last frame reports.
 bool changes_material_in_real_time(const Request& request, const Sculpting& sculpting) {
   const auto* command = std::get_if<Command>(&request);
   return command != nullptr && std::holds_alternative<SetMaterial>(*command) && sculpting.real_time;
@@ -53,7 +54,7 @@ bool switches_real_time_on(const Request& request) {
   return set != nullptr && set->sculpting.real_time;
 }
 
-// Restarts the session from the current shape of its bodies.
+// Replaces the session by a new one that starts with the current shape of its bodies.
 Status restart_session(LentSession& lent, const DeviceSpecification& device, InstructionSet set) {
   auto session = make_session(make_session_document(*lent.session), "the current shape", device, set);
   if (!session) return session.error();

@@ -31,11 +31,11 @@ class LiveSession {
   static Result<std::unique_ptr<LiveSession>> start(const Document& document, const std::string& source,
                                                     const LiveSettings& settings,
                                                     std::unique_ptr<Device> device);
-  ~LiveSession();  // stops the threads after all pending writes
+  ~LiveSession();  // waits for all pending writes, then stops the threads
 
   // Queues a request. Requests are applied in order before the next tick. Returns false if the queue is full
-  // because the haptic thread is far behind. Real time is refused with a notice where a tick would take more
-  // substeps than fit into a millisecond, and a new material switches it off.
+  // because the haptic thread is far behind. A request for real time is refused with a notice if a tick would
+  // need more than live_substeps_limit substeps. A new material switches real time off.
   bool ask(Request request);
 
   // Switches the force of the device off at the next tick, ahead of everything that is queued.
@@ -53,18 +53,19 @@ class LiveSession {
   void leave_recording_unpublished() { journal_.leave_recordings_unpublished(); }
 
   // Saves the document of the last frame in the state of the next tick. consume_saved_document() and the
-  // notices report the result. Fails if another document was opened in the meantime. A file that `replaced`
-  // protects stays as it is, and consume_save_conflict() reports it.
+  // notices report the result. Fails if another document was opened in the meantime. If `replaced` does not
+  // allow the file to be replaced, consume_save_conflict() reports it.
   bool save(std::filesystem::path file, Replaced replaced = Replaced::known);
   std::optional<SavedDocument> consume_saved_document() { return journal_.consume_saved_document(); }
   std::optional<std::filesystem::path> consume_save_conflict() { return journal_.consume_save_conflict(); }
-  // Sets the content of the document's file as it was read, see Journal.
+  // Sets the hash of the content of the document's file as it was read, see Journal.
   void set_known_content(std::optional<std::uint64_t> content) { journal_.set_known_content(content); }
 
-  // Set the view that is saved with documents, and the autosave of the document of the last frame.
+  // set_view() sets the view that is saved with documents; set_autosave() sets the autosave of the document
+  // of the last frame.
   void set_view(Json view) { journal_.set_view(std::move(view)); }
   void set_autosave(std::optional<Autosave> autosave);
-  // Ends the autosave and keeps its content, see Journal.
+  // Ends the autosave and stores its content under another name, see Journal.
   Result<std::filesystem::path> set_autosave_aside() { return journal_.set_autosave_aside(); }
 
   // Returns the newest tick.

@@ -43,7 +43,7 @@ class Painting {
   Image picture_;
 };
 
-// Waits until a frame satisfies `done`. A notice about a problem is an error.
+// Waits until a frame satisfies `done`. Returns an error if a notice reports a problem, or after 10 s.
 template <class Done>
 Status wait_until(LiveSession& live, Done done, const char* what) {
   const auto give_up = SteadyClock::now() + wait_limit;

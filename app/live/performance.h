@@ -1,5 +1,5 @@
 // Performs a script live: its hand and commands run in real time on the threads of a live session, with or
-// without drawing. This imitates a user at the window, repeatably enough for tests and measurements.
+// without drawing. This imitates a user of the window in a repeatable manner, for tests and measurements.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ namespace spoonbill {
 // Settings of a performance.
 struct PerformanceSettings {
   LiveSettings live;
-  bool draw = false;  // 60 frames per second at 1280x720 into memory
+  bool draw = false;  // if true, draws 60 frames per second at 1280x720 into memory
   std::filesystem::path recording;
   OutputOptions output;  // how the recording replaces an older file
 };

@@ -163,7 +163,8 @@ void request_material(Material material, PanelAnswer& answer) {
   answer.requests.emplace_back(Command(SetMaterial{std::move(material)}));
 }
 
-// Returns the mass and the number of regions of other materials, in a single row, to suit a small window.
+// Returns the mass and the number of regions with other materials. Both share a row, because the window is
+// small.
 std::string mass_text(const PanelModel& model) {
   std::string mass = grams_text(model.mass_kg);
   if (model.region_count == 0) return mass;
@@ -190,12 +191,12 @@ void draw_material(const PanelModel& model, const Theme& theme, PanelAnswer& ans
   if (sculpting_changed) answer.requests.emplace_back(Command(SetSculpting{sculpting}));
 }
 
-// Returns the distance by which a surface lags behind its lattice.
+// Returns the text for the distance by which a surface lags behind its lattice.
 std::string residual_text(double residual_m) {
   return rounded_text(1e3 * residual_m, 3, " mm error");
 }
 
-// States what happens to bodies that nothing fixes, and offers to let them move freely.
+// States what happens to bodies without fixed nodes, and offers to let them move freely.
 void draw_unheld(const PanelModel& model, PanelAnswer& answer) {
   if (model.unheld_count == 0) return;
   Sculpting sculpting = model.sculpting;

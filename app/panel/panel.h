@@ -25,15 +25,15 @@ struct PanelModel {
   Tool tool;
   Sculpting sculpting;
   Material material;
-  int region_count = 0;           // regions of other materials
-  std::vector<Material> presets;  // choices of the preset list
+  int region_count = 0;           // number of regions with other materials
+  std::vector<Material> presets;  // materials in the list of presets
 
   double inertia_scale = 1.0;
   double mass_kg = 0.0;  // mass of all bodies
   int plane_count = 0;
   int fixed_node_count = 0;
   int node_count = 0;
-  int unheld_count = 0;  // bodies without fixed nodes
+  int unheld_count = 0;  // number of bodies without fixed nodes
   bool has_ground = false;
 
   double residual_m = 0.0;  // largest distance by which a surface lags behind its lattice
@@ -46,10 +46,10 @@ struct PanelModel {
   double force_n = 0.0;
   double force_limit_n = 0.0;
   double rate_hz = 0.0;
-  bool rate_is_nominal = true;  // true in lock-step, where no clock measures it
+  bool rate_is_nominal = true;  // true in lock-step, where no clock measures the rate
   int substeps = 0;
   std::uint32_t flags = tick_flag_none;
-  std::optional<bool> force_on;  // switch of the device's force; empty in a replay, which has no device
+  std::optional<bool> force_on;  // whether the device's force is on; empty in a replay, which has no device
   std::string safety_text;       // reasons for a limited device force, one per line
   std::string drawing_text;      // details omitted from the picture
 };
@@ -68,7 +68,8 @@ Rectangle picture_panel_rectangle(int width_px, int height_px);
 // Returns the interface's scale for a frame of this height: 1 at 720 pixels, in steps of a half.
 double panel_scale(int height_px);
 
-// The user's requests of one frame, and the reason why a value was rejected, which is empty if no value was.
+// The user's requests of one frame. `refusal` is the reason why a value was rejected; it is empty if none
+// was.
 struct PanelAnswer {
   std::vector<Request> requests;
   std::string refusal;

@@ -155,8 +155,8 @@ std::string as_format(const std::string& text) {
   return format;
 }
 
-// State of a quantity row: a slider, or a text field, which receives the keyboard focus one frame after it
-// opens.
+// State of a quantity row. `closed`: a slider. `opens`: a text field that has just appeared and receives the
+// keyboard focus. `open`: a text field that has the focus.
 enum Entry : int { entry_closed, entry_opens, entry_open };
 
 // Draws the slider. Ctrl+click opens the text field and leaves the value unchanged.
@@ -276,7 +276,7 @@ bool switch_row(const char* label, const std::string& text, const char* name, bo
 
 namespace {
 
-// `width` as ImGui takes it: negative values leave so much room at the right.
+// Draws a row with a bar. As in ImGui, a negative `width` leaves that much space at the right.
 void draw_gauge(const char* label, double fraction, const std::string& text, float width) {
   begin_row(label);
   const auto filled = static_cast<float>(std::clamp(fraction, 0.0, 1.0));

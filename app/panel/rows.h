@@ -60,7 +60,7 @@ bool switch_row(const char* label, const std::string& text, const char* name, bo
 
 // Adds a bar that is filled by `fraction`, 0 to 1.
 void gauge_row(const char* label, double fraction, const std::string& text);
-// Adds such a bar with a named checkbox beside it. Returns true if the user changed `on`.
+// Adds a bar as gauge_row() does, and a named checkbox beside it. Returns true if the user changed `on`.
 bool gauge_switch_row(const char* label, double fraction, const std::string& text, const char* name,
                       bool& on);
 

@@ -13,7 +13,7 @@
 namespace spoonbill {
 namespace {
 
-// A surface with a radius above one kilometre counts as flat.
+// A surface with a radius of curvature above one kilometre counts as flat.
 constexpr double least_curvature_per_m = 1e-3;
 
 constexpr const char* no_walls = "unknown: no two walls face each other";
@@ -29,8 +29,7 @@ Json curvature_json(const CurvatureExtreme& place) {
           {"point_m", position_json(place.position_m)}};
 }
 
-// Returns the radius of curvature in metres; null if the curvature has the other sign or is only rounding
-// error.
+// Returns the radius of curvature in metres; null if the curvature is negative or only rounding error.
 Json radius_json(double curvature_per_m) {
   return curvature_per_m > least_curvature_per_m ? Json(1.0 / curvature_per_m) : Json(nullptr);
 }
@@ -55,7 +54,7 @@ void add_thickness(FactSheet& facts, const SurfaceCheck& check, Json& json) {
     return;
   }
   const Thickness& thin = *check.thinnest;
-  // The sides meet if their distance is only rounding error.
+  // A distance that is only rounding error means that the two sides meet.
   const double thickness_m = thin.thickness_m > 1e-12 ? thin.thickness_m : 0.0;
   facts.add("  Thinnest", short_length_text(thickness_m) + " at " + position_text(thin.position_m), "",
             nullptr);
@@ -75,7 +74,7 @@ std::string names_text(const std::vector<std::string>& names) {
 }
 
 // Adds the mass of a body with its material regions. If the regions cannot be evaluated, the body's own
-// material is assumed everywhere and the line says why.
+// material is assumed everywhere and the line of the mass states the reason.
 void add_mass(FactSheet& facts, const Body& body, double volume_m3, const Vector3& centre_m, Json& json) {
   const BodyMass mass = mass_of_volume(body, volume_m3, centre_m);
   facts.add("  Volume", volume_text(volume_m3), "", nullptr);
@@ -137,7 +136,7 @@ std::vector<std::string> closing_problems(const Body& body, const SurfaceCheck& 
   return problems;
 }
 
-// Largest gap between faces that meet, from rounding error.
+// Uncertainties up to this length are rounding errors and are not shown.
 constexpr double least_gap_m = 1e-8;
 
 std::string faces_text(std::size_t count) {

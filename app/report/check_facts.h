@@ -27,8 +27,8 @@ Json add_meeting_facts(FactSheet& facts, const BodyOverlap& meeting, const Body&
 Json add_solid_check_facts(FactSheet& facts, const CadSolid& solid, const SolidCheck& check,
                            const std::vector<Body>& bodies);
 
-// Adds a line for each solid with faces that could not be joined, and returns the JSON list of them. `loose`
-// are the indices of these bodies.
+// Adds a line for each solid with faces that could not be joined, and returns the JSON list of these solids.
+// `loose` are the indices of the bodies that belong to no joined solid.
 Json add_open_solid_facts(FactSheet& facts, const std::vector<std::size_t>& loose,
                           const std::vector<Body>& bodies);
 

@@ -17,8 +17,8 @@
 namespace spoonbill {
 namespace {
 
-// Samples per direction. A trimmed surface gets fewer, because cutting cells along trim loops is slow and the
-// vertices of the loops count as samples too.
+// Numbers of sample points per direction. A trimmed surface gets fewer, because cutting cells along trim
+// loops is slow and the vertices of the loops are samples too.
 constexpr int extent_samples = 201, trimmed_extent_samples = 61;
 
 Box extent_within(const Surface& surface, const Grid& grid, const TrimmedArea& area) {
@@ -145,12 +145,14 @@ Json add_body_facts(FactSheet& facts, const std::string& label, const Body& body
   return json;
 }
 
-// Adds the members of a single body to the top level, where "name" is the document's and "body" the body's.
+// Adds the members of a single body to the top level of the JSON. Its name becomes "body" there, because
+// "name" is the name of the document.
 void add_single_body(FactSheet& facts, const Json& body) {
   for (const auto& [field, value] : body.items()) facts.add("", "", field == "name" ? "body" : field, value);
 }
 
-// The worst Jacobian is 1 for boxes and 0 for a cell that is about to fold over.
+// Returns a text for the quality of the cells. The worst Jacobian is 1 for boxes and 0 for a cell that is
+// about to fold over.
 std::string quality_text(const CellQuality& quality) {
   std::array<char, 80> text{};
   std::snprintf(text.data(), text.size(), "worst Jacobian %.2f, volumes vary by %.0f %%",
@@ -259,7 +261,7 @@ void add_material_facts(FactSheet& facts, const Material& material) {
   facts.add("Material", material_text(material), "material", material_to_json(material));
 }
 
-// Distances from the edges of a CAD file up to this one are rounding errors of the file.
+// Distances up to this one between trim loops and the edges in a CAD file are rounding errors of the file.
 constexpr double shown_trim_deviation_m = 1e-9;
 
 void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces) {

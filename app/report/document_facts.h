@@ -1,4 +1,4 @@
-// Reports of documents, CAD surfaces, materials and the simulation made of a document.
+// Reports on documents, CAD surfaces, materials and the simulation of a document.
 #pragma once
 
 #include <string>
@@ -45,8 +45,8 @@ void add_elasticity_facts(FactSheet& facts, const Simulation& simulation);
 void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot, const std::vector<Body>& bodies);
 
 // Adds the quality of the cells of each lattice, with and without its feature map. `maps` are the reports of
-// the bodies that have a feature map, in their order. "cells" in the JSON is a list, or one object for one
-// body.
+// the bodies that have a feature map, in the order of the bodies. "cells" in the JSON is a list, or one
+// object for one body.
 void add_cell_facts(FactSheet& facts, const Simulation& simulation,
                     const std::vector<FeatureMapReport>& maps);
 

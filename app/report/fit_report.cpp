@@ -54,7 +54,7 @@ std::size_t count_given(const ScanFit& fit) {
   return count;
 }
 
-// Returns the fraction of the given points that do not belong to any body.
+// Returns the fraction of the given points (see count_given()) that belong to no body.
 double left_out_share(const ScanFit& fit) {
   const double given = static_cast<double>(std::max<std::size_t>(1, count_given(fit)));
   return static_cast<double>(fit.outliers + fit.dust + fit.other_islands) / given;
@@ -223,8 +223,7 @@ std::optional<std::string> find_detail_note(const ScanFit& fit) {
 
 namespace {
 
-// Returns the fraction of the whole scan that is within the tolerance. Points that were left out count as
-// outside.
+// Returns the fraction of the whole scan that is within the tolerance. Skipped points count as outside.
 double share_within(const ScanFit& fit, double tolerance_m) {
   double within = 0.0;
   for (const FittedBody& body : fit.bodies) {

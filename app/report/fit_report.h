@@ -20,16 +20,16 @@ Deviation deviation_of_all(const ScanFit& fit);
 // Returns a note for a scan that is implausibly small or large, whose unit may be wrong.
 std::optional<std::string> find_size_note(const ScanFile& file, const ScanFit& fit);
 
-// Returns a note for a scan that the surface does not follow closely: it has a handle or a hole, or more
-// detail than the control points allow.
+// Returns a note for a scan that the surface does not follow closely, because the scan has a handle or a
+// hole, or more detail than the control points can follow.
 std::optional<std::string> find_detail_note(const ScanFit& fit);
 
 // Returns notes on bodies that miss the tolerance or fold, on normals that were flipped, and on connected
 // components of the scan that were skipped or capped. A tolerance of 0 means that there is no tolerance.
 std::vector<std::string> find_fit_shortcomings(const ScanFit& fit, double tolerance_m);
 
-// Adds the parts of the scan that the bodies leave out: outliers, specks and other islands, as a fraction of
-// the distinct points. Must be called before all other facts are added, because those describe the remaining
+// Adds the parts of the scan that belong to no body: outliers, specks and other islands, as fractions of the
+// distinct points. Must be called before all other facts are added, because those describe the remaining
 // points.
 void add_left_out_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit);
 

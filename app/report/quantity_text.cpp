@@ -29,7 +29,7 @@ bool is_same_range(const Range<double>& a, const Range<double>& b) {
   return a.low == b.low && a.high == b.high;
 }
 
-// "50 to 100 %"
+// Returns a text such as "50 to 100 %".
 std::string percent_range_text(const Range<double>& fractions) {
   return number_text(100.0 * fractions.low) + " to " + number_text(100.0 * fractions.high) + " %";
 }

@@ -94,7 +94,7 @@ Status Lockstep::run_tick() {
     if (Status reset = reset_proxy(); !reset) return reset;
   }
   const TickResult result = advance(*session_, reading);
-  // The tick is recorded after it has run, so that a recording that a signal ends holds whole ticks only.
+  // The tick is recorded after it has run, so that a recording that a signal interrupts has only whole ticks.
   if (writer_ != nullptr) {
     if (Status written = writer_->reading(reading); !written) return written;
   }

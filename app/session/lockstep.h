@@ -24,13 +24,14 @@ std::uint64_t frame_count(std::uint64_t tick_count);
 
 // Input of a lock-step run.
 struct LockstepInput {
-  Device* device = nullptr;  // read once a tick; must not be null
+  Device* device = nullptr;  // device that is read once a tick; must not be null
   std::uint64_t tick_count = 0;
-  std::vector<TimedCommand> commands;  // ascending by tick
-  // States to compare with before the commands of their tick, ascending; may be empty.
+  std::vector<TimedCommand> commands;  // commands in ascending order of ticks
+  // Expected states, ascending by tick; may be empty. Each is compared before the commands of its tick are
+  // applied.
   std::vector<Checkpoint> expected;
   std::optional<Checkpoint> expected_end;
-  std::uint64_t missed = 0;  // missed ticks of a replayed live recording, copied to the one that is written
+  std::uint64_t missed = 0;  // missed ticks of a live recording that is replayed; copied to the new recording
   std::string source;        // names the input in messages
 };
 
@@ -67,7 +68,7 @@ class Lockstep {
   std::uint64_t tick_ = 0;
   std::size_t next_command_ = 0;
   std::size_t next_expected_ = 0;
-  bool is_prepared_ = false;  // the commands of tick_ are applied
+  bool is_prepared_ = false;  // true if the commands of tick_ are applied
 };
 
 }  // namespace spoonbill

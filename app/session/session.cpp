@@ -154,7 +154,7 @@ struct RequestApplier {
       if (Status saved = save_document(); !saved) return saved;
       made.document = session.saved;
     }
-    // A replay would write a later file of the same name over the earlier one.
+    // A new mark replaces an earlier one of the same name, because a replay would overwrite its file.
     std::erase_if(session.marks, [&](const FileMark& other) {
       return other.mark.kind == mark.kind && other.mark.name == mark.name;
     });
@@ -176,7 +176,7 @@ struct RequestApplier {
   }
 };
 
-// A face of a solid is the only body that has no mass of its own.
+// Returns the mass of a body; zero for a face of a solid, which has no mass of its own.
 BodyMass mass_of_session(const Body& body) {
   return compute_body_mass(body).value_or(BodyMass());
 }
@@ -221,7 +221,7 @@ TickResult advance(Session& session, const DeviceReading& reading) {
 void write_snapshot(const Session& session, Snapshot& snapshot) {
   session.simulation.write_snapshot(snapshot);
   snapshot.tool.device = session.reading.pose();
-  // The proxy is unknown before the first tick.
+  // Before the first tick there is no proxy yet.
   if (session.simulation.tick() == 0) snapshot.tool.proxy = snapshot.tool.device;
   snapshot.tool.button = (session.reading.buttons & button_main) != 0;
   snapshot.device.name = session.device.name;
@@ -253,7 +253,7 @@ bool needs_rebuild(const Session& session, const Request& request) {
   const auto* command = std::get_if<Command>(&request);
   if (command == nullptr) return false;
   const auto* tool = std::get_if<SetTool>(command);
-  // A solid tool may be soft, which changes the size of snapshots.
+  // A solid tool may be soft, so a change from or to a solid tool can change the size of snapshots.
   const bool is_solid = session.simulation.scene().tool.kind == ToolKind::solid;
   return (tool != nullptr && (is_solid || tool->tool.kind == ToolKind::solid)) ||
          (changes_shape_meaning(*command) || std::holds_alternative<SetMaterial>(*command));

@@ -64,7 +64,7 @@ std::string make_mark_name(const std::string& text);
 // A requested file with its contents.
 struct FileMark {
   MarkFile mark;
-  std::shared_ptr<const Document> document;  // the document at that tick; null for a screenshot
+  std::shared_ptr<const Document> document;  // document at the tick of the mark; null for a screenshot
 };
 
 // A simulation and all state that belongs to a session. Plain struct with one owner: the lock-step loop or
@@ -78,13 +78,15 @@ struct Session {
   std::vector<BodyMass> masses = {};  // masses of the document's bodies; sculpting does not change them
 
   DeviceSpecification device;
-  DeviceReading reading;                 // from the last tick
+  DeviceReading reading;                 // reading of the last tick
   std::uint32_t flags = tick_flag_none;  // TickFlag bits, accumulated until the reader clears them
-  std::vector<FileMark> marks;           // accumulated until consume_marks(); the last of each name
-  bool keeps_documents = true;           // false if the documents of marks are not written: they stay empty
-  std::shared_ptr<const Document> saved = {};  // the last mark's document while nothing has changed since
-  std::size_t saves_at_tick = 0;               // number of different documents saved at this tick
-  bool force_on = true;                        // false while the user has switched the device's force off
+  // Requests for files until consume_marks(); a new one replaces one of the same name.
+  std::vector<FileMark> marks;
+  bool keeps_documents = true;  // false if nothing writes the documents of marks, which then stay empty
+  // Document of the last mark; null once anything has changed since.
+  std::shared_ptr<const Document> saved = {};
+  std::size_t saves_at_tick = 0;  // number of different documents saved at this tick
+  bool force_on = true;           // false while the user has switched the device's force off
 
   // Makes a session of the document. `source` names the document's file in messages; `watch` receives the
   // progress of feature maps.
@@ -95,10 +97,10 @@ struct Session {
 // Runs one tick of touch and updates the undo history.
 TickResult advance(Session& session, const DeviceReading& reading);
 
-// Writes the data of the last tick that drawing needs. Before the first tick, writes the data of the start.
+// Writes the data that drawing needs, as of the last tick. Before the first tick, writes the initial state.
 void write_snapshot(const Session& session, Snapshot& snapshot);
 
-// Returns the FNV-1a hash of every bit that the next tick depends on.
+// Returns the FNV-1a hash of all data on which the next tick depends, bit for bit.
 std::uint64_t state_hash(const Session& session);
 
 // Returns the document of the current state, as it would be saved.
@@ -123,7 +125,7 @@ struct SessionFacts {
   std::string title;
   Tool tool;
   Material material;
-  int region_count = 0;  // regions of the first body, which also gives the material
+  int region_count = 0;  // number of regions of the first body, which also gives the material
   double mass_kg = 0.0;  // mass of all bodies
   Sculpting sculpting;
   Symmetry symmetry;

@@ -13,7 +13,7 @@ namespace spoonbill {
 // that later calls are safe on the haptic thread. When the history is full, the oldest shape is dropped.
 class StrokeHistory {
  public:
-  // Shortest release that ends a stroke, in ticks; a shorter one is a bounce within the stroke.
+  // Shortest release that ends a stroke, in ticks. A shorter release is a bounce and belongs to the stroke.
   static constexpr int release_ticks = 50;
 
   // Largest number of stored shapes. The memory limit allows fewer shapes of large bodies, but at least 3.
@@ -22,7 +22,7 @@ class StrokeHistory {
 
   explicit StrokeHistory(const Simulation& simulation);
 
-  // Must be called after every tick. `touching`: the tool acted on the body in that tick.
+  // Must be called after every tick. `touching` is true if the tool touched the body in that tick.
   void after_tick(const Simulation& simulation, bool touching);
 
   // undo() restores the shape before the last stroke, redo() the shape after the next stroke. Each does
@@ -33,8 +33,8 @@ class StrokeHistory {
   // Restores the shape before the current stroke and discards the stroke. Does nothing outside a stroke.
   Status cancel(Simulation& simulation);
 
-  // Forgets all strokes. Must be called when a command changes fixing planes, the rest shape or anything else
-  // on which the meaning of stored shapes depends.
+  // Discards all strokes. Must be called when a command changes fixing planes, the rest shape or anything
+  // else on which the meaning of stored shapes depends.
   void clear(const Simulation& simulation);
 
   bool can_undo() const { return open_stroke_ || current_ > 0; }

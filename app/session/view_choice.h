@@ -25,10 +25,10 @@ namespace spoonbill {
 // Camera, overlays and ground of a view.
 struct ViewChoice {
   Camera camera;
-  bool shows_whole_body = true;  // target and distance are computed from the body
+  bool shows_whole_body = true;  // true if target and distance are computed from the body
   Overlays overlays;
   bool see_through_body = false;
-  std::optional<double> ground_y_m;  // default: just below the body
+  std::optional<double> ground_y_m;  // height of the ground; default: just below the body
 };
 
 // Reads a view. `source` names the file in messages. An empty object gives the defaults.
@@ -37,7 +37,8 @@ Result<ViewChoice> view_from_json(const Json& view, const std::string& source);
 // Returns the JSON of a view, as stored in a document.
 Json view_to_json(const ViewChoice& choice);
 
-// Return the commands that set the camera, or all overlays, to those of the choice.
+// camera_command() returns the command that sets the camera to that of the choice; overlays_command() returns
+// the one that sets all overlays.
 Json camera_command(const ViewChoice& choice);
 Json overlays_command(const Overlays& overlays, bool see_through_body);
 
@@ -80,8 +81,7 @@ inline constexpr std::array<StageChoice, 8> stage_choices = {{
     {"Contact points", ContactStage::contacts, 0},
 }};
 
-// Contact stages of the next frame, computed only while one of them is shown. One owner: the thread that
-// draws.
+// Computes the contact stages of the next frame if one of them is shown. One owner: the thread that draws.
 class StageFinder {
  public:
   // Sets settings.stages; null if no stage is shown.

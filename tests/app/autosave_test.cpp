@@ -72,7 +72,7 @@ TEST(AutosaveClaim, KnowsWhetherTheDocumentIsOpenElsewhere) {
   EXPECT_EQ(read(ends[0], &wrong, 1), 1);
   EXPECT_EQ(wrong, 0);
   {
-    // Also where this window continues the work that a crashed one left.
+    // The same holds for a window that continues the work of a crashed window.
     ASSERT_TRUE(Autosave(place.path("."), "/a/spoon.json", 2).write(handle("left")));
     const auto second = AutosaveClaim::acquire(place.path("."), "/a/spoon.json");
     EXPECT_TRUE(second.is_open_elsewhere());
@@ -82,7 +82,7 @@ TEST(AutosaveClaim, KnowsWhetherTheDocumentIsOpenElsewhere) {
   kill(window, SIGKILL);
   waitpid(window, nullptr, 0);
   EXPECT_FALSE(AutosaveClaim::acquire(place.path("."), "/a/spoon.json").is_open_elsewhere());
-  // Untitled documents are not the same.
+  // Two untitled documents are different documents, so neither counts as open elsewhere.
   const auto untitled = AutosaveClaim::acquire(place.path("."), {});
   EXPECT_FALSE(AutosaveClaim::acquire(place.path("."), {}).is_open_elsewhere());
   close(ends[0]);
@@ -107,7 +107,7 @@ TEST(AutosaveClaim, LeavesNoLockBehind) {
   EXPECT_EQ(count(), before);
 }
 
-// After the crash, a checkout or a synchronisation gives the document a newer time.
+// A checkout or a synchronisation after the crash makes the document's file newer than the autosave.
 TEST(Autosave, IsOfferedBesideANewerFileOfOtherContent) {
   using namespace std::chrono_literals;
   const Workplace place;

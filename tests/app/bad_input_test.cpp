@@ -63,7 +63,7 @@ TEST(BadInput, DamagedModels) {
   }
 }
 
-// Writes the model after `move` has been applied to all its control points.
+// Writes the model with `move` applied to all its control points, and returns the name of the file.
 template <class Move>
 std::string moved_model(const Workplace& place, const std::string& name, const Move& move) {
   auto document = read_document(place.path("model.json"));

@@ -74,7 +74,7 @@ class CadFileTest : public testing::Test {
     return content ? content->text : "";
   }
 
-  // Returns settings with a shell script in place of the child program.
+  // Returns the settings of a child that is a shell script instead of spoonbill-cad.
   CadChild instead(const std::string& script) const {
     CadChild child;
     child.program = folder_.write("reader", "#!/bin/sh\n" + script + "\n");
@@ -117,7 +117,7 @@ TEST_F(CadFileTest, WhatIsNoFileIsRefused) {
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   expect_refusal(pipe.string(), "is not a regular file");
   const std::string huge = write("huge.step", "ISO-10303-21;");
-  std::filesystem::resize_file(huge, std::uintmax_t{600} << 20);  // sparse
+  std::filesystem::resize_file(huge, std::uintmax_t{600} << 20);  // a sparse file
   expect_refusal(huge, ErrorCode::too_many);
 }
 

@@ -87,7 +87,8 @@ TEST(ChangeCommand, OpenedAndCappedAndClosed) {
   EXPECT_EQ(knots_at_seam(), 3);
 }
 
-// A closed body that still had a shell thickness could not be sculpted.
+// Capping makes the body closed, so its shell thickness must be removed: a closed body with one cannot be
+// sculpted.
 TEST(ChangeCommand, AShellThatIsCappedIsASolid) {
   const Workplace place;
   const std::string opened = place.text("opened.json"), capped = place.text("capped.json");
@@ -175,7 +176,7 @@ TEST(ChangeCommand, SaysWhatItLeavesOut) {
     EXPECT_EQ(outcome.code, exit_done) << outcome.err;
     return json_of(outcome.out)["remarks"].size();
   };
-  // A second note says that each half is open.
+  // Each half of a split surface gets a note that it is open. Another note reports the grip's lost regions.
   EXPECT_EQ(remarks({"change", grip, "split", "v=40", "--out", out, "--json"}), 3U);
   EXPECT_EQ(remarks({"change", grip, "insert", "v=40", "--out", out, "--json"}), 0U);
   EXPECT_EQ(remarks({"change", handle, "split", "v=40", "--out", out, "--json"}), 2U);

@@ -62,7 +62,7 @@ TEST(Check, AStraightTubeHasNoHollowRadius) {
   EXPECT_TRUE(body["smallest_concave_radius_m"].is_null()) << body["smallest_concave_radius_m"];
 }
 
-// In single precision the points of a pole are some 10 nm apart.
+// In single precision, the points of a pole are about 10 nm apart.
 TEST(Check, AnEdgeOfAMillionthIsAPoint) {
   const Workplace place;
   Document ball = made(place, {"new", "sphere", "--radius", "20mm"});
@@ -81,8 +81,8 @@ TEST(Check, AnEdgeOfAMillionthIsAPoint) {
   }
 }
 
-// The poles of this bent handle were fitted in single precision, so that their points are some 10 nm apart.
-// The expected thickness is that of the bent part, measured on a fine triangulation.
+// The poles of this bent handle were fitted in single precision, so their points are about 10 nm apart. The
+// expected thickness is that of the bent part, measured on a fine triangulation.
 TEST(Check, ABentHandleIsNotThinAtItsPoles) {
   const Outcome outcome = run({"check", SPOONBILL_TEST_INPUTS "/bent-handle.json", "--json"});
   ASSERT_EQ(outcome.code, exit_done) << outcome.err;

@@ -90,7 +90,7 @@ TEST(CommandLine, SaysWhatIsWrongAndWhereHelpIs) {
   }
 }
 
-// A document written under another ending could overwrite a scan or a CAD file.
+// A document written under another extension could overwrite a scan or a CAD file.
 TEST(CommandLine, DocumentsAreWrittenAsJsonAlone) {
   const Workplace place;
   const std::string model = place.text("model.json");

@@ -98,11 +98,11 @@ TEST(MouseHand, HoversPressesAndLetsGo) {
   pointer.position_px = *project(camera, viewport, Vector3(0.03, 0.0025, 0));
   const HandTarget hover = follow(false);
   EXPECT_TRUE(hand.on_model());
-  EXPECT_GT(hover.pose.position_m.y(), 0.0025 + 0.006);  // above the surface
+  EXPECT_GT(hover.pose.position_m.y(), 0.0025 + 0.006);  // the tool hovers above the surface
   HandTarget pressed;
   for (int frame = 0; frame < 30; ++frame) pressed = follow(true);
   EXPECT_NEAR((hover.pose.position_m - pressed.pose.position_m).norm(), 0.005,
-              1e-4);  // the hover gap plus the strength
+              1e-4);  // moved down by the hover gap and the strength
   pointer.wheel = 2.0;
   const HandTarget deeper = follow(true);
   EXPECT_NEAR((deeper.pose.position_m - pressed.pose.position_m).norm(), 0.002, 1e-9);

@@ -94,7 +94,8 @@ class EditWindow : public testing::Test {
            });
   }
 
-  // Holds the keys down until frames have seen them, because a text field reads only their current state.
+  // Holds the keys down until frames have seen them, because a text field reads only the present state of the
+  // keys.
   void press(const std::string& keys) const {
     std::string down, up;
     std::istringstream words(keys);
@@ -193,14 +194,15 @@ TEST_F(EditWindow, AStrokeIsUndoneRedoneSavedReopenedAndReplays) {
   start({place_.text("handle.json"), "--record", place_.text("session.jsonl")});
   const Document original = saved("handle.json", time_of("handle.json"));
   stroke();
-  ASSERT_TRUE(wait_ticks(4000));  // at rest
+  // After 4000 ticks the body is at rest.
+  ASSERT_TRUE(wait_ticks(4000));
   const Document bent = saved("handle.json", time_of("handle.json"));
   EXPECT_GT(largest_difference(bent, original), 1e-3);
 
   ASSERT_TRUE(hands("key ctrl+z"));
   ASSERT_TRUE(wait_shown([](const Json& frame) { return frame["can_redo"].get<bool>(); }));
   const Document undone = saved("handle.json", time_of("handle.json"));
-  EXPECT_EQ(largest_difference(undone, original), 0.0);  // bit for bit
+  EXPECT_EQ(largest_difference(undone, original), 0.0);  // equal bit for bit
 
   ASSERT_TRUE(hands("key ctrl+y"));
   ASSERT_TRUE(wait_shown([](const Json& frame) { return !frame["can_redo"].get<bool>(); }));
@@ -361,7 +363,7 @@ TEST_F(RecoveryQuestion, RecoveredWorkIsKeptWhenItIsNotSaved) {
   ASSERT_TRUE(wait_frames(2));
   ASSERT_TRUE(hands("key ctrl+q"));
   ASSERT_TRUE(wait_question());
-  answer(1);  // Don't save
+  answer(1);  // answers "Don't save"
   EXPECT_EQ(wait_for_end(), exit_done);
   EXPECT_EQ(read_document(file_)->scene.planes.size(), 1U);
   ASSERT_EQ(kept().size(), 1U);

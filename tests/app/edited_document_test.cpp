@@ -10,7 +10,7 @@
 namespace spoonbill {
 namespace {
 
-// A session of a file, which begins with the work that an earlier session left.
+// A session of a file that begins with the work recovered from an earlier session.
 class RecoveredSession {
  public:
   RecoveredSession() {

@@ -67,7 +67,7 @@ TEST_F(FitTest, CloudBecomesADocumentThatOpens) {
   const auto document = read_document(out());
   ASSERT_TRUE(document) << document.error().message;
   EXPECT_EQ(document->scene.bodies[0].material.name, "modelling-clay");
-  EXPECT_EQ(document->scene.planes.size(), 1U);  // has a fixing plane, as documents made by `new` have
+  EXPECT_EQ(document->scene.planes.size(), 1U);  // one fixing plane, as in documents made by `new`
   const Outcome info = run_process(SPOONBILL_PROGRAM, {"info", out(), "--json"});
   EXPECT_EQ(info.code, 0) << info.err;
   EXPECT_FALSE(json_of(info.out).at("lattice").is_null()) << info.out;
@@ -326,7 +326,7 @@ TEST_F(FitTest, LessThanHalfOfTheScanIsNoFitUnlessIslandsAreChosen) {
   EXPECT_EQ(json_of_fit(three, {"--control", "8x8", "--islands", "largest"}).at("islands"), 3);
 }
 
-// Repeated points on another island do not outweigh the largest one.
+// Repeated points on another island do not make it larger than the largest one.
 TEST_F(FitTest, TheHalfIsOfDistinctPoints) {
   Scan balls = ellipsoid_cloud(900, {0.02, 0.02, 0.02});
   for (const double x_m : {0.1, 0.1, 0.2, 0.2}) {
@@ -397,7 +397,7 @@ TEST_F(FitTest, WrongUseIsExitTwo) {
   }
 }
 
-// Tests real scans in the folder that an environment variable names; see README.
+// Tests real scans in the folder that SPOONBILL_SCANS names. Skipped if the variable is not set.
 class RealScans : public FitTest {
  protected:
   void SetUp() override {
@@ -405,8 +405,8 @@ class RealScans : public FitTest {
     if (folder == nullptr) GTEST_SKIP() << "SPOONBILL_SCANS names no folder with scans";
     scans_ = folder;
   }
-  // Expects the error of every body to be at most a millimetre and a hundredth of the object's size, without
-  // folds.
+  // Expects every body to have no folds and an error of at most a millimetre and at most a hundredth of
+  // `size_m`, the size of the object.
   void expect_good(const std::string& name, const std::vector<std::string>& options, double size_m,
                    std::size_t bodies) {
     const Json json = json_of_fit((scans_ / name).string(), options);

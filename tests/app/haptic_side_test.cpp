@@ -125,7 +125,7 @@ TEST(HapticSide, TicksStrokesAndLightCommandsAllocateNothing) {
   const Workplace place;
   Side side;
   side.begin_recording(place.path("live.jsonl"));
-  side.tick(2000);  // fills every buffer
+  side.tick(2000);  // the first ticks fill every buffer
   side.aim(at_height(0.004));
   bool in_stroke = false;
   for (int i = 0; i < 300; ++i) {
@@ -140,7 +140,7 @@ TEST(HapticSide, TicksStrokesAndLightCommandsAllocateNothing) {
   side.ask(ChangeView{camera_command(ViewChoice())});
   EXPECT_EQ(side.tick(50), 0U);
   side.aim(at_height(0.03));
-  EXPECT_EQ(side.tick(1500), 0U);  // includes a state hash
+  EXPECT_EQ(side.tick(1500), 0U);  // these ticks include a state hash
   side.ask(UndoStroke{});
   side.ask(RedoStroke{});
   EXPECT_EQ(side.tick(100), 0U);

@@ -17,7 +17,8 @@ namespace {
 
 constexpr double metres_per_mm = 1e-3;
 
-// Returns the parallelogram at a corner. The cross product of its sides points outwards.
+// Returns a parallelogram with the given corner and sides. For a face of a solid, the cross product of its
+// sides must point outwards.
 Surface plate(const Vector3& corner_mm, const Vector3& u_mm, const Vector3& v_mm) {
   ControlNet net(2, 2);
   for (int i = 0; i < 2; ++i) {
@@ -27,7 +28,7 @@ Surface plate(const Vector3& corner_mm, const Vector3& u_mm, const Vector3& v_mm
   return make_surface(knots, knots, std::move(net)).value();
 }
 
-// Returns a box of 30 x 20 x 10 mm as six bodies, whose top is too high by the given length.
+// Returns a box of 30 x 20 x 10 mm as six bodies. Its top is too high by the given length.
 Document box_of_faces(double too_high_mm = 0.0) {
   const Vector3 x(30, 0, 0), y(0, 20, 0), z(0, 0, 10), none = Vector3::Zero();
   const std::array<Surface, 6> faces = {plate(z + Vector3(0, 0, too_high_mm), x, y),
@@ -138,7 +139,7 @@ TEST_F(JoinedSolids, FacesThatDoNotCloseAreMeshesEachWithANote) {
                                          "faces that are not part of a solid: 5, each a separate mesh"}));
 }
 
-// The gap is wider than the error of two approximated faces explains.
+// The gap is wider than the errors of two approximated faces can explain.
 TEST_F(JoinedSolids, AGapThatIsBridgedIsSaid) {
   save("gap.json", box_of_faces(0.05));
   for (const char* out : {"gap.step", "gap.igs", "gap.stl"}) {

@@ -133,7 +133,8 @@ TEST(LiveSession, ARefusedRequestIsSaidAndChangesNothing) {
   EXPECT_NE(live->frame().facts.material.poissons_ratio, 0.7);
 }
 
-// Returns a handle that springs step, of this stiffness.
+// Returns a handle of this stiffness. Its material is plastic, so it is stepped explicitly as a mass-spring
+// lattice.
 Document handle_of_stiffness(double youngs_modulus_pa, bool real_time) {
   Document document = held_handle();
   document.scene.bodies[0].material.plastic = true;
@@ -169,9 +170,9 @@ TEST(LiveSession, RefusesRealTimeThatATickHasNoTimeFor) {
   ASSERT_TRUE(live->ask(Command(SetSculpting{sculpting})));
   const std::vector<Notice> notices = live->consume_notices();
   ASSERT_EQ(notices.size(), 1U);
-  EXPECT_EQ(notices[0].text, "this material needs " +
-                                 std::to_string(live->last_frame().snapshot.real_time_substeps) +
-                                 " substeps a tick in real time; a live session can take 32; replay runs it");
+  EXPECT_EQ(notices[0].text,
+            "this material needs " + std::to_string(live->last_frame().snapshot.real_time_substeps) +
+                " substeps a tick in real time; a live session can take 32; a replay can take any number");
   wait_ticks(*live, 10);
   EXPECT_FALSE(live->frame().facts.sculpting.real_time);
 }
@@ -244,7 +245,7 @@ TEST(LiveSession, AFileThatChangedOnTheDiskIsNotReplacedUnasked) {
   const auto file = place.path("model.json");
   Live live(held_handle());
   live->set_known_content(file_content_hash(file));
-  // Repeated saves know what the last one wrote.
+  // A repeated save is no conflict, because the session knows the content of its last save.
   for (int n = 0; n < 2; ++n) {
     ASSERT_TRUE(live->save(file));
     EXPECT_TRUE(waits_for_save(*live));
@@ -261,7 +262,7 @@ TEST(LiveSession, AFileThatChangedOnTheDiskIsNotReplacedUnasked) {
   ASSERT_TRUE(live->save(file, Replaced::any));
   EXPECT_TRUE(waits_for_save(*live));
   EXPECT_EQ(content_of(file.string() + ".bak"), theirs);
-  // Neither is a file that a person names by mistake.
+  // The file of another document, named by mistake, is not replaced either.
   const auto other = place.write("other.json", "theirs");
   ASSERT_TRUE(live->save(other));
   EXPECT_TRUE(waits_for_conflict(*live));
@@ -275,7 +276,7 @@ TEST(LiveSession, ASaveDoesNotPassToADocumentThatWasOpenedMeanwhile) {
   Document other = held_handle();
   other.name = "another";
   ASSERT_TRUE(live->open(other, "other"));
-  ASSERT_TRUE(live->save(place.path("model.json"), Replaced::any));  // the document that is still shown
+  ASSERT_TRUE(live->save(place.path("model.json"), Replaced::any));  // the first document is still shown
   EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.facts.title == "another"; }));
   wait_ticks(*live, 1000);
   EXPECT_FALSE(live->consume_saved_document().has_value());
@@ -305,7 +306,7 @@ TEST(LiveSession, AutosavesUnsavedWorkUntilItIsSaved) {
   Live live(held_handle());
   live->set_autosave(autosave);
   wait_ticks(*live, 600);
-  EXPECT_FALSE(std::filesystem::exists(autosave.file()));  // no changes yet
+  EXPECT_FALSE(std::filesystem::exists(autosave.file()));  // there are no changes to save yet
   stroke(live);
   EXPECT_TRUE(wait_for(*live, [&](const LiveFrame&) { return std::filesystem::exists(autosave.file()); }));
   const auto found = autosave.recovered_document();

@@ -188,7 +188,7 @@ TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
   EXPECT_NE(turned.out.find("the normals of patch 2 pointed inwards; the patch was reversed"),
             std::string::npos)
       << turned.out;
-  // The first fillet gets a note as well as the last, not only the last.
+  // Both fillets get a note, not only the last.
   Document third = read_document(rod).value();
   third.scene.bodies[0].surface =
       placed(third.scene.bodies[0].surface,
@@ -204,8 +204,8 @@ TEST(MergeCommand, CrossingBodiesBecomeOneWithAFillet) {
   const Json curved = json_of(run({"check", knob, "--json"}).out)["bodies"][0];
   EXPECT_NEAR(curved["smallest_concave_radius_m"].get<double>(), 0.003, 2e-4);
   const Json body = json_of(run({"check", knob, "--json"}).out)["bodies"][0];
-  // The volume is that of the ball and of the rod above the plane in which they intersect, minus the ball's
-  // cap beyond this plane. The rounding of the rod's end and the fillet are negligible.
+  // The volume is that of the ball and of the part of the rod above the plane in which they intersect, minus
+  // the ball's cap above this plane. The rounding of the rod's end and the fillet are negligible.
   const double ball_m3 = 4.0 / 3.0 * M_PI * 8e-6, plane_m = std::sqrt(4e-4 - 36e-6), cap_m = 0.02 - plane_m;
   const double rod_m3 = M_PI * 36e-6 * (0.06 - plane_m), cap_m3 = M_PI * cap_m * cap_m * (0.02 - cap_m / 3.0);
   EXPECT_NEAR(body["volume_m3"].get<double>(), ball_m3 + rod_m3 - cap_m3, 0.01 * rod_m3);

@@ -48,8 +48,8 @@ std::string above(double millimetres) {
   return "30mm," + std::to_string(millimetres) + "mm,0,1,0,0,0";
 }
 
-// The vertices of the ball of 8 mm radius are on the sphere; its edges are inside by up to 8 mm (1 -
-// cos(pi/100)).
+// The vertices of the ball of 8 mm radius are on the sphere. Its edges are inside the sphere by up to
+// 8 mm (1 - cos(pi/100)).
 constexpr double flatter_m = 8e-3 * 5e-4;
 const TriangleMesh ball = ball_mesh(100, 200, 8.0);
 
@@ -78,7 +78,7 @@ TEST(MeshCollide, EitherMayBeTheMesh) {
   const std::string model = place.text("model.json");
   const std::string mesh = place.write("ball.obj", obj_text(ball)).string();
   const double apart = facts_of({model, mesh, "--pose", above(25)})["distance_m"];
-  const double height = 25.0 - 1e3 * apart - 0.5;  // half a millimetre deep
+  const double height = 25.0 - 1e3 * apart - 0.5;  // the ball is half a millimetre deep
   const Json second = facts_of({model, mesh, "--pose", above(height)});
   EXPECT_EQ(second["touching"], true);
   EXPECT_EQ(second["contained"], false);
@@ -86,7 +86,7 @@ TEST(MeshCollide, EitherMayBeTheMesh) {
   EXPECT_NEAR(second["depth_m"].get<double>(), 5e-4, 3e-5);
   ASSERT_EQ(second["contacts"].size(), 1U);
   const Json& contact = second["contacts"][0];
-  EXPECT_NEAR(contact["normal"][1].get<double>(), -1.0, 0.01);  // the body leaves the ball downward
+  EXPECT_NEAR(contact["normal"][1].get<double>(), -1.0, 0.01);  // the body moves down, away from the ball
   EXPECT_LE(contact["a"]["u_range"][0], contact["a"]["u"]);
   EXPECT_LE(contact["a"]["v"], contact["a"]["v_range"][1]);
   EXPECT_FALSE(contact["b"].contains("u"));
@@ -184,8 +184,8 @@ TEST(MeshCollide, AllBodiesOfADocumentCount) {
   const Workplace place;
   const std::string model = place.text("model.json"), two = two_bodies(place);
   const std::string mesh = place.write("ball.stl", binary_stl(ball)).string();
-  // The mesh is as high above the upper body as it was above the only body of the model. The upper body is 20
-  // mm higher.
+  // The mesh is as high above the upper body as it was above the only body of the model. The upper body is
+  // 20 mm higher.
   const Json one = facts_of({model, mesh, "--pose", above(25)}),
              upper = facts_of({two, mesh, "--pose", above(45)});
   EXPECT_EQ(upper["touching"], false);

@@ -32,7 +32,7 @@ class MeshFileTest : public testing::Test {
     return folder_.write(name, content).string();
   }
 
-  // Returns settings with a shell script in place of the child program.
+  // Returns the settings of a reader that is a shell script instead of the program.
   MeshReading instead(const std::string& script) const {
     const auto program = folder_.write("reader", "#!/bin/sh\n" + script + "\n");
     std::filesystem::permissions(program, std::filesystem::perms::owner_all);
@@ -208,7 +208,7 @@ TEST_F(MeshFileTest, WhatIsNoFileIsRefused) {
   std::filesystem::create_symlink("/dev/zero", device);
   expect_refusal(device.string(), "is not a regular file");
   const std::string huge = write("huge.stl", "solid");
-  std::filesystem::resize_file(huge, std::uintmax_t{600} << 20);  // sparse
+  std::filesystem::resize_file(huge, std::uintmax_t{600} << 20);  // a sparse file
   expect_refusal(huge, ErrorCode::too_many);
 }
 
@@ -357,8 +357,8 @@ TEST_F(MeshFileTest, AReaderOfPointsThatFailsIsOneLine) {
 
 TEST_F(MeshFileTest, TheReaderHasFourGibibytes) {
   if (sanitized) GTEST_SKIP() << "a sanitizer's memory knows no limit";
-  // The delay lets the parent set the limit first. The limit in the answer has seven digits: 4194304
-  // kibibytes.
+  // The script sends its limit on address space, 4194304 KiB, as the reason of a failure; 007 is the length
+  // of this reason. It waits first, so that the parent can set the limit.
   expect_refusal(write("box.stl", binary_stl(box)), "(4194304)",
                  instead("sleep 0.3; printf 'spnlfail\\007\\0\\0\\0\\0\\0\\0\\0'; ulimit -v"));
 }
@@ -395,7 +395,7 @@ TEST_F(MeshFileTest, APearFromAScannerIsATool) {
   EXPECT_EQ(clean->report.vertices_read, 35016u);
   // The file has 6,091 distinct vertices, a few of them almost equal.
   EXPECT_NEAR(static_cast<double>(clean->mesh.vertices_m.size()), 6000.0, 100.0);
-  EXPECT_EQ(clean->report.sheets, 1u);  // its underside was never seen
+  EXPECT_EQ(clean->report.sheets, 1u);  // open, because the underside was not scanned
   EXPECT_NEAR(clean->report.size_m.maxCoeff(), 0.088, 0.001);
 }
 

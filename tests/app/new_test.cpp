@@ -215,7 +215,7 @@ TEST(New, TakesInchesByBothNames) {
   for (const char* size : {"2inchx40x20mm", "2inx40x20mm", "50.8x40x20mm", "50.8mmx40x20mm"}) {
     const Outcome outcome = run({"new", "box", "--size", size, "--out", place.text("box.json"), "--json"});
     ASSERT_EQ(outcome.code, exit_done) << outcome.err;
-    EXPECT_NEAR(json_of(outcome.out)["size_mm"][0], 50.8, 0.03) << size;  // both faces within 0.01 mm
+    EXPECT_NEAR(json_of(outcome.out)["size_mm"][0], 50.8, 0.03) << size;  // each face is accurate to 0.01 mm
   }
 }
 

@@ -19,7 +19,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double plugged_limit_n = 0.8;  // less than the force of a press
+constexpr double plugged_limit_n = 0.8;  // force limit of the device, less than the force of a press
 constexpr double noticeable_n = 0.3;     // threshold of a noticeable force
 
 enum class Fault { none, silent, garbage, broken_promise };
@@ -31,7 +31,7 @@ struct Hardware {
   std::atomic<double> largest_n{0.0};
   std::atomic<std::uint64_t> noticeable_ticks{0};  // ticks with a noticeable force
   std::atomic<std::uint64_t> faulty_ticks{0};      // ticks without a valid reading
-  std::atomic<std::uint64_t> faulty_forces{0};     // faulty ticks with a force
+  std::atomic<std::uint64_t> faulty_forces{0};     // number of faulty ticks with a force
   std::atomic<bool> is_open{true};
 };
 

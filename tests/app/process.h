@@ -7,8 +7,8 @@
 
 namespace spoonbill {
 
-// `settings` are environment variables for the program, such as "LP_NUM_THREADS=1". Arguments are quoted for
-// the shell.
+// Runs the program and waits for its end. `settings` are environment variables, such as "LP_NUM_THREADS=1".
+// Arguments are quoted for the shell.
 Outcome run_process(const std::string& program, const std::vector<std::string>& arguments,
                     const std::string& settings = "");
 

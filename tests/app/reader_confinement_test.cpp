@@ -63,7 +63,7 @@ bool is_confined(pid_t process) {
          status.find("Seccomp:\t2\n") != std::string::npos;
 }
 
-// Starts a reader that waits forever, because nothing comes through one pipe and nobody reads the other.
+// Starts a reader that waits forever, because nothing is written to its input and nobody reads its output.
 // Expects its process to be confined.
 void expect_confined(const std::vector<std::string>& arguments) {
   int in[2], out[2];
@@ -93,7 +93,8 @@ TEST(ReaderConfinement, EveryReaderShowsIt) {
   expect_confined({SPOONBILL_PROGRAM, "read-mesh", "--", folder.write("a.obj", mesh).string()});
 }
 
-// Returns a bit for each attempt of a confined process whose result is not the expected one.
+// Confines this process and tries what it must and must not do. Returns a set bit for each result that is not
+// the expected one.
 int wrong_results() {
   int wrong = 0, bit = 1;
   const auto expect = [&](bool right) {
@@ -166,7 +167,7 @@ TEST(StartReader, GivesACleanEnvironmentAndNoDescriptors) {
   if (!are_readers_confined) GTEST_SKIP() << "sanitizers read their environment";
   int out[2];
   ASSERT_EQ(pipe2(out, O_CLOEXEC), 0);
-  const int secret = dup2(out[0], 77);  // without O_CLOEXEC
+  const int secret = dup2(out[0], 77);  // a descriptor without O_CLOEXEC
   setenv("SPOONBILL_SECRET", "1", 1);
   const pid_t reader =
       start_reader({"/bin/sh", "-c", "test -e /proc/self/fd/77 && echo 77; env"}, -1, out[1]);

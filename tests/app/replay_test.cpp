@@ -142,7 +142,8 @@ TEST(Replay, NamedPipesAreWrittenDirectly) {
       {"record", place.text("script.json"), "--out", place.text("pipe.jsonl")}};
   for (const auto& command : commands) {
     ASSERT_EQ(mkfifo(command.back().c_str(), 0600), 0);
-    // Holding an end open keeps both sides from waiting for each other.
+    // The test holds the pipe open for reading and writing, so that neither side waits until the other opens
+    // it.
     const int held = open(command.back().c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
     fcntl(held, F_SETPIPE_SZ, 1 << 20);
     EXPECT_EQ(run(command).code, exit_done) << command[0];

@@ -108,7 +108,7 @@ TEST(Rest, RefusesBodiesThatNothingHolds) {
   EXPECT_EQ(run({"rest"}).code, exit_wrong_use);
 }
 
-// Every node is fixed, either by a support or behind a plane.
+// Every node is fixed, by a support or behind a plane.
 TEST(Rest, SaysWhereEverythingIsFixed) {
   const Workplace place;
   Document document = elastic_document(place);
@@ -165,7 +165,7 @@ TEST(Rest, StopsWhenAskedTo) {
                 writes ? std::vector<std::string>{"--out", place.text("bent.json"), "--force"}
                        : std::vector<std::string>{});
     const timespec no_wait{};
-    sigtimedwait(&interrupt, nullptr, &no_wait);  // where the command has not
+    sigtimedwait(&interrupt, nullptr, &no_wait);  // removes the signal if the command has not
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
     EXPECT_EQ(outcome.code, exit_failed);
     EXPECT_EQ(outcome.err,

@@ -99,7 +99,7 @@ class RunningProgram {
   int state_ = 0;
 };
 
-// The program promises an end within a second. The limit is higher, because the machine of the tests may be
+// The program promises to end within a second. The limit is higher, because the machine of the tests may be
 // busy.
 constexpr double stop_limit_s = 1.5;
 
@@ -161,7 +161,8 @@ TEST(StoppedProgram, NamesTheRecordingThatAReplayHasBegun) {
   EXPECT_FALSE(std::filesystem::exists(place.path("r.jsonl")));
 }
 
-// A stroke through a ball that felt nothing until now: some of its ticks have been endless.
+// The tool strokes through a ball that it has not touched before. Some ticks of this stroke take almost
+// forever.
 TEST(StoppedProgram, EndsInTheMidstOfALongTick) {
   const Workplace place;
   for (const char* name : {"endless-tick.script.json", "endless-tick-model.json"}) {
@@ -181,7 +182,7 @@ TEST(StoppedProgram, EndsInTheMidstOfALongTick) {
   }
 }
 
-// Both commands spend long in work that never checks for a signal.
+// Both commands spend a long time in work that never checks for a signal.
 TEST(StoppedProgram, LeavesNoTemporaryFile) {
   const Workplace place;
   place.record("bend.jsonl");
@@ -203,7 +204,7 @@ TEST(StoppedProgram, LeavesNoTemporaryFile) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(place.path("")), {}), before + 3);
 }
 
-// Waits until this process has no child. Children of children that have ended count as children.
+// Waits until this process has no child. A process whose parent has ended becomes a child of this process.
 bool has_lost_all_children() {
   const auto give_up = StopClock::now() + std::chrono::seconds(1);
   while (StopClock::now() < give_up) {
@@ -235,7 +236,7 @@ TEST(StoppedProgram, EndsAConversionWithItsReader) {
   const std::string assembly = assembly_of(place);
   ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);
   const auto before = std::distance(std::filesystem::directory_iterator(place.path("")), {});
-  // While the reader parses the file, and while surfaces are meshed.
+  // At 0 % the reader parses the file; at 40 % surfaces are meshed.
   for (const int percent : {0, 40}) {
     for (const int signal : {SIGINT, SIGTERM}) {
       SCOPED_TRACE(std::to_string(percent) + " %, signal " + std::to_string(signal));

@@ -1,4 +1,4 @@
-// Peers must compute what we compute, or their times mean nothing.
+// Checks that peer libraries compute the same as our code. Otherwise their times could not be compared.
 #pragma once
 
 #include <benchmark/benchmark.h>

@@ -16,7 +16,7 @@ class BulletBlock {
   virtual ~BulletBlock() = default;
   virtual void step() = 0;
   virtual int link_count() const = 0;
-  // Returns true if the block is still near its start: the time of a diverged body means nothing.
+  // Returns true if the block is still near its start. The time of a diverged block is meaningless.
   virtual bool sane() const = 0;
 };
 

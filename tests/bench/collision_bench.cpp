@@ -1,6 +1,6 @@
-// A sphere on a sheet that deforms between queries: ours on the exact surface, FCL on a mesh of 200 x 200
-// quads without knowledge of the grid. Also a sphere on the handle, ours only. Every query is given the
-// deformed shape: control points (with or without samples) for ours, vertices for FCL.
+// A sphere on a sheet that deforms between queries: our code on the exact surface, FCL on a mesh of 200 x 200
+// quads without knowledge of the grid. Also a sphere on the handle, our code only. Every query receives the
+// deformed shape: control points (with or without samples) for our code, vertices for FCL.
 #include <benchmark/benchmark.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision.h>
@@ -63,7 +63,7 @@ bool holds(const std::vector<ToolContactRegion>& regions, const Grid& grid,
   return true;
 }
 
-// `given`: the query is given samples as well as control points.
+// If `given`, the query receives samples as well as control points.
 void sphere_ours(benchmark::State& state, bool given) {
   const Sheets sheets;
   SurfaceCollider collider(sheets.nested);
@@ -104,7 +104,7 @@ void sphere_fcl(benchmark::State& state) {
   state.counters["contacts"] = static_cast<double>(contacts);
 }
 
-// A thumb's end is pressed 1 mm into the bundled handle, which yields, as in a tick.
+// The rounded end of a thumb is pressed 1 mm into the bundled handle, which yields, as in a tick.
 void handle_sphere(benchmark::State& state) {
   const Result<Document> document = read_document(SPOONBILL_ASSETS "/models/spoon-handle.json");
   if (!document) return state.SkipWithError(document.error().message.c_str());

@@ -1,5 +1,5 @@
-// The obvious implementation with a matrix library: dense products in single precision. They are compiled for
-// each instruction set with the flags of our own kernels, and selected in the same way.
+// The straightforward implementation with a matrix library: dense products in single precision, compiled for
+// each instruction set with the flags of our own kernels and selected in the same way.
 #pragma once
 
 #include <memory>
@@ -10,14 +10,14 @@ namespace spoonbill {
 
 // The tables hold one row per sample and one column per control point, in row-major order.
 struct DenseSheet {
-  int samples = 0;   // in each direction
-  int controls = 0;  // in each direction
+  int samples = 0;   // number of samples in each direction
+  int controls = 0;  // number of control points in each direction
   const float* values = nullptr;
   const float* derivatives = nullptr;
 };
 
-// Computes M = A_u P A_v^T for points and both tangents, then the normalised cross product. Owns its working
-// memory.
+// Computes M = A_u P A_v^T for points and both tangents, then the normalised cross product of the tangents. P
+// are the control points, A_u and A_v the blending matrices, M the samples. Owns its working memory.
 class DenseEvaluation {
  public:
   virtual ~DenseEvaluation() = default;
@@ -26,7 +26,8 @@ class DenseEvaluation {
   virtual void points_and_normals(const float* const in[3], float* const out[6]) = 0;
 };
 
-// Computes dP = A_u^+ dM (A_v^+)^T of one coordinate. Owns both pseudo-inverses and its working memory.
+// Computes the change dP = A_u^+ dM (A_v^+)^T of the control points from the change dM of the samples, for
+// one coordinate. Owns the pseudo-inverses A_u^+ and A_v^+ of the blending matrices, and its working memory.
 class DenseRefit {
  public:
   virtual ~DenseRefit() = default;

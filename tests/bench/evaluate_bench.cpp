@@ -1,5 +1,5 @@
-// Points and unit normals of a bicubic sheet on a whole grid: ours, SISL, OpenCASCADE, dense Eigen.
-// Arguments: samples per side, control points per side.
+// Points and unit normals of a bicubic sheet on a whole grid: our code, SISL, OpenCASCADE, dense Eigen
+// matrices. Arguments: samples per side, control points per side.
 #include <benchmark/benchmark.h>
 #include <sisl.h>
 
@@ -185,7 +185,7 @@ void evaluate_occt_cached(benchmark::State& state) {
   time_d1(state, sheet, GeomAdaptor_Surface(opencascade_sheet(sheet)));
 }
 
-// First the grid grows with a small net, then the net grows with one grid.
+// The first sizes vary the grid with a small net; the others vary the net with one grid.
 void sizes(benchmark::internal::Benchmark* bench) {
   bench->Unit(benchmark::kMicrosecond);
   for (const int samples : {25, 50, 100, 200, 400, 1000}) bench->Args({samples, 8});

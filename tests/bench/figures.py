@@ -7,10 +7,10 @@ from dataclasses import dataclass
 class Figure:
     name: str
     unit: str
-    judged: str  # "ratio" (peer / ours) or "ours"
-    sense: str  # "at least" or "at most"
-    target: float | None  # None: reported beside another figure
-    compared: str  # what both sides do
+    judged: str  # what is judged: "ratio" (peer / ours) or "ours"
+    sense: str  # sense of the target: "at least" or "at most"
+    target: float | None  # None for a figure that is reported beside another one
+    compared: str  # what both sides do in the comparison
     case: str = ""  # distinguishes rows of the same name
 
     def met(self, ours, ratio):
@@ -26,8 +26,8 @@ VERTICES, CONTROLS = "same vertices", "from control points"
 SPHERE_PEERS = ("sphere_fcl_boxes", "sphere_fcl_turned_boxes")
 SURFACES_PEERS = ("surfaces_fcl_boxes", "surfaces_fcl_turned_boxes")
 
-# Names of Google Benchmark's cases for each figure (by name, or by name and case): our case, then those of its peers,
-# of which the fastest is compared.
+# Names of Google Benchmark's cases for each figure, by the figure's name, or by its name and case.
+# Each row has our case, then those of its peers. The fastest peer is compared.
 PAIRS = {
     "eval_vs_sisl": ("evaluate_ours/200/8", "evaluate_sisl/200/8"),
     "eval_vs_occt": ("evaluate_ours/200/8", "evaluate_occt_cached/200/8"),

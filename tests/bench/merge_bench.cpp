@@ -1,4 +1,4 @@
-// Two patches of 30 x 30 control points that share an edge are merged into one with C2 continuity.
+// Merges two patches of 30 x 30 control points that share an edge into one patch with C2 continuity.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

@@ -13,19 +13,20 @@ namespace spoonbill {
 struct Press {
   Scene scene;
   DeviceSpecification device;
-  std::vector<DeviceReading> readings;  // one per tick
+  std::vector<DeviceReading> readings;  // input of the hand, one reading per tick
   std::vector<TimedCommand> commands;   // commands to the simulation
 };
 
-// Reads the inputs of a recording, tick by tick as they were recorded.
+// Reads a recording and returns its inputs tick by tick.
 Result<Press> recorded_press(const std::filesystem::path& recording);
 
-// Reads a recording like recorded_press(), but the bodies are of a plastic so stiff that only the implicit
-// method can step it.
+// Reads a recording as recorded_press() does, but makes the bodies of a plastic so stiff that only the
+// implicit method can step it.
 Result<Press> stiff_press(const std::filesystem::path& recording);
 
-// A block of clay with 60 mm edges and count^3 nodes, fixed at one end. A sphere presses it from above within
-// a second and releases it; each tick takes `substeps` substeps, unless strain requires more.
+// Returns a press of a block of clay with 60 mm edges and count^3 nodes, fixed at one end. A sphere presses
+// it from above within a second and releases it. Each tick takes `substeps` substeps, or more if the strain
+// requires them.
 Press block_press(int count, int substeps);
 
 }  // namespace spoonbill

@@ -1,5 +1,5 @@
-// Control points from a grid of samples: ours, the same product as dense Eigen matrices, and OpenCASCADE's
-// approximation. Arguments: samples per side, control points per side.
+// Control points from a grid of samples: our code, the same product with dense Eigen matrices, and
+// OpenCASCADE's approximation. Arguments: samples per side, control points per side.
 #include <benchmark/benchmark.h>
 
 #include <GeomAPI_PointsToBSplineSurface.hxx>
@@ -31,10 +31,10 @@ struct Case {
   Surface sheet;
   Grid grid;
   std::vector<float> samples[3];
-  std::vector<float> controls;  // of the coordinate that was computed last
+  std::vector<float> controls;  // one coordinate of the control points, the one computed last
 };
 
-// Returns the rows with the padding that our refit requires.
+// Returns the rows of samples with the padding that our refit requires.
 std::vector<AlignedVector<float>> padded(const Case& which, int stride) {
   std::vector<AlignedVector<float>> all;
   for (const std::vector<float>& samples : which.samples) {
@@ -86,7 +86,7 @@ void refit_dense(benchmark::State& state) {
   time_refit(state, *dense, which.samples, which.controls);
 }
 
-// OpenCASCADE chooses its own parameters and knots, so only the number of its control points is near ours.
+// OpenCASCADE chooses its own parameters and knots, so the number of its control points is only near ours.
 void refit_occt(benchmark::State& state) {
   const Case which(state);
   const int side = which.grid.rows();

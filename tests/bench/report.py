@@ -122,7 +122,7 @@ class Measurements:
 
 
 def live_script(seconds):
-    """Returns a script that presses and lets go for `seconds`, with a command every tenth of a second of a press."""
+    """Returns a script that presses and releases for `seconds`, with a command every tenth of a second of a press."""
     steps = [{"start_mm": [88, 26, 0]}, {"command": "place_plane", "point_mm": [40, 0, 0], "normal": [1, 0, 0]},
              {"hold_s": 0.4}]
     for stroke in range(int(seconds / 2.4)):

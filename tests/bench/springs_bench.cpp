@@ -1,6 +1,6 @@
-// One step of a block of count^3 mass points with springs along edges, face diagonals and body diagonals.
-// Ours limits speeds and tracks the highest frequency, as in a tick; `springs_full` adds everything that a
-// material can have: the volume force of each cell, damping, and plastic flow. Argument: nodes per side.
+// One step of a block of count^3 mass points with springs along edges, face diagonals and body diagonals. Our
+// code also limits speeds and tracks the highest frequency, as in a tick. `springs_full` adds everything that
+// a material can have: the volume force of each cell, damping, and plastic flow. Argument: nodes per side.
 #include <benchmark/benchmark.h>
 
 #include "engine/base/processor.h"
@@ -11,7 +11,7 @@
 namespace spoonbill {
 namespace {
 
-// At a Poisson's ratio of 1/4, springs need no volume force.
+// Returns a material with a Poisson's ratio of 1/4, for which springs need no volume force.
 Material springs_alone() {
   Material material;
   material.name = material.source = "benchmark";
@@ -41,7 +41,7 @@ SpringLattice block(int count, const Material& material) {
   return lattice;
 }
 
-// A tick of the bundled recording takes this many substeps; they run together, without a tool.
+// Number of substeps of a tick of the bundled recording. They run together, without a tool.
 constexpr int substeps_a_tick = 6;
 
 void time_ours(benchmark::State& state, const Material& material) {
@@ -88,7 +88,7 @@ void sizes(benchmark::internal::Benchmark* bench) {
   for (const int count : {8, 12, 16, 24, 32}) bench->Arg(count);
 }
 
-// Bullet's position-based body diverges at these sizes.
+// Adds sizes for our code alone, at which Bullet's position-based body diverges.
 void sizes_of_ours(benchmark::internal::Benchmark* bench) {
   sizes(bench);
   for (const int count : {48, 64}) bench->Arg(count);

@@ -1,5 +1,5 @@
-// Two sheets, one of which deforms between queries: ours on the exact surfaces, FCL on meshes of 200 x 200
-// quads. Also two nets that cross each other, ours only.
+// Two sheets, one of which deforms between queries: our code on the exact surfaces, FCL on meshes of 200 x
+// 200 quads. Also two nets that cross each other, our code only.
 #include <benchmark/benchmark.h>
 #include <fcl/narrowphase/collision.h>
 
@@ -50,7 +50,7 @@ PlanarPoints view(const GridSamples<double>& samples) {
   return {samples.x.data(), samples.y.data(), samples.z.data()};
 }
 
-// Returns true if the contacts of FCL's triangles are in cells in which ours has a contact.
+// Returns true if each contact of FCL's triangles is in a cell in which our code has a contact.
 bool holds(const SurfacePairCollider& collider, const fcl::CollisionResult<float>& result) {
   std::set<std::array<int, 4>> cells;
   for (const CellPair& pair : collider.cells()) {
@@ -73,8 +73,8 @@ fcl::CollisionResult<float> contacts_of(const fcl::BVHModel<Volume>& a, const fc
   return result;
 }
 
-// One sheet moves, the other does not. `given`: samples of the moved sheet are given as well as its control
-// points.
+// One sheet moves, the other does not. If `given`, the query receives samples of the moved sheet as well as
+// its control points.
 void surfaces_ours(benchmark::State& state, bool given) {
   const Sheets sheets;
   SurfacePairCollider collider(sheets.nested, sheets.nested);

@@ -80,8 +80,8 @@ Result<Press> press_of(const std::string& name) {
   return recorded_press(name);
 }
 
-// The same tick of every round does the same work, bit for bit: the median over the rounds is the cost of a
-// tick without disturbances by the machine.
+// Returns the median time of each tick over the rounds. A tick does the same work in every round, bit for
+// bit, so the median is its cost without disturbances by the machine.
 std::vector<double> medians_of_ticks(const std::vector<std::vector<double>>& rounds) {
   std::vector<double> medians;
   medians.reserve(rounds[0].size());

@@ -17,8 +17,8 @@ std::size_t allocation_count() {
 
 }  // namespace spoonbill
 
-// The operators for arrays and sized deletion call these two. In most programs the nothrow operators do too,
-// but the address sanitizer has its own.
+// The array and sized operators call these two operators. So do the nothrow operators, except those of the
+// address sanitizer.
 void* operator new(std::size_t size) {
   ++count;
   if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;

@@ -1,4 +1,5 @@
-// The number of cases that a test tries. A sanitizer is ten times slower, and fewer cases run the same code.
+// Numbers of cases that tests try. Under a sanitizer, which is ten times slower, fewer cases run the same
+// code.
 #pragma once
 
 #include <cstdlib>
@@ -32,11 +33,11 @@ inline int random_cases(int quick, int many) {
 }
 
 // Reasons to skip a test.
-inline constexpr const char* only_in_full = "takes several seconds; runs with SPOONBILL_FULL alone";
-inline constexpr const char* only_in_long = "takes minutes; runs with SPOONBILL_LONG alone";
+inline constexpr const char* only_in_full = "takes several seconds; runs only if SPOONBILL_FULL is set";
+inline constexpr const char* only_in_long = "takes minutes; runs only if SPOONBILL_LONG is set";
 
 // Reason to skip tests that take a minute under a sanitizer and whose code shorter tests run as well.
 inline constexpr const char* long_when_sanitized =
-    "a minute under a sanitizer, which shorter tests tell as much";
+    "takes a minute under a sanitizer; shorter tests run the same code";
 
 }  // namespace spoonbill

@@ -12,7 +12,7 @@
 namespace spoonbill {
 
 struct Refusal {
-  Refusal() = default;  // no error
+  Refusal() = default;  // stands for no error
   explicit Refusal(ErrorCode error_code, std::string field_name = {})
       : code(error_code), field(std::move(field_name)) {}
   explicit Refusal(const Error& error) : code(error.code), field(error.field), message(error.message) {}
@@ -29,9 +29,9 @@ struct Refusal {
                << "\": " << refusal.message;
   }
 
-  std::optional<ErrorCode> code;  // nullopt: no error
+  std::optional<ErrorCode> code;  // code of the error; nullopt if there is none
   std::string field;
-  std::string message;  // not compared
+  std::string message;  // text of the error, which is not compared
 };
 
 }  // namespace spoonbill

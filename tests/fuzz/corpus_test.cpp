@@ -1,5 +1,5 @@
-// Runs every fuzz target on three sets of inputs: those that fuzzing has found, its seeds, both complete and
-// truncated, and those that together reach all code the fuzzer has covered.
+// Runs every fuzz target on the inputs of tests/fuzz/corpus, both complete and truncated, and on a set of
+// inputs that covers all code that the fuzzer has reached.
 #include <gtest/gtest.h>
 
 #include <algorithm>

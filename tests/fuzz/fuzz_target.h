@@ -9,7 +9,7 @@ namespace spoonbill {
 
 struct FuzzTarget {
   const char* name;
-  // Ends the process if a property does not hold; sanitizers find other errors.
+  // Passes the bytes to a reader. Ends the process if a property does not hold; sanitizers find other errors.
   void (*take)(std::string_view bytes);
 };
 

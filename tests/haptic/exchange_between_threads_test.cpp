@@ -1,5 +1,5 @@
-// Tests both classes that pass values between threads, with two threads. The tests check only properties that
-// hold for any scheduling.
+// Tests TripleBuffer and BoundedQueue with two threads. The tests check only properties that hold for any
+// scheduling.
 #include <gtest/gtest.h>
 
 #include <array>

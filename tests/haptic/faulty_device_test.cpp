@@ -25,7 +25,7 @@ class FaultyDevice : public Device {
   const DeviceSpecification& specification() const override { return limits_; }
 
   std::optional<DeviceReading> read() override {
-    // Nobody can tell a jump from a hand that moved while it was not seen.
+    // A jump after an invalid reading is not a fault, because the hand may have moved in the meantime.
     const bool was_known = std::exchange(known_, true), has_jumped = std::exchange(jumped_, false);
     fails_ = true;
     Pose pose{position_m_ + slip_m_, Quaternion::Identity()};
@@ -47,7 +47,7 @@ class FaultyDevice : public Device {
         known_ = false;
         return {};
       case 4:
-        // The sensor loses counts: the position jumps, and stays where it is.
+        // The sensor loses counts: the position jumps, and all later positions have the same offset.
         if (slip_m_.isZero(0.0)) {
           slip_m_ = random_.uniform(0.05, 0.1) * random_.direction();
         } else {
@@ -57,7 +57,7 @@ class FaultyDevice : public Device {
         fails_ = was_known;
         break;
       default:
-        // The way back from a jump is as fast as the jump.
+        // The return from a jump is itself a jump and a fault.
         fails_ = has_jumped;
     }
     return DeviceReading::from(pose, button_main);
@@ -65,13 +65,13 @@ class FaultyDevice : public Device {
 
   void set_force(const Vector3& force_n) override { force_n_ = force_n; }
 
-  // Moves the hand by a millisecond, slower than any limit.
+  // Moves the hand by the distance of a millisecond, more slowly than any speed limit.
   void move() {
     if (random_.once_in(200)) target_y_m_ = random_.uniform(-0.004, 0.004);
     position_m_.y() += std::clamp(target_y_m_ - position_m_.y(), -2e-4, 2e-4);
   }
 
-  bool fails() const { return fails_; }  // in the last read()
+  bool fails() const { return fails_; }  // true if the reading of the last read() is faulty
   const Vector3& force_n() const { return force_n_; }
 
  private:
@@ -84,7 +84,8 @@ class FaultyDevice : public Device {
   Vector3 force_n_ = Vector3::Zero();
 };
 
-// One session of a loop with a device behind chain and watchdog, in milliseconds of the device.
+// Runs a haptic loop and its device, with the safety chain and the watchdog between them, millisecond by
+// millisecond.
 struct FaultyRun {
   explicit FaultyRun(Random& source) : random(source), device(source), watched(device), safe(watched) {}
 
@@ -94,8 +95,8 @@ struct FaultyRun {
   SafeDevice safe;
   CouplingState coupling;
   std::int64_t now_ns = 0;
-  std::uint64_t idle_ticks = 0;   // milliseconds without a tick of the loop
-  std::uint64_t quiet_ticks = 0;  // ticks of the loop since a fault
+  std::uint64_t idle_ticks = 0;   // milliseconds since the last tick of the loop
+  std::uint64_t quiet_ticks = 0;  // ticks of the loop since the last fault
   std::uint64_t beyond_limit = 0, not_cut = 0, held = 0, pressed = 0, early = 0;
   std::uint64_t faults = 0, stops = 0, with_force = 0;
 
@@ -119,7 +120,7 @@ struct FaultyRun {
     quiet_ticks = is_fault ? 0 : quiet_ticks + 1;
     faults += is_fault;
     not_cut += is_fault && has_force;
-    // After a stall a jump may be a motion of the hand.
+    // After a stall, a jump may be a true motion of the hand, so it may press.
     pressed += device.fails() && !is_late && (reading.buttons & button_hover) == 0;
     early += quiet_ticks <= 10 && has_force;
     with_force += has_force;
@@ -138,7 +139,7 @@ struct FaultyRun {
     judge();
   }
 
-  // The machine sleeps, with the force held, and the watchdog is the first to run afterwards.
+  // Suspends the machine while the force is held. The watchdog is the first to run afterwards.
   void suspend() {
     const std::uint64_t ticks = 10 + random.bits() % 100'000;
     now_ns += static_cast<std::int64_t>(ticks) * device_tick_ns;
@@ -154,8 +155,8 @@ TEST(FaultyDevice, NeverPassesTheLimitAndGetsNoForceAfterAnyFault) {
   FaultyRun run(random);
   std::uint64_t pause = 0;
   for (std::uint64_t tick = 0; tick < ticks; ++tick) {
-    if (pause == 0 && random.once_in(50)) pause = 1 + random.bits() % 8;      // late
-    if (pause == 0 && random.once_in(1000)) pause = 9 + random.bits() % 100;  // stalled or stopped
+    if (pause == 0 && random.once_in(50)) pause = 1 + random.bits() % 8;      // the loop is late
+    if (pause == 0 && random.once_in(1000)) pause = 9 + random.bits() % 100;  // the loop stalls or stops
     if (random.once_in(5000)) run.suspend();
     run.stops += pause >= 12;
     run.run(pause == 0);

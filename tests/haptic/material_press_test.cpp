@@ -114,8 +114,9 @@ TEST(MaterialPress, SiliconeSpringsBack) {
   EXPECT_LT(std::abs(press.volume_change()), 1e-3);
 }
 
-// A standard linear solid held at a depth loses the relaxing fraction of its force with its relaxation time.
-// After release it springs back with that time divided by the fraction that does not relax.
+// A standard linear solid at a constant depth loses the relaxing fraction of its force with its relaxation
+// time. After release it springs back with a longer time: the relaxation time divided by the fraction that
+// does not relax.
 TEST(MaterialPress, GelatinCreepsAsItsRelaxationTimeSays) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   if (!is_full_run()) GTEST_SKIP() << only_in_full;

@@ -55,13 +55,12 @@ WallPress random_press(std::mt19937_64& random) {
 }
 
 struct Energy {
-  double given_most_j = 0.0;  // highest energy given to the hand at any time
+  double given_most_j = 0.0;  // largest energy given to the hand so far, at any time
   double taken_j = 0.0;       // total energy that the wall took, for comparison
 };
 
-// Moves a hand above the wall, whose surface is at `surface_m`, into it and out again; `wall` gives the force
-// for a reading.
-// `next_hold` gives the number of milliseconds for which the wall's next force is held.
+// Moves a hand from above the wall, whose surface is at `surface_m`, into the wall and out again. `wall`
+// returns the force for a reading; `next_hold` returns for how many milliseconds this force is held.
 template <class Wall, class NextHold>
 Energy press_wall(const WallPress& press, const Vector3& surface_m, Wall wall, NextHold next_hold) {
   constexpr double clearance_m = 0.005;
@@ -113,8 +112,8 @@ Energy press_rigid_wall(const WallPress& press, double stiffness_n_per_m,
 }
 
 // A hand of 0.2 kg and 3 N s/m is lighter and less damped than a measured one, which makes it harder to keep
-// passive: van Beek et al. (Scientific Reports 5:18004, 2015) measured 0.55 kg, 6.5 N s/m and 135 N/m at an
-// arm's end. That a hand adds no energy of its own at these frequencies is from Hogan (ICRA 1989).
+// passive. Van Beek et al. (Scientific Reports 5:18004, 2015) measured 0.55 kg, 6.5 N s/m and 135 N/m at an
+// arm's end. A hand adds no energy of its own at these frequencies (Hogan, ICRA 1989).
 TEST(Passivity, AWallWhoseForceIsHeldForSeveralTicksGivesBackNoMoreThanItTook) {
   std::mt19937_64 random(25);
   const auto random_hold = [&random](int longest) {
@@ -161,7 +160,7 @@ TEST(Passivity, ARigidWallOfTheHighestStiffnessGivesBackNoMoreThanItTook) {
         << " Hz; took " << energy.taken_j << " J";
     taken_j += energy.taken_j;
   }
-  // The walls took at least a millijoule per press on average, which they could give back.
+  // The walls absorbed at least a millijoule per press on average, which they could have given back.
   EXPECT_GT(taken_j, 0.2);
 }
 

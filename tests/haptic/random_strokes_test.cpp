@@ -1,7 +1,7 @@
-// Tests random strokes on one to three bodies with any material and any panel setting, by a hand moving at up
-// to 5 m/s, also with nothing fixed and with materials that change in mid-stroke: no number of a document, a
-// frame or the panel ceases to be finite, bodies that are not free stay near their places, no cell of a body
-// stays inverted, and the requested force never exceeds the device's limit.
+// Tests random strokes on one to three bodies with any material and any panel setting. The hand moves at up
+// to 5 m/s; bodies may be without fixed nodes, and materials may change during a stroke. All numbers of
+// documents, frames and the panel must stay finite. Bodies that are not free must stay near their places. No
+// cell of a single body may stay inverted, and the requested force must never exceed the device's limit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -69,7 +69,7 @@ Material random_material(Random& random, const std::vector<Material>& bundled) {
   return random.once_in(2) ? bundled[random.bits() % bundled.size()] : any_material(random);
 }
 
-// Up to `most_bodies` handles above each other, a millimetre apart.
+// Returns a scene of up to `most_bodies` handles above each other, a millimetre apart.
 Scene random_stroke_scene(Random& random, const std::vector<Material>& bundled, int most_bodies) {
   Scene scene = small_handle();
   const Body handle = scene.bodies[0];
@@ -94,8 +94,8 @@ Scene random_stroke_scene(Random& random, const std::vector<Material>& bundled, 
 }
 
 constexpr double fastest_m_per_s = 5.0;
-// The hand stays in the box with these half sides around the body's centre, and so does material that it
-// pulls out.
+// The hand stays in a box with these half sides around the body's centre, and so does material that it pulls
+// out.
 const Vector3 roam_m(0.06, 0.03, 0.03);
 const Vector3 centre_m(0.03, 0.0, 0.0);
 
@@ -157,7 +157,7 @@ Vector3 mean_node(const std::vector<Vector3>& nodes) {
   return sum / static_cast<double>(nodes.size());
 }
 
-// Bounds of a scene as it was loaded.
+// Centre and size of a scene as it was loaded.
 struct Place {
   Vector3 centre_m = Vector3::Zero();
   double size_m = 0.0;
@@ -169,8 +169,8 @@ Place find_place(const Scene& scene) {
   return {box.centre(), box.size()};
 }
 
-// Returns true if every node is within twice the scene's size: of the scene's place, or of its body's centre
-// if the body may move.
+// Returns true if every node is within twice the scene's size of the scene's initial centre, or of its own
+// body's centre if the body may move.
 bool is_in_bounds(const Simulation& simulation, const Place& place) {
   for (std::size_t b = 0; b < simulation.scene().bodies.size(); ++b) {
     const SpringLattice& lattice = simulation.lattice(static_cast<int>(b));
@@ -189,7 +189,7 @@ bool is_finite(const std::vector<Number>& values) {
   return std::all_of(values.begin(), values.end(), [](Number value) { return std::isfinite(value); });
 }
 
-// Returns true if all numbers of what is saved, drawn and shown in the panel are finite.
+// Returns true if all numbers that are saved, drawn or shown in the panel are finite.
 bool is_shown_finite(const Simulation& simulation) {
   Scene saved;
   simulation.write_scene(saved);
@@ -273,7 +273,7 @@ void try_strokes(std::uint64_t seed, int strokes, int most_bodies, int stroke_ti
     const WatchedStroke watched = stroke(random, made.value(), bundled, stroke_ticks);
     EXPECT_TRUE(watched.in_bounds);
     EXPECT_TRUE(watched.is_finite);
-    // Bodies that are pressed into each other may crush cells.
+    // If several bodies are pressed into each other, cells may be crushed.
     EXPECT_TRUE(watched.inverted == 0 || most_bodies > 1);
     // The relative tolerance allows for rounding of the norm.
     EXPECT_LE(watched.strongest_n, watched.limit_n * (1.0 + 1e-12));

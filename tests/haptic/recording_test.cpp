@@ -53,7 +53,8 @@ TEST(Recording, WritesTheSameBytesAgain) {
   }
 }
 
-// Returns a recording of one command, whose document has the version and the tool the number of steps.
+// Returns a recording of one command. Its document has the given version, and `steps_field` is the field of
+// the tool that contains the number of steps.
 std::string recording_with_command(int version, const char* steps_field, const std::string& command) {
   Json header = header_to_json(sample_header());
   Json& document = header["document"];

@@ -46,7 +46,7 @@ TEST(SafeDevice, GivesTheForceAndNeverMoreThanTheDeviceMay) {
   stub.limits.maximum_force_n = 2.0;
   SafeDevice safe(stub);
   run(safe, 1.0, 100);
-  EXPECT_EQ(stub.given_n, Vector3::Zero());  // still off, because the force has not been small yet
+  EXPECT_EQ(stub.given_n, Vector3::Zero());  // still off, because the requested force has not been small yet
   engage(safe);
   EXPECT_EQ(stub.given_n, Vector3(1, 0, 0));
   EXPECT_EQ(safe.flags(), safety_flag_none);
@@ -107,7 +107,7 @@ TEST(SafeDevice, AsksForTheProxyToBeResetAfterAStall) {
   EXPECT_EQ(stub.given_n, Vector3(1, 0, 0));
   EXPECT_FALSE(safe.consume_proxy_reset());
   EXPECT_EQ(safe.read(9).missed, 9U);
-  EXPECT_TRUE(safe.consume_proxy_reset());  // before the simulation advances
+  EXPECT_TRUE(safe.consume_proxy_reset());  // the reset comes before the simulation advances
   safe.give(Vector3(1, 0, 0));
   EXPECT_EQ(stub.given_n, Vector3::Zero());
   EXPECT_EQ(safe.flags(), safety_flag_stalled | safety_flag_cut);
@@ -131,11 +131,11 @@ TEST(SafeDevice, AHandThatJumpsOnlyPointsAndGetsNoForce) {
   EXPECT_EQ(safe.read(), reading_at_x(0.045, button_main));
   EXPECT_TRUE(safe.consume_proxy_reset());
   run(safe, 1.0, 100);
-  EXPECT_EQ(stub.given_n, Vector3::Zero());  // waits for a small force, as at the start
+  EXPECT_EQ(stub.given_n, Vector3::Zero());  // the force waits until the request is small, as at the start
   engage(safe);
   EXPECT_EQ(stub.given_n, Vector3(1, 0, 0));
   stub.reading = reading_at_x(0.045 + 1.01 * 3.0 * limit_m, button_main);
-  EXPECT_EQ(safe.read(2).buttons, button_hover);  // too fast even in three ticks
+  EXPECT_EQ(safe.read(2).buttons, button_hover);  // the motion is too fast even for three ticks
   stub.reading = reading_at_x(0.045 + 4.0 * limit_m, button_main);
   EXPECT_EQ(safe.read().buttons, button_main);
 }
@@ -171,7 +171,7 @@ TEST(SafeDevice, TheSwitchCutsTheForceAtOnceAndLetsItRampInAgain) {
     run(safe, 1.0, 1);
     EXPECT_EQ(stub.given_n, Vector3::Zero());
     EXPECT_EQ(safe.flags(), safety_flag_off | safety_flag_cut);
-    EXPECT_FALSE(safe.consume_proxy_reset());  // the tool goes on sculpting
+    EXPECT_FALSE(safe.consume_proxy_reset());  // the tool continues to sculpt
     safe.switch_force(true);
     run(safe, 1.0, 100);
     EXPECT_EQ(stub.given_n, Vector3::Zero());

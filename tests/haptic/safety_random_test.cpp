@@ -90,9 +90,9 @@ class RandomInput {
   Vector3 force_ = Vector3::Ones();
 };
 
-// Returns true if the input is a fault, computed without the safety chain.
-// `last_m` is the position of the previous tick, not finite if that one was not.
-// `tick_count` is the number of ticks in the last 100 ms.
+// Returns true if the input is a fault, computed without the safety chain. `last_m` is the position of the
+// previous tick; its coordinates are not finite if that one was invalid. `tick_count` is the number of ticks
+// in the last 100 ms.
 bool is_fault(const DeviceSpecification& specification, const SafetyInput& input, const Vector3& last_m,
               std::size_t tick_count) {
   if (input.stale || !input.requested_n.allFinite() || !input.position_m.allFinite()) return true;
@@ -109,11 +109,11 @@ struct WatchedForces {
   Vector3 last_n = Vector3::Zero();
   Vector3 last_m = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
 
-  std::deque<std::uint64_t> times;  // of the ticks in the last 100 ms
+  std::deque<std::uint64_t> times;  // times of the ticks in the last 100 ms, in milliseconds
 
   std::size_t count_ticks(std::uint64_t dropped) {
     if (dropped >= 9) times.clear();
-    if (times.empty()) {  // as if no tick had been missed before
+    if (times.empty()) {  // at the start and after a stall, no tick counts as missed
       for (std::uint64_t time = 0; time < 100; ++time) times.push_back(time);
     } else {
       times.push_back(times.back() + dropped + 1);
@@ -133,7 +133,7 @@ struct WatchedForces {
                                     (safety_flag_cut | safety_flag_buzzing);
     const bool cut = (safe.flags & safety_flag_cut) != 0;
     beyond_limit += !(safe.force_n.norm() <= specification.maximum_force_n * (1.0 + rounding));
-    // The difference from the previous force is at most the limit, with a relative rounding error of
+    // The force may differ from the previous force by at most the limit, with a relative rounding error of
     // `rounding`.
     const double allowed_n = most_n + rounding * (most_n + specification.maximum_force_n);
     jumps += !cut && !((safe.force_n - last_n).norm() <= allowed_n);
@@ -199,7 +199,7 @@ Scene random_safety_scene(Random& random) {
   return scene;
 }
 
-// Moves a hand at random over and into the handle. At times the thread is late or the simulation stale.
+// Moves a hand at random above and into the handle. At times the thread is late or the simulation stale.
 WatchedForces sculpt(Random& random, int ticks) {
   auto made = Simulation::make(random_safety_scene(random), best_instruction_set());
   EXPECT_TRUE(made.ok()) << made.error().message;

@@ -100,7 +100,7 @@ TEST(Safety, AJumpComesInNoFasterThanTheForceMayChange) {
   EXPECT_NEAR(make_safe(state, device, wanting(-3.0)).force_n.x(), most, 1e-12);
 }
 
-// A cut may change the force by more than the limit on its change; nothing else may.
+// Expects the fault to cut the force. A cut may exceed the limit on the rate of the force; nothing else may.
 void expect_cut(const SafetyInput& fault, std::uint32_t flag) {
   SafetyState state = pressing_state(3.0);
   ASSERT_GT(3.0, device.maximum_force_rate_n_per_s * tick_s);
@@ -108,7 +108,7 @@ void expect_cut(const SafetyInput& fault, std::uint32_t flag) {
   EXPECT_EQ(safe.force_n, Vector3::Zero());
   EXPECT_EQ(safe.flags, flag | safety_flag_cut);
   EXPECT_EQ(safe.reset_proxy, flag != safety_flag_stale);
-  // The hand stays where it is now.
+  // The hand stays at the position that it has at the fault.
   const auto wanting_there = [&fault](double x_n) {
     SafetyInput input = wanting(x_n);
     if (fault.position_m.allFinite()) input.position_m = fault.position_m;
@@ -169,7 +169,7 @@ TEST(Safety, FewerThanTwoHundredTicksASecondGetNoForce) {
     const bool is_slow = 1000 / (dropped + 1) < 200;
     EXPECT_EQ(safe.force_n.x(), is_slow ? 0.0 : 3.0) << dropped;
     EXPECT_EQ(safe.flags, is_slow ? safety_flag_slow | safety_flag_cut : safety_flag_softened) << dropped;
-    // Back at full rate the force waits, as at the start.
+    // At the full rate again, the force waits until the requested force is small, as at the start.
     for (int tick = 0; tick < 300; ++tick) safe = make_safe(state, device, wanting(3.0));
     EXPECT_EQ(safe.flags, is_slow ? safety_flag_slow | safety_flag_waiting : safety_flag_none) << dropped;
   }

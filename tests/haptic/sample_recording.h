@@ -19,8 +19,8 @@ std::vector<DeviceReading> sample_readings(std::size_t count, unsigned seed);
 // Returns a made-up value in place of the state hash at a tick.
 std::uint64_t pretended_hash(std::uint64_t tick);
 
-// Writes `readings` with commands at several ticks and all checkpoints, and the end of the recording only if
-// `finish` is set.
+// Writes `readings`, with commands at several ticks and all checkpoints. Writes the end of the recording only
+// if `finish` is true.
 Status write_sample_recording(const std::filesystem::path& file, const std::vector<DeviceReading>& readings,
                               bool finish);
 

@@ -58,7 +58,7 @@ TEST(SoftPress, BothGiveWayStayApartAndComeBack) {
   EXPECT_LT(farthest, 0.3e-3) << "elastic";
 }
 
-// The bundled soft egg, which is a mesh, also yields and recovers.
+// The bundled soft egg, which is a mesh, also yields and recovers its shape.
 TEST(SoftPress, AMeshGivesWayTooAndComesBack) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const Script script = read_script(scripts / "soft-egg.script.json").value();
@@ -67,7 +67,7 @@ TEST(SoftPress, AMeshGivesWayTooAndComesBack) {
   VirtualDevice device = VirtualDevice::make(script.hand, script.start).value();
   CouplingState coupling;
   Snapshot snapshot;
-  // Returns how far the lowest point of the egg is below the hand.
+  // Returns the distance of the egg's lowest point below the hand.
   const auto hangs_m = [&](double hand_m) {
     simulation.write_snapshot(snapshot);
     const std::vector<float>& y = snapshot.bodies.back().mesh.y;

@@ -1,4 +1,5 @@
-// Tests the SpaceMouse with a simulated daemon on its own socket, and its steering by arithmetic.
+// Tests the SpaceMouse with a simulated daemon on a socket of its own, and the steering of the handle by
+// calculation.
 #include "haptic/space_mouse.h"
 
 #include <gtest/gtest.h>
@@ -75,7 +76,8 @@ TEST(SpaceMouse, FollowsTheDaemonsEventsUntilItLeaves) {
   EXPECT_TRUE(motion->translation.isApprox(Vector3(1.0, -0.5, -0.2), 1e-12));
   EXPECT_TRUE(motion->rotation.isApprox(Vector3(0.0, 0.0, -0.1), 1e-12));
   EXPECT_EQ(motion->buttons, 2u);
-  EXPECT_EQ(mouse->poll()->translation, motion->translation);  // the cap is still held there
+  // The daemon sends nothing while the cap is held still.
+  EXPECT_EQ(mouse->poll()->translation, motion->translation);
 
   daemon.move({9, 9, 9, 9, 9, 9});
   daemon.press(0);
@@ -173,7 +175,7 @@ TEST(Steer, NothingMovesWithinTheDeadZoneAndSpeedStartsAtItsEdge) {
   const double moved = steer(target, pushed(beyond, Vector3::Zero()), 0.02).pose.position_m.z() - 3.0;
   EXPECT_GT(moved, 0.0);
   EXPECT_LT(moved, 1e-5 * steering.speed_m_per_s);
-  // Halfway between the dead zone and the end the speed is a quarter of the largest.
+  // Halfway between the dead zone and the end of the range, the speed is a quarter of the largest speed.
   const Vector3 half(0, 0.5 * (1.0 + steering.dead_zone), 0);
   EXPECT_NEAR(steer(target, pushed(half, Vector3::Zero()), 0.02).pose.position_m.y() - 2.0,
               0.25 * 0.02 * steering.speed_m_per_s, 1e-12);

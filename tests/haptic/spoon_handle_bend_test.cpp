@@ -58,8 +58,8 @@ Bend play() {
     if (script.target_at(t).pose.position_m.y() < -0.0205) pushed = simulation.surface();
   }
   EXPECT_TRUE(before && pushed);
-  // The sphere is above v = 88 of the straight handle. The parameter v is the distance along the handle in
-  // millimetres.
+  // The fixing plane is at v = 40 of the straight handle, and the sphere is above v = 88. The parameter v is
+  // the distance along the handle in millimetres.
   return {*before, *pushed, simulation.surface(), simulation.lattice(), 40.0, 88.0};
 }
 

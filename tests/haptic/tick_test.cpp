@@ -59,7 +59,7 @@ TEST(Tick, PushedMaterialPushesBackAndTheForceScalesIt) {
     Simulation simulation = held_handle(which == 0 ? 5.0 : 10.0);
     CouplingState coupling;
     TickResult result;
-    // The hand is at rest after 400 ticks, and the body soon after it, so that no damping acts.
+    // The hand is at rest after 400 ticks, and the body soon after, so that damping adds no force.
     for (int k = 0; k < 1000; ++k) {
       result = tick(simulation, coupling, VirtualDevice::default_specification(),
                     reading_at(0.05, 0.009 - 1e-5 * std::min(k, 400)));
@@ -68,7 +68,8 @@ TEST(Tick, PushedMaterialPushesBackAndTheForceScalesIt) {
     force[which] = result.force_n.y();
   }
   EXPECT_GT(force[0], 1e-4);
-  EXPECT_NEAR(force[1] / force[0], 2.0, 0.1);  // not exact: the proxy is a little farther off the surface
+  // The ratio is not exact, because the proxy is a little farther off the surface.
+  EXPECT_NEAR(force[1] / force[0], 2.0, 0.1);
 }
 
 TEST(Tick, HeldPartIsAWallOfTheDevicesStiffness) {

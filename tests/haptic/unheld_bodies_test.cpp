@@ -23,7 +23,7 @@ Vector3 mean_position(const std::vector<Vector3>& nodes) {
   return mean;
 }
 
-// Lowers the tool into the middle of the handle, moves it sideways at the end, and raises it.
+// Lowers the tool into the centre of the handle, moves it sideways while it is down, and raises it.
 PressedBody press(Scene scene) {
   PressedBody pressed;
   auto simulation = Simulation::make(std::move(scene), best_instruction_set());

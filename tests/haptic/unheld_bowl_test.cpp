@@ -19,8 +19,9 @@ namespace {
 struct ScriptedStroke {
   double scene_size_m = 0.0;
   double farthest_m = 0.0;  // largest distance of a node from the centre of the scene
-  double travel_m = 0.0;    // the hand's distance from its first touch, in the last touching tick
-  double followed_m = 0.0;  // largest displacement of nearby nodes in the travel's direction, then
+  double travel_m = 0.0;    // distance of the hand from its first contact, at the last tick with contact
+  // Largest displacement of nodes near the hand along the hand's travel, at the last tick with contact.
+  double followed_m = 0.0;
 };
 
 ScriptedStroke play(const std::string& name) {

@@ -43,11 +43,11 @@ int find_cut(
 
 enum class Waveform { circle, sine, square };
 
-// A vibration with a random plane and phase.
+// Returns a vibration with a random plane and phase.
 ForceSource random_vibration(Random& random, Waveform waveform, double frequency_hz, double amplitude_n,
                              const Vector3& offset_n) {
   const Vector3 along = random.direction(), across = along.cross(random.direction()).normalized();
-  // With two samples a period, the phase decides whether there is any force.
+  // At 500 Hz there are two samples per period, so a random phase could sample only the zeros of the sine.
   const double phase = frequency_hz > 400.0 ? 0.25 : random.uniform(0.0, 1.0);
   return [=](int tick) -> Vector3 {
     const double angle = 2.0 * std::numbers::pi * (frequency_hz * tick * tick_s + phase);
@@ -72,7 +72,7 @@ TEST(Vibration, OfFullForceIsCutWithin150Milliseconds) {
         const int cut =
             find_cut(force_n, 150, offset_n, [&](int t) { return Vector3(t * tick_s * speed_m_per_s); });
         ASSERT_NE(cut, never_cut) << frequency_hz << " Hz, waveform " << static_cast<int>(waveform);
-        // One period, even a long one, is not enough.
+        // A vibration is cut only after more than two of its periods.
         ASSERT_GT(cut, 2000.0 / frequency_hz);
       }
     }
@@ -139,7 +139,7 @@ TEST(Vibration, WeakNoiseIsNone) {
 
 struct TouchingRun {
   bool cut = false;
-  double strongest_n = 0.0;  // of the requested force
+  double strongest_n = 0.0;  // largest requested force
 };
 
 // Runs a hand that touches something for some ticks. `touch` returns the requested force for a reading.
@@ -162,7 +162,7 @@ TouchingRun run_hand(const Hand& hand, const HandPath& target_m, int ticks,
   return run;
 }
 
-// A rigid surface, felt through the coupling. Its height depends on x.
+// A rigid surface that the hand feels through the coupling. Its height depends on x.
 class RigidSurface {
  public:
   explicit RigidSurface(std::function<double(double x_m)> height_m) : height_m_(std::move(height_m)) {}
@@ -182,7 +182,7 @@ class RigidSurface {
   CouplingState coupling_;
 };
 
-// A random hand that is stable and damped, or the default hand.
+// Returns a random hand that is stable and damped, or the default hand.
 Hand random_damped_hand(Random& random) {
   Hand hand;
   if (random.once_in(2)) return hand;
@@ -192,7 +192,7 @@ Hand random_damped_hand(Random& random) {
   return hand;
 }
 
-// The path of a hand that comes down at `speed_m_per_s`, is held at a depth and may leave again.
+// Returns the path of a hand that comes down at `speed_m_per_s`, is held at a depth and may leave again.
 HandPath tap_path(double top_m, double depth_m, double speed_m_per_s, double held_s, double x_m = 0.0) {
   return [=](int tick) {
     const double down_m = top_m - speed_m_per_s * tick * tick_s;
@@ -276,7 +276,8 @@ TEST(Vibration, RidgesThatTheHandCrossesAreNone) {
   EXPECT_GT(strong, runs / 3);
 }
 
-// Against a flat wall, or sideways over a ridge, which gives two pulses in a period.
+// The hand trembles against a flat wall, or sideways over a ridge, which gives two pulses of force per
+// period.
 TEST(Vibration, ATremorAgainstAStiffMaterialIsNone) {
   Random random(41);
   int strong = 0;
@@ -287,7 +288,7 @@ TEST(Vibration, ATremorAgainstAStiffMaterialIsNone) {
     const Vector3 amplitude_m =
         0.005 * (run % 3 == 0 ? Vector3(Vector3::UnitX()) : Vector3(Vector3::UnitY()));
     Hand hand;
-    if (run % 4 < 2) {  // follows its target closely
+    if (run % 4 < 2) {  // the hand follows its target closely
       hand.stiffness_n_per_m = 10'000.0;
       hand.damping_n_s_per_m = 60.0;
     }

@@ -32,8 +32,9 @@ TEST(VirtualDevice, GivesWayByForceOverStiffness) {
   EXPECT_NEAR(device.velocity_m_per_s().norm(), 0.0, 1e-9);
 }
 
-// A critically damped hand follows x(t) = F/k (1 - (1 + wt) exp(-wt)); a first-order step is off by about w h
-// / 2.
+// A critically damped hand moves by x(t) = F/k (1 - (1 + w t) exp(-w t)), where F is the force, k the
+// stiffness and w the natural frequency. A first-order integrator with step h has a relative error of about
+// w h / 2.
 TEST(VirtualDevice, FollowsTheClosedForm) {
   VirtualDevice device = device_at_origin();
   device.set_force(Vector3(3.0, 0.0, 0.0));
@@ -63,7 +64,8 @@ TEST(VirtualDevice, FollowsItsTarget) {
   EXPECT_NEAR(device.position_m().x(), 0.02, 1e-12);
 }
 
-// Returns the energy that the undamped step conserves exactly; the plain energy oscillates around it.
+// Returns the energy that the integrator conserves exactly without damping. The physical energy oscillates
+// around it.
 double conserved_energy(const VirtualDevice& device, const Hand& hand) {
   const Vector3& x = device.position_m();
   const Vector3& v = device.velocity_m_per_s();
@@ -85,8 +87,8 @@ void expect_no_energy_gained(const Hand& hand) {
     device.read();
     highest = std::max(highest, conserved_energy(device, hand));
   }
-  // A damper on a handle almost at rest changes the energy of a step by an amount of second order in the
-  // step's length.
+  // With damping, a step at the turning point of the handle may raise this energy by an amount of second
+  // order in the length of the step.
   const double step = 1e-6 * hand.stiffness_n_per_m / hand.mass_kg;
   const double allowed = hand.damping_n_s_per_m == 0.0 ? 1e-9 : step;
   EXPECT_LE(highest, released * (1.0 + allowed))

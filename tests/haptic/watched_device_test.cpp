@@ -9,7 +9,7 @@
 namespace spoonbill {
 namespace {
 
-// A device that stores the force, readable from any thread.
+// A device that stores the magnitude of the force. Any thread may read it.
 class HeldForce : public Device {
  public:
   const DeviceSpecification& specification() const override { return limits_; }
@@ -30,7 +30,8 @@ class HeldForce : public Device {
 constexpr std::int64_t watched_tick_ns = 1'000'000;
 const Vector3 pushing_n(1.0, 0.0, 0.0);
 
-// Ticks once a millisecond of the test's clock, with a check at the end of each, until the loop stops.
+// Runs `ticks` ticks of the loop, one per millisecond of the test's clock, each followed by a check of the
+// watchdog. Returns the time of the last check.
 std::int64_t push_until_stop(WatchedDevice& watched, int ticks) {
   std::int64_t now_ns = 0;
   for (int k = 0; k < ticks; ++k) {

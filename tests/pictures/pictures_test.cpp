@@ -1,7 +1,7 @@
 // Compares pictures with the approved ones in screenshots/ by their worst block of 16 x 16 pixels. The
-// pictures show a bend in the default view, the stages of a contact, and presses into materials. A differing
-// picture is written to picture-failures/ of the build folder, with the approved picture and their
-// difference. tests/approve approves the pictures that the program draws.
+// pictures show a bend in the default view, the stages of a contact, and presses into materials. A picture
+// that differs is written to picture-failures/ of the build folder, with the approved picture and their
+// difference. tests/approve replaces the approved pictures by those that the program draws.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -27,8 +27,8 @@ namespace spoonbill {
 namespace {
 
 // Largest allowed mean difference of a block's channels, in 8-bit steps. Rasterisers on other processors
-// differ by less than a third of this; the smallest change that must be detected differs by more than twice
-// this.
+// differ by less than a third of it. The smallest change that must be detected differs by more than twice as
+// much.
 constexpr double tolerance = 2.0;
 
 constexpr int width_px = 1280, height_px = 720;
@@ -76,7 +76,7 @@ class MomentPictures : public ::testing::Test {
                       nullptr);
     const auto frame = static_cast<std::uint64_t>(moment.share * static_cast<double>(frame_count(ticks) - 1));
     EXPECT_TRUE(lockstep.run_to(frame_tick(frame)));
-    session->flags = tick_flag_none;  // the flags of many frames have accumulated
+    session->flags = tick_flag_none;  // clears flags that many frames have accumulated
     write_snapshot(session.value(), snapshot);
     return {std::move(session).value(), std::move(painter).value(), std::move(snapshot), framed};
   }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double frame_s = 1.0 / 60.0;
 
-// A machine that takes the given time for a frame at each of the four qualities.
+// A machine that takes the given times to draw a frame, one for each of the four qualities.
 struct Machine {
   std::array<double, 4> took_s;
 
@@ -75,8 +75,8 @@ TEST(FrameBudget, QualityComesBackWhenThereIsRoom) {
   EXPECT_EQ(budget.quality(), FrameQuality::full);
 }
 
-// Without samples there seems to be enough time for them, but with samples there is not: attempts become
-// rarer.
+// A frame without multisampling seems to leave enough time for it, but a frame with it takes too long.
+// Attempts become rarer.
 TEST(FrameBudget, AMisjudgedRoomIsTriedLessAndLess) {
   FrameBudget budget(frame_s);
   const Machine misjudged{{0.030, 0.005, 0.004, 0.003}};

@@ -53,14 +53,14 @@ TEST(MeshShading, IsSmoothOnABallAndFollowsItsShape) {
   TessellatedSurface surface;
   surface.update(mesh);
   ASSERT_EQ(surface.vertex_count(), ball.vertices_m.size());
-  // The ball's edges are chords of 15 degrees.
+  // The ball's edges span at most 15 degrees.
   for (const Drawn& each : drawn(surface)) EXPECT_GT(each.normal.dot(each.position), 0.995f);
   const std::uint64_t version = surface.topology_version();
   for (float& y : mesh.y) y *= 0.25f;
   surface.update(mesh);
   EXPECT_EQ(surface.topology_version(), version);
   for (const Drawn& each : drawn(surface)) {
-    // `wanted` is the exact normal of an ellipsoid
+    // `wanted` is the exact normal of the ellipsoid into which the ball has been squashed.
     const Eigen::Vector3f wanted =
         Eigen::Vector3f(each.position.x(), 16.0f * each.position.y(), each.position.z()).normalized();
     EXPECT_GT(each.normal.dot(wanted), 0.98f);

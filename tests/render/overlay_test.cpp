@@ -204,8 +204,8 @@ LatticeSnapshot block_of_nodes(int ni, int nj, int nk) {
   return block;
 }
 
-// A cube is seen from beyond a corner: nine of its edges belong to the three faces towards the eye, three
-// only to the other faces.
+// A cube is seen from beyond a corner: nine of its edges belong to the three faces towards the eye, and three
+// edges belong only to the other faces.
 TEST(CellLines, AreNearWhereAFaceLooksAtTheEye) {
   CellLines of_corner, of_face;
   append_cell_lines(block_of_nodes(2, 2, 2), {5.0f, 4.0f, 3.0f}, of_corner);

@@ -14,19 +14,19 @@ constexpr double length_m = 0.100, width_m = 0.012, thickness_m = 0.005;
 constexpr double fixed_share = 1.0 / 3.0;
 constexpr int section_points = 16, axis_points = 24;
 
-// Returns a point of a rounded rectangle, a superellipse, in the (z, y) plane.
+// Returns a point of the section in the (z, y) plane: a rounded rectangle (superellipse).
 Eigen::Vector2d section(double turn) {
   const double angle = 2.0 * std::numbers::pi * turn;
   const auto rounded = [](double c) { return std::copysign(std::pow(std::abs(c), 0.55), c); };
   return {0.5 * width_m * rounded(std::cos(angle)), 0.5 * thickness_m * rounded(std::sin(angle))};
 }
 
-// Inverts the rounding of a coordinate, so that nodes are evenly spaced along the sides.
+// Inverts the rounding of a section's coordinate, so that nodes are evenly spaced along the sides.
 double unrounded(double x) {
   return std::copysign(std::pow(std::abs(x), 1.0 / 0.55), x);
 }
 
-// Bends the part of the handle beyond the fixed third around an arc.
+// Bends the part of the handle beyond the fixed third into an arc.
 Vector3 bent(const Vector3& straight, double bend_rad) {
   const double start = length_m * fixed_share, arc = 0.022;
   if (bend_rad == 0.0 || straight.x() <= start) return straight;
@@ -64,8 +64,8 @@ SurfaceSnapshot snapshot_of(const Surface& surface) {
   return snapshot;
 }
 
-// Returns lattice nodes: in each section the rim of the square grid is on the surface and its inside is
-// between rim and axis.
+// Returns lattice nodes. In each section, the boundary of the square grid is on the surface, and its inner
+// nodes are between boundary and axis.
 LatticeSnapshot make_lattice(const Surface& surface, const SampleSceneOptions& options) {
   LatticeSnapshot lattice;
   lattice.count[0] = options.through;

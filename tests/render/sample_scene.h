@@ -1,4 +1,4 @@
-// Provides a snapshot made for pictures without any simulation: a handle-like tube, straight or bent, with a
+// Provides a snapshot for pictures, made without simulation: a handle-like tube, straight or bent, with a
 // lattice, a fixing plane, a sphere on its free end, and a force.
 #pragma once
 
@@ -11,7 +11,7 @@
 namespace spoonbill {
 
 struct SampleSceneOptions {
-  double bend_rad = 0.0;  // how far the free end is bent down
+  double bend_rad = 0.0;  // angle by which the free end is bent down
   std::string material = "modelling-clay";
   int along = 60, across = 8, through = 4;  // number of lattice nodes
 };

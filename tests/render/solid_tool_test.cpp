@@ -107,7 +107,7 @@ class SolidToolPicture : public ::testing::Test {
   std::unique_ptr<Renderer> renderer_;
 };
 
-// Returns the bounds, in pixels, of a box that is placed by a frame.
+// Returns the bounds, in pixels, of a box in the pose of a tool frame.
 Changed projected_tool(const Box& box, const ToolFrame& frame) {
   const ViewSettings settings = plain_view();
   const Viewport viewport = make_viewport(sample_width_px, sample_height_px, settings.panel_px);
@@ -120,7 +120,7 @@ Changed projected_tool(const Box& box, const ToolFrame& frame) {
   return bounds;
 }
 
-// Expects equal bounds within 1.5 pixels, because pixels at the border are partly covered.
+// Expects equal bounds within 1.5 pixels, because pixels at the border are only partly covered.
 void expect_same_bounds(const Changed& seen, const Changed& expected) {
   EXPECT_LT((seen.low - expected.low).cwiseAbs().maxCoeff(), 1.5);
   EXPECT_LT((seen.high - expected.high).cwiseAbs().maxCoeff(), 1.5);
@@ -136,7 +136,8 @@ TEST_F(SolidToolPicture, ABoxFillsItsProjectionAndIsBlue) {
   }
 }
 
-// Returns a wedge with three different sides and no plane of symmetry: a turned copy would look different.
+// Returns a wedge with three different sides and no plane of symmetry, so that a rotated copy looks
+// different.
 MeshSolid wedge() {
   TriangleMesh mesh;
   mesh.vertices_m = {Vector3(0, 0, 0), Vector3(0.012, 0, 0), Vector3(0, 0.006, 0), Vector3(0, 0, 0.020)};
@@ -161,8 +162,8 @@ TEST(SolidTool, TheMirroredFrameIsTheReflectionOfTheTool) {
   EXPECT_NEAR(mirrored.axes.determinant(), -1.0, 1e-12);
 }
 
-// If S is the reflection, a mesh with vertices S v at the mirrored pose is the mirror image, and its frame
-// stays right-handed.
+// If S is the reflection, a mesh with vertices S v in the mirrored pose is the mirror image of the mesh with
+// vertices v. Its frame stays right-handed.
 TEST_F(SolidToolPicture, TheMirrorImageLooksLikeAMirroredMesh) {
   const Symmetry symmetry{true, {0.05, 0.0, 0.0}, Vector3::UnitX()};
   const Pose pose = turned({0.085, 0.030, 0.0}, 0.7, {0.2, 1.0, 0.3});
@@ -184,8 +185,7 @@ TEST_F(SolidToolPicture, TheMirrorImageLooksLikeAMirroredMesh) {
   EXPECT_GE(rest.low.x(), right.low.x());
 }
 
-// A soft tool, here a box of triangles at a frame, is drawn opaque, in the right position, and lit as bodies
-// are.
+// A soft tool, here a box of triangles, is drawn opaque, in the right position, and lit as bodies are.
 TEST_F(SolidToolPicture, ASoftMeshIsDrawnWhereItsVerticesAre) {
   auto triangles = std::make_shared<std::vector<TriangleCorners>>();
   for (const auto& [a, b, c, d] :

@@ -1,4 +1,4 @@
-// Returns a surface's triangles and the positions of their corners.
+// Tessellates surfaces, and returns the positions of their vertices.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -16,7 +16,8 @@
 namespace spoonbill {
 namespace {
 
-// Merges vertices that are within a tenth of a micrometre, because a pole is a row of such vertices.
+// Merges vertices less than a tenth of a micrometre apart, because a pole is a row of vertices in one
+// position.
 std::vector<std::uint32_t> merged_by_place(const TessellatedSurface& surface) {
   std::map<std::tuple<long, long, long>, std::uint32_t> places;
   const auto rounded = [](float metres) { return std::lround(metres / 1e-7); };
@@ -65,7 +66,7 @@ TEST(Tessellation, NormalsAreOutwardAndAgreeWithTheTriangles) {
       const Vector3 a = vertex(surface, corner[0]), b = vertex(surface, corner[1]),
                     c = vertex(surface, corner[2]);
       const Vector3 face = (b - a).cross(c - a);
-      // Slivers at a pole are skipped: their area is within the rounding of single precision.
+      // Slivers at a pole are skipped: their area is as small as the rounding error of single precision.
       if (face.norm() < 1e-10) continue;
       const auto& s = surface.samples();
       const Vector3 normal(s.nx[corner[0]], s.ny[corner[0]], s.nz[corner[0]]);

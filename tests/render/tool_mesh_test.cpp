@@ -19,10 +19,10 @@ namespace {
 struct NamedSolid {
   std::string name;
   ToolSolid solid;
-  bool flat = false;  // the solid has no volume
+  bool flat = false;  // true if the solid has no volume
 };
 
-// Returns an L-shaped solid, which is not convex.
+// Returns an L-shaped solid. It is not convex.
 MeshSolid bracket() {
   const std::vector<std::pair<double, double>> outline = {{-2, 0},  {-2, 10}, {-6, 10},
                                                           {-6, -4}, {8, -4},  {8, 0}};
@@ -92,9 +92,9 @@ Vector3 corner(const ToolMesh& mesh, std::size_t index) {
   return mesh.vertices[mesh.indices[index]].position_m.cast<double>();
 }
 
-// Counts the directed edges of the mesh. Vertices in the same position count as one: those along an edge of
-// the solid are doubled, and a pole is a row of them. Single precision distinguishes positions in these
-// solids to a hundredth of a micrometre.
+// Counts the directed edges of the mesh. Vertices in the same position count as one, because those along an
+// edge of the solid are doubled, and a pole is a row of them. In these solids, single precision resolves
+// positions to a hundredth of a micrometre.
 std::map<std::pair<int, int>, int> directed_tool_edges(const ToolMesh& mesh) {
   std::map<std::tuple<long, long, long>, int> places;
   const auto place_of = [&](std::size_t index) {
@@ -162,7 +162,7 @@ TEST(ToolMesh, NormalsAreOutwardAndAgreeWithTheTriangles) {
     for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
       const Vector3 a = corner(mesh, t);
       const Vector3 face = (corner(mesh, t + 1) - a).cross(corner(mesh, t + 2) - a);
-      // Slivers at a pole are skipped: their area is within the rounding of single precision.
+      // Slivers at a pole are skipped: their area is as small as the rounding error of single precision.
       if (face.norm() < 1e-11) continue;
       for (std::size_t c = 0; c < 3; ++c) {
         const Eigen::Vector3f normal = mesh.vertices[mesh.indices[t + c]].normal;
@@ -173,8 +173,8 @@ TEST(ToolMesh, NormalsAreOutwardAndAgreeWithTheTriangles) {
   }
 }
 
-// The normal is the gradient of the exact distance, where that exists: the distance half a micrometre along
-// the normal from a vertex of a smooth shape is half a micrometre.
+// The normal is the gradient of the exact distance wherever the gradient exists. A point half a micrometre
+// along the normal from a vertex of a smooth shape is therefore at a distance of half a micrometre.
 TEST(ToolMesh, NormalsOfSmoothShapesAreThoseOfTheDistance) {
   for (const ImplicitShape& shape : std::vector<ImplicitShape>{
            SphereShape{0.007}, EllipsoidShape{{0.008, 0.006, 0.010}}, CapsuleShape{0.004, 0.006},

@@ -19,7 +19,7 @@ namespace spoonbill {
 namespace {
 
 // Returns the area outside a clockwise hole about the centre of the domain, whose radius is a fifth of the
-// domain; `turns` moves the hole along u, across the seam.
+// domain. `turns` moves the hole along u, across the seam, as a fraction of the period.
 std::shared_ptr<const TrimmedArea> hole_in(const SurfaceSnapshot& surface, double turns) {
   const double u = surface.u.domain_start(), u_length = surface.u.domain_end() - u;
   const double v = surface.v.domain_start(), v_length = surface.v.domain_end() - v;
@@ -61,7 +61,7 @@ TEST(TrimmedTessellation, TrianglesFaceOutwardUpToTheRim) {
         const std::uint32_t* corner = surface.indices().data() + t;
         const Vector3 a = vertex(surface, corner[0]);
         const Vector3 face = (vertex(surface, corner[1]) - a).cross(vertex(surface, corner[2]) - a);
-        // Smaller triangles are skipped: their area is within the rounding of single precision.
+        // Smaller triangles are skipped: their area is as small as the rounding error of single precision.
         if (face.norm() < 1e-10) continue;
         const auto& s = surface.samples();
         for (int c = 0; c < 3; ++c) {
@@ -74,8 +74,8 @@ TEST(TrimmedTessellation, TrianglesFaceOutwardUpToTheRim) {
   }
 }
 
-// The sides that belong to a single triangle must form one closed rim, each corner of which is on two of
-// them. Poles are rows of vertices in the same position, so sides are compared by position.
+// The sides that belong to a single triangle must form one closed boundary loop, each corner of which is on
+// two such sides. A pole is a row of vertices in one position, so sides are compared by position.
 TEST(TrimmedTessellation, HasOneRimAndNoGapElsewhere) {
   SurfaceSnapshot snapshot = sample_scene({.bend_rad = 0.5}).bodies[0].surface;
   for (const double turns : {0.5, 0.02}) {

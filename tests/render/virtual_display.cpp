@@ -14,8 +14,8 @@
 namespace spoonbill {
 namespace {
 
-// Turns the child process into Xvfb, which writes the number of its display to `number_pipe`. With -noreset
-// it keeps its settings after its last client leaves; otherwise the next client might connect during the
+// Turns the child process into Xvfb, which writes the number of its display to `number_pipe`. With -noreset,
+// Xvfb keeps its settings when its last client leaves. Otherwise the next client could connect during the
 // reset.
 [[noreturn]] void become_xvfb(int number_pipe, const std::string& screen) {
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
@@ -27,7 +27,7 @@ namespace {
   _exit(127);
 }
 
-// Returns a line without its end, or nothing if the other end closes first.
+// Returns a line without its end, or nothing if the pipe is closed first.
 std::string read_line(int pipe) {
   std::string line;
   char letter = 0;

@@ -91,7 +91,7 @@ class Window : public ::testing::Test {
   Snapshot snapshot_ = sample_scene({.bend_rad = 0.4});
   std::unique_ptr<VirtualDisplay> display_;
   std::unique_ptr<GlfwWindow> window_;
-  std::unique_ptr<Renderer> renderer_;  // must end before the window does
+  std::unique_ptr<Renderer> renderer_;  // must be destroyed before the window
 };
 
 TEST_F(Window, DrawsAndShowsWhatIsDrawnOffscreen) {

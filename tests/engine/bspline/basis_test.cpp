@@ -101,7 +101,7 @@ TEST(Basis, ReproducesPolynomialsFromTheirCoefficients) {
   }
 }
 
-// B_i(u) = B_0((u - i + r) mod r) with the modulus r of the erratum, for one control point per unit of u.
+// With r control points and uniform periodic knots of spacing 1, B_i(u) = B_0((u - i + r) mod r).
 TEST(Basis, UniformPeriodicFunctionsAreShiftedCopies) {
   constexpr int count = 7;
   std::vector<double> units;

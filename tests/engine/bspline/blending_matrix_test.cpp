@@ -77,7 +77,7 @@ TEST(BlendingMatrix, PeriodicCubicIsWellConditionedAtKnots) {
   for (const int controls : {4, 8, 16, 32}) {
     const auto knots = KnotVector::periodic_uniform(3, controls).value();
     const auto at_knots = uniform_parameters_without_seam(knots, controls);
-    // The exact value is 3.
+    // The exact condition number is 3.
     EXPECT_NEAR(condition(blending_matrix(knots, at_knots, 0).dense()), 3.0, 1e-12);
     const auto twice = uniform_parameters_without_seam(knots, 2 * controls);
     EXPECT_LE(condition(blending_matrix(knots, twice, 0).dense()), 4.3);

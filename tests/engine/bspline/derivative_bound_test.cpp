@@ -48,7 +48,8 @@ TEST(DerivativeBound, IsReachedAtAClampedEnd) {
   const std::vector<double> x = {0, 6, 7, 8, 8}, zero(5, 0.0);
   const double longest =
       DerivativeBound(knots).longest(ControlLines<double>{x.data(), zero.data(), zero.data(), 1, 1, 5});
-  // 3 * 6 / (3 - 2), divided by the length 3 of the domain
+  // The first control point of the derivative is 3 * 6 / (3 - 2). The domain of length 3 is scaled
+  // to length 1.
   EXPECT_DOUBLE_EQ(longest, 54.0);
 }
 

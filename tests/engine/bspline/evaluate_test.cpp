@@ -139,8 +139,8 @@ std::vector<double> some_of(Random& random, const std::vector<double>& values, i
 }
 
 // Compares a part of a grid with the whole grid. The part's two rows of seven samples are too small for block
-// evaluation: each sample is checked individually, while most rows of the whole grid are known to be regular.
-// The whole grid has only four rows, so that one pass may call unit_normal() for all irregular samples.
+// evaluation, so each sample is checked by itself. Most rows of the whole grid are known to be regular. The
+// whole grid has only four rows, so that one pass may call unit_normal() for all irregular samples.
 void expect_same_bits_in_parts(Random& random, const Surface& surface) {
   const Grid grid = random_grid(random, surface, 4, random.integer(7, 60));
   const Grid part = make_grid(surface.u, surface.v, some_of(random, grid.u.parameters, 2),

@@ -74,7 +74,7 @@ TEST(KnotInsertion, DoesNothingWhereTheKnotIsMultipleEnough) {
 }
 
 TEST(KnotInsertion, AgreesWithBoehmOnACubicByHand) {
-  // One coordinate of a Bezier curve split at 1/2, which gives de Casteljau's points.
+  // Splitting a Bezier curve at 1/2 gives de Casteljau's points. The test uses one coordinate.
   const auto u = KnotVector::clamped_uniform(3, 4).value();
   const auto v = KnotVector::clamped_uniform(1, 2).value();
   ControlNet net(4, 2);

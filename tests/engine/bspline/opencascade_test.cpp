@@ -20,7 +20,7 @@ namespace {
 struct OcctDirection {
   TColStd_Array1OfReal knots;
   TColStd_Array1OfInteger multiplicities;
-  std::vector<int> controls;  // the index of our control point for each OpenCASCADE pole
+  std::vector<int> controls;  // index of our control point for each pole of OpenCASCADE
   bool periodic;
 };
 

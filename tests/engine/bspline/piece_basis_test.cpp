@@ -9,8 +9,8 @@
 namespace spoonbill {
 namespace {
 
-// Compares polynomials of degree 5 at most, on pieces scaled to -1..1, with the recursion. Derivatives of
-// surfaces of about 1 m grow as the pieces get shorter.
+// Compares the evaluation by polynomial pieces, scaled to -1..1 and of degree 5 at most, with the B-spline
+// recursion. Derivatives of surfaces of about 1 m grow as the pieces get shorter.
 void expect_agreement(const Surface& surface, double u, double v) {
   const PieceBasis in_u(surface.u), in_v(surface.v);
   const PiecewiseSurface pieces{&surface, &in_u, &in_v};

@@ -108,7 +108,7 @@ TEST(DisplacementRefit, HasTheBitsItHadBefore) {
   const auto samples = random_numbers(random, 20 * 29, 0.01);
   std::vector<float> controls(10 * 13);
   refit.control_displacement(with_gaps(refit, samples).data(), controls.data());
-  std::uint64_t hash = 14695981039346656037ull;  // FNV-1a
+  std::uint64_t hash = 14695981039346656037ull;  // start value of FNV-1a
   for (const float displacement : controls) {
     std::uint32_t bits = 0;
     std::memcpy(&bits, &displacement, sizeof bits);

@@ -12,7 +12,7 @@ namespace {
 // Tolerance: coordinates are below 1 m, and points are only weighted means of them.
 constexpr double same_point = 1e-13;
 
-// Compares b at (u, v) with a at in_a(u, v).
+// Expects b at (u, v) to be the same point as a at in_a(u, v).
 template <class InA>
 void expect_same_surface(Random& random, const Surface& a, const Surface& b, const InA& in_a) {
   for (int sample = 0; sample < 30; ++sample) {

@@ -53,7 +53,7 @@ TEST(Surface, SpikeHasItsHeight) {
     }
   }
   const Surface surface = make_surface(knots, knots, net).value();
-  // 3 (23/24)^2
+  // The exact height is 3 (23/24)^2.
   EXPECT_NEAR(evaluate(surface, 0.5, 0.5).position_m.z(), 2.755208333333333, 1e-14);
 }
 
@@ -67,8 +67,8 @@ TEST(Surface, DerivativesMatchDifferences) {
     const SurfacePoint here = evaluate(surface, u, v);
     const SurfacePoint u0 = evaluate(surface, u - h, v), u1 = evaluate(surface, u + h, v);
     const SurfacePoint v0 = evaluate(surface, u, v - h), v1 = evaluate(surface, u, v + h);
-    // The tolerance of central differences with step h covers the rounding of derivatives up to about 1e3,
-    // divided by h, and third derivatives times h.
+    // The tolerance covers both errors of central differences with step h: the rounding of derivatives up to
+    // about 1e3, divided by h, and third derivatives times h^2.
     const double tolerance = 1e-3;
     EXPECT_LT((here.du - (u1.position_m - u0.position_m) / (2 * h)).norm(), tolerance);
     EXPECT_LT((here.dv - (v1.position_m - v0.position_m) / (2 * h)).norm(), tolerance);

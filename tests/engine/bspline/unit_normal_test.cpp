@@ -130,7 +130,7 @@ TEST(UnitNormal, AnEdgeWithParallelTangentsHasTheNormalBesideIt) {
     net.set_point(i, 2, {i + 0.6, 1.0, 0.5 + 0.2 * i});
   }
   const Surface surface = make_surface(knots, knots, net).value();
-  // du = (2, 0, 0) and dvv = (0, 2, 1.4): the normal is their product, regardless of the neighbours' normals.
+  // du = (2, 0, 0) and dvv = (0, 2, 1.4). The normal is their cross product, whatever the normals nearby.
   EXPECT_LT((unit_normal(surface, 0.5, 0.0) - Vector3(0, -1.4, 2).normalized()).norm(), 1e-12);
 }
 

@@ -133,8 +133,7 @@ TEST(Document, NamesEveryMissingField) {
     ASSERT_FALSE(read.ok()) << item.key();
     const std::string& message = read.error().message;
     EXPECT_EQ(read.error().code, ErrorCode::missing) << item.key() << ": " << message;
-    // The lattice needs either of nodes and node_budget. Without node_budget, the error is that of the
-    // lattice.
+    // The lattice needs `nodes` or `node_budget`. Without node_budget, the error names the lattice.
     EXPECT_TRUE(read.error().field.ends_with(field == "node_budget" ? "lattice" : field))
         << item.key() << ": " << message;
     EXPECT_EQ(message.find('\n'), std::string::npos);
@@ -185,7 +184,7 @@ TEST(Document, RefusesWrongMaterialsWithTheRange) {
             Refusal(ErrorCode::out_of_range, "body.material.youngs_modulus_pa"));
   EXPECT_EQ(with("youngs_modulus_pa", "200 kPa"),
             Refusal(ErrorCode::wrong_type, "body.material.youngs_modulus_pa"));
-  EXPECT_EQ(with("youngs_modulus_pa", nullptr),  // JSON writes a number that is not finite as null
+  EXPECT_EQ(with("youngs_modulus_pa", nullptr),  // JSON writes null for a number that is not finite
             Refusal(ErrorCode::wrong_type, "body.material.youngs_modulus_pa"));
   EXPECT_EQ(with("density_kg_per_m3", 0),
             Refusal(ErrorCode::out_of_range, "body.material.density_kg_per_m3"));

@@ -148,7 +148,7 @@ TEST(File, AKillDuringASaveLeavesAWholeDocument) {
     EXPECT_TRUE(is_other || same_bits(one, read.value()));
     changed += is_other ? 1 : 0;
   }
-  EXPECT_GT(changed, 0);  // at least one save was completed before its kill
+  EXPECT_GT(changed, 0);  // at least one save was completed before the program was killed
 }
 
 TEST(File, NeverReplacesADocumentByOneThatCannotBeRead) {

@@ -38,7 +38,8 @@ double slice_x_m(const LatticeMesh& mesh, int k) {
   return mesh.nodes[static_cast<std::size_t>(mesh.index(0, 0, k))].x();
 }
 
-// Holds both ends along x, the last one displaced so that the bar is stretched. The ends may slide across x.
+// Fixes both ends along x. The last end is displaced, so that the bar is stretched; both ends may slide
+// across x.
 std::vector<FixedAxis> drawn_ends(const LatticeMesh& mesh) {
   std::vector<FixedAxis> held;
   const int last = mesh.count[2] - 1;
@@ -59,9 +60,9 @@ struct Measured {
   double youngs_modulus_pa, poissons_ratio;
 };
 
-// Measures a bar whose cross section changes along it. The force F strains each layer of length l and area A
-// by F / (E A). The sum over all layers gives F / E = stretch / sum (l / A). The volume of each layer grows
-// by the fraction (1 - 2 nu) F / (E A).
+// Measures a bar whose cross section changes along it. A force F strains a layer of length l and area A by
+// F / (E A), so F / E = stretch / sum (l / A) over all layers. The volume of a layer grows by the fraction
+// (1 - 2 nu) F / (E A).
 Measured tension_test(const LatticeMesh& mesh, const StaticBody& body) {
   const Result<StaticResult> found = rest_under_load(body, {}, drawn_ends(mesh));
   EXPECT_TRUE(found.ok()) << found.error().message;

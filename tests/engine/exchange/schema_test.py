@@ -1,4 +1,4 @@
-"""The schema of documents holds for those that the program ships and writes, and for nothing that it refuses."""
+"""Tests that the schema accepts the documents that the program ships and writes, and rejects those that it refuses."""
 import copy
 import json
 import sys
@@ -21,7 +21,7 @@ for file in [*models, *(written / f"version-{version}.json" for version in (1, 2
 
 
 def objects(value, path=()):
-    """Every object in it, with its path."""
+    """Yields the path and value of every object in a JSON value."""
     if isinstance(value, dict):
         yield path, value
         for name, inner in value.items():

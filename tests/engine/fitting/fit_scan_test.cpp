@@ -97,7 +97,7 @@ TEST(FitScan, LowWavesAreNoThinWall) {
   EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::sheet);
 }
 
-// Nodes that span the hole may face either way and must not decide the orientation.
+// The fit spans the hole with nodes whose normals may face either way. They must not decide the orientation.
 TEST(FitScan, ClosedShapesFaceOutwardsWhateverWasNotSeen) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     Scan scan = ellipsoid_cloud(3000 + 500 * seed, {0.02, 0.022, 0.03});
@@ -158,7 +158,8 @@ TEST(FitScan, IslandsNearEachOtherAreTwo) {
   EXPECT_LT(farthest_off(all.bodies[0].surface, from_sphere(0.03)), 3e-4);
 }
 
-// A stripe of 6 mm across a single sheet was not scanned; it is as wide as the gap between two bodies above.
+// A stripe of 6 mm across a single sheet was not scanned. A gap of this width between two bodies would part
+// them.
 TEST(FitScan, AStripeWithoutPointsPartsNoSheet) {
   Scan scan = random_cloud(20000, 31, [](double s, double t) { return on_waves(s, t, 0.2, 0.01); });
   leave_out(scan, [](const Vector3& p) { return std::abs(p.x() - 0.09) < 0.003; });

@@ -67,7 +67,7 @@ TEST(Folds, WhereItGoesBackItFoldsAndHasCusps) {
     const FoldCheck check = check_folds(turned_back(), data.view());
     EXPECT_GT(check.folds, 0U);
     EXPECT_LT(check.folds, check.samples / 2);
-    EXPECT_GE(check.cusps, 2U * 7U * 12U);  // two on every line across the swapped rows
+    EXPECT_GE(check.cusps, 2U * 7U * 12U);  // two cusps on every line across the swapped rows
     EXPECT_TRUE(check.span_folds[3 * 7 + 3]);
     EXPECT_FALSE(check.span_cusps[0]);
   }
@@ -99,7 +99,7 @@ FoldCheck check_without_normals(const FitPoints& points, const Surface& surface)
 TEST(Folds, AreFoundWithoutNormalsWhereTheSurfaceDoublesBackSlowly) {
   const auto flat = random_cloud(20000, 4, [](double s, double t) { return Vector3(s, t, 0.0); });
   const FitPoints points = make_fit_points(flat).value();
-  EXPECT_EQ(check_folds(doubled_back(), {}).folds, 0U);  // not visible from the surface alone
+  EXPECT_EQ(check_folds(doubled_back(), {}).folds, 0U);  // this fold cannot be seen from the surface alone
   EXPECT_GT(check_without_normals(points, doubled_back()).folds, 28U);
   EXPECT_EQ(check_without_normals(points, sheet()).folds, 0U);
 }

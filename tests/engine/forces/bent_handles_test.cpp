@@ -1,5 +1,5 @@
-// Tests how far the tip of a stiff handle follows the hand that presses it: as far as the springs of the
-// hand's coupling and of the handle say.
+// Tests how far the tip of a stiff handle follows the hand that presses it. The hand's coupling and the
+// handle act as two springs in series.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace spoonbill {
 namespace {
 
-// Stiffness of the usual device's coupling, N/m, before the force scale divides it.
+// Stiffness of the usual device's coupling, N/m. It is divided by the force scale.
 constexpr double device_n_per_m = 700.0;
 
 struct Bend {

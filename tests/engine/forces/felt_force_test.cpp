@@ -1,5 +1,5 @@
-// Tests the force on a tool that presses a block: at rest it is the same for any number of substeps, and a
-// quick press ends at the force of a slow one.
+// Tests the force on a tool that presses a block. At rest it is the same for any number of substeps, and a
+// quick press ends with the same force as a slow one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double top_m = 0.01, sphere_m = 0.01, press_m = 0.003;
 
-// A block of 44 x 20 x 40 mm, fixed at its lower face.
+// Returns a scene with a block of 44 x 20 x 40 mm that is fixed at its lower face.
 Scene block_scene(const std::string& material, int node_budget) {
   BoxSize size;
   size.size_m = {0.044, 0.02, 0.04};

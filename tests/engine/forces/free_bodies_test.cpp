@@ -18,7 +18,7 @@ BodyState make_state(const Body& body) {
   return make_body_state(body, {}, InstructionSet::baseline).value();
 }
 
-// Returns kinetic energy of a lattice in real time, J.
+// Returns the kinetic energy of a lattice in real time, in joules.
 double kinetic_energy_j(const SpringLattice& lattice) {
   double energy = 0.0;
   for (int n = 0; n < lattice.mesh().node_count(); ++n) {
@@ -29,7 +29,7 @@ double kinetic_energy_j(const SpringLattice& lattice) {
 
 struct Potential {
   double energy_j = 0.0;
-  double power_w = 0.0;  // its rate of change
+  double power_w = 0.0;  // rate of change of the energy
 };
 
 Potential find_potential(const SpringLattice& lattice, const StaticBody& springs) {
@@ -48,14 +48,15 @@ Potential find_potential(const SpringLattice& lattice, const StaticBody& springs
   return sum;
 }
 
-// Steps of a kick and a drift conserve T + V - (h / 2) v . grad V up to the order of h^2.
+// Returns T + V - (h / 2) dV/dt, where T is the kinetic and V the potential energy. Steps h of symplectic
+// Euler (a kick, then a drift) conserve it up to the order of h^2.
 double conserved_energy_j(const SpringLattice& lattice, const StaticBody& springs, double step_s) {
   const Potential potential = find_potential(lattice, springs);
   return kinetic_energy_j(lattice) + potential.energy_j - 0.5 * step_s * potential.power_w;
 }
 
-// The springs are linearised once a tick, which changes the energy of large strains, and at very small ones
-// single precision does.
+// At large strains the energy changes because the springs are linearised only once a tick; at very small
+// strains it changes because of single precision.
 TEST(Ringing, KeepsItsEnergyWithoutDamping) {
   if (const std::string reason = find_skip_reason(ForceRun::always); !reason.empty()) GTEST_SKIP() << reason;
   const DenormalsFlushed flushed;
@@ -76,7 +77,7 @@ TEST(Ringing, KeepsItsEnergyWithoutDamping) {
         static_cast<int>(std::lround(settings.time_s / lattice.find_real_time_step_s(settings.time_s)));
     const double step_s = settings.time_s / settings.substeps;
     lattice.set_inertia(1.0, step_s);
-    // The rod swings in about its first bending shape, and along itself.
+    // The rod starts to swing in about its first bending shape, and along itself.
     for (int n = 0; n < lattice.mesh().node_count(); ++n) {
       const double along = lattice.mesh().nodes[static_cast<std::size_t>(n)].y() / size.height_m;
       lattice.set_velocity(n, speed_m_per_s * Vector3(std::cos(2.0 * std::numbers::pi * along), along, 0.0));
@@ -109,7 +110,7 @@ Vector3 momentum_ns(const SpringLattice& lattice) {
 
 struct Collision {
   double momentum_change = 0.0;  // relative to the momentum of the thrown body
-  double energy_lost = 0.0;      // fraction of the energy before
+  double energy_lost = 0.0;      // as a fraction of the energy before the collision
   bool touched = false, parted = false;
 };
 

@@ -13,8 +13,8 @@ namespace spoonbill {
 namespace {
 
 struct Pair {
-  const char *left, *right;  // bundled materials
-  double press_m;            // a fraction of the strain at which a pressed block would bend aside
+  const char *left, *right;  // names of bundled materials
+  double press_m;            // distance of the press: a fraction of that at which a block would bend aside
   int node_budget;
   ForceRun run;
 };
@@ -24,10 +24,11 @@ void PrintTo(const Pair& pair, std::ostream* out) {
 }
 
 constexpr double length_m = 0.02, width_m = 0.014, rounding_m = 0.001;
-// Tolerance of the surface. A larger one needs fewer control points, and contacts take most of the time.
+// Tolerance of the surface. It is larger than the default, so that fewer control points suffice and contacts
+// take less time.
 constexpr double tolerance_m = 2e-5;
 
-// A block along x with its contact face at x = 0, fixed at the other end.
+// Returns a block along x with its contact face at x = 0, fixed at the other end.
 Body make_block(bool on_left, const std::string& material, int node_budget) {
   BoxSize size;
   size.size_m = {length_m, width_m, width_m};
@@ -50,7 +51,7 @@ struct FacePoint {
 
 // Returns evenly spaced points of the flat part of the contact face.
 std::vector<FacePoint> sample_face(const BodyState& body) {
-  // The face is a short part of the parameter along the body, so that this needs many steps.
+  // The face takes only a short part of the parameter along the body, so many steps are needed.
   constexpr int steps = 40, steps_along = 2000;
   const Surface& surface = body.mapping().rest();
   std::vector<FacePoint> points;
@@ -60,7 +61,7 @@ std::vector<FacePoint> sample_face(const BodyState& body) {
       const double u = surface.u.parameter_at((a + 0.5) / steps),
                    v = surface.v.parameter_at((b + 0.5) / steps_along);
       const SurfacePoint at = evaluate(surface, u, v);
-      if (std::abs(at.position_m.x()) > 1.5 * tolerance_m) continue;  // beside the flat part
+      if (std::abs(at.position_m.x()) > 1.5 * tolerance_m) continue;  // this point is beside the flat part
       points.push_back({body.mapping().at(u, v), at.du.cross(at.dv).norm()});
       area += points.back().fraction;
     }

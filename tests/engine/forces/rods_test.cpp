@@ -22,14 +22,14 @@ Vector3 mean_of_slice(const LatticeMesh& mesh, int k, const std::vector<Vector3>
   return sum / (mesh.count[0] * mesh.count[1]);
 }
 
-// Returns Young's modulus of a straight rod along an axis that is pulled by a force, divided by that of its
+// Returns the Young's modulus of a straight rod that a force pulls along an axis, divided by that of its
 // material. It follows from the strain between a third and two thirds of the length, where the stress is
-// uniform. `section_m2(k, length_m)` is the area of the section of a layer.
+// uniform. `section_m2(k, length_m)` returns the area of the section of a layer.
 template <class SectionOf>
 double modulus_ratio(const LatticeMesh& mesh, const Material& material, CellKind kind, int axis,
                      const SectionOf& section_m2) {
   const int last = mesh.count[2] - 1, from = last / 3, to = last - last / 3;
-  const double force_n = 1e-8 * material.youngs_modulus_pa;  // a strain of 1e-4 for a section of 1 cm2
+  const double force_n = 1e-8 * material.youngs_modulus_pa;  // strains a section of 1 cm2 by 1e-4
   std::vector<FixedAxis> fixed;
   StaticLoads loads;
   const int ends = mesh.count[0] * mesh.count[1];

@@ -180,7 +180,7 @@ TEST_P(WeightOnBody, ReachesTheSupportOfTheOther) {
       stock_body("plate", plate, {0.0, -0.004, 0.0}, made_elastic(bundled_material(stack.lower)), 250),
       small_block(stack.upper, {0.0, 0.01001, 0.0})};
   scene.bodies[0].material.friction = 0.5;
-  // Both ends, so that the plate hardly bends and nothing slides off.
+  // The plate is supported at both ends, so that it hardly bends and nothing slides off.
   scene.bodies[0].supports = {{BodyRegion{{0.0, 0.1}, {0.0, 1.0}}}, {BodyRegion{{0.9, 1.0}, {0.0, 1.0}}}};
   scene.sculpting.gravity_m_per_s2 = gravity;
   scene.sculpting.drag_per_s = 30.0;

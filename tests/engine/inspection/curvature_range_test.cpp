@@ -13,7 +13,8 @@ namespace {
 
 using std::numbers::pi;
 
-// Exact surface x = u, y = v, z = a u^2 + b v^2 over -1 to 1. The Bezier coefficients of t^2 are 1, -1, 1.
+// Returns the exact surface x = u, y = v, z = a u^2 + b v^2 over -1 to 1. The Bezier coefficients of t^2 are
+// 1, -1, 1.
 Surface paraboloid(double a, double b) {
   const KnotVector knots = KnotVector::open(2, {-1, -1, -1, 1, 1, 1}).value();
   ControlNet net(3, 3);
@@ -63,7 +64,7 @@ TEST(CurvatureRange, FindsAPeakBetweenSamples) {
   EXPECT_NEAR(range.largest.v, 0.0, 1e-3);
 }
 
-// The vertex, the sharpest point, is trimmed away; the rest is sharpest beside the cut.
+// The vertex, which is the sharpest point, is trimmed away. The rest is sharpest beside the cut.
 TEST(CurvatureRange, OfWhatTrimsKeep) {
   const Surface whole = paraboloid(0.7, 0.0);
   const auto loop = polygon_loop(whole.u, whole.v, rectangle(0.5, -1.0, 1.0, 1.0));
@@ -98,7 +99,7 @@ TEST(CurvatureRange, OfASphereIsOneOverItsRadiusUpToThePoles) {
 }
 
 TEST(CurvatureRange, OfAnEllipsoid) {
-  constexpr double a = 0.03, b = 0.02, c = 0.05;  // c along the poles
+  constexpr double a = 0.03, b = 0.02, c = 0.05;  // c is along the axis through the poles
   ExactShape shape;
   shape.u.periodic = true;
   shape.pole_at_start = shape.pole_at_end = true;

@@ -16,8 +16,8 @@ namespace {
 
 using std::numbers::pi;
 
-// Solid r^2 = (h^2 - z^2)(1 + c z) about the y axis, with volume 4/3 pi h^3 and its centre c h^2 / 5 above
-// the origin.
+// Returns the solid of revolution r^2 = (h^2 - z^2)(1 + c z) with its axis along y. Its volume is 4/3 pi h^3,
+// and its centre is c h^2 / 5 above the origin.
 Surface egg(double h, double c) {
   ExactShape shape;
   shape.u.periodic = true;
@@ -104,7 +104,8 @@ TEST(EnclosedMass, AreaOfAPartOfATube) {
   // The hole crosses the seam.
   const auto part = polygon_loop(tube.u, tube.v, rectangle(-0.25, 0.2, 0.25, 0.6));
   const EnclosedMass mass = compute_enclosed_mass(tube, TrimmedArea::make(tube.u, tube.v, {part}).value());
-  EXPECT_NEAR(mass.area_m2 / (pi * r * 0.4 * length), 1.0, 2e-5);  // fit within 1e-7 m; the radius is 1e-2 m
+  // The fit is within 1e-7 m of a radius of 1e-2 m.
+  EXPECT_NEAR(mass.area_m2 / (pi * r * 0.4 * length), 1.0, 2e-5);
 }
 
 TEST(EnclosedMass, IsBelowZeroInsideOut) {
@@ -140,7 +141,7 @@ TEST(ShellMass, OfASheetLiesBelowIt) {
   EXPECT_LT((sheet.centre_m - Vector3(0.0, -0.002, 0.0)).norm(), 1e-9);
 }
 
-// Upright cylinder of 60 mm with its centre at the origin; its lower half is lighter.
+// Returns an upright cylinder of 60 mm with its centre at the origin. Its lower half is lighter.
 Body weighted() {
   Body body;
   body.surface = fitted(cylinder_shape({0.01, 0.06, 0.001})).surface;
@@ -171,7 +172,7 @@ TEST(MaterialMix, IsTheMeanOverTheBody) {
 
 TEST(MaterialMix, RefusesWhatHasNoLattice) {
   Body body = weighted();
-  for (double& y : body.surface.net.y) y = -y;  // inside out
+  for (double& y : body.surface.net.y) y = -y;  // turns the surface inside out
   EXPECT_FALSE(compute_material_mix(body));
 }
 

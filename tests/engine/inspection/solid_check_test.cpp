@@ -18,7 +18,7 @@ SolidCheck checked(const TriangleMesh& mesh, double error_m = 0.0) {
   return check.value_or(SolidCheck());
 }
 
-// Bar of 100 along x over a triangle or quadrangle, counter-clockwise seen from +x.
+// Returns a bar of length 100 along x over a triangle or quadrangle, counter-clockwise seen from +x.
 TriangleMesh prism(const std::vector<Vector3>& profile) {
   TriangleMesh mesh;
   const auto n = static_cast<std::uint32_t>(profile.size());

@@ -58,8 +58,8 @@ TEST(SurfaceCheck, ASheetIsOpenBothWays) {
   EXPECT_TRUE(is_clean(check));
 }
 
-// The same tube without periodicity. It counts as closed around while its edges coincide, and as open if they
-// are 1 mm apart.
+// The tube is not periodic here. It counts as closed around if its edges coincide, and as open if they are
+// 1 mm apart.
 TEST(SurfaceCheck, EdgesThatMeetCloseATube) {
   for (const double apart : {0.0, 1e-3}) {
     ExactShape shape = open_tube(0.01, 0.05);
@@ -68,11 +68,12 @@ TEST(SurfaceCheck, EdgesThatMeetCloseATube) {
     shape.at = [=](double u, double v) { return Vector3(closed(u, v) + Vector3(0.0, 0.0, apart * u)); };
     const SurfaceCheck check = *check_surface(fitted(Result<ExactShape>(shape)).surface);
     EXPECT_EQ(check.closing.closedness, apart > 0.0 ? Closedness::sheet : Closedness::tube);
-    EXPECT_NEAR(check.closing.u.apart_m, apart, 1e-6);  // fitted to 1e-5, and better at the ends
+    // The fit's tolerance is 1e-5 m, and its error at the ends is smaller.
+    EXPECT_NEAR(check.closing.u.apart_m, apart, 1e-6);
   }
 }
 
-// Tube along a loop that passes through itself.
+// The tube follows a loop and passes through itself.
 TEST(SurfaceCheck, FindsWhereATubePassesThroughItself) {
   ExactShape shape;
   shape.u.periodic = true;
@@ -114,7 +115,8 @@ TEST(SurfaceCheck, FindsWhereASurfaceShrinksToALine) {
   EXPECT_FALSE(check.surface_defects[0].folds);
 }
 
-// Surface of revolution about y from pole to pole through rings of these radii and heights, in even spans.
+// Returns a surface of revolution about y from pole to pole, through rings of these radii and heights, in
+// even spans.
 Surface turned(const std::vector<Vector2>& rings) {
   const int columns = static_cast<int>(rings.size());
   ControlNet net(12, columns);

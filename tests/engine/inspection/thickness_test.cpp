@@ -37,7 +37,7 @@ TEST(Thickness, OfAPlateAndADisc) {
               0.005, tolerance_m);
 }
 
-// Ball of clay, a surface of revolution about y, whose thinnest point is a waist of radius w at its centre.
+// The body is a ball of clay with a waist, a surface of revolution about y. It is thinnest at its waist.
 TEST(Thickness, FindsAWaist) {
   ExactShape shape;
   shape.u.periodic = true;

@@ -12,7 +12,7 @@ Material elastic_material(double youngs_modulus_pa, double poissons_ratio, doubl
 SpringLattice block(const Vector3& size_m, std::array<int, 3> counts, const Material& material,
                     InstructionSet set = InstructionSet::baseline);
 
-// Computes the forces of the shape expected `tau_s` ahead, after linearising the springs there.
+// Linearises the springs at the shape expected `tau_s` ahead and computes the forces of that shape.
 void take_forces(SpringLattice& lattice, float tau_s);
 
 // Makes one substep without any tool: forces, kick, drift.
@@ -20,7 +20,7 @@ void plain_substep(SpringLattice& lattice, float h_s);
 
 struct Momentum {
   Vector3 sum = Vector3::Zero();
-  double size = 0.0;  // sum of m |v|
+  double size = 0.0;  // sum of the magnitudes m |v| of the nodes' momenta
   double energy_j = 0.0;
 };
 Momentum momentum_of(const SpringLattice& lattice);

@@ -14,7 +14,7 @@
 namespace spoonbill {
 namespace {
 
-// A tube about the y axis.
+// Returns a tube about the y axis.
 Surface tube(double from, double to, double radius, const Vector3& shift = Vector3::Zero()) {
   const auto u = KnotVector::periodic_uniform(3, 24).value();
   const auto v = KnotVector::clamped_uniform(3, 9).value();
@@ -29,7 +29,8 @@ Surface tube(double from, double to, double radius, const Vector3& shift = Vecto
   return fit_grid(u, v, points).value();
 }
 
-// Returns the least cosine between a normal in the blend and that of its line before it.
+// Returns the smallest cosine of the angle between a normal in the blend and the normal before the blend on
+// the same line.
 double least_cosine(const Merged& merged) {
   const Joint& joint = merged.joints[0].joint;
   double least = 1.0;
@@ -60,8 +61,8 @@ TEST(Blend, TubesThatMissEachOtherByLittleAreCutBack) {
   }
 }
 
-// Both edges approximate one curve. With degrees 2 and 4, and 7 and 19 control points, they miss it by more
-// than the tolerance, to both sides.
+// Both edges approximate one curve. With degrees 2 and 4, and 7 and 19 control points, they deviate from it
+// on both sides by more than the tolerance.
 TEST(Blend, SheetsWhoseEdgesMissEachOtherToEitherSide) {
   const auto sheet = [](int degree, int count, double start, double end) {
     const auto u = KnotVector::clamped_uniform(degree, count).value();
@@ -95,7 +96,8 @@ TEST(Blend, TheLengthAskedHoldsForGapsToo) {
   EXPECT_EQ(longer.error().field, "blend");
 }
 
-// A cubic sheet is C2 at its knots and polynomial between them.
+// A cubic sheet is C2 at its knots and polynomial between them, so its third derivatives differ only at
+// knots.
 TEST(Blend, IsMadeWhereTheThirdDerivativesDiffer) {
   const auto sheet =
       sheet_between([](double) { return 0.0; }, [](double x) { return 0.04 + 0.004 * std::sin(200.0 * x); });

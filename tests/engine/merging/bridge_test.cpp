@@ -81,8 +81,8 @@ TEST(Bridge, AWedgeShapedGapIsBridgedWithoutAFold) {
   EXPECT_EQ(askew.error().code, ErrorCode::self_intersecting) << askew.error().message;
 }
 
-// A tube along a line between two points. u starts in the direction `seam` and runs around the line,
-// right-handed by default, unevenly by `warp`.
+// Returns a tube along a line between two points. u starts in the direction `seam` and runs around the line,
+// right-handed by default, with a speed that varies by `warp`.
 Surface pipe(const Vector3& from, const Vector3& to, const Vector3& seam, bool left_handed = false,
              double warp = 0.0) {
   const auto u = KnotVector::periodic_uniform(3, 24).value();

@@ -10,7 +10,7 @@
 namespace spoonbill {
 namespace {
 
-// A ribbon over x along a curve with the given climb angle.
+// Returns a ribbon over x along a curve with the given angle of climb.
 Surface ribbon(const std::function<double(double)>& climb) {
   const auto u = KnotVector::clamped_uniform(3, 5).value(), v = KnotVector::clamped_uniform(3, 40).value();
   PointGrid points{uniform_parameters(u, 12), uniform_parameters(v, 161), {}};
@@ -24,7 +24,7 @@ Surface ribbon(const std::function<double(double)>& climb) {
   return fit_grid(u, v, points).value();
 }
 
-// The strip turns by up to half a turn and back, but never by a right angle in one step.
+// The strip turns by up to half a turn and back, but never by a right angle between two samples.
 TEST(FoldSearch, AStripThatTurnsBackSlowlyFolds) {
   const Surface back =
       ribbon([](double t) { return 0.9 * std::numbers::pi * std::sin(t * std::numbers::pi); });

@@ -72,8 +72,8 @@ Surface rod(const Vector3& direction) {
   });
 }
 
-// Returns the distance from the union of ball and rod, with a fillet around the rod's axis, in the half
-// plane.
+// Returns the distance of a point from the union of ball and rod. Around the rod's axis, a fillet rounds the
+// corner between them.
 double distance_to_union(const Vector3& point, const Vector3& direction, double fillet) {
   const double along = point.dot(direction), radius = (point - along * direction).norm();
   const double far_middle = 0.06 - rod_radius;
@@ -103,7 +103,8 @@ double largest_distance(const Surface& merged, const Vector3& direction, double 
 
 class RodInBall : public testing::TestWithParam<double> {};
 
-// The rod is along the ball's pole, or oblique; then the ball gets other poles.
+// The rod is along the axis through the ball's poles, or oblique. With an oblique rod, the ball gets other
+// poles.
 TEST_P(RodInBall, BecomesOneSurface) {
   const double angle = GetParam();
   const Vector3 direction(std::sin(angle), 0.0, std::cos(angle));
@@ -117,17 +118,17 @@ TEST_P(RodInBall, BecomesOneSurface) {
     const Joint& corner = merged->corner;
     EXPECT_EQ(corner.bridged, fillet > 0.0);
     if (fillet > 0.0) {
-      // A ball that touches both from outside rolls about the rod at this angle to it.
+      // The fillet's arc, which touches both the rod and the ball from outside, spans this angle.
       const double turn = std::acos((rod_radius + fillet) / (ball_radius + fillet));
       EXPECT_NEAR(corner.blend_length_m, fillet * turn, 1e-4);
       const Vector3 start = position(merged->surface, 0.3, corner.blend_start);
       EXPECT_NEAR(start.dot(direction), std::sin(turn) * (ball_radius + fillet), 2e-4);
     }
-    // Both parts have the rod's parameters, without duplicate knots beside them.
+    // Both parts have the rod's parameter u, and no two knots are nearly equal.
     EXPECT_EQ(merged->surface.u.domain_start(), 0.0);
     const std::vector<double> knots = merged->surface.u.breakpoints();
     for (std::size_t k = 1; k < knots.size(); ++k) EXPECT_GT(knots[k] - knots[k - 1], 1e-3);
-    // The given ball and rod miss the exact ones by 6e-6 m; the rest is the tolerance.
+    // The fitted ball and rod deviate from the exact ones by 6e-6 m; the rest is the tolerance.
     EXPECT_LT(largest_distance(merged->surface, direction, fillet), 6e-5) << fillet;
     // Normals point outwards, and the rod adds a cylinder and a half ball minus the ball's own part.
     const double volume = compute_enclosed_mass(merged->surface).volume_m3;
@@ -167,7 +168,7 @@ TEST(IntersectionMerge, AFloorAndAWall) {
   }
 }
 
-// Lines of one sheet run along the border of the other, and rounding puts them on either side of it.
+// Lines of one sheet run along the border of the other, so that rounding puts them on either side of it.
 TEST(IntersectionMerge, SheetsOfOneWidth) {
   for (const double turn : {0.0, 0.3, 0.7, 1.1}) {
     const auto turned = [&](const Vector3& p) {
@@ -261,7 +262,7 @@ TEST(IntersectionMerge, LinesLeadAwayFromACrossingBesideThePole) {
       farthest = std::max(farthest, std::min(std::abs(to_rod), std::abs(to_drum)));
       deepest = std::min({deepest, to_rod, to_drum});
     }
-    // The given bodies miss the exact ones by up to 3e-5 m.
+    // The fitted bodies deviate from the exact ones by up to 3e-5 m.
     EXPECT_LT(farthest, tolerance_m + 3e-5);
     EXPECT_GT(deepest, -tolerance_m - 3e-5);
   }
@@ -295,9 +296,9 @@ TEST(IntersectionMerge, ABodyThatIsAsWideAsTheOtherIsRefusedBeforeItIsFitted) {
   EXPECT_NE(merged.error().message.find("as wide"), std::string::npos) << merged.error().message;
 }
 
-// The ball has a radius of 20 mm. The drum's radius is 8 mm, and its axis is 6 mm from the ball's centre. The
-// drum's lower rim is 14 mm beside and 16 mm below that centre, which is 1.3 mm outside the ball. A third of
-// the lines lead there.
+// The ball has a radius of 20 mm, the drum one of 8 mm; the drum's axis is 6 mm from the ball's centre. The
+// drum's lower rim is 14 mm beside and 16 mm below this centre, which is 1.3 mm outside the ball. A third of
+// the drum's lines lead there.
 TEST(IntersectionMerge, ARimThatLooksOutOfTheBallIsRefusedWhereItDoes) {
   const Drum drum{0.008, 0.023, 0.001};
   const Quaternion along_y(Eigen::AngleAxisd(-0.5 * pi, Vector3::UnitX()));

@@ -50,7 +50,8 @@ TEST(Merge, GivesASplitSurfaceBackAtEveryDegree) {
   }
 }
 
-// C2 cubics of 2 x 5 control points become 7, 8 or 9 of them (r1 + r2 + m - p - 1).
+// Two cubics (degree p = 3) with r1 = r2 = 5 control points along v become one with r1 + r2 + m - p - 1,
+// where m = p - continuity is the multiplicity of the knot at the joint.
 TEST(Merge, CountsControlPointsByContinuity) {
   Random random(72);
   const auto knots = KnotVector::open(3, {0, 0, 0, 0, 0.25, 0.5, 0.75, 1, 1, 1, 1}).value();
@@ -88,7 +89,7 @@ TEST(Merge, GridsInAnyOrderAndHeldInAnyWay) {
   }
 }
 
-// The edges at z = 0 have unrelated degrees and counts.
+// The edges at z = 0 differ in their degrees and numbers of control points.
 TEST(Merge, PatchesOfOtherDegreesAndCounts) {
   const auto sheet = [](int degree, int count, double start, double end) {
     const auto u = KnotVector::clamped_uniform(degree, count).value();
@@ -155,7 +156,7 @@ TEST(Merge, AKinkBecomesC2WithinTheTolerance) {
   const auto merged = merge(roof(), request_of(2, 5e-5));
   ASSERT_TRUE(merged.ok()) << merged.error().message;
   EXPECT_LE(merged->deviation_m, 5e-5);
-  EXPECT_GT(merged->deviation_m, 1e-9);  // a smooth surface cannot be a kink
+  EXPECT_GT(merged->deviation_m, 1e-9);  // a smooth surface cannot follow the kink exactly
   for (const auto& [knot, multiplicity] : knot_multiplicities(merged->surface.v)) {
     if (knot > merged->surface.v.domain_start()) {
       EXPECT_EQ(multiplicity, 1) << knot;
@@ -189,8 +190,8 @@ TEST(Merge, AKinkIsBlendedOverTheLengthAsked) {
   const Joint& joint = merged->joints[0].joint;
   EXPECT_TRUE(joint.bridged);
   EXPECT_LT(merged->deviation_m, 1e-12);
-  // The blend runs from 5 mm before the ridge to 5 mm behind it: its length is between the chord and the path
-  // around the corner.
+  // The blend runs from 5 mm before the ridge to 5 mm behind it. Its length is between the chord and the path
+  // over the ridge.
   EXPECT_LT(joint.blend_length_m, 0.01);
   EXPECT_GT(joint.blend_length_m, 0.005 * std::numbers::sqrt2);
   const Vector3 start = position(merged->surface, 0.5, joint.blend_start);
@@ -232,7 +233,7 @@ TEST(Merge, EdgesWhoseParametersDifferAreMatched) {
   EXPECT_LE(merged->deviation_m, 5e-5);
   for (double u = 0.0; u <= 1.0; u += 0.1) {
     const Vector3 p = position(merged->surface, u, 0.9 * merged->surface.v.domain_end());
-    EXPECT_NEAR(p.x(), 0.1 * u, 1e-4);  // the first patch's parameters everywhere
+    EXPECT_NEAR(p.x(), 0.1 * u, 1e-4);  // the result has the first patch's parameters everywhere
   }
 }
 

@@ -27,7 +27,7 @@ std::vector<Surface> parts_of(const Surface& whole, Direction direction, const s
   return parts;
 }
 
-// A body about the z axis, with a waist and poles.
+// Returns a body of revolution about the z axis, with a waist and poles.
 Surface turned_body() {
   const auto u = KnotVector::periodic_uniform(3, 20).value();
   const auto v = KnotVector::clamped_uniform(3, 16).value();
@@ -41,7 +41,7 @@ Surface turned_body() {
   return fit_grid(u, v, points, {false, false, true, true}).value();
 }
 
-// A plate between four points.
+// Returns the parallelogram that has the edge from a to b and the sides `height`.
 Surface plate(const Vector3& a, const Vector3& b, const Vector3& height) {
   const auto knots = KnotVector::clamped_uniform(1, 2).value();
   ControlNet net(2, 2);
@@ -205,7 +205,7 @@ TEST(Ring, StopsWhereverItIsAskedTo) {
     const auto merged = merge(square_tube(), request);
     ASSERT_FALSE(merged.ok()) << stop;
     EXPECT_EQ(merged.error().code, ErrorCode::cancelled);
-    EXPECT_LE(asked, stop + 2);  // stops immediately
+    EXPECT_LE(asked, stop + 2);  // merging stops at once
   }
 }
 

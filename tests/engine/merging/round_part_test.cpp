@@ -30,7 +30,7 @@ Surface level_plane(double y_m, bool up) {
   return surface;
 }
 
-// A circle about `centre_m` on the plane, as chords of a third of a degree.
+// Returns a circle about `centre_m` on the plane, as chords of a third of a degree.
 TrimLoop circle(const Surface& surface, double radius_m, bool hole,
                 const Eigen::Vector2d& centre_m = {0, 0}) {
   std::vector<Eigen::Vector2d> corners;
@@ -66,7 +66,8 @@ TEST(RoundPart, ADiscEndsInAPoleAndKeepsItsArea) {
     EXPECT_LE(disc->deviation_m, 1e-6);
     const Surface& surface = disc->surface;
     EXPECT_TRUE(surface.u.is_periodic());
-    // Chords of a third of a degree lose 5e-6 of the circle's area, an edge within a micrometre 7e-5.
+    // Chords of a third of a degree reduce the circle's area by the fraction 5e-6. An edge that is off by a
+    // micrometre changes it by 7e-5.
     EXPECT_NEAR(compute_enclosed_mass(surface).area_m2 / (pi * 0.03 * 0.03), 1.0, 8e-5);
     EXPECT_GT((up ? 1.0 : -1.0) * unit_normal(surface, 0.3, 0.5).y(), 0.99);
     const Vector3 pole = position(surface, 0.1, surface.v.domain_end());
@@ -74,7 +75,7 @@ TEST(RoundPart, ADiscEndsInAPoleAndKeepsItsArea) {
   }
 }
 
-// The edge of an eccentric hole is met exactly too.
+// The edge of an eccentric hole is followed exactly too.
 TEST(RoundPart, ARingRunsFromItsEdgeToItsHole) {
   const Surface sheet = level_plane(0.0, true);
   const auto ring = untrimmed(

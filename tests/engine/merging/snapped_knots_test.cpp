@@ -70,7 +70,7 @@ TEST(NearlySameKnots, KnotsThatAreOneAlreadyStay) {
   const SnappedKnots same = snap_knots(close, of(0.7).u, 1.0);
   EXPECT_EQ(same.surface.u, close.u);
   EXPECT_EQ(same.deviation_m, 0.0);
-  // Slightly above the limit.
+  // The knot 0.7 is snapped to 0.7 + 1e-6 only if the resulting deviation is allowed.
   const Surface other = of(0.7);
   const auto wanted = KnotVector::open(2, {0, 0, 0, 0.5, 0.7 + 1e-6, 1, 1, 1}).value();
   EXPECT_EQ(snap_knots(other, wanted, 1.0).surface.u, wanted);

@@ -12,7 +12,8 @@
 namespace spoonbill {
 namespace {
 
-// z = 10 sin(20 x) mm over 0.1 x 0.1 m, so that each point shows if it is on the sheet.
+// Returns the sheet z = 10 sin(20 x) mm over 0.1 x 0.1 m. Its equation shows for each point whether it is on
+// the sheet.
 Surface wave() {
   const auto knots = KnotVector::clamped_uniform(3, 16).value();
   PointGrid points{uniform_parameters(knots, 60), uniform_parameters(knots, 60), {}};
@@ -121,7 +122,7 @@ TEST(TrimmedPatch, NarrowGapsAndSlitsAreNotMissed) {
   const TrimLoop left = polygon({{0.1, 0.1}, {0.4003, 0.1}, {0.4003, 0.9}, {0.1, 0.9}});
   const TrimLoop right = polygon({{0.4004, 0.1}, {0.9, 0.1}, {0.9, 0.9}, {0.4004, 0.9}});
   EXPECT_FALSE(untrimmed(wave(), {left, right}, 2e-5).ok());
-  // Lines of constant v are in two pieces beside the slit; lines of constant u jump at it.
+  // Beside the slit, a line of constant v has two pieces. The ends of lines of constant u jump there.
   const TrimLoop slit = polygon({{0.1, 0.1},
                                  {0.403, 0.1},
                                  {0.403, 0.5},

@@ -97,7 +97,7 @@ TEST(TubeEnds, ARoundCapIsHalfAnEllipsoid) {
     const auto closed = add_cap(capped->surface, other, 0.0, c2());
     ASSERT_TRUE(closed.ok()) << closed.error().message;
     EXPECT_NEAR(std::abs(compute_enclosed_mass(closed->surface).volume_m3), whole,
-                4e-3 * whole);  // the ring is a cubic spline circle
+                4e-3 * whole);  // the ring is a cubic spline, not an exact circle
   }
 }
 

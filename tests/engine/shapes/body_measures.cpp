@@ -97,7 +97,7 @@ Evenness evenness(const Surface& surface) {
   std::array<double, 2> along = {1e30, 0.0}, around = {1e30, 0.0};
   for (int k = 0; k < steps; ++k) {
     const double share = static_cast<double>(k) / steps, next = static_cast<double>(k + 1) / steps;
-    double step = 0.0;  // sum over a ring of points
+    double step = 0.0;  // sum of the steps over a ring of points
     for (int i = 0; i < 16; ++i) {
       const double u = at(surface.u, i / 16.0);
       step += (position(surface, u, at(surface.v, next)) - position(surface, u, at(surface.v, share))).norm();

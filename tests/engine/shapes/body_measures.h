@@ -11,8 +11,8 @@ namespace spoonbill {
 
 inline constexpr double shape_tolerance_m = 1e-5;
 
-// Return the enclosed volume and the area, by Gauss quadrature over the polynomial pieces. The volume is
-// exact.
+// volume_m3() returns the enclosed volume and area_m2() the area, by Gauss quadrature over the polynomial
+// pieces. The volume is exact.
 double volume_m3(const Surface& surface);
 double area_m2(const Surface& surface);
 

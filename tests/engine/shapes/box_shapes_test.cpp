@@ -28,16 +28,17 @@ double box_distance(const Vector3& p, const Rounded& box) {
   return std::hypot(std::max(out, 0.0), std::max(up, 0.0)) + std::min(std::max(out, up), 0.0) - box.end_m;
 }
 
-// The expected volume follows from the section's area A and perimeter P by Steiner's formula in each slice
-// (an outline moved inwards by d encloses A - d P + pi d^2). The expected area follows from the perimeter in
-// each slice, P - 2 pi d.
+// The expected volume follows from the section's area A and perimeter P by Steiner's formula in each slice:
+// an outline moved inwards by d encloses A - d P + pi d^2. The expected area follows from the outline's
+// perimeter P - 2 pi d.
 void expect_box(const FittedShape& shape, const Rounded& box, double most_uneven_along = 2.5) {
   const double x = box.size_m[(box.axis + 1) % 3], y = box.size_m[(box.axis + 2) % 3];
   const double r = box.end_m, length = box.size_m[box.axis] - 2.0 * r;
   const double a = x * y - (4.0 - pi) * box.edge_m * box.edge_m;
   const double perimeter = 2.0 * (x + y) - (8.0 - 2.0 * pi) * box.edge_m;
-  // Along the quarter circle of the rounding, d = r (1 - cos). `first` and `second` are the integrals of d
-  // and d^2 over the circle's height; `arc_first` is the integral of d over its length.
+  // Along the quarter circle of the rounding, of radius r, the outline is moved inwards by d = r (1 - cos).
+  // `first` and `second` are the integrals of d and d^2 over the circle's height; `arc_first` is the integral
+  // of d over its length.
   const double first = r * r * (1.0 - 0.25 * pi), second = r * r * r * (5.0 / 3.0 - 0.5 * pi);
   const double arc = 0.5 * pi * r, arc_first = r * r * (0.5 * pi - 1.0);
   const double volume = a * length + 2.0 * (a * r - perimeter * first + pi * second);
@@ -74,7 +75,7 @@ TEST(Box, ThatIsFlatHasItsPolesInTheLargeFaces) {
   expect_box(fitted(box_shape({{0.1, 0.03, 0.01}, 0.001})), {{0.1, 0.03, 0.01}, 0, 0.002, 0.001});
 }
 
-// The rounding may be up to two fifths of the shortest side. Only strips of the end faces remain flat, and
+// The rounding may be up to two fifths of the shortest side. Then only strips of the end faces are flat, and
 // lines from the poles are longer along a strip than across it.
 TEST(Box, MayBeRoundedFarIn) {
   for (const BoxSize& size : {BoxSize{{0.06, 0.04, 0.02}, 0.007}, BoxSize{{0.06, 0.04, 0.02}, 0.0075},

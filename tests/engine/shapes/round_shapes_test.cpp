@@ -75,8 +75,8 @@ TEST(Cylinder, IsACylinderWithRoundedEdges) {
     const double R = size.radius_m, r = size.rounding_m, h = size.height_m, c = R - r;
     const FittedShape cylinder = fitted(cylinder_shape(size));
     const auto distance = [&](const Vector3& p) { return cylinder_distance(p, size); };
-    // Pappus's theorem: the quarter circles have the area pi r^2 / 4, and their centroids are 4 r / 3 pi
-    // beyond c.
+    // Pappus's theorem: the quarter circles of the rounding have the radius r and the area pi r^2 / 4. Their
+    // centroids are 4 r / 3 pi outside the radius c of their centres.
     const double volume = pi * R * R * (h - 2.0 * r) + 2.0 * r * pi * c * c +
                           2.0 * (2.0 * pi * c * 0.25 * pi * r * r + 2.0 / 3.0 * pi * r * r * r);
     const double area = 2.0 * pi * R * (h - 2.0 * r) + 2.0 * pi * c * c +

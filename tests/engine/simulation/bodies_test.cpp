@@ -13,7 +13,7 @@
 namespace spoonbill {
 namespace {
 
-// Pebble of 40 x 20 x 100 mm, flat side up.
+// Returns a pebble of 40 x 20 x 100 mm with its flat side up.
 Body pebble(const Vector3& centre, int nodes) {
   return {"pebble", ellipsoid_tube(12, 12, centre), silicone(), {nodes, {}}};
 }
@@ -26,7 +26,7 @@ double depth_between_bodies(const Impact& impact) {
   return depth_between(impact.body(0).mapping().current(), impact.body(1).mapping().current());
 }
 
-// The pebbles meet flat on flat and off centre, so that they also begin to turn.
+// The pebbles meet with their flat sides and off centre, so that they also begin to turn.
 TEST(Bodies, ThatCollideKeepTheirMomentum) {
   Impact impact(state_of(pebble({0, 0, 0}, 400)), state_of(pebble({0.012, 0.0235, 0.02}, 700)));
   impact.throw_at(1, {0.01, -0.06, 0.005});
@@ -42,7 +42,7 @@ TEST(Bodies, ThatCollideKeepTheirMomentum) {
   const Vector3 change = impact.momentum_of(0) + impact.momentum_of(1) - before;
   EXPECT_LT(change.norm(), 1e-5 * sum_of_sizes);
   EXPECT_LT(impact.momentum_of(0).y(), 0.25 * before.y()) << "the one that was hit took some of it over";
-  // The limit is what the control nets can follow of a dent one cell wide (body_depth_limit_cells).
+  // The control nets follow a dent one cell wide only in part; the limit is the penetration that may remain.
   const double cell = static_cast<double>(impact.body(0).lattice.cell_size_m());
   EXPECT_LT(deepest, body_depth_limit_cells * cell);
 }
@@ -68,7 +68,8 @@ Scene stacked_handles() {
   return scene;
 }
 
-// The frame is that of the surface, and the weighted positions of the nodes give the point.
+// Expects the contact to be on its body: its frame is that of the surface, and the weighted positions of its
+// nodes give its point.
 void expect_is_on_its_body(const Simulation& simulation, const ContactSnapshot& contact) {
   const SpringLattice& lattice = simulation.lattice(contact.body);
   double sum = 0.0;
@@ -78,8 +79,8 @@ void expect_is_on_its_body(const Simulation& simulation, const ContactSnapshot& 
     carried += static_cast<double>(contact.nodes.weight[k]) * lattice.position(contact.nodes.node[k]);
   }
   EXPECT_NEAR(sum, 1.0, 1e-5);
-  // The tick has moved the nodes since, and the surface follows the lattice only as far as its control points
-  // do.
+  // The tick has moved the nodes since the contact was found, and the surface follows the lattice only as far
+  // as its control points permit.
   EXPECT_LT((carried - contact.point_m).norm(), 0.1 * static_cast<double>(lattice.cell_size_m()));
   const SurfacePoint at = evaluate(simulation.surface(contact.body), contact.u, contact.v);
   EXPECT_LT((at.position_m - contact.point_m).norm(), 0.1 * static_cast<double>(lattice.cell_size_m()));

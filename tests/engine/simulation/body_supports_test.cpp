@@ -41,7 +41,7 @@ TEST(SupportMotion, GoesItsWayWithoutAJerk) {
   EXPECT_NEAR(fastest, top_speed_m_per_s(motion), 1e-6 * fastest);
 }
 
-// Compares with the library's sine after the first period.
+// Compares the motion after the first period with the sine of the standard library.
 TEST(SupportMotion, SwingsAsASine) {
   const SupportMotion motion = *oscillation({}, Vector3(0.002, 0, 0), 3.0).motion;
   EXPECT_EQ(displacement_at(motion, 0.0).x(), 0.0);
@@ -58,7 +58,7 @@ TEST(SupportMotion, SwingsAsASine) {
   EXPECT_GT(fastest, top_speed_m_per_s(motion) * 0.99);
 }
 
-// Bar with a Poisson's ratio of 0: the force is E A d / L, up to the nonlinearity at a strain of 1e-3.
+// The bar has a Poisson's ratio of 0, so the force is E A d / L up to the nonlinearity at a strain of 1e-3.
 // Springs have a ratio of at least 0.2, and their fixed ends, which do not narrow, make the bar slightly
 // stiffer.
 TEST(BodySupports, APulledEndBearsWhatABarSays) {
@@ -103,8 +103,8 @@ TEST(BodySupports, MovesItsNodesExactly) {
   }
 }
 
-// The support holds one slice of the lattice, at any position between those of the coarser implicit block.
-// Without support it would fall by 8 mm.
+// The support fixes one slice of the lattice, anywhere between the slices of the coarser implicit block.
+// Without it, the body would fall by 8 mm.
 TEST(BodySupports, HoldWhatTheBlockHasNoNodeFor) {
   const Vector3 size_m(0.012, 0.012, 0.08), gravity_m_per_s2(0, 0, 9.81);
   const Material material = elastic_material(5e6, 0.3, 1000.0);
@@ -146,7 +146,7 @@ TEST(BodySupports, RefuseWhatHoldsNothing) {
   EXPECT_EQ(fast.field, "motion");
 }
 
-// Handle of 60 mm along x, fixed over its first tenth and moved up over its last.
+// Returns a handle of 60 mm along x that is fixed over its first tenth and moved up over its last.
 Scene moved_handle() {
   Scene scene = small_handle();
   scene.bodies[0].material = silicone();

@@ -20,7 +20,8 @@ namespace {
 
 constexpr double body_ring_m = 0.02, body_tube_m = 0.005, tool_radius_m = 0.004;
 
-// Torus about y, whose tube is round to within 5 %. It has few control points, which a tick moves quickly.
+// Returns a torus about y whose tube is round to within 5 %. It has few control points, so that ticks are
+// fast.
 Surface ring() {
   constexpr int around = 20, along = 8;
   ControlNet net(around, along);
@@ -80,7 +81,7 @@ double lowest_m(const Simulation& simulation) {
   return *std::min_element(y.begin(), y.end());
 }
 
-// The sides of a flat body are within one cell of each other, and neither is pushed out by the other.
+// The sides of a flat body are within one cell of each other, but neither pushes the other out.
 TEST(BoxedBody, KeepsStillUntouched) {
   for (const double flatness : {1.0, 0.2, 0.05}) {
     const Scene scene = held_ring(flatness);
@@ -139,7 +140,7 @@ TEST(BoxedBody, TickAllocatesNothing) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-// Checks both springs and the implicit solver.
+// The test runs with springs and with the implicit solver.
 TEST(BoxedBody, RestsOnTheGround) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const double youngs_modulus_pa : {2e5, 2e9}) {

@@ -22,7 +22,7 @@ namespace {
 using std::numbers::pi;
 constexpr double ring_m = 0.03, tube_m = 0.01;
 
-// Ring about y: `around` runs about y and `along` about the tube.
+// Returns a ring about y: `around` runs about y and `along` about the tube.
 LatticeMesh ring_in_box() {
   return solid_lattice(round_torus(ring_m, tube_m), {3000, {}}).value();
 }
@@ -41,7 +41,7 @@ Vector3 applied_n(const SpringLattice& lattice, int node) {
 
 struct NetForce {
   Vector3 force_n = Vector3::Zero(), moment_nm = Vector3::Zero();
-  double sum_n = 0.0;  // sum of the magnitudes
+  double sum_n = 0.0;  // sum of the magnitudes of the forces
 };
 
 NetForce net_of(const SpringLattice& lattice) {
@@ -62,7 +62,7 @@ void expect_on_the_body(const SpringLattice& lattice) {
   }
 }
 
-// The forces balance for any shape of the ring, in single precision.
+// The forces balance for any shape of the ring, up to single precision.
 TEST(BoxedLoads, PressureAllAroundNeitherMovesNorTurnsABody) {
   const LatticeMesh mesh = ring_in_box();
   SpringLattice lattice = springs(mesh);
@@ -137,8 +137,8 @@ std::vector<FixedAxis> held_loosely(const LatticeMesh& mesh) {
   return {{a, 0, 0.0}, {a, 1, 0.0}, {a, 2, 0.0}, {b, 1, 0.0}, {b, 2, 0.0}, {c, 1, 0.0}};
 }
 
-// The strain of a volume under uniform pressure is 3 (1 - 2 nu) p / E. A partly filled cell is as stiff as if
-// its part were spread in it; a part of less than a tenth counts as a tenth.
+// The strain of a volume under uniform pressure p is 3 (1 - 2 nu) p / E. A partly filled cell is as stiff as
+// if its material were spread over the cell; less than a tenth of material counts as a tenth.
 TEST(BoxedLoads, PressureAllAroundShrinksARing) {
   const LatticeMesh mesh = ring_in_box();
   const double youngs = 1e5, poisson = 0.3, share = 1e-3;
@@ -195,8 +195,8 @@ TEST(BoxedLoads, ASupportHoldsNothingBesideTheBody) {
   }
 }
 
-// Both springs and the implicit solver weigh as much as the ring, not as much as the box. The skin's
-// triangles, over a hundred per turn, omit less than a thousandth.
+// Springs and implicit solver both have the weight of the ring, not of the box. The skin's triangles, over a
+// hundred per turn, omit less than a thousandth of the volume.
 TEST(BoxedLoads, ABodyWeighsWhatItIs) {
   Body body = small_handle().bodies[0];
   body.surface = round_torus(ring_m, tube_m);

@@ -18,7 +18,8 @@ namespace spoonbill {
 class Impact {
  public:
   // `slowed`: both bodies share one inertia scale, with which a substep of a millisecond is stable, so that
-  // the masses of both are scaled alike. `real_time`: a tick takes as many substeps as both need without.
+  // the masses of both are scaled alike. `real_time`: the inertia is not scaled, and a tick takes as many
+  // substeps as both bodies need.
   enum class Clock { slowed, real_time };
 
   Impact(BodyState first, BodyState second, Clock clock = Clock::slowed)

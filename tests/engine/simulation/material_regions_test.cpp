@@ -31,7 +31,7 @@ MaterialRegion far_half_of(const Material& material) {
   return region;
 }
 
-// Handle that is fixed at both ends.
+// Returns a scene with a handle that is fixed at both ends.
 Scene handle_with_regions(const Material& own, const std::vector<MaterialRegion>& regions) {
   Scene scene = small_handle();
   scene.bodies[0].material = own;
@@ -56,7 +56,8 @@ TEST(MaterialRegions, WhatStepsABodyIsChosenByAllOfThem) {
   EXPECT_EQ(implicit_nodes(clay, elastic("wood", 1e9)), 0);
 }
 
-// All nodes of a lattice have one inertia scale, with which the stiffest material is stable in a substep.
+// All nodes of a lattice share one inertia scale, with which even the stiffest material is stable in a
+// substep.
 TEST(MaterialRegions, ShareTheInertiaScaleOfTheStiffestOne) {
   const Material clay = small_handle().bodies[0].material;
   const Material wood = elastic("wood", 100.0 * clay.youngs_modulus_pa);
@@ -90,7 +91,7 @@ TEST(MaterialRegions, TheSofterHalfIsDentedDeeper) {
   EXPECT_GT(dent_m(0.042, hard, soft), 1.3 * dent_m(0.018, hard, soft));
 }
 
-// Returns the v on the handle's top at which the surface currently is at x.
+// Returns the parameter v on the handle's top at which the deformed surface is at x.
 double top_at(const Simulation& simulation, double x_m) {
   double low = 0.0, high = 0.06;
   for (int halving = 0; halving < 40; ++halving) {
@@ -100,7 +101,8 @@ double top_at(const Simulation& simulation, double x_m) {
   return low;
 }
 
-// Returns the slip of the tool over the point below it after the hand has moved half a millimetre along.
+// Returns the slip of the tool over the surface point below it after the hand has moved half a millimetre
+// along x.
 double slip_m(Simulation& simulation, double x_m) {
   const auto press = [&](double moved_m, int ticks) {
     Reaction reaction;
@@ -135,7 +137,7 @@ TEST(MaterialRegions, AToolSticksToOneHalfAndSlidesOnTheOther) {
   EXPECT_LT(stuck, 0.05e-3);
 }
 
-// Coulomb friction: a dragged tool feels the friction of the region times the push.
+// Coulomb friction: the drag on a moving tool is the friction coefficient of the region times the push.
 TEST(MaterialRegions, ADraggedToolFeelsTheFrictionOfTheRegion) {
   MaterialRegion rough;
   rough.region.along = {0.5, 1.0};
@@ -204,7 +206,8 @@ TEST(MaterialRegions, WrongOnesAreRefused) {
             "body \"other\": regions[0].along is [0.9, 0.1], must run from the lower to the higher");
 }
 
-// Hexahedra achieve the requested elasticity, because they pass the patch test in any shape.
+// The reported elasticity is that of the cells that step the body. Hexahedra achieve the requested values,
+// because they pass the patch test in any shape.
 TEST(MaterialRegions, WhatABodyAchievesIsReportedOfWhatStepsIt) {
   Simulation wood = simulate(handle_with_regions(elastic("gel", 1e4), {far_half_of(elastic("wood", 1e9))}));
   Simulation gel = simulate(handle_with_regions(elastic("gel", 1e4), {}));
@@ -232,7 +235,8 @@ Material random_material(Random& random, bool plainly_elastic) {
   return material;
 }
 
-// Random materials in random regions and strokes at up to 5 m/s keep everything finite and near.
+// With random materials in random regions and strokes at up to 5 m/s, all values stay finite and all nodes
+// stay near their places.
 TEST(MaterialRegions, NoStrokeBlowsThemUp) {
   const int trials = random_cases(12, 100);
   Random random(31);

@@ -21,7 +21,7 @@ namespace {
 constexpr double g_m_per_s2 = 9.81;
 constexpr double degree_rad = std::numbers::pi / 180.0;
 
-// Block with its flat side at y = 0, on the ground. Gravity is inclined to the ground's normal.
+// A block with its flat side at y = 0, on the ground. Gravity is inclined to the ground's normal.
 class Incline {
  public:
   Incline(double angle_rad, double friction, Stepping stepping)
@@ -39,7 +39,7 @@ class Incline {
     block_.tick(0.0, gravity_, &contacts_);
   }
 
-  // The force is distributed over all nodes.
+  // Applies a force that is distributed over all nodes.
   void push(const Vector3& force_n) { block_.load({ForceLoad{{}, force_n, ForceDistribution::volume}}); }
 
   // Returns the mean displacement or velocity over the whole block.
@@ -74,7 +74,8 @@ class Incline {
   GroundContacts contacts_{1000};
 };
 
-// Returns the mean acceleration along the slope over half a second of sliding, which is many periods.
+// Returns the mean acceleration along the slope over half a second of sliding, which is many periods of the
+// springs.
 double acceleration(Incline& incline) {
   for (int tick = 0; tick < 200; ++tick) incline.tick();
   const double before = incline.mean(true).x();
@@ -86,14 +87,15 @@ double coulomb(double angle_rad, double friction) {
   return g_m_per_s2 * (std::sin(angle_rad) - friction * std::cos(angle_rad));
 }
 
-// The acceleration is a = g (sin t - mu cos t). The springs still oscillate slightly.
+// The acceleration is a = g (sin t - mu cos t) at the angle t and the friction mu. The springs still
+// oscillate slightly.
 TEST(OnGround, ABlockSlidesDownAnInclineAsCoulombSays) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     for (const double friction : {0.0, 0.2, 0.4}) {
       Incline incline(30.0 * degree_rad, friction, stepping);
       const double allowed = stepping == Stepping::springs ? 0.01 : 1e-3;
       EXPECT_NEAR(acceleration(incline) / coulomb(30.0 * degree_rad, friction), 1.0, allowed) << friction;
-      EXPECT_LT(incline.deepest_m(), 5e-6);  // a thousandth of a cell
+      EXPECT_LT(incline.deepest_m(), 5e-6);  // the bound is a thousandth of a cell
     }
   }
 }
@@ -202,7 +204,7 @@ double least_volume_share(const SpringLattice& lattice) {
   return least;
 }
 
-// Springs step the handle at two inertia scales, or the implicit solver steps it.
+// The handle is stepped by springs at two inertia scales, or by the implicit solver.
 TEST(OnGround, AHandleThatFallsComesToRestOnItsSkin) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const double youngs : {1e4, 2e5, 2e9}) {
@@ -241,7 +243,7 @@ TEST(OnGround, ASoftHandleAtRestStaysThere) {
   EXPECT_LT((simulation.lattice().position(0) - before).norm(), 5e-6);
 }
 
-// Drops from 50 cm without air drag, of silicones as soft as gels and of one as hard as a plastic. The
+// Drops handles from 50 cm without air drag: silicones as soft as gels, and one as hard as a plastic. The
 // softest arrives at its true speed of 3 m/s; a larger inertia scale makes the others slower.
 TEST(OnGround, AFallOfHalfAMetreLeavesNoCellInsideOut) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
@@ -259,8 +261,8 @@ TEST(OnGround, AFallOfHalfAMetreLeavesNoCellInsideOut) {
   }
 }
 
-// Drops from 27 mm, so that nodes arrive faster than the speed cap lets them move in the squashed body. The
-// skin penetrates slightly and comes out again.
+// The handle drops from 27 mm, so that nodes arrive faster than the speed cap lets them move in the squashed
+// body. The skin penetrates the ground slightly and comes out again.
 TEST(OnGround, NoFallIsTooFast) {
   Scene scene = falling_handle(1e4);
   scene.ground->point_m.y() = -0.03;

@@ -11,7 +11,8 @@
 namespace spoonbill {
 namespace {
 
-// Two handles, one above the other without contact; the upper one is four times as stiff.
+// Returns a scene with two handles, one above the other without contact. The upper one is four times as
+// stiff.
 Scene two_handles() {
   Scene scene = small_handle();
   scene.bodies[0].material = silicone();
@@ -109,7 +110,8 @@ TEST(RealTime, GivesEveryBodyItsMassAndATickMoreSubsteps) {
   EXPECT_GT(simulation.inertia_scale(), 1.0);
 }
 
-// A body falls at g / r, and at g in real time. A body that the implicit solver steps falls with the others.
+// A body falls at g / r with the inertia scale r, and at g in real time. A body that the implicit solver
+// steps falls like the others.
 TEST(RealTime, IsThatOfAFall) {
   for (const bool real_time : {false, true}) {
     for (const bool is_stiff : {false, true}) {
@@ -126,7 +128,7 @@ TEST(RealTime, IsThatOfAFall) {
       EXPECT_EQ(scale == 1.0, real_time);
       const double expected = 0.5 * 9.81 / scale * 1e-6 * ticks * ticks;
       for (const int body : {0, 1}) {
-        // Euler steps fall farther by up to a tick.
+        // Steps of the Euler method fall farther, by up to the distance of one tick.
         EXPECT_NEAR((before[body] - first_node_y(simulation, body)) / expected, 1.0, 1.1 / ticks)
             << real_time << ", " << is_stiff << ", " << body;
       }

@@ -33,7 +33,7 @@ MappingResidual residual_of(Mapped& body) {
   return body.mapping.residual();
 }
 
-// A net follows any affine motion exactly (Piegl and Tiller 1997, 3.3: affine invariance).
+// A control net follows any affine motion exactly (Piegl and Tiller 1997, 3.3: affine invariance).
 TEST(MappingResidual, IsNothingForAffineMotions) {
   Mapped body = mapped_handle();
   Eigen::Matrix3d linear;
@@ -118,7 +118,7 @@ TEST(RefineKnots, IsRefusedWhereNothingMoved) {
   EXPECT_FALSE(simulation.apply(RefineKnots{1}).ok());
 }
 
-// Body of revolution as CAD delivers it, with one span from pole to pole.
+// Returns a scene with a body of revolution as CAD delivers it, with one span from pole to pole.
 Scene single_span_scene() {
   constexpr int around = 12;
   ControlNet net(around, 4);
@@ -163,7 +163,7 @@ TEST(BodyMapping, FollowsKnotsOfEveryMultiplicity) {
   EXPECT_LT(shown_residual_m(simulation), 1e-3);
 }
 
-// A plane needs knots at its edge. A document holds at most 200 columns; beyond that number, columns are
+// A plane needs knots at its edge. A document can have at most 200 columns; beyond that number, columns are
 // fixed without knots.
 TEST(BodyMapping, HoldsWithoutMoreColumnsThanADocumentTakes) {
   for (const int columns : {190, 198, 199, 200}) {

@@ -18,15 +18,15 @@ namespace spoonbill {
 namespace {
 
 constexpr double arm_m = 0.04, bend_radius_m = 0.005, arm_thick_m = 0.006;
-// distance between the arms
+// Distance between the arms.
 constexpr double bend_gap_m = 2.0 * bend_radius_m - arm_thick_m;
 
 struct Station {
   Vector3 centre, along;
 };
 
-// Centre line of a hairpin in the x-y plane: an arm at y = -bend_radius_m towards x = 0, half a circle about
-// the origin, and an arm back at y = bend_radius_m.
+// Returns a point of the centre line of a hairpin in the x-y plane: an arm at y = -bend_radius_m towards
+// x = 0, half a circle about the origin, and an arm back at y = bend_radius_m.
 Station hairpin_station(double way) {
   const double turn = std::clamp((way - arm_m) / bend_radius_m, 0.0, std::numbers::pi);
   const double beyond = std::max(arm_m - way, way - arm_m - std::numbers::pi * bend_radius_m);
@@ -35,7 +35,7 @@ Station hairpin_station(double way) {
           {std::sin(angle), -std::cos(angle), 0.0}};
 }
 
-// Round bar along the centre line, with poles at its ends.
+// Returns a round bar along the centre line, with poles at its ends.
 Body hairpin() {
   constexpr int around = 12, along = 33;
   constexpr double length = 2.0 * arm_m + std::numbers::pi * bend_radius_m;
@@ -68,7 +68,7 @@ double depth_in_itself(const Surface& surface, bool* touching = nullptr) {
   return deepest;
 }
 
-// Free body that can be pulled by any forces, with or without self-contact.
+// A free body that any forces can pull, with or without self-contact.
 class Folding {
  public:
   Folding(const Body& body, bool is_self_intersecting)
@@ -79,8 +79,8 @@ class Folding {
     body_.set_inertia(body_.lattice.find_inertia_scale(step_s), step_s);
   }
 
-  // Opposite forces along y pull both ends slowly, because of strong drag. They grow with the inertia, so
-  // that the ends always meet after the same time.
+  // Pulls both ends together by opposite forces along y, slowly because of strong drag. The forces grow with
+  // the inertia, so that the ends always meet after the same time.
   void pull_ends_together(double force_per_inertia_n) {
     drag_per_s_ = 300.0;
     const double force_n = force_per_inertia_n * body_.lattice.inertia_scale();
@@ -127,7 +127,7 @@ class Folding {
   }
 
  private:
-  // The first fifth of the body moves along y, the last against it.
+  // The first fifth of the body is pulled along y, the last fifth against it.
   template <class Visit>
   void visit_ends(const Visit& visit) {
     const LatticeMesh& mesh = body_.lattice.mesh();
@@ -174,7 +174,7 @@ TEST(SelfContact, HoldsTheArmsOfAHairpinApart) {
   EXPECT_LT(deepest, self_depth_limit_cells * bar.cell_m());
 }
 
-// Only the contact acts on the body, whose ends collide and separate again.
+// Only the contact acts on the body. Its ends collide and separate again.
 TEST(SelfContact, KeepsTheMomentum) {
   Folding bar(hairpin(), true);
   bar.throw_ends({0.0, 0.05, 0.01});
@@ -188,7 +188,7 @@ TEST(SelfContact, KeepsTheMomentum) {
   EXPECT_LT((after.angular - before.angular).norm(), 1e-2 * before.angular_sizes);
 }
 
-// The lower arm is fixed at its lower half; a sphere pushes the upper arm onto it.
+// Returns a hairpin whose lower arm is fixed at its lower half; a sphere pushes the upper arm onto it.
 Simulation pushed_hairpin() {
   Scene scene = small_handle();
   scene.bodies[0] = hairpin();

@@ -14,7 +14,7 @@
 namespace spoonbill {
 namespace {
 
-// Bar fixed at its lower end and pushed sideways at the other.
+// Returns a bar that is fixed at its lower end and pushed sideways at the other end.
 LoadedBlock pushed_bar(Stepping stepping) {
   const bool springs = stepping == Stepping::springs;
   Material material = elastic_material(springs ? 2e4 : 2e6, 0.3, 1000.0);
@@ -31,8 +31,8 @@ double tip_m(const LoadedBlock& bar) {
 
 TEST(Settling, IsCriticalForTheMotionThatABodyIsIn) {
   LoadedBlock bar = pushed_bar(Stepping::springs);
-  // The first mode remains after the fast modes have decayed. The Rayleigh quotient is then the square of 2
-  // pi divided by the mode's period.
+  // The first mode remains after the fast modes have decayed. The Rayleigh quotient is then the square of the
+  // mode's angular frequency.
   for (int tick = 0; tick < 400; ++tick) bar.tick(0.0);
   double longest = 0.0, last_turn = 0.0, before = tip_m(bar), way = 0.0;
   for (int tick = 0; tick < 3000; ++tick) {
@@ -55,7 +55,7 @@ TEST(Settling, IsCriticalForTheMotionThatABodyIsIn) {
   }
   ASSERT_GT(longest, 0.0);
   const double omega = std::acos(-1.0) / longest;
-  // Other remaining modes only add to the energy.
+  // Other modes that remain only add to the energy.
   EXPECT_GT(std::sqrt(quotient), 0.9 * omega);
   EXPECT_LT(std::sqrt(quotient), 3.0 * omega);
 }

@@ -28,7 +28,8 @@ Material shell_material(double youngs_modulus_pa) {
   return material;
 }
 
-// Clay bowl about the origin, open upwards and fixed at the rim. Its surface is the outer face of the shell.
+// Returns a clay bowl about the origin, open upwards and fixed at the rim. Its surface is the outer face of
+// the shell.
 Scene clay_bowl() {
   Scene scene = small_handle();
   Body& body = scene.bodies[0];
@@ -139,7 +140,7 @@ TEST(Shell, RestsWhereNothingTouchesIt) {
   }
 }
 
-// Random strokes of up to 5 m/s with a sphere, a box, and a point that could slip through.
+// Random strokes at up to 5 m/s with a sphere, a box, and a point, which could slip through.
 TEST(Shell, OutlastsFastStrokes) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   Scene scene = clay_bowl();

@@ -13,7 +13,7 @@
 namespace spoonbill {
 namespace {
 
-// Pushes from y = 20 mm down to `deepest` and back within `ticks`.
+// Lowers the tool from y = 20 mm to `deepest` and raises it again within `ticks`.
 void push(Simulation& simulation, double x, double deepest, int ticks, bool gripping = false) {
   for (int tick = 0; tick < ticks; ++tick) {
     const double share = 1.0 - std::abs(2.0 * tick / ticks - 1.0);
@@ -78,8 +78,8 @@ TEST(Simulation, ThePolesStayClosed) {
   }
 }
 
-// With few substeps the inertia is large: a stroke acts locally and hardly moves the far end. With many, the
-// whole body follows.
+// With few substeps the inertia is large, so a stroke acts locally and hardly moves the far end. With many
+// substeps the whole body follows.
 TEST(Simulation, SubstepsReachFromLocalToGlobal) {
   double share[2];
   for (const int which : {0, 1}) {
@@ -218,7 +218,7 @@ TEST(Simulation, StepRewindStepAgainGivesTheSameHash) {
   EXPECT_NE(a.state_hash(), b.state_hash());
 }
 
-// Moves randomly about the handle at up to 5 m/s.
+// A tool that moves randomly about the handle at up to 5 m/s.
 struct RandomStroke {
   Random& random;
   Vector3 at{0.05, 0.02, 0.0}, to{0.05, 0.02, 0.0};
@@ -231,7 +231,8 @@ struct RandomStroke {
   }
 };
 
-// Random materials, tools and strokes at up to 5 m/s keep everything finite and near.
+// With random materials, tools and strokes at up to 5 m/s, all values stay finite and all nodes stay near
+// their places.
 TEST(Simulation, NoSettingBlowsItUp) {
   const int trials = random_cases(12, 100);
   Random random(77);
@@ -277,7 +278,8 @@ TEST(Simulation, NoSettingBlowsItUp) {
   }
 }
 
-// Worst case that random settings rarely reach: no damping, and a rigid oversized sphere hits a gel at 5 m/s.
+// This worst case is rare among random settings: no damping, and a rigid oversized sphere hits a gel
+// at 5 m/s.
 TEST(Simulation, AnUndampedGelStaysNearWhateverHitsIt) {
   const int trials = random_cases(8, 40);
   Random random(9);

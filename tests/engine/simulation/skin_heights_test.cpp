@@ -27,8 +27,8 @@ double densely_lowest(const Surface& surface, const Vector3& normal) {
   return lowest;
 }
 
-// The lowest point is on a side, at an edge, or at an inclined end, where the elements are long compared with
-// their bend. The tolerance is that of the ground, a hundredth of a cell.
+// Depending on the direction, the lowest point is on a side, at an edge, or at an inclined end, where
+// elements are long and hardly curved. The tolerance is that of ground contact, a hundredth of a cell.
 TEST(SkinHeights, FindTheLowestPlaceBetweenTheSamples) {
   const Surface handle = small_handle().bodies[0].surface;
   const double allowed_m = 0.01 * 2.1e-3;

@@ -48,7 +48,8 @@ double dent_m(const Simulation& simulation, double v) {
   return deepest;
 }
 
-// A point has pressed a dent while both ends were fixed; then only the left end stays fixed.
+// Returns a handle with a dent that a point tool has pressed while both ends were fixed. Afterwards only the
+// left end stays fixed.
 Simulation dented(double v) {
   Scene scene = small_handle();
   scene.tool.kind = ToolKind::point;
@@ -73,7 +74,7 @@ void choose(Simulation& simulation, ToolAction action, double radius_m) {
   ASSERT_TRUE(simulation.apply(SetTool{tool}).ok());
 }
 
-// Hand of a device that holds the tool by a spring, slightly inside the body.
+// Returns the input of a hand that holds the tool by a spring, slightly inside the body.
 ToolInput resting(double x_m, double y_m) {
   ToolInput input = above(x_m, y_m);
   input.coupling_n_per_m = 400.0;
@@ -130,7 +131,8 @@ TEST(Smoothing, TheBodyIsAWallToTheToolAndARodStaysARod) {
           (evaluate(simulation.surface(), u, v).position_m - evaluate(before, u, v).position_m).norm());
     }
   }
-  // Twelve control points make a circle to a hundredth of its radius, and smoothing may remove that much.
+  // Twelve control points approximate a circle to a hundredth of its radius, and smoothing may remove that
+  // much.
   EXPECT_LT(largest, 0.01 * 0.004);
 }
 
@@ -140,7 +142,7 @@ class Reform : public ::testing::Test {
       : lattice_(SpringLattice::make(box_mesh({0.012, 0.012, 0.03}, {5, 5, 11}), soft_clay(),
                                      InstructionSet::baseline)
                      .value()) {}
-  // A material so soft that a tick takes a single substep.
+  // Returns a material so soft that a tick takes a single substep.
   static Material soft_clay() {
     Material material = small_handle().bodies[0].material;
     material.youngs_modulus_pa = 100.0;
@@ -163,7 +165,7 @@ TEST_F(Reform, StrainsNothing) {
   for (int n = 0; n < lattice_.mesh().node_count(); ++n) {
     largest = std::max(largest, (lattice_.position(n) - before[static_cast<std::size_t>(n)]).norm());
   }
-  // The tolerance covers rounding alone: strains of 1e-6 over 3 cm.
+  // The tolerance covers only rounding: strains of 1e-6 over 3 cm.
   EXPECT_LT(largest, 1e-6);
 }
 

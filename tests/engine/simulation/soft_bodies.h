@@ -6,14 +6,14 @@
 
 namespace spoonbill {
 
-// Elastic material with the stiffness of the test clay.
+// Returns an elastic material with the stiffness of the test clay.
 Material silicone();
 
-// Returns the penetration of two bodies according to the collider, which is independent of the constraints.
+// Returns the penetration of two bodies by the collider, which is independent of the contact constraints.
 // Bodies that enclose each other fail the test.
 double depth_between(const Surface& first, const Surface& second);
 
-// Returns the least height of a control point.
+// Returns the smallest height of a control point.
 double lowest(const Surface& surface);
 
 }  // namespace spoonbill

@@ -46,7 +46,7 @@ struct SampledSurface {
   std::vector<Vector3> points_m, normals;
 };
 
-// Samples the surface near the box.
+// Returns samples of the surface near the box.
 SampledSurface sampled(const Surface& surface, const Box& box) {
   constexpr int around = 120, along = 240;
   const auto at = [](const KnotVector& knots, int index, int count) {
@@ -65,8 +65,8 @@ SampledSurface sampled(const Surface& surface, const Box& box) {
   return samples;
 }
 
-// Returns the depth of a point behind the plane of the nearest sample, negative in front of it. Dense samples
-// make it accurate to some micrometres; a point far from all samples does not count.
+// Returns the depth of a point behind the tangent plane of the nearest sample, negative in front of it. Dense
+// samples make it accurate to some micrometres. A point far from all samples has no depth.
 double depth_behind(const SampledSurface& samples, const Vector3& point) {
   std::size_t nearest = 0;
   double least = 1e30;
@@ -79,8 +79,8 @@ double depth_behind(const SampledSurface& samples, const Vector3& point) {
   return least < 1e-6 ? samples.normals[nearest].dot(samples.points_m[nearest] - point) : 0.0;
 }
 
-// Returns the largest depth of either in the other, from samples of the surface and from the corners, side
-// midpoints and centres of the triangles.
+// Returns the larger depth of surface and mesh in each other, from samples of the surface and from the
+// corners, side midpoints and centres of the triangles.
 double depth_between(const Surface& surface, const std::vector<Vector3>& vertices,
                      const std::vector<TriangleCorners>& triangles) {
   const MeshDistance mesh(cleaned({vertices, triangles}));
@@ -116,7 +116,7 @@ double coarser_cell(const SpringLattice& first, const SpringLattice& second) {
   return static_cast<double>(std::max(first.cell_size_m(), second.cell_size_m()));
 }
 
-// The tool touches a pebble of 40 x 20 x 100 mm off centre.
+// Returns a ball that hits a pebble of 40 x 20 x 100 mm off centre.
 Impact ball_on_pebble(const TriangleMesh& mesh) {
   const Body pebble{"pebble", ellipsoid_tube(12, 12), silicone(), {700, {}}};
   return {make_body_state(pebble, {}, InstructionSet::baseline).value(),
@@ -142,7 +142,7 @@ TEST(SoftMesh, ThatCollidesKeepsTheMomentum) {
   EXPECT_LT(deepest, mesh_depth_limit_cells * cell) << deepest / cell;
 }
 
-// Cube turned so that it arrives edge first.
+// The cube is turned so that it arrives with an edge first.
 TEST(SoftMesh, ComesToRestOnItsEdge) {
   TriangleMesh cube = box_of_triangles(Vector3::Constant(-0.008), Vector3::Constant(0.008));
   const Quaternion turn(Eigen::AngleAxisd(0.78, Vector3::UnitX()));

@@ -21,7 +21,7 @@ Tool solid(ToolSolid of, std::optional<SoftTool> soft = std::nullopt) {
   return tool;
 }
 
-// Pebble of 40 x 20 x 100 mm scaled to a fingertip of 10 x 5 x 25 mm, fixed at its upper half.
+// Returns a pebble of 40 x 20 x 100 mm scaled to a fingertip of 10 x 5 x 25 mm, fixed at its upper half.
 Surface finger() {
   Surface surface = ellipsoid_tube(12, 12);
   for (std::vector<double>* values : {&surface.net.x, &surface.net.y, &surface.net.z}) {
@@ -74,7 +74,7 @@ TEST(SolidTool, OfEveryRigidShapePushes) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   struct Case {
     ToolSolid solid;
-    double below_m;  // from the frame's origin to the lowest point
+    double below_m;  // distance from the frame's origin to the lowest point
   };
   const Case cases[] = {
       {ImplicitShape(SphereShape{0.006}), 0.006},
@@ -153,7 +153,7 @@ TEST(SolidTool, ASoftToolGivesWayAndReturns) {
   simulation.write_snapshot(snapshot);
   ASSERT_EQ(snapshot.bodies.size(), 2u);
   const LatticeSnapshot rest = snapshot.bodies[1].lattice;
-  // Distance of a node from its position on a rigid tool.
+  // Returns the distance of a node from its position on a rigid tool.
   const auto bent = [&](double hand_m) {
     simulation.write_snapshot(snapshot);
     const LatticeSnapshot& now = snapshot.bodies[1].lattice;
@@ -189,7 +189,7 @@ TEST(SolidTool, IsExchangedWhileTheSimulationRuns) {
   ASSERT_TRUE(simulation.restore(shape).ok());
 }
 
-// Dragging a slider sends a command for each step.
+// Dragging a slider sends a command for each step. None of them may mesh the tool again.
 TEST(SolidTool, ABodyThatIsHeldIsNotMeshedAgainForAnotherSetting) {
   Tool tool = solid(SurfaceSolid{finger()});
   Simulation simulation = simulate(held_handle(tool));

@@ -24,7 +24,7 @@ Material stiff_material(double youngs_modulus_pa) {
   return material;
 }
 
-// Handle whose nodes below x = 10 mm are fixed.
+// Returns a scene with a handle whose nodes below x = 10 mm are fixed.
 Scene held_stiff_handle(double youngs_modulus_pa) {
   Scene scene = small_handle();
   scene.bodies[0].material = stiff_material(youngs_modulus_pa);
@@ -59,7 +59,7 @@ double sunk_m(const Simulation& simulation) {
   return mean_at_press(lattice.mesh(), [&](int n, double) { return -lattice.displacement(n).y(); });
 }
 
-// Returns the static displacement under a force at the pressed point, by the static solver on the same cells.
+// Returns the static displacement of the pressed point under a force, by the static solver on the same cells.
 double sinking_at_rest_m(const Scene& scene, double force_n) {
   const BodyState body = make_body_state(scene.bodies[0], scene.planes, InstructionSet::baseline).value();
   const LatticeMesh& mesh = body.implicit_solver->mesh();
@@ -92,7 +92,7 @@ TEST(StiffBodies, BendUnderTheHandAsTheStaticSolverSays) {
     }
     EXPECT_TRUE(reaction.touching);
     EXPECT_GT(reaction.force_n.y(), 0.1);
-    // The coupling spring is stretched by the part of the hand's distance that the body does not yield.
+    // The coupling spring is stretched by the distance of the hand minus the displacement of the body.
     EXPECT_NEAR(reaction.force_n.y() / (coupling_n_per_m * (reaction.proxy.position_m.y() - 0.0065)), 1.0,
                 0.01);
     // A sphere presses on a few nodes of one slice only, which accounts for 3 %.
@@ -102,7 +102,7 @@ TEST(StiffBodies, BendUnderTheHandAsTheStaticSolverSays) {
   }
 }
 
-// Bent clay whose material is changed to steel stays bent.
+// Clay that is bent and then changed to steel stays bent.
 TEST(StiffBodies, KeepTheShapeInWhichTheyAreCast) {
   Scene scene = small_handle();
   scene.planes.push_back({Vector3(plane_x_m, 0, 0), Vector3::UnitX()});
@@ -122,7 +122,7 @@ TEST(StiffBodies, KeepTheShapeInWhichTheyAreCast) {
   EXPECT_NEAR(sunk_m(simulation), bent, 1e-7);
 }
 
-// The hands include one without coupling that moves at 5 m/s.
+// One of the hands has no coupling and moves at 5 m/s.
 TEST(StiffBodies, NoHandBlowsThemUp) {
   for (const double youngs : {2e6, 2e9, 193e9}) {
     if (sanitized && youngs != 2e9) continue;

@@ -13,9 +13,9 @@ TEST(Tool, SymmetryMirrorsTheStroke) {
     Scene scene = small_handle();
     scene.tool.substeps = 1;
     scene.bodies[0].material.flow_rate_per_s = 50.0;
-    scene.sculpting.free = !symmetric;  // so that a one-sided stroke turns the handle
+    scene.sculpting.free = !symmetric;  // a free body turns under a one-sided stroke
     scene.tool.radius_m = 0.0015;
-    scene.symmetry.on = symmetric;  // about z = 0
+    scene.symmetry.on = symmetric;  // mirrors at z = 0
     Simulation simulation = simulate(scene);
     const Surface before = simulation.surface();
     Pose hand;
@@ -26,8 +26,8 @@ TEST(Tool, SymmetryMirrorsTheStroke) {
     }
     EXPECT_TRUE(reaction.touching);
     EXPECT_EQ(reaction.mirror_touching, symmetric);
-    // The top is two of the twelve spans beyond the knot of its control point; points at equal distances from
-    // it mirror each other.
+    // The top is two of the twelve spans beyond the knot of its control point. Points at equal distances from
+    // it are mirror images.
     const double top = 0.75 + 2.0 / 12.0;
     const auto dent = [&](double u) {
       return (evaluate(before, u, 0.03).position_m - evaluate(simulation.surface(), u, 0.03).position_m).y();
@@ -48,7 +48,8 @@ TEST(Symmetry, MirrorsPosesAsAMirrorDoes) {
   const Pose pose{Vector3(0.02, -0.01, 0.03), Quaternion(0.5, -0.1, 0.7, 0.5).normalized()};
   const Pose mirror = mirror_pose(plane, pose);
   const Vector3 offset(0.001, 0.002, -0.003);
-  // A mirrored tool carries the mirrored offset to its mirror image: R' (M d) = M (R d).
+  // A mirrored tool carries the mirrored offset to its mirror image: R' (M d) = M (R d), where M mirrors the
+  // offset d, R is the tool's rotation and R' that of the mirrored tool.
   const auto reflect = [&](const Vector3& d) {
     return Vector3(d - 2.0 * plane.normal.dot(d) * plane.normal);
   };
@@ -99,9 +100,10 @@ TEST(Tool, AHoveringToolTouchesNothingUntilItIsOutside) {
     input.hovering = hovering;
     return simulation.advance(input).touching;
   };
-  for (int tick = 0; tick < 100; ++tick) ASSERT_FALSE(hover(0.02 - 4e-4 * tick, true));  // passes through
+  // The tool passes through the surface.
+  for (int tick = 0; tick < 100; ++tick) ASSERT_FALSE(hover(0.02 - 4e-4 * tick, true));
   for (int tick = 0; tick < 20; ++tick) ASSERT_FALSE(hover(0.0, true));
-  for (int tick = 0; tick < 20; ++tick) ASSERT_FALSE(hover(0.0, false));  // is still inside
+  for (int tick = 0; tick < 20; ++tick) ASSERT_FALSE(hover(0.0, false));  // the tool is still inside
   for (int tick = 0; tick < 50; ++tick) hover(0.02, false);
   bool touching = false;
   for (int tick = 0; tick < 60; ++tick) touching = hover(0.009 - 6e-5 * tick, false);

@@ -29,9 +29,10 @@ TrimLoop polygon_loop(const KnotVector& u, const KnotVector& v, const std::vecto
 TrimLoop round_loop(const KnotVector& u, const KnotVector& v, const Eigen::Vector2d& middle, double radius,
                     int count, bool clockwise);
 
-// Returns the area inside round_loop(). It is half the sum of the cross products of control points, each
-// times the integral of one uniform cubic basis function times the derivative of another: 245/720, 56/720 and
-// 1/720 for neighbours one, two and three apart (the derivative of the B-spline of degree 7 at its knots).
+// Returns the area inside round_loop(). It is half the sum of the cross products of pairs of control points,
+// each times the integral of one uniform cubic basis function times the derivative of another. These
+// integrals are 245/720, 56/720 and 1/720 for neighbours one, two and three apart (derivatives of the
+// B-spline of degree 7 at its knots).
 double round_loop_area(double radius, int count);
 
 }  // namespace spoonbill

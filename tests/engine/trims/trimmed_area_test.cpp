@@ -19,7 +19,7 @@ TrimmedArea area_of(const KnotVector& u, const KnotVector& v, const std::vector<
   return std::move(area).value();
 }
 
-// Returns the kept fraction of the points of a fine grid, one in each cell's centre.
+// Returns the fraction of a fine grid's cells whose centres are kept.
 double counted_share(const TrimmedArea& area, const KnotVector& u, const KnotVector& v, int count) {
   int kept = 0;
   for (int i = 0; i < count; ++i) {
@@ -63,8 +63,8 @@ TEST(TrimmedArea, OfCurvesIsTheirClosedForm) {
   const TrimLoop hole = round_loop(open_u, open_v, {1.2, 0.1}, 0.3, 5, true);
   const TrimmedArea area = area_of(open_u, open_v, {outer, hole});
   const double share = (round_loop_area(0.95, 11) - round_loop_area(0.3, 5)) / 4.0;
-  // The chords are within 2e-5 of 8 of curve length. The 1000 x 1000 grid is wrong only in cells along the
-  // curves, where errors mostly cancel.
+  // The curves are shorter than 8, and their chords deviate by at most 2e-5. The 1000 x 1000 grid is wrong
+  // only in cells along the curves, where errors mostly cancel.
   EXPECT_NEAR(area.remaining_fraction(), share, 8.0 * 2e-5 / 4.0);
   EXPECT_NEAR(counted_share(area, open_u, open_v, 1000), share, 1e-4);
 }

@@ -13,8 +13,8 @@
 namespace spoonbill {
 namespace {
 
-// Converts a vertex's number to (u, v). unrolled() then moves a sample on a seam to the triangle's side of
-// the seam.
+// Converts the number of a vertex to its (u, v). For a vertex on a seam, unrolled() must then move (u, v) to
+// the side of the seam on which the triangle is.
 struct Vertices {
   const Grid& grid;
   const TrimmedGrid& trimmed;
@@ -87,8 +87,8 @@ void expect_covers(const Grid& grid, const TrimmedArea& area, double cell_diagon
   for (const auto& [side, count] : sides) {
     EXPECT_LE(count, 2);
     if (count == 2) continue;
-    // A side with a single triangle must be at an end of an open direction or on a loop, where only one side
-    // is kept.
+    // A side with a single triangle must be at an end of an open direction or on a loop. Beside a loop only
+    // one side is kept.
     const Eigen::Vector2d a = vertices[side.first], b = unrolled(vertices[side.second], grid, a);
     const Eigen::Vector2d middle = 0.5 * (a + b), across(a.y() - b.y(), b.x() - a.x());
     const auto at_end = [&](const KnotVector& knots, double parameter) {

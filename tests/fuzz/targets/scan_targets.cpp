@@ -19,7 +19,7 @@ namespace {
 
 void take_cloud(const Result<PointCloud>& cloud, std::size_t bytes) {
   if (!cloud) return must_be_one_line(cloud.error());
-  // Compressed clouds hold more points than the file has bytes, but at most a hundred times as many.
+  // A compressed cloud may have more points than the file has bytes, but at most a hundred times as many.
   must_hold(cloud->points.size() <= 100 * bytes, "a small file holds few points");
   for (const Vector3& point : cloud->points) must_hold(point.allFinite(), "points are finite");
 }
@@ -35,7 +35,7 @@ void take_file(std::string_view bytes, const std::function<Status(const std::fil
 
 }  // namespace
 
-// Takes PLY files, which hold meshes or clouds.
+// Tests the reader of PLY files, which contain meshes or clouds.
 void take_ply(std::string_view bytes) {
   const auto content = parse_ply(bytes);
   if (!content) return must_be_one_line(content.error());
@@ -50,7 +50,7 @@ void take_ply(std::string_view bytes) {
   }
 }
 
-// The first byte selects the format of the cloud.
+// Tests a reader of clouds, whose format the first byte selects.
 void take_points(std::string_view bytes) {
   if (bytes.empty()) return;
   const std::string_view rest = bytes.substr(1);
@@ -66,7 +66,7 @@ void take_points(std::string_view bytes) {
   }
 }
 
-// The first byte selects the format of the mesh.
+// Tests a reader of text meshes, whose format the first byte selects.
 void take_mesh_text(std::string_view bytes) {
   if (bytes.empty()) return;
   const bool is_stl = bytes[0] % 2 == 0;

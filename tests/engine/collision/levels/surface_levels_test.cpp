@@ -64,8 +64,8 @@ TEST(SurfaceLevels, BoxesOfElementsHoldThem) {
   }
 }
 
-// Thin triangles of one plane that fan out from a point, with another triangle between them: neither the line
-// between centres nor the normals separate them.
+// Thin triangles in one plane fan out from a point, with another triangle between them. Neither the line
+// between their centres nor their normals separate them.
 TEST(PatchDistance, TellsSliversApartThatLieSideBySide) {
   const auto sliver = [](double from, double low_slope, double high_slope) {
     const double to = from + 4.0;

@@ -108,14 +108,14 @@ std::vector<NamedMesh> everything() {
       {"overlapping balls", joined(ball_mesh(8, 12, 0.7, {0.4, 0, 0}), ball_mesh(8, 12, 0.7, {-0.4, 0, 0}))});
   all.push_back({"ball and sheet", joined(ball_mesh(8, 12, 0.4), sheet_mesh(4, 0.1))});
   TriangleMesh split = box_of_triangles({-0.8, -0.8, -0.8}, {0.8, 0.8, 0.8});
-  split.triangles.push_back({0, 1, 7});  // a triangle across the inside
+  split.triangles.push_back({0, 1, 7});  // a triangle across the interior
   split.triangles.push_back({0, 7, 6});
   all.push_back({"box with a wall", split});
   return all;
 }
 
-// The distance is continuous and never changes by more than the distance that the point moves, across every
-// surface and hole, near and far.
+// The distance is continuous, and it never changes by more than the point moves: across every surface and
+// hole, near and far.
 TEST(MeshDistance, ChangesByNoMoreThanTheWayMoved) {
   for (const NamedMesh& shape : everything()) {
     SCOPED_TRACE(shape.name);
@@ -130,7 +130,7 @@ TEST(MeshDistance, ChangesByNoMoreThanTheWayMoved) {
   }
 }
 
-// The surface is one distance away along the gradient, by the definition of a distance's gradient.
+// The nearest surface point is at the distance along the negative gradient, by the definition of a distance.
 TEST(MeshDistance, TheGradientLeadsToTheSurface) {
   for (const NamedMesh& shape : everything()) {
     SCOPED_TRACE(shape.name);
@@ -177,12 +177,13 @@ TEST(MeshDistance, WhatOverlapsIsOneBody) {
   const MeshDistance balls(
       cleaned(joined(ball_mesh(40, 80, 0.7, {0.4, 0, 0}), ball_mesh(40, 80, 0.7, {-0.4, 0, 0}))));
   EXPECT_NEAR(balls.at({0.0, 0.0, 0.0}).distance_m, -0.3, 2e-3);
-  EXPECT_NEAR(balls.at({-0.3, 0.0, 0.0}).distance_m, -0.6, 2e-3);  // near the surface of the other ball
+  // This point is near the surface of the other ball, but inside this one.
+  EXPECT_NEAR(balls.at({-0.3, 0.0, 0.0}).distance_m, -0.6, 2e-3);
   const MeshDistance spindle(cleaned(torus_mesh(60, 60, 0.4, 0.7)));
   // The surface winds around this point once in each orientation, so the point is outside.
   EXPECT_GT(spindle.at({0.0, 0.0, 0.0}).distance_m, 0.2);
   EXPECT_LT(spindle.at({0.5, 0.0, 0.0}).distance_m, -0.1);
-  EXPECT_GT(spindle.at({0.0, 0.65, 0.0}).distance_m, 0.01);  // in the dimple of the spindle
+  EXPECT_GT(spindle.at({0.0, 0.65, 0.0}).distance_m, 0.01);  // a point in the dimple of the spindle
   const MeshDistance crossing(cleaned(crossing_tube(60, 24)));
   // The surface winds around this point twice.
   EXPECT_NEAR(crossing.at({0.0, 0.0, 0.0}).distance_m, -0.2, 0.01);

@@ -15,8 +15,7 @@ TriangleMesh torus_mesh(int along, int around, double displacement_m, double tub
 // Returns side x side squares over the unit square in x and y, with z = height x y.
 TriangleMesh sheet_mesh(int side, double height_m);
 TriangleMesh moebius_strip(int along);
-// Returns a tube, 0.2 in radius, along a figure of eight in the plane y = 0 that crosses itself at the
-// origin.
+// Returns a tube, 0.2 in radius, along a figure of eight in the plane y = 0. It crosses itself at the origin.
 TriangleMesh crossing_tube(int along, int around);
 
 TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
@@ -36,7 +35,7 @@ double brute_distance(const TriangleMesh& mesh, const Vector3& point);
 bool brute_inside(const TriangleMesh& mesh, const Vector3& point, Random& random);
 
 Vector3 random_point(Random& random, double extent_m);
-// Returns `few`, or fifty times as many in a run of all cases.
+// Returns `few`, or fifty times as many if all cases are run.
 int random_point_count(int few);
 
 }  // namespace spoonbill

@@ -145,7 +145,7 @@ TEST(TriangleMesh, AFinOnASolidIsDropped) {
 // triangle.
 TEST(TriangleMesh, ACrackWithoutAreaLeavesABoxClosed) {
   TriangleMesh mesh = box_of_triangles({0, 0, 0}, {1, 1, 1});
-  mesh.vertices_m.emplace_back(0.5, 1.0, 0.0);  // on the edge from vertex 2 to vertex 3
+  mesh.vertices_m.emplace_back(0.5, 1.0, 0.0);  // a vertex on the edge from vertex 2 to vertex 3
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const TriangleCorners corners = mesh.triangles[t];
     if (corners != TriangleCorners{2, 7, 3}) continue;
@@ -177,7 +177,7 @@ TEST(TriangleMesh, ACavityStaysOneAndASolidInASolidIsNone) {
   EXPECT_EQ(both.report.cavities, 0u);
   EXPECT_EQ(both.report.closed_parts, 2u);
 
-  // Two boxes are beside each other, and one is inside out: the latter is turned.
+  // Two boxes are beside each other. The one that is inside out gets the opposite orientation.
   const CleanMesh beside = cleaned(joined(turned(box_of_triangles({2, 0, 0}, {2.5, 0.5, 0.5})), outer));
   EXPECT_EQ(beside.report.cavities, 0u);
   EXPECT_EQ(beside.report.parts_flipped, 1u);

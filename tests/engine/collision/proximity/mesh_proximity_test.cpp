@@ -185,8 +185,8 @@ TEST(MeshProximity, TellsTheDeepestOfAPatch) {
   double least = 1.0;
   for (const VertexNearSurface& near : all.mesh_vertices()) least = std::min(least, near.gap_m);
   EXPECT_LT(least, -2e-4);
-  // The vertex is chosen by its distance from the tangent plane at the foot of another vertex, here up to 6
-  // mm away on a surface with a radius of about 20 mm. It is therefore only nearly the deepest.
+  // The vertex is chosen by its distance from the tangent plane at the foot of another vertex, here up to
+  // 6 mm away on a surface with a radius of about 20 mm. It is therefore only nearly the deepest.
   EXPECT_NEAR(one.mesh_vertices()[0].gap_m, least, 3e-4);
 }
 

@@ -19,11 +19,10 @@ namespace spoonbill {
 namespace {
 
 constexpr double crumpled_m = 0.005;
-// Each point that is left when a budget is used up costs one more evaluation, and so does the step in
-// progress.
+// When a budget is used up, each remaining point costs one more evaluation, and so does the step in progress.
 constexpr int most_evaluations = proximity_evaluation_limit + 2 * static_cast<int>(near_point_limit);
 
-// Returns a tube whose control points are anywhere in a small box.
+// Returns a tube whose control points are at random in a small box.
 Surface crumpled_tube(std::uint64_t seed, int around, int along) {
   Random random(seed);
   Surface tube = ellipsoid_tube(around, along);
@@ -64,8 +63,8 @@ TEST(SearchBudget, OfACrumpledSurfaceAgainstItselfIsKept) {
   EXPECT_LE(proximity.points().size(), near_point_limit);
 }
 
-// The mesh is outside the body, within the boxes of its coarse elements, so that every vertex is
-// compared with the surface and none is near enough to count.
+// The mesh is outside the body but within the boxes of its coarse elements. Every vertex is therefore
+// compared with the surface, and none is near enough to count.
 TEST(SearchBudget, OfAMeshAroundASurfaceIsKept) {
   const Surface surface = ellipsoid_tube(8, 8);
   const NestedGrid nested = grid_of(surface);
@@ -77,7 +76,8 @@ TEST(SearchBudget, OfAMeshAroundASurfaceIsKept) {
   proximity.find(surface, DeformingMesh(around), 0.0);
   EXPECT_TRUE(proximity.overflow());
   EXPECT_GE(proximity.evaluations(), proximity_evaluation_limit) << "the scene is to use up the budget";
-  // Each vertex that is left costs at most two evaluations: for itself, and for the deepest of its patch.
+  // When the budget is used up, each remaining vertex costs at most two evaluations: for itself, and for the
+  // deepest of its patch.
   EXPECT_LE(proximity.evaluations(), proximity_evaluation_limit + 2 * static_cast<int>(patches.size()));
   EXPECT_LE(proximity.surface_samples().size(), near_point_limit);
   EXPECT_LE(proximity.mesh_vertices().size(), near_point_limit);
@@ -104,7 +104,7 @@ TEST(SearchBudget, OfAToolAlongASheetIsKept) {
   EXPECT_NEAR(result.nearest.depth_m, -0.001, 1e-9) << "the best answer so far";
 }
 
-// A budget that is used up ends a search with the best point so far.
+// A search whose budget is used up ends with the best point so far.
 TEST(SearchBudget, OfANearestPointIsKeptWithTheBestPointSoFar) {
   const Surface surface = crumpled_tube(6, 24, 24);
   const NestedGrid nested = grid_of(surface);

@@ -1,4 +1,4 @@
-// Tests that a ring is found to be as near to itself across its seams as elsewhere.
+// Tests that a ring is as near to itself across its seams as elsewhere.
 #include "engine/collision/proximity/self_proximity.h"
 
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@ namespace {
 constexpr double torus_ring_m = 0.02, torus_tube_m = 0.005, cell_m = 0.002, proximity_margin_m = 0.5 * cell_m;
 constexpr int torus_around = 12, torus_along = 24;
 
-// A torus about y: u runs around its tube, v along it, starting at control point `first` of `torus_along`.
-// `squeeze` is the fraction to which the centre line's width along x is reduced.
+// Returns a torus about y: u runs around its tube, v along it, starting at control point `first` of
+// `torus_along`. `squeeze` scales the width of the centre line along x.
 Surface torus(int first, double squeeze = 1.0) {
   ControlNet net(torus_around, torus_along);
   const auto turn = [](int index, int count) { return 2.0 * std::numbers::pi * index / count; };

@@ -71,7 +71,7 @@ double grown_of(const CleanMesh& mesh, std::size_t t) {
   return 0.0;
 }
 
-// Returns a negative gap where plates overlap.
+// Returns the distance of two meshes from all pairs of triangles. It is negative where plates overlap.
 double brute_gap(const CleanMesh& a, const CleanMesh& b) {
   double least = 1e300;
   for (std::size_t s = 0; s < a.mesh.triangles.size(); ++s) {
@@ -169,8 +169,8 @@ void expect_sound(const MeshPairResult& result, const CleanMesh& first, const Cl
     const Vector3 apart = contact.second_m - contact.first_m;
     EXPECT_LT(apart.cross(contact.normal).norm(), 2e-6);
     EXPECT_LT(apart.dot(contact.normal), contact.depth_m + 2e-6);
-    // One of the two points is on the other mesh's surface; the other point is the deepest point of this
-    // mesh.
+    // At least one of the two points is on the surface of its own mesh, or within half the thickness of a
+    // plate of it.
     EXPECT_LT(
         std::min(brute_distance(first.mesh, contact.first_m), brute_distance(second.mesh, contact.second_m)),
         half_plate_m + 1e-9);
@@ -228,7 +228,7 @@ TEST(MeshPair, BallsAreAsDeepAsTheirRadiiOverlap) {
   const CleanMesh ball = cleaned(ball_mesh(60, 120, 0.5));
   const double flatter = 0.5 * (1.0 - std::cos(3.15 / 60));
   const MeshPairResult apart = collide_meshes(ball, ball, at(0.0, 1.2, 0.0));
-  EXPECT_NEAR(apart.distance_m, 0.2, 1e-12);  // pole to pole
+  EXPECT_NEAR(apart.distance_m, 0.2, 1e-12);  // the poles of the balls face each other
   const MeshPairResult deep = collide_meshes(ball, ball, at(0.7, 0.4, 0.5));
   ASSERT_EQ(deep.contacts.size(), 1U);
   EXPECT_FALSE(deep.contained);

@@ -10,14 +10,13 @@ namespace {
 
 constexpr int sample_count = 4000;
 constexpr double unit_tolerance = 1e-6;
-// `growth_tolerance` is relative to the distance between two samples; `rounding` is relative to the box's
-// size.
+// `growth_tolerance` is relative to the distance between two samples, `rounding` to the size of the box.
 constexpr double growth_tolerance = 1e-6, rounding = 1e-11;
 constexpr double difference_step = 1e-6;  // relative to the box's size
 constexpr double difference_tolerance = 1e-3, most_misfits = 0.02;
 
-// Returns the digits of k in three bases, mirrored (Halton 1960): evenly distributed, and the same on every
-// machine.
+// Returns point k of a Halton sequence (1960) in the unit cube: its points are evenly distributed, and the
+// same on every machine.
 Vector3 spread(int k) {
   Vector3 result;
   const int bases[3] = {2, 3, 5};

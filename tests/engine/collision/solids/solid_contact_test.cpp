@@ -59,8 +59,8 @@ TEST(SolidContact, SphereOnAPlane) {
   expect_contact({flat(), SphereShape{0.02}, {{0.013, 0.023, 0.021}, {}}}, -0.003, Vector3::UnitY());
 }
 
-// The nearest point of y = b r^2 to (0, c) is the lowest one while c < 1 / (2 b); beyond, the nearest points
-// form a ring.
+// A sphere at height c above the bowl y = b r^2. While c < 1 / (2 b), the lowest point of the bowl is the
+// nearest to the centre; beyond, the nearest points form a ring.
 TEST(SolidContact, SphereInABowl) {
   const double bend = 20.0;
   const Surface bowl = quadric_sheet(0.08, bend, bend, 14);

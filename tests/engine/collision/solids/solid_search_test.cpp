@@ -77,8 +77,8 @@ TEST(SolidSearch, AgreesWithDenseSampling) {
     const Pose pose = pose_near_contact(random, surface, solid->bounds());
     const ToolShape tool = ToolShape::solid(*solid, pose);
     const CollisionResult result = collider.collide(surface, tool, 0.0, false);
-    // A superquadric takes a hundred times as long as the other shapes and may overstate its depth: its
-    // distance is found from its support function instead.
+    // The distance to a superquadric is found from its support function, because its own distance takes a
+    // hundred times as long as that of other shapes and may overstate the depth.
     const Vector3 at = dense_nearest(surface, tool, kind == 6 ? 30 : 120);
     double reference = tool.distance(at);
     if (kind == 6 && reference < std::min(-result.nearest.depth_m, 0.0) - 1e-6) {
@@ -99,7 +99,7 @@ TEST(SolidSearch, AgreesWithDenseSampling) {
   EXPECT_LT(touching, trials);
 }
 
-// A distance that guarantees only that it changes by no more than the point moves.
+// A signed distance that guarantees only that it changes by no more than the point moves.
 class BareTorus final : public SignedDistance {
  public:
   DistanceSample at(const Vector3& point_m) const override { return torus_->at(point_m); }
@@ -171,8 +171,8 @@ TEST(SolidSearch, AToolFarLargerThanTheModelIsFound) {
           .found);
 }
 
-// The tool is completely inside and touches nothing: the result is the displacement through the nearest wall,
-// along its normal.
+// The tool is completely inside and does not touch the surface. The result is the displacement through the
+// nearest wall, along its normal.
 TEST(SolidSearch, AToolWhollyInsideIsFoundWithItsWayOut) {
   const Surface tube = round_tube(0.02, 0.06);
   const ImplicitShape shapes[] = {
@@ -187,7 +187,7 @@ TEST(SolidSearch, AToolWhollyInsideIsFoundWithItsWayOut) {
       const CollisionResult result = search(tube, shape, pose, true);
       ASSERT_TRUE(result.found) << shape.index();
       const SurfaceContact& wall = result.nearest;
-      // The support function gives how far the solid reaches behind the wall's plane.
+      // The support function is the distance by which the solid reaches behind the wall's plane.
       const double behind =
           wall.normal.dot(wall.point_m - pose.position_m) + support(shape, turn.conjugate() * -wall.normal);
       EXPECT_NEAR(wall.depth_m, behind, 2e-7) << shape.index();

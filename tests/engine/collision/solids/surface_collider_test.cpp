@@ -27,7 +27,7 @@ Surface spike() {
   return make_surface(knots, knots, net).value();
 }
 
-// One cell covers the whole sheet: it ignores the inner breakpoints, so the bound is taken over all elements.
+// One cell covers the whole sheet and ignores the inner breakpoints, so the bound is taken over all elements.
 TEST(SurfaceBounds, ASpikeEscapesTheSphereOfItsCornersButNotTheBoundedOne) {
   const Surface surface = spike();
   const Vector3 peak = evaluate(surface, 0.5, 0.5).position_m;
@@ -77,7 +77,7 @@ TEST(SurfaceCollider, SpheresCoverTheirPatches) {
   }
 }
 
-// Returns the least distance of dense samples, refined around the best sample.
+// Returns the smallest distance of dense samples, refined around the best sample.
 double dense_distance(const Surface& surface, const ToolShape& tool) {
   constexpr int count = 160;
   double best = 1e300, best_u = 0.0, best_v = 0.0;

@@ -47,7 +47,7 @@ TEST(ToolRegions, ARodOverWavesTouchesEachCrest) {
   const auto rod = make_signed_distance(CapsuleShape{0.01, 0.095});
   const ToolShape tool = ToolShape::solid(*rod, {{0.0, crest + 0.01 - 0.001, 0.0}, along_x});
   const Regions regions = asked.regions(sheet, tool);
-  ASSERT_EQ(regions.size(), 3u);  // at -80, 0 and 80 mm
+  ASSERT_EQ(regions.size(), 3u);  // one per crest, at x = -80, 0 and 80 mm
   EXPECT_FALSE(asked.collider.regions_overflow());
   EXPECT_NEAR(regions[0].deepest.depth_m, asked.result.nearest.depth_m, 2e-5);
   std::vector<double> places;
@@ -97,8 +97,7 @@ TEST(ToolRegions, HoldEverySampleInTheTool) {
   }
 }
 
-// Contact across the seam of the periodic direction is one region, whose range is the whole of that
-// direction.
+// Contact across the seam of the periodic direction is one region. Its range is the whole period.
 TEST(ToolRegions, HangTogetherOverASeam) {
   const Surface tube = round_tube(0.02, 0.06);
   Asked asked(tube);

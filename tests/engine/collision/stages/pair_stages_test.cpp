@@ -14,7 +14,7 @@ namespace {
 
 constexpr double thick_m = 0.02, thin_m = 0.008, margin_m = 1e-4;
 
-// Returns a tube along z, from well within the thick tube, which runs along x, to above it.
+// Returns a tube along z. It begins well within the thick tube, which runs along x, and ends above it.
 Surface upright_tube() {
   Surface tube = round_tube(thin_m, 0.05);
   Surface turned = tube;
@@ -95,7 +95,7 @@ TEST_F(CrossingTubes, RefineEachKeptCellInFour) {
   }
 }
 
-// Far from the curve all cells are dropped: a remaining cell is no farther from the curve than its own size.
+// Cells far from the curve are dropped: each remaining cell is no farther from the curve than its own size.
 TEST_F(CrossingTubes, DropWhatIsFarFromTheCurve) {
   for (const StageTriangle& triangle : stages_.triangles) {
     double nearest = 1e30, longest = 0.0;

@@ -5,7 +5,7 @@
 
 namespace spoonbill {
 
-// Returns whether triangles between dense samples intersect. Each finest cell of the grid is divided into
+// Returns true if triangles between dense samples intersect. Each finest cell of the grid is divided into
 // `parts` by `parts`. Triangles of cells that share a corner, also across a periodic seam, are not compared.
 bool samples_cross(const Surface& surface, const NestedGrid& nested, int parts);
 

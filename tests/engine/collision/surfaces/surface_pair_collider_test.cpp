@@ -57,7 +57,7 @@ Surface box(const Vector3& half, const Vector3& centre) {
 
 // The tolerance of Newton's method in double precision, on surfaces of 1 m.
 constexpr double exact_m = 1e-9;
-// Newton's method ends at steps below 1e-15 m, and normals are accurate to the square root of that.
+// Newton's method ends at steps below 1e-15 m. Normals are accurate to about the square root of this number.
 constexpr double exact_normal = 1e-7;
 
 TEST(SurfacePair, AParaboloidReachesThroughAPlaneByItsVertex) {

@@ -31,7 +31,8 @@ SelfAnswer collide_with_itself(const Surface& surface, bool closed = false, int 
   return {result, collider.contacts()};
 }
 
-// Returns a curve of control points in the x-z plane, extruded along y from 0 to 1.
+// Returns the surface of a curve extruded along y from 0 to 1. `curve` are its control points in the x-z
+// plane.
 Surface drawn_out(const KnotVector& knots, const std::vector<Vector3>& curve) {
   const KnotVector along = KnotVector::clamped_uniform(1, 6).value();
   ControlNet net(knots.control_point_count(), 6);
@@ -41,8 +42,8 @@ Surface drawn_out(const KnotVector& knots, const std::vector<Vector3>& curve) {
   return make_surface(knots, along, net).value();
 }
 
-// Returns the sheet x = t^2, z = t^3 - t for t from -1.5 to 1.5, which crosses itself at t = -1 and t = 1,
-// where x = 1, z = 0. Its control points are the polar forms of both.
+// Returns the sheet x = t^2, z = t^3 - t for t from -1.5 to 1.5. It crosses itself where x = 1 and z = 0, at
+// t = -1 and t = 1. Its control points are the polar forms of x and z.
 Surface looped_sheet() {
   std::vector<double> t = {-1.5, -1.5, -1.5};
   for (int k = 0; k <= 10; ++k) t.push_back(-1.5 + 0.3 * k);
@@ -71,7 +72,7 @@ Surface pressed_tube(double gap) {
   return drawn_out(KnotVector::periodic_uniform(2, static_cast<int>(curve.size())).value(), curve);
 }
 
-// The curve is the Lissajous curve 1:2, which crosses itself at its centre by symmetry.
+// Returns a surface along a Lissajous curve 1:2, which crosses itself at its centre by symmetry.
 constexpr int eight_points = 24;
 Surface figure_eight() {
   std::vector<Vector3> curve;

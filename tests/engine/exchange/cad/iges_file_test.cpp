@@ -14,7 +14,7 @@
 namespace spoonbill {
 namespace {
 
-// The fields of an entity that tests vary, for files of a few entities.
+// The fields of an entity that differ between tests. Each test makes a file of a few entities.
 struct Entity {
   int type = 128;
   std::string parameters;

@@ -31,8 +31,8 @@ namespace spoonbill {
 namespace {
 
 constexpr double tolerance_m = 1e-5;
-// In files of OpenCASCADE, coordinates of 100 mm have an error of about 1e-12 mm. Some curved faces in IGES
-// only have its own tolerance of 1e-4 mm.
+// Coordinates of 100 mm in OpenCASCADE's files have an error of about 1e-12 mm. Some curved faces in IGES
+// files are only accurate to OpenCASCADE's tolerance of 1e-4 mm.
 constexpr double shape_file_tolerance_m = 2e-7;
 
 Vector3 metres(const gp_Pnt& point) {

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""step_surface.py STEP UNIT_M POINTS: whether the surfaces of a STEP file pass through the points of a table.
+"""step_surface.py STEP UNIT_M POINTS: measures how far the surfaces of a STEP file are from the points of a table.
 
-Knows no entity but B_SPLINE_SURFACE_WITH_KNOTS and the CARTESIAN_POINTs that it names, and evaluates with scipy. The
-table has lines of surface,u,v,x_m,y_m,z_m, the surfaces counted from 0 in the order of the file. Prints the largest
-distance in metres."""
+Reads only the entities B_SPLINE_SURFACE_WITH_KNOTS and the CARTESIAN_POINTs that they name, and evaluates with scipy.
+Each line of the table is surface,u,v,x_m,y_m,z_m; surfaces are counted from 0 in the order of the file. Prints the
+largest distance in metres."""
 import re
 import sys
 
@@ -12,7 +12,7 @@ from scipy.interpolate import BSpline
 
 
 def entities(text):
-    """Number -> (name, arguments as text) of the entities that have one name."""
+    """Returns a dict from entity number to (name, arguments as text). Entities with several names are skipped."""
     data = text[text.index("DATA;"):]
     data = re.sub(r"\s+", " ", data)
     found = {}
@@ -22,7 +22,7 @@ def entities(text):
 
 
 def values(text):
-    """Nested lists of an argument list; numbers, references ('#12'), and other words as they stand."""
+    """Returns an argument list as nested lists of texts: numbers, references such as '#12', and other words."""
     text = re.sub(r"'(?:[^']|'')*'", "''", text)
     stack = [[]]
     for token in re.findall(r"[()]|[^(),\s]+", text):

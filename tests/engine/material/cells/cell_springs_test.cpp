@@ -38,9 +38,9 @@ TEST(CellSprings, BricksGiveTheMaterialExactly) {
   }
 }
 
-// A cubic lattice of spacing a has, in closed form, C11 = (k1 + 2 k2 + 4 k3 / 3) / a and C12 = C44 = (k2 + 4
-// k3 / 3) / a. A cell has a quarter of each k1, half of each k2 and all of each k3. The lattice is isotropic
-// if k1 = k2 + 8 k3 / 3.
+// A cubic lattice of spacing a, with springs k1 along edges, k2 along face diagonals and k3 along body
+// diagonals, has C11 = (k1 + 2 k2 + 4 k3 / 3) / a and C12 = C44 = (k2 + 4 k3 / 3) / a. It is isotropic if
+// k1 = k2 + 8 k3 / 3. A cell has a quarter of each k1, half of each k2 and all of each k3.
 TEST(CellSprings, CubeStiffnessesMeetTheClosedForm) {
   const double a = 2e-3, mu = 700.0;
   const CellSprings springs = cell_springs(brick(a, a, a), mu);
@@ -58,7 +58,7 @@ TEST(CellSprings, SlenderCellsKeepPositiveSpringsAndReportTheirMisfit) {
   EXPECT_LT(cell_springs(brick(1e-3, 1e-3, 1e-3), 700.0).misfit, 1e-9);
 }
 
-// A cell at the corner of a square grid that is bent into a circle: its outer corner is nearly flat.
+// Returns a cell at the corner of a square grid that is bent into a circle. Its outer corner is nearly flat.
 CellCorners corner_of_round_section() {
   CellCorners corners = brick(1e-3, 1e-3, 1.5e-3);
   for (const int c : {6, 7}) {

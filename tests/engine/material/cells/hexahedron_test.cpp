@@ -18,7 +18,7 @@ Vector3 random_vector(Random& random, double size) {
   return size * Vector3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
 }
 
-// Returns a cell no two edges of which have the same length or direction.
+// Returns a cell whose edges all differ in length and direction.
 CellCorners distorted_cell(std::uint64_t seed) {
   Random random(seed);
   CellCorners corners = box_mesh({1.2, 1.0, 0.8}, {2, 2, 2}).cell(0, 0, 0);
@@ -43,7 +43,8 @@ TEST(Hexahedron, OnlyRigidMotionsCostNoEnergy) {
   }
 }
 
-// A cell of any shape under a uniform strain stores the energy of the material, V/2 s:e.
+// A cell of any shape under a uniform strain e stores the energy of the material, V/2 s:e, where V is its
+// volume and s the stress.
 TEST(Hexahedron, UniformStrainsCostWhatTheMaterialAsks) {
   Random random(17);
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -62,8 +63,9 @@ TEST(Hexahedron, UniformStrainsCostWhatTheMaterialAsks) {
   }
 }
 
-// The end moments bend a cell with the energy E I / 2 k^2 L. Without its inner displacements, a trilinear
-// cell would overestimate the energy by the factor (L/h)^2 / (2 (1 + nu)): more than a hundred here.
+// End moments bend a cell of length L to the curvature k with the energy E I / 2 k^2 L. Without its inner
+// displacements, a trilinear cell of height h would overestimate the energy by the factor
+// (L/h)^2 / (2 (1 + nu)): more than a hundred here.
 TEST(Hexahedron, BendsAsABeam) {
   const double length = 20.0, wide = 1.0, high = 1.0, curvature = 1e-3;
   const CellCorners corners = box_mesh({length, wide, high}, {2, 2, 2}).cell(0, 0, 0);

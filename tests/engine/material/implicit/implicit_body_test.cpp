@@ -46,7 +46,7 @@ struct Cantilever {
   int tip() const { return mesh.index(2, 1, 40); }
 };
 
-// Beams as stiff as steel and as rubber are bent slightly (load 0.03) and far (load 1).
+// Beams as stiff as steel and as rubber are bent slightly (load 0.03) and strongly (load 1).
 TEST(ImplicitBody, SettlesToTheStaticAnswer) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const double second_moment = 0.012 * std::pow(0.005, 3) / 12.0;
@@ -71,7 +71,7 @@ TEST(ImplicitBody, SettlesToTheStaticAnswer) {
   }
 }
 
-// The fall after n steps is -g h^2 n (n + 1) / 2, whatever the stiffness.
+// After n steps h, the body has fallen by g h^2 n (n + 1) / 2, whatever its stiffness.
 TEST(ImplicitBody, FallsFreely) {
   ImplicitBody body = body_of(box_mesh({0.02, 0.03, 0.02}, {3, 4, 3}), elastic_material(1e9, 0.3, 1000.0));
   ImplicitStep step;
@@ -83,8 +83,8 @@ TEST(ImplicitBody, FallsFreely) {
   }
 }
 
-// The mode of a cell whose base is fixed keeps 1 / (1 + w^2 h^2) of its energy in each step of the implicit
-// Euler method.
+// A mode of angular frequency w keeps 1 / (1 + w^2 h^2) of its energy in each step h of the implicit Euler
+// method. The base of the cell is fixed.
 TEST(ImplicitBody, DampsAModeAsImplicitEulerDoes) {
   const LatticeMesh mesh = box_mesh({0.01, 0.01, 0.01}, {2, 2, 2});
   const Material material = elastic_material(1e5, 0.3, 1000.0);
@@ -151,7 +151,7 @@ TEST(ImplicitBody, KeepsItsMomentum) {
 }
 
 // The nodes are thrown about at up to 20 m/s, with any damping and any stiffness that needs the implicit
-// method: all values stay finite, and the body has its shape back within a second.
+// method. All values stay finite, and the body recovers its shape within a second.
 TEST(ImplicitBody, NothingBlowsItUp) {
   const int trials = random_cases(8, 50);
   Random random(11);

@@ -26,8 +26,8 @@ LatticeMesh bowl_in_box(const std::array<int, 3>& counts) {
   return box;
 }
 
-// Returns the mean filled fraction of a coarse cell, computed over a common subdivision of both grids, each
-// part of which is in one cell of either grid.
+// Returns the mean filled fraction of a coarse cell. It is computed over a common subdivision of both grids,
+// so that each part is inside one cell of either grid.
 double mean_share(const LatticeMesh& fine, const LatticeMesh& coarse, const std::array<int, 3>& cell) {
   const auto finer = [&](std::size_t axis, int part) {
     const int whole = cell[axis] * (fine.count[axis] - 1) + part;

@@ -20,8 +20,8 @@ constexpr int bar_around = 16;
 Surface round_bar() {
   const std::vector<double> stations = {0.0, 0.0, 0.0, 0.01, 0.02, 0.04, 0.06, 0.07, 0.08, 0.08, 0.08};
   const int along = static_cast<int>(stations.size());
-  // A periodic uniform cubic B-spline with n control points on a circle is a curve of (2 + cos(2 pi / n)) / 3
-  // times the circle's radius.
+  // A uniform periodic cubic B-spline whose n control points are on a circle has a radius smaller than this
+  // circle, by the factor (2 + cos(2 pi / n)) / 3.
   const double outside = 3.0 / (2.0 + std::cos(2.0 * std::numbers::pi / bar_around));
   ControlNet net(bar_around, along);
   for (int i = 0; i < bar_around; ++i) {
@@ -47,7 +47,7 @@ LatticeMesh bar_lattice(std::array<int, 3> counts) {
   return std::move(mesh).value();
 }
 
-// Returns the difference of two turns as the shorter way around, possibly across the seam.
+// Returns the shorter way from one turn to another, as a fraction of a turn, possibly across the seam.
 double apart(double turn, double other) {
   const double far = std::abs(turn - other);
   return std::min(far, 1.0 - far);
@@ -83,7 +83,7 @@ void expect_places_of_a_bar(const std::vector<Vector3>& points, const std::vecto
   int seen = 0;
   visit_middle(points, places, [&](const Vector3& point, const BodyCoordinates& place, double from_axis) {
     ++seen;
-    // Slices are evenly spaced along the bar.
+    // Slices of the lattice are evenly spaced along the bar.
     EXPECT_NEAR(place.along, point.x() / length_m, 0.01);
     // A ring of 24 chords is inside the circle by less than 1 % of its radius. A cell's depth is the mean
     // over its corners, which the curvature changes by about as much again.

@@ -17,8 +17,8 @@ namespace {
 
 constexpr double fruit_radius_m = 0.036;
 
-// The shape of a fruit in units of its radius: a ball of half length `half_length`, whose ends are pressed in
-// at the poles and which narrows towards its upper end.
+// The shape of a fruit in units of its radius: a ball of half length `half_length` whose ends are pressed in
+// at the poles. It narrows towards its upper end.
 struct Fruit {
   const char* name;
   double half_length;
@@ -63,7 +63,7 @@ constexpr Fruit apple_of_narrow_hollows{"narrow", 0.9, 0.4, 0.3, 0.4, 0.3, 0.0, 
 constexpr Fruit apple_of_wide_hollows{"wide", 0.9, 0.6, 0.5, 0.6, 0.5, 0.0, 0.0};
 constexpr Fruit flat_apple{"flat apple", 0.9, 0.3, 0.4, 0.35, 0.4, 0.0, 0.0};
 constexpr Fruit pear{"pear", 1.3, 0.5, 0.35, 0.4, 0.5, 0.45, 0.0};
-// The shape is as long and wide as a scanned pear of 97 x 72 mm, with as thin a neck and as much lean.
+// A pear as long and wide as a scanned one of 97 x 72 mm, with as thin a neck and as much lean.
 constexpr Fruit leaning_pear{"leaning pear", 1.5, 0.45, 0.35, 0.3, 0.35, 0.5, 0.5};
 
 double smallest_determinant(const CellCorners& cell) {

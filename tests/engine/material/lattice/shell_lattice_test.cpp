@@ -139,8 +139,9 @@ TEST(ShellLattice, RefusesWhatIsNoShell) {
   EXPECT_EQ(refusal_code(fan, 0.002), ErrorCode::degenerate);
 }
 
-// A plate that is fixed along one edge and bent to a cylinder sinks by P L^3 (1 - nu^2) / 3 E I, with I of
-// its whole width; shear adds (6/5) P L / G A.
+// The free edge of a plate that is fixed along the opposite edge and bent to a cylinder sinks by
+// P L^3 (1 - nu^2) / 3 E I under the force P, where I is the second moment of its whole width. Shear adds
+// (6/5) P L / G A.
 TEST(ShellLattice, SheetBendsAsAPlate) {
   constexpr double length = 0.06, width = 0.03, thickness = 0.002, youngs = 2e9, poisson = 0.35, force = 0.5;
   const LatticeMesh mesh = make_shell_lattice(flat_sheet(length, width), thickness, {2000, {}});
@@ -179,7 +180,7 @@ LatticeMesh round_ring(double radius_m, double height_m, double thickness_m) {
   return make_shell_lattice(open_ring(radius_m, height_m), thickness_m, {2000, {{65, 3, 4}}});
 }
 
-// Returns the outward displacements of the nodes on the outer face at half the height.
+// Returns the radial displacements of the nodes on the outer face at half the height, positive outwards.
 std::vector<double> gone_out(const LatticeMesh& mesh, const std::function<Vector3(int)>& moved) {
   std::vector<double> out;
   for (int i = 0; i < mesh.count[0]; ++i) {
@@ -191,8 +192,9 @@ std::vector<double> gone_out(const LatticeMesh& mesh, const std::function<Vector
   return out;
 }
 
-// A pressure inside displaces the outer side of a tube that is free to shorten by u(b) = 2 p a^2 b / E (b^2 -
-// a^2) (Lame 1852). The supports bear no part of the pressure.
+// A pressure p inside a tube that is free to shorten displaces its outer side by
+// u(b) = 2 p a^2 b / E (b^2 - a^2), where a and b are the inner and outer radius (Lame 1852). The supports
+// bear no part of the pressure.
 TEST(ShellLattice, RingUnderPressureHasNoSeam) {
   constexpr double outer = 0.02, thickness = 0.002, inner = outer - thickness, youngs = 1e9, pressure = 1e5;
   const LatticeMesh mesh = round_ring(outer, 0.006, thickness);

@@ -63,14 +63,13 @@ TEST(SolidLattice, OfARingHasItsVolumeAndKnowsWhereItsNodesLie) {
     if (depth < 0.0 || depth > 0.8 * round_tube_m) continue;
     ++inside;
     const Vector3 nearest = middle + round_tube_m * (at - middle).normalized();
-    // The bound is half the diagonal of a cell of the samples, of which there are 160 and 180 per turn.
+    // The bound is half the diagonal of a cell between samples. A turn has 160 or 180 samples.
     EXPECT_LT((position(ring, places[n].around, places[n].along) - nearest).norm(), 0.0012);
   }
   EXPECT_GT(inside, 100);
 }
 
-// The test also covers cells across the seams, and cells whose corners are on both sides of the tube's centre
-// line.
+// The test includes cells across the seams, and cells with corners on both sides of the tube's centre line.
 TEST(SolidLattice, OfARingKnowsWhereItsCellsLie) {
   const Surface ring = round_torus(round_ring_m, round_tube_m);
   const LatticeMesh mesh = solid_lattice(ring, {4000, {}}).value();
@@ -86,7 +85,7 @@ TEST(SolidLattice, OfARingKnowsWhereItsCellsLie) {
         if (!mesh.is_filled(i, j, k) || depth > 0.8 * round_tube_m) continue;
         ++filled;
         const Vector3 nearest = middle + round_tube_m * (at - middle).normalized();
-        // The bound is half the diagonal of a cell of the samples, of which there are 160 and 180 per turn.
+        // The bound is half the diagonal of a cell between samples. A turn has 160 or 180 samples.
         EXPECT_LT((position(ring, place.around, place.along) - nearest).norm(), 0.0012) << i << j << k;
       }
     }
@@ -94,7 +93,7 @@ TEST(SolidLattice, OfARingKnowsWhereItsCellsLie) {
   EXPECT_GT(filled, 500);
 }
 
-// The foot is ten thousand times as stiff as the wall: cells in the hollow must be as soft as the wall around
+// The foot is ten thousand times as stiff as the wall. Cells in the hollow must be as soft as the wall around
 // them.
 TEST(SolidLattice, TheHollowOfABowlIsOfWhatIsAboutIt) {
   const LatticeMesh mesh = solid_lattice(walled_bowl(0.05, 0.003, 0.65), {2000, {}}).value();

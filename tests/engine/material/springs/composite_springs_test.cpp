@@ -31,7 +31,7 @@ const LatticeMesh& long_bar() {
 bool in_far_half(const Vector3& at) {
   return at.z() > 0.036;
 }
-// Returns true in the central four of the sixteen cells of a cross section.
+// Returns true for a point in the central four of the sixteen cells of a cross section.
 bool in_middle(const Vector3& at) {
   return std::abs(at.x() - 0.006) < 0.003 && std::abs(at.y() - 0.006) < 0.003;
 }
@@ -71,8 +71,8 @@ SpringLattice drawn_bar(const LatticeMaterials& materials, double stress_pa) {
   return lattice;
 }
 
-// Away from the ends and from where the halves meet, each half is strained by the stress divided by its own
-// modulus.
+// Away from the ends and from the interface between the halves, the strain of each half is the stress divided
+// by its own modulus.
 TEST(CompositeSprings, InSeriesEachHalfStretchesByItsOwnModulus) {
   const SpringLattice lattice = drawn_bar(composite(long_bar(), elastic_material(4e3, 0.3, 1000.0),
                                                     elastic_material(1.2e4, 0.4, 1000.0), in_far_half),
@@ -82,8 +82,8 @@ TEST(CompositeSprings, InSeriesEachHalfStretchesByItsOwnModulus) {
   EXPECT_NEAR(strain_between(lattice, 15, 21) / (20.0 / 1.2e4), 1.0, 0.01);
 }
 
-// A bar with one Poisson's ratio, a quarter of which is ten times as stiff, has the mean modulus weighted by
-// area.
+// A bar in which a quarter of the section is ten times as stiff, with the same Poisson's ratio everywhere,
+// has the mean modulus weighted by area.
 TEST(CompositeSprings, InParallelABarStretchesAsVoigtSays) {
   const SpringLattice lattice = drawn_bar(composite(long_bar(), elastic_material(3e3, 0.35, 1000.0),
                                                     elastic_material(3e4, 0.35, 1000.0), in_middle),
@@ -100,7 +100,7 @@ void shake(SpringLattice& lattice, double speed_m_per_s, unsigned seed) {
   }
 }
 
-// The two materials differ in every property in which materials may differ.
+// Returns two materials that differ in every property in which materials may differ.
 LatticeMaterials all_different(const LatticeMesh& mesh) {
   Material clay = elastic_material(4e3, 0.4, 1500.0), gel = elastic_material(2e3, 0.22, 1000.0);
   clay.plastic = true;
@@ -156,14 +156,14 @@ TEST(CompositeSprings, RigidMotionsAreNotDampedFurther) {
   std::fill_n(view.fz, view.padded_count, 0.0f);
   lattice.kernels().damp_further(view);
   const double rigid = largest_force();
-  // The nodes get random speeds of similar size, for comparison.
+  // For comparison, the nodes get random speeds of similar size.
   shake(lattice, 0.3, 1);
   std::fill_n(view.fx, view.padded_count, 0.0f);
   std::fill_n(view.fy, view.padded_count, 0.0f);
   std::fill_n(view.fz, view.padded_count, 0.0f);
   lattice.kernels().damp_further(view);
   EXPECT_GT(largest_force(), 0.0);
-  EXPECT_LT(rigid, 1e-5 * largest_force());  // rounding of single precision
+  EXPECT_LT(rigid, 1e-5 * largest_force());  // the bound allows for rounding of single precision
 }
 
 // A material in a composite is damped as in a lattice of that material alone: each half of a bar rings down
@@ -231,9 +231,9 @@ TEST(CompositeSprings, OnlyThePlasticHalfKeepsItsLength) {
   EXPECT_NEAR(strain_between(lattice, 15, 21), 0.0, 2e-3);
 }
 
-// In a bar that is held stretched, the half that creeps yields to the other half. In the end, half of its
-// shear stress is gone and none of its pressure: with K = E / 1.2 and half the shear modulus, G = E / 5.2,
-// its modulus is 9 K G / (3 K + G) = 0.536 E.
+// A bar of two materials is held stretched, and one half creeps and yields to the other half. In the end,
+// half of its shear stress is gone and none of its pressure. With K = E / 1.2 and half the shear modulus,
+// G = E / 5.2, its modulus is 9 K G / (3 K + G) = 0.536 E.
 TEST(CompositeSprings, OnlyTheGelCreeps) {
   Material gel = elastic_material(4e3, 0.3, 1000.0), rubber = elastic_material(4e3, 0.3, 1000.0);
   gel.relaxing_fraction = 0.5;
@@ -254,8 +254,8 @@ TEST(CompositeSprings, OnlyTheGelCreeps) {
   EXPECT_NEAR(of_gel / of_rubber, 1.0 / 0.536, 0.05);
 }
 
-// The substeps that a tick chooses are stable for any two damping times. With the longest one they need the
-// larger inertia of strained nodes as well.
+// The number of substeps that a tick chooses is stable for any two damping times. With the longest damping
+// time, stability also needs the larger inertia of strained nodes.
 TEST(CompositeSprings, StayStableHoweverTheyAreDamped) {
   const DenormalsFlushed flushed;
   for (const double first_time_s : {0.0, 1e-4, damping_time_range_s.high}) {

@@ -16,9 +16,9 @@ namespace {
 
 constexpr int ticks = 100000;
 
-// The energy T + V of the springs, computed in double precision, and `kept` = T + V - h/2 v . grad V. A kick
-// and a drift of step h conserve `kept` if forces are linear, as v^2 + w^2 x^2 - h w^2 x v shows, whereas T +
-// V itself oscillates by the fraction w h / 2 within a period.
+// `whole` is the energy T + V of the springs in double precision (T kinetic, V potential), `kept` is
+// T + V - (h / 2) dV/dt. Steps h of symplectic Euler conserve `kept` if the forces are linear. T + V itself
+// oscillates by the fraction w h / 2 within a period of angular frequency w.
 struct Energies {
   double whole = 0.0, kept = 0.0;
 };
@@ -43,8 +43,8 @@ Energies energies_of(const SpringLattice& lattice, const StaticBody& springs, do
 }
 
 // Returns a block whose nodes each move at up to 2 mm/s. The block must stay near its origin, because
-// displacements have seven digits. If it flew away by thousands of times its strains, rounding would add 5 %
-// of the energy of its flight in thousands of ticks.
+// displacements have only seven digits. If it flew away by thousands of times its strains, rounding would add
+// 5 % of its kinetic energy in thousands of ticks.
 SpringLattice shaken_block(double damping_time_s) {
   Material material = elastic_material(5000.0, 0.35, 1000.0);
   material.damping_time_s = damping_time_s;

@@ -29,8 +29,8 @@ void scale_inertia(SpringLattice& lattice) {
   lattice.set_inertia(lattice.find_inertia_scale(inertia_step_s), inertia_step_s);
 }
 
-// The scale leaves the reserve of rest_stability_fraction, whatever damps the springs and however stiff the
-// cells are against changes of volume.
+// The inertia scale leaves the safety margin rest_stability_fraction, for any damping of the springs and any
+// stiffness of the cells against changes of volume.
 TEST(Inertia, IsTheLeastWithWhichASubstepIsStable) {
   for (const double poissons_ratio : {0.25, 0.45}) {
     for (const double damping_time_s : {0.0, 1e-4, damping_time_range_s.high}) {
@@ -38,8 +38,8 @@ TEST(Inertia, IsTheLeastWithWhichASubstepIsStable) {
       EXPECT_EQ(lattice.inertia_scale(), 1.0);
       scale_inertia(lattice);
       EXPECT_GT(lattice.inertia_scale(), 10.0);
-      // The bounds of cells and springs agree at the step for which the inertia was scaled. The tolerance
-      // covers single precision, of which the difference of two long times leaves little.
+      // The bounds for cells and for springs agree at the step for which the inertia was scaled. The
+      // tolerance covers single precision: the difference of two long times has only few correct digits.
       EXPECT_NEAR(lattice.stable_step_s(rest_stability_fraction) / inertia_step_s, 1.0, 1e-3)
           << poissons_ratio << ", " << damping_time_s;
     }
@@ -52,7 +52,8 @@ TEST(Inertia, OfASoftBodyIsItsMass) {
   EXPECT_EQ(lattice.find_real_time_step_s(inertia_step_s), inertia_step_s);
 }
 
-// The step is a whole fraction of the longest one. The next longer fraction would need a larger inertia.
+// The step of real time is the longest one divided by an integer. The next smaller integer would need a
+// larger inertia.
 TEST(Inertia, OfRealTimeNeedsAShorterStep) {
   for (const double damping_time_s : {0.0, 1e-4}) {
     SpringLattice lattice = stiff_block(damped_material(0.4, damping_time_s));
@@ -84,7 +85,7 @@ TEST(Inertia, KeepsAShakenBlockStable) {
   }
 }
 
-// Nothing but the inertia is scaled: a block falls at g / r.
+// Nothing but the inertia is scaled: with the inertia scale r, a block falls at g / r.
 TEST(Inertia, SlowsAFallByTheScale) {
   SpringLattice lattice = stiff_block(damped_material(0.3, 0.0));
   scale_inertia(lattice);

@@ -38,7 +38,8 @@ double amplitude(const SpringLattice& lattice, const Mode& mode, bool of_velocit
   return sum;
 }
 
-// At a Poisson's ratio of 1/4, a cell has no volume force and the springs damp all of its stiffness.
+// Returns one cell. At its Poisson's ratio of 1/4 it has no volume force, so the springs damp all of its
+// stiffness.
 SpringLattice one_cell(double damping_time_s) {
   Material material = elastic_material(5000.0, 0.25, 1000.0);
   material.damping_time_s = damping_time_s;
@@ -50,12 +51,12 @@ void excite(SpringLattice& lattice, const Mode& mode) {
   for (int n = 0; n < lattice.mesh().node_count(); ++n) lattice.set_displacement(n, 2e-11 * mode.shape[n]);
 }
 
-// Returns the largest stable step of symplectic Euler for x'' + 2 z w x' + w^2 x = 0.
+// Returns the largest stable step of symplectic Euler for x'' + 2 z w x' + w^2 x = 0, where w is `omega`.
 double stability_limit_s(double omega, double z) {
   return 2.0 / omega * (std::sqrt(1.0 + z * z) - z);
 }
 
-// The stability limit of a lattice is between 0.999 and 1.001 of that of its fastest mode.
+// The stability limit of a lattice is that of its fastest mode, to a thousandth.
 TEST(Integration, StabilityFlipsAtTheLimit) {
   SpringLattice undamped = one_cell(0.0);
   const double undamped_omega = fastest_mode(undamped).omega;
@@ -83,8 +84,8 @@ TEST(Integration, StabilityFlipsAtTheLimit) {
   }
 }
 
-// A kick followed by a drift conserves v^2 + w^2 x^2 - h w^2 x v, both in the scheme in double precision and
-// in the lattice.
+// A kick followed by a drift (symplectic Euler with step h) conserves v^2 + w^2 x^2 - h w^2 x v at the
+// angular frequency w. The test checks this for the formula in double precision and for the lattice.
 TEST(Integration, KickDriftConservesItsOwnEnergy) {
   const double omega = 7.0, h = 0.02;
   double x = 1.0, v = 0.5;
@@ -112,7 +113,7 @@ TEST(Integration, KickDriftConservesItsOwnEnergy) {
   }
 }
 
-// With a damping time t, a mode's energy decays as exp(-t w^2 s) in the time s.
+// With a damping time t, the energy of a mode of angular frequency w decays as exp(-t w^2 s) in the time s.
 TEST(Integration, AModeDecaysByItsDampingTime) {
   SpringLattice undamped = one_cell(0.0);
   const double omega = fastest_mode(undamped).omega;
@@ -160,15 +161,15 @@ void support_from_below(SpringLattice& lattice, ContactConstraints& contacts) {
   }
 }
 
-// Returns the fraction of the top's area that belongs to a node.
+// Returns the fraction of the top's area that a node represents.
 double area_share(const LatticeMesh& mesh, int i, int k) {
   const double across = i == 0 || i == mesh.count[0] - 1 ? 0.5 : 1.0;
   const double along = k == 0 || k == mesh.count[2] - 1 ? 0.5 : 1.0;
   return across * along / ((mesh.count[0] - 1) * (mesh.count[2] - 1));
 }
 
-// The top of a block on a slipping base sinks by rho g H^2 / 2 E, as a mean weighted by area, at any
-// resolution and Poisson's ratio.
+// The top of a block of height H on a slipping base sinks by rho g H^2 / 2 E, as a mean weighted by area, at
+// any resolution and Poisson's ratio.
 TEST(Integration, SelfWeightOnASlippingBase) {
   const double height = 0.02, modulus = 5000.0, density = 1050.0, gravity = 9.81e-3;
   const double expected = density * gravity * height * height / (2.0 * modulus);
@@ -200,8 +201,8 @@ TEST(Integration, SelfWeightOnASlippingBase) {
   }
 }
 
-// A weight of 10 g on a bar of stiffness E A / L = 50 N/m, carried at its top without friction, hangs 1.962
-// mm lower.
+// A weight of 10 g on a bar of stiffness E A / L = 50 N/m, carried at its top without friction, hangs
+// 1.962 mm lower.
 TEST(Integration, HangingWeight) {
   const double length = 1.0, side = 0.02, stiffness = 50.0;
   SpringLattice lattice = block({side, length, side}, {2, 51, 2},
@@ -230,7 +231,7 @@ TEST(Integration, HangingWeight) {
     relax(std::array{RelaxedLattice{&lattice}}, settings, std::array{TouchingTool{at_top, &tool, &contacts}});
   }
   EXPECT_NEAR(lattice.displacement(mesh.index(0, 0, 0)).y(), -1.962e-3,
-              0.01e-3);  // allows for the squares of a strain of 0.2 %
+              0.01e-3);  // the bound allows for the square of a strain of 0.2 %
 }
 
 // A block slides down an incline with the acceleration a = g (sin t - mu cos t).
@@ -320,7 +321,7 @@ class StretchedBlock {
   }
   // Returns the creep strain in the centre, along the block, as a fraction of the strain there.
   double crept() {
-    constexpr int along = 2;  // direction of springs that join a node to the one with the next k
+    constexpr int along = 2;  // direction of springs from a node to the next node along k
     const LatticeMesh& mesh = lattice_.mesh();
     const int node = mesh.index(2, 2, 4), next = mesh.index(2, 2, 5);
     const double strain_there = (lattice_.position(next) - lattice_.position(node)).norm() /
@@ -364,8 +365,8 @@ TEST(Integration, ClayKeepsAStretchAndRubberDoesNot) {
   EXPECT_GT(of_clay, 0.75);
   EXPECT_NEAR(clay.volume_ratio(), 1.0, 0.002);
   EXPECT_LT(std::abs(kept_after(rubber)), 0.01);
-  // The hardening clay yields until strain - p = 0.005 + 0.5 p: it springs back by a third of what other clay
-  // keeps.
+  // Clay with a hardening of 0.5 yields until strain - p = 0.005 + 0.5 p, where p is the plastic strain. It
+  // keeps two thirds of what clay without hardening keeps.
   EXPECT_NEAR(of_hard / of_clay, 1.0 / 1.5, 0.05);
 }
 

@@ -79,8 +79,8 @@ TEST(LatticeForces, RestShapeFeelsExactlyNothing) {
   }
 }
 
-// A damper on the full relative velocity of a spring's ends would brake a rigid rotation; the lattice's
-// damping takes no power from it.
+// A damper on the full relative velocity of a spring's ends would brake a rigid rotation. The lattice's
+// damping does not.
 TEST(LatticeForces, RigidRotationProducesNoDamping) {
   SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, elastic_material(5000.0, 0.45, 1000.0));
   const Vector3 spin(3.0, -2.0, 5.0);
@@ -102,7 +102,9 @@ TEST(LatticeForces, RigidRotationProducesNoDamping) {
       whole_damper += static_cast<double>(s.stiffness[n] * tau) * apart.squaredNorm();
     }
   }
-  EXPECT_LT(std::abs(power), 1e-3 * whole_damper);  // single precision of positions; (tau w)^2 / 2 is 2e-5
+  // The bound allows for single precision of the positions; the error (tau w)^2 / 2 of the expected shape is
+  // only 2e-5, where w is the spin.
+  EXPECT_LT(std::abs(power), 1e-3 * whole_damper);
 }
 
 // A block that grows evenly is resisted by its springs alone: changes of volume are not damped.
@@ -131,8 +133,8 @@ TEST(LatticeForces, AKickAddsTheWholeImpulse) {
   EXPECT_NEAR(lattice.velocity(1).x(), gained, 1e-6 * gained);
 }
 
-// One pass over the springs gives the same bits as a linearisation followed by a step of the power iteration,
-// and it leaves the previous derivatives unchanged if the new ones are not to be stored.
+// One pass over the springs gives the same bits as a linearisation followed by a step of the power iteration.
+// It leaves the previous derivatives unchanged if the new ones are not to be stored.
 TEST(LatticeForces, PowerStepsAlongWithALinearisation) {
   for (const double stiffening : {0.0, 20.0, -20.0}) {
     Material material = elastic_material(5000.0, 0.3, 1000.0);
@@ -172,7 +174,7 @@ TEST(LatticeForces, PowerStepsAlongWithALinearisation) {
   }
 }
 
-// Forces linearised at a strained shape are right to first order: half the step gives a quarter of the error.
+// Forces linearised at a strained shape are exact to first order: half the step gives a quarter of the error.
 TEST(LatticeForces, LinearisedSpringsFollowToFirstOrder) {
   const auto error = [&](double step_m, double stiffening) {
     Material material = elastic_material(5000.0, 0.25, 1000.0);

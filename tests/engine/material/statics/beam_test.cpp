@@ -15,7 +15,7 @@ namespace {
 struct Beam {
   Vector3 size_m;
   std::array<int, 3> counts;
-  double force_n;  // acts at the far end of x, towards -z
+  double force_n;  // force at the far end along x, in the direction -z
 };
 
 // Returns the mean deflection of the far end of a cantilever whose near end is fixed in all directions.
@@ -81,13 +81,13 @@ double linear_sinking_m(const Beam& beam, const CellMatrix& stiffness) {
   return sum;
 }
 
-// Ratio of the deflection with shear to that by Euler and Bernoulli: 1 + 0.75 (h / L)^2 at nu = 1/4 and L =
-// 10 h.
+// Ratio of the deflection with shear to that by Euler and Bernoulli: 1 + 0.75 (h / L)^2 at nu = 1/4, for a
+// beam whose length L is ten times its height h.
 constexpr double timoshenko_ratio = 1.0075;
 
-// Springs need many cells through the thickness, hexahedra need one. The beam is ten times as long as high,
+// Springs need many cells through the thickness; hexahedra need one. The beam is ten times as long as high,
 // with a square cross section, cubic cells and nu = 1/4. The published ratios to Euler and Bernoulli are for
-// springs without body diagonals; this lattice has body diagonals, which keep cells from folding, and is
+// springs without body diagonals. This lattice has body diagonals, which keep cells from folding and make it
 // slightly stiffer.
 TEST(Beam, CellsNearABeamWithTheirNumber) {
   const double published[] = {0.544, 0.812, 0.905, 0.944};
@@ -132,9 +132,9 @@ TEST(Beam, SpoonLikeBeamsSinkAsTimoshenkoSays) {
   }
 }
 
-// Returns how far the tip of a cantilever of length 1 sinks under a large force that keeps its direction,
-// where load = P L^2 / E I. Solves E I t'' = -P cos(t) for the slope t along the arc, with t(0) = 0 and t'(L)
-// = 0, by shooting with the curvature at the root.
+// Returns the deflection of the tip of a cantilever of length 1 under a large force P that keeps its
+// direction, where load = P L^2 / E I. Solves E I t'' = -P cos(t) for the slope t along the arc, with
+// t(0) = 0 and t'(L) = 0, by shooting with the curvature at the root.
 double elastica_sinking(double load) {
   const auto march = [&](double curvature) {
     constexpr int steps = 4000;

@@ -61,8 +61,8 @@ double voigt(double first, double second, double share) {
   return (1.0 - share) * first + share * second;
 }
 
-// If nu / E is the same in both parts, both narrow equally under the same stress, so the stress is uniform:
-// the modulus is exactly that of Reuss.
+// If nu / E is the same in both parts, both narrow equally under the same stress. The stress is then uniform,
+// and the modulus is exactly that of Reuss.
 TEST(CompositeStatics, InSeriesABarIsAsSoftAsReussSays) {
   const Material first = elastic_material(1e6, 0.25, 1000.0), second = elastic_material(1.8e6, 0.45, 1000.0);
   for (const CellKind kind : {CellKind::springs, CellKind::hexahedra}) {
@@ -73,8 +73,8 @@ TEST(CompositeStatics, InSeriesABarIsAsSoftAsReussSays) {
   }
 }
 
-// If Poisson's ratio is the same in both parts, both narrow equally under the same strain: the modulus is
-// exactly that of Voigt.
+// If Poisson's ratio is the same in both parts, both narrow equally under the same strain. The modulus is
+// then exactly that of Voigt.
 TEST(CompositeStatics, InParallelABarIsAsStiffAsVoigtSays) {
   const Material first = elastic_material(1e6, 0.35, 1000.0), second = elastic_material(2e7, 0.35, 1000.0);
   for (const CellKind kind : {CellKind::springs, CellKind::hexahedra}) {
@@ -83,8 +83,9 @@ TEST(CompositeStatics, InParallelABarIsAsStiffAsVoigtSays) {
   }
 }
 
-// A part that hinders or increases the narrowing of its neighbour makes the bar stiffer than the Reuss and
-// Voigt means, also in parallel (Hill 1964), but by no more than if its sides were fixed.
+// A part that hinders or increases the lateral contraction of its neighbour makes the bar stiffer than the
+// mean of Reuss (in series) or of Voigt (in parallel; Hill 1964). The bar is at most as stiff as with fixed
+// sides.
 TEST(CompositeStatics, UnlikeNarrowingMakesABarALittleStiffer) {
   const Material first = elastic_material(1e6, 0.45, 1000.0), second = elastic_material(3e7, 0.3, 1000.0);
   for (const CellKind kind : {CellKind::springs, CellKind::hexahedra}) {
@@ -113,9 +114,9 @@ struct Sandwich {
                      elastic_material(faces_pa, poisson, 1000.0), in_faces);
   }
 
-  // Returns the deflection of the composite cantilever: its bending stiffness is the sum of E I, and its
-  // shear flexibility follows from the energy of the stress t(y), which is V / (E I) times the first moment
-  // of E beyond y (Jourawski).
+  // Returns the deflection of the composite cantilever. Its bending stiffness is the sum of E I. Its shear
+  // flexibility follows from the energy of the shear stress t(y), which is V / (E I) times the first moment
+  // of E beyond y, where V is the shear force (Jourawski).
   static double sinking_m() {
     constexpr int slices = 20000;
     const double thick = height_m / slices;

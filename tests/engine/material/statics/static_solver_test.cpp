@@ -19,8 +19,8 @@ struct Measured {
   double youngs_modulus_pa, poissons_ratio;
 };
 
-// A virtual tension test: the far end is pulled out and free to slip. The force that this needs gives Young's
-// modulus, and how much the central part narrows gives Poisson's ratio.
+// Makes a virtual tension test: the far end is pulled out and free to slip. The necessary force gives Young's
+// modulus, and the lateral contraction of the central part gives Poisson's ratio.
 Measured tension_test(const StaticBody& body, const Vector3& size_m, int axis) {
   constexpr double strain = 1e-6;
   const LatticeMesh& mesh = body.mesh();
@@ -254,7 +254,7 @@ TEST(StaticSolver, RefusesMoreWorkThanItsLimit) {
   EXPECT_TRUE(rest(4).ok());
 }
 
-// Stops a solve at each of its reports in turn. Some of them are within one factorisation.
+// Stops a solve at each of its progress reports in turn. Some of the reports are within one factorisation.
 TEST(StaticSolver, StopsWithinAFactorisation) {
   const LatticeMesh mesh = box_mesh({0.02, 0.02, 0.02}, {10, 10, 10});
   const StaticBody body = body_of(mesh, elastic_material(1e5, 0.3, 1000.0), CellKind::hexahedra);

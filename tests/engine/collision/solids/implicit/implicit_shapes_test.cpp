@@ -19,7 +19,7 @@ double size_of(const ImplicitShape& shape) {
 }
 
 // Checks that the solid is on one side of the tangent plane at the foot, and that the foot is on the surface.
-// Outside, both together prove the distance; inside, they prove a local minimum.
+// Outside the solid, both together prove the distance. Inside, they prove that it is a local minimum.
 void expect_proven(const ImplicitShape& shape, const Vector3& point, double tolerance,
                    double inside_tolerance) {
   const auto solid = make_signed_distance(shape);

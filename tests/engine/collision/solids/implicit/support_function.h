@@ -7,11 +7,12 @@
 
 namespace spoonbill {
 
-// Returns how far the solid reaches along a unit direction. Not for a torus or a half-space.
+// Returns the support function: how far the solid reaches along a unit direction. Not for a torus or a
+// half-space.
 double support(const ImplicitShape& shape, const Vector3& direction);
 
 // Returns the maximum of direction . point - support(direction), which is the signed distance of a convex
-// solid. Searches many directions and around the best of them, so the result is a lower bound.
+// solid. Searches many directions, then finer around the best of them, so the result is a lower bound.
 double distance_by_support(const ImplicitShape& shape, const Vector3& point);
 
 // Returns a valid shape of 1 to 100 mm, possibly thin. `kind` selects among the convex kinds except the
