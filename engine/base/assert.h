@@ -1,13 +1,5 @@
-// Assertions: a function whose contract states a precondition asserts it on entry. Input from a file, a
-// device or a person is checked earlier and refused with an Error; it never reaches an assertion.
-//
-//   SPOONBILL_ASSERT(count > 0);                  cheap; active in every build
-//   SPOONBILL_ASSERT_DEBUG(is_sorted(knots));     may walk a whole structure; Debug builds only
-//
-// A failed assertion calls the process's handler on the failing thread. The default handler prints the
-// location and aborts. The program's own handler throws the FailedAssertion, and only code that runs a unit
-// of work that can be abandoned (a tick, a save, a command) catches it. Kernels have no assertions; their
-// callers do.
+// Assertions. A function whose contract states a precondition asserts it on entry. Input from a file, a
+// device or a person is checked earlier and refused with an Error, so it never reaches an assertion.
 #pragma once
 
 #include <array>

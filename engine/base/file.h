@@ -35,9 +35,9 @@ std::string read_last_bytes(const std::filesystem::path& file, std::size_t count
 // `later`, then flushed by one call of flush_to_disk().
 enum class Durability { now, later };
 
-// The chooser of a file's name. A name given by a person may be a link, whose target is then written, or a
-// device or pipe, which is written directly. A name made by the program, a script or a recording may be in a
-// folder of unknown origin: whatever has that name is replaced, and links are not followed.
+// Origin of a file's name. A name given by a person may be a link, whose target is then written, or a device
+// or pipe, which is written directly. A name made by the program, a script or a recording may be in a folder
+// of unknown origin: whatever has that name is replaced, and links are not followed.
 enum class NamedBy { person, program };
 
 // Options for writing a file whose name may be in use. A regular file without permission to write is refused
@@ -47,11 +47,12 @@ struct OutputOptions {
   bool replaces_read_only = false;
 };
 
-// Returns an error if the name is a regular file that this process may not write, or without any
-// permission to write.
+// Returns an error if `file` is a regular file that this process may not write, or whose permissions allow
+// no one to write it.
 Status check_replaceable(const std::filesystem::path& file);
 
-// A file being written. One owner, one thread; never the haptic thread, because writing may block.
+// A file that is being written. It has one owner and is used by one thread, never the haptic thread, because
+// writing may block.
 class OutputFile {
  public:
   // Creates a file that appears under its name at commit(), whole; a crash at any moment leaves either the
@@ -99,12 +100,13 @@ class OutputFile {
   Status finish(Durability durability, bool with_backup);
   bool writes_beside() const { return written_ != target_; }
 
-  std::filesystem::path file_;     // name as given, for messages
-  std::filesystem::path target_;   // the file itself, links resolved
-  std::filesystem::path written_;  // the file beside the target, or the target itself
+  std::filesystem::path file_;    // name as given, for messages
+  std::filesystem::path target_;  // the file that is replaced or created, with links resolved
+  // The path that is written: a temporary file beside the target, or the target itself.
+  std::filesystem::path written_;
   std::filesystem::path kept_aside_;
-  UnfinishedFile unfinished_;  // while an uncommitted file of create() exists
-  std::string buffer_;         // unused while the file grows
+  UnfinishedFile unfinished_;  // entry in the list of unfinished files, for an uncommitted file of create()
+  std::string buffer_;         // bytes not yet sent to the file; stays empty for a file of create_growing()
   int descriptor_ = -1;
   Mode mode_ = Mode::whole;
 };

@@ -57,7 +57,7 @@ template <class Vector>
 struct AlignedBox {
   using Scalar = typename Vector::Scalar;
 
-  // A bound beyond every coordinate, small enough that the size of an empty box is finite.
+  // Coordinate larger than any in use, but small enough that the size of an empty box is finite.
   static constexpr Scalar far = Scalar(1e30);
 
   Vector low = Vector::Constant(far);

@@ -63,7 +63,8 @@ double ordered_dot(const double* a, const double* b, int count) {
   return sum;
 }
 
-// Subtracts reflector (reflector . target) 2 / |reflector|^2 from the target.
+// Applies a Householder reflection: subtracts 2 (reflector . target) / |reflector|^2 times the reflector from
+// the target.
 void reflect(const double* reflector, double squared_norm, double* target, int count) {
   if (squared_norm == 0.0) return;
   const double factor = 2.0 * ordered_dot(reflector, target, count) / squared_norm;

@@ -68,12 +68,12 @@ class GridEvaluator {
   std::vector<Real> u_values_, u_derivatives_;  // rows x bandwidth, derivatives scaled by the domain length
   std::vector<double> u_magnitude_, v_magnitude_;  // row sums of the derivatives' magnitudes
   DerivativeBound u_bound_, v_bound_;
-  int blocks_ = 0;  // including two limit columns
+  int blocks_ = 0;  // number of blocks of columns, including the two limit columns
   std::vector<EvaluateReach> reaches_;
   AlignedVector<Real> v_values_, v_derivatives_;
-  AlignedVector<Real> blended_;           // control rows x blocks
-  AlignedVector<Real> dv_noise_squared_;  // columns of all blocks
-  AlignedVector<Real> spare_;             // one row of samples
+  AlignedVector<Real> blended_;           // control rows x blocks, blended along v
+  AlignedVector<Real> dv_noise_squared_;  // one value for each column of all blocks
+  AlignedVector<Real> spare_;             // samples of one row
 };
 
 extern template class GridEvaluator<float>;

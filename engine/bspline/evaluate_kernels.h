@@ -43,7 +43,7 @@ struct EvaluateRow {
   const Real* derivatives;
   Real du_noise_squared;         // squared rounding error of du in this row
   const Real* dv_noise_squared;  // squared rounding error of dv in each column
-  Real surely_regular;           // |du x dv|^2 above this exceeds the rounding error in every column
+  Real surely_regular;           // largest |du x dv|^2 that may be rounding error in any column
 };
 
 // Destinations of a row of samples; no alignment is required.

@@ -28,7 +28,8 @@ struct GridDirection {
 
   // Returns the number of cells; each cell is between two neighbouring parameters.
   int cell_count() const { return static_cast<int>(parameters.size()) - 1; }
-  // Returns the cell that contains the parameter; outside the sampled range, the first or the last cell.
+  // Returns the cell that contains the parameter: the first or the last cell for a parameter outside the
+  // sampled range.
   int find_cell(double parameter) const;
   // Maps a cell index across the seam of a periodic direction; returns -1 beyond an open end.
   int wrap_cell(int i) const;
@@ -57,8 +58,8 @@ std::vector<double> uniform_parameters(const KnotVector& knots, int count);
 std::vector<double> uniform_parameters_without_seam(const KnotVector& knots, int count);
 
 // Parameters of a grid with nested levels: each polynomial piece is cut into pieces_per_span * 2^levels equal
-// parts, both domain ends included. Level l (0 = coarsest) is every 2^(levels - l)-th parameter, so that the
-// blending matrices of a coarse level are rows of the finest, and no cell has a knot inside.
+// parts, both domain ends included. Level l (0 = coarsest) has every 2^(levels - l)-th parameter. No cell has
+// a knot inside, and the blending matrices of a coarse level consist of rows of those of the finest level.
 struct NestedParameters {
   int levels = 0;
   std::vector<double> parameters;
@@ -128,14 +129,15 @@ class DisplacementRefit {
   // pseudo_inverse()).
   static Result<DisplacementRefit> make(const Grid& grid, InstructionSet set);
 
-  // Makes a refit with constraints on the control columns; free columns fit the remainder by least squares.
+  // Makes a refit under constraints on the control points. The columns of control points that are not fixed
+  // fit the samples by least squares.
   static Result<DisplacementRefit> make(const Grid& grid, const RefitConstraints& constraints,
                                         InstructionSet set);
 
   int sample_rows() const { return sample_rows_; }
   int sample_columns() const { return sample_columns_; }
 
-  // Returns the length of a row of samples in memory; values past grid.columns() have no effect.
+  // Returns the number of values in memory for a row of samples; values past grid.columns() have no effect.
   int sample_stride() const { return sample_stride_; }
 
   // Computes the displacements of the control points (rows x columns) from those of the samples. `sample`

@@ -344,7 +344,7 @@ Result<KnotVector> with_domain(const KnotVector& knots, double start, double end
   if (start == from && end == to) return knots;
   std::vector<double> all = knots.knots();
   for (double& knot : all) {
-    // The ends are exact to the last bit.
+    // The last knot must be exactly `end`, without rounding.
     knot = knot == to ? end : start + (knot - from) / (to - from) * (end - start);
   }
   return knots.is_periodic() ? KnotVector::periodic(knots.degree(), std::move(all))

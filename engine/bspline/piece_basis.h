@@ -21,7 +21,7 @@ class PieceBasis {
     // value[d][j] is the d-th derivative of the basis function of controls[j].
     std::array<std::array<double, 12>, 3> value;
   };
-  // Computes the values and both derivatives at u, which must be in the domain.
+  // Computes the values and the first and second derivatives at u, which must be in the domain.
   void evaluate(double u, Values& values) const;
 
   // Computes only value[0] at u, which must be in the domain.
@@ -37,9 +37,10 @@ class PieceBasis {
   int degree_, padded_;  // padded_ is degree + 1 rounded up to whole vectors
   std::vector<double> breaks_;
   double pieces_a_unit_;
-  std::vector<double> scales_;  // dx / du of each piece, see coefficients_
-  std::vector<int> controls_;   // degree + 1 for each piece
-  // Coefficients in x = -1..1 across each piece: degree + 1 rows of padded_ values, highest power first.
+  std::vector<double> scales_;  // dx / du of each piece, with x as for coefficients_
+  std::vector<int> controls_;   // degree + 1 indices of control points for each piece
+  // Polynomial coefficients of each piece, in a variable x that runs from -1 to 1 across the piece: degree +
+  // 1 rows of padded_ values, highest power first.
   std::vector<double> coefficients_;
 };
 

@@ -26,8 +26,8 @@ struct PolygonCrossing {
 std::optional<PolygonCrossing> find_crossing(const std::vector<std::vector<Eigen::Vector2d>>& polygons,
                                              const Eigen::Vector2d& tolerance);
 
-// A closed curve with open knots whose ends meet, or with periodic knots; a polygon has degree 1. The part to
-// its left remains, seen with u to the right and v up: outer loops run counter-clockwise, holes clockwise. In
+// A closed curve, whose knots are periodic or open with ends that meet; a polygon has degree 1. Seen with u
+// to the right and v up, the part to its left remains: outer loops run counter-clockwise, holes clockwise. In
 // a periodic direction of the surface a loop may cross the seam; it then leaves the domain, by at most a
 // period.
 struct TrimLoop {
@@ -39,11 +39,12 @@ struct TrimLoop {
 
 inline constexpr Range<int> trim_control_point_count_range{2, 10000};
 
-// Fractions of the surface's domain: how far a loop may miss its own start or leave the domain by rounding,
-// and how far the polygon of a loop may be from the loop.
+// Fractions of the surface's domain. trim_rounding_fraction is how far a loop may miss its own start or leave
+// the domain by rounding; trim_chord_fraction is how far the polygon of a loop may be from the loop.
 inline constexpr double trim_rounding_fraction = 1e-6;
 inline constexpr double trim_chord_fraction = 1e-5;
-// Largest number of chords of all loops of a surface, enough for a perforated sheet of some 300 holes.
+// Largest number of chords of all loops of a surface together, enough for a perforated sheet of about 300
+// holes.
 inline constexpr std::size_t trim_chord_count_limit = 20000;
 
 // Makes a loop over the domain of a surface with the knot vectors `along_u` and `along_v`. Refuses a
@@ -70,13 +71,15 @@ double polygon_error_fraction(const TrimLoop& loop, const KnotVector& along_u, c
 // Returns the signed area in units of u times v, positive for a counter-clockwise polygon.
 double signed_area(const std::vector<Eigen::Vector2d>& polygon);
 
-// Returns the loop that bounds the same part of a surface after the surface's change of the same name in
-// reparameterise.h; `knots` are those of the direction before the change.
+// Each function below returns the loop that bounds the same part of the surface after the function of the
+// same name in reparameterise.h has changed the surface. `knots` are the knots of the direction before that
+// change.
 TrimLoop reversed(const TrimLoop& loop, Direction direction, const KnotVector& knots);
 TrimLoop exchanged(const TrimLoop& loop);
 TrimLoop with_domain(const TrimLoop& loop, Direction direction, const KnotVector& knots, double start,
                      double end);
-// Returns the loop after with_seam_at() of the surface; the direction must be periodic.
+// Returns the loop that bounds the same part after with_seam_at() has moved the surface's seam; the direction
+// must be periodic.
 TrimLoop with_seam_at(const TrimLoop& loop, Direction direction, const KnotVector& knots, double seam);
 
 }  // namespace spoonbill

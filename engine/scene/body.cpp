@@ -10,7 +10,8 @@ Status check_in_domain(const std::string& field, double parameter, const KnotVec
   return check_range(field, parameter, Range<double>{knots.domain_start(), knots.domain_end()});
 }
 
-// Checks a point load's parameters. Everything else about a load is checked where the lattice receives it.
+// Checks that the parameters of a point load are within the surface's domain. check_load() checks all other
+// values of a load.
 Status check_point(const Load& load, std::size_t index, const Surface& surface) {
   const auto* point = std::get_if<PointLoad>(&load);
   if (point == nullptr) return {};

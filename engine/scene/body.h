@@ -25,7 +25,7 @@ namespace spoonbill {
 // from their first to their last values. With s below about one grid step, neighbours no longer follow,
 // and the map can stay folded (Erwin et al. 1992).
 struct FeatureMapSettings {
-  int draws_per_node = 500;  // per inner node
+  int draws_per_node = 500;  // number of random points drawn for each inner node
   double first_rate = 0.1, last_rate = 0.01;
   double first_neighbourhood = 2.0, last_neighbourhood = 1.0;  // s, in grid steps
   std::uint32_t seed = 1;
@@ -69,9 +69,10 @@ inline constexpr Range<int> node_count_range{2, 64};  // in each direction
 struct Body {
   std::string name;
   Surface surface;
-  Material material;  // applies outside the regions
+  Material material;  // material of the body outside its regions
   LatticeRequest lattice;
-  std::vector<MaterialRegion> regions = {};  // later ones override earlier ones
+  // Parts of the body with their own material or friction; later ones override earlier ones.
+  std::vector<MaterialRegion> regions = {};
   std::vector<Load> loads = {};
   std::vector<Support> supports = {};
   std::optional<double> shell_thickness_m = {};
