@@ -77,8 +77,8 @@ class SurfaceBounds {
   std::vector<double> norm_uu_, norm_vv_;  // squared norms by unrolled control point
   std::vector<double> second_uu_, second_vv_;
   std::uint64_t stamp_ = 1;
-  std::vector<std::uint64_t> column_at_,
-      element_at_;                        // stamp of the last update, by unrolled column and by element_v
+  // Stamp of the last update: of each unrolled column, and of the elements of each span of v.
+  std::vector<std::uint64_t> column_at_, element_at_;
   std::vector<double> row_[3][3];         // working memory: row i of the unrolled net is at index i mod 3
   std::vector<double> low_[3], high_[3];  // working memory: one value for each column of control points
   std::vector<Box> row_boxes_;            // one box for each row of control points

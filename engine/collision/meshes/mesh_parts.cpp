@@ -295,8 +295,8 @@ class BoundaryWalk {
   }
 
   const TriangleMesh& mesh_;
-  std::vector<std::uint32_t> first_,
-      next_;  // for each vertex, a linked list of the unused sides that leave it, as indices into boundary_
+  // For each vertex, a linked list of the unused sides that leave it, as indices into boundary_.
+  std::vector<std::uint32_t> first_, next_;
   std::vector<std::uint32_t> position_;  // position of each vertex in path_, if it is there
   const std::vector<MeshSide>& boundary_;
   std::vector<std::uint32_t> path_;
