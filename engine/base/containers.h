@@ -31,8 +31,8 @@ struct CacheLineAllocator {
 template <class T>
 using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
 
-// A partition of the items 0 to count - 1 into sets (union-find with path halving). Each item starts as a
-// set of its own; join() merges two sets.
+// A partition of the items 0 to count - 1 into sets (union-find with path halving). Each item starts as a set
+// of its own; join() merges two sets.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parents_(count) {

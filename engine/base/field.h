@@ -8,8 +8,8 @@
 //       direction_field("normal", &FixingPlane::normal, "Points away from the fixed side"),
 //   });
 //
-// Values are in SI units; files store lengths in millimetres, and the field's name says so. Fields appear
-// in files in the order of the table. Checks of numbers allocate only for an error message.
+// Values are in SI units; files store lengths in millimetres, and the field's name says so. Fields appear in
+// files in the order of the table. Checks of numbers allocate only for an error message.
 #pragma once
 
 #include <array>
@@ -44,8 +44,8 @@ enum class FieldUnit {
 // or any other quantity, such as a force.
 enum class VectorSense { position, direction, quantity };
 
-// Slider of a number in the panel. Its range is within the field's range and narrow enough to set a value
-// by hand.
+// Slider of a number in the panel. Its range is within the field's range and narrow enough to set a value by
+// hand.
 struct FieldSlider {
   const char* label = nullptr;  // null: the panel has no slider for the field
   Range<double> range{0.0, 0.0};

@@ -1,5 +1,5 @@
-// Reading of files, whole or in part, and writing of files that appear whole or not at all. Errors name
-// the file and the system's reason.
+// Reading of files, whole or in part, and writing of files that appear whole or not at all. Errors name the
+// file and the system's reason.
 #pragma once
 
 #include <cstddef>
@@ -47,8 +47,8 @@ struct OutputOptions {
   bool replaces_read_only = false;
 };
 
-// Returns an error if `file` is a regular file that this process may not write, or whose permissions allow
-// no one to write it.
+// Returns an error if `file` is a regular file that this process may not write, or whose permissions allow no
+// one to write it.
 Status check_replaceable(const std::filesystem::path& file);
 
 // A file that is being written. It has one owner and is used by one thread, never the haptic thread, because
@@ -115,13 +115,12 @@ class OutputFile {
 Status write_file(const std::filesystem::path& file, std::string_view bytes,
                   Durability durability = Durability::now, const OutputOptions& options = {});
 
-// Same as write_file(), but keeps the replaced content as FILE.bak; for files that a user edits. Refuses
-// to replace anything but a regular file.
+// Same as write_file(), but keeps the replaced content as FILE.bak; for files that a user edits. Refuses to
+// replace anything but a regular file.
 Status replace_file(const std::filesystem::path& file, std::string_view bytes,
                     const OutputOptions& options = {});
 
-// Flushes a file that another program has finished and renames it to `file`. Both must be in the same
-// folder.
+// Flushes a file that another program has finished and renames it to `file`. Both must be in the same folder.
 Status publish_file(const std::filesystem::path& finished, const std::filesystem::path& file);
 
 // Waits until everything written to the file system of the folder is on the disk.

@@ -1,5 +1,5 @@
-// Elementary geometric values: ranges of numbers, vectors, poses and axis-aligned boxes, and checks of
-// values that come from outside the program.
+// Elementary geometric values: ranges of numbers, vectors, poses and axis-aligned boxes, and checks of values
+// that come from outside the program.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,6 +1,6 @@
-// Conversion of surfaces to other knot vectors: exact to finer ones (more knots, a higher degree, a part
-// of the domain), approximate to coarser ones, with a bound of the deviation. Pure functions outside the
-// tick; any thread may call them.
+// Conversion of surfaces to other knot vectors: exact to finer ones (more knots, a higher degree, a part of
+// the domain), approximate to coarser ones, with a bound of the deviation. Pure functions outside the tick;
+// any thread may call them.
 #pragma once
 
 #include <Eigen/Core>

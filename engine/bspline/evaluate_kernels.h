@@ -30,8 +30,8 @@ struct EvaluateBand {
   int blocks;
 };
 
-// One row of A_u and the blended control rows (those of P A_v^T) that it combines. Entry k of the row
-// applies to blended row first + k, wrapped around at `control_rows`.
+// One row of A_u and the blended control rows (those of P A_v^T) that it combines. Entry k of the row applies
+// to blended row first + k, wrapped around at `control_rows`.
 template <class Real>
 struct EvaluateRow {
   const Real* blended;

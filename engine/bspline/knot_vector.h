@@ -99,8 +99,8 @@ struct KnotMultiplicity {
   double knot;
   int multiplicity;
 };
-// Returns the distinct knots in the domain except its end. The start of an open direction counts as
-// clamped; the start of a period has the multiplicity of the seam.
+// Returns the distinct knots in the domain except its end. The start of an open direction counts as clamped;
+// the start of a period has the multiplicity of the seam.
 std::vector<KnotMultiplicity> knot_multiplicities(const KnotVector& knots);
 
 // Returns the first two parameters at or after `start` that a periodic knot has, one period apart. In an open

@@ -1,6 +1,6 @@
-// Trim loops: closed B-spline curves over the parameters (u, v) of a surface that bound its remaining
-// part, and the search for crossings of their polygons. Coordinates are parameters, not metres. Plain
-// values and pure functions outside the tick; any thread may use them.
+// Trim loops: closed B-spline curves over the parameters (u, v) of a surface that bound its remaining part,
+// and the search for crossings of their polygons. Coordinates are parameters, not metres. Plain values and
+// pure functions outside the tick; any thread may use them.
 #pragma once
 
 #include <Eigen/Core>
@@ -47,10 +47,10 @@ inline constexpr double trim_chord_fraction = 1e-5;
 // holes.
 inline constexpr std::size_t trim_chord_count_limit = 20000;
 
-// Makes a loop over the domain of a surface with the knot vectors `along_u` and `along_v`. Refuses a
-// number of coordinates that does not match the knots, non-finite ones, and more chords than the limit.
-// Refuses a curve that is not closed, leaves the domain, crosses itself or encloses nothing. A curve that
-// runs once around a periodic direction must return along the seam.
+// Makes a loop over the domain of a surface with the knot vectors `along_u` and `along_v`. Refuses a number
+// of coordinates that does not match the knots, non-finite ones, and more chords than the limit. Refuses a
+// curve that is not closed, leaves the domain, crosses itself or encloses nothing. A curve that runs once
+// around a periodic direction must return along the seam.
 Result<TrimLoop> make_trim_loop(const KnotVector& along_u, const KnotVector& along_v, KnotVector knots,
                                 std::vector<double> u, std::vector<double> v);
 
@@ -64,8 +64,8 @@ Eigen::Vector2d position(const TrimLoop& loop, double parameter);
 std::vector<Eigen::Vector2d> to_polygon(const TrimLoop& loop, const KnotVector& along_u,
                                         const KnotVector& along_v);
 
-// Returns a bound of the distance between to_polygon() and the loop, in fractions of the domain; 0 for a
-// loop of degree 1.
+// Returns a bound of the distance between to_polygon() and the loop, in fractions of the domain; 0 for a loop
+// of degree 1.
 double polygon_error_fraction(const TrimLoop& loop, const KnotVector& along_u, const KnotVector& along_v);
 
 // Returns the signed area in units of u times v, positive for a counter-clockwise polygon.

@@ -181,8 +181,8 @@ std::size_t TrimmedArea::find_column(double u) const {
   return static_cast<std::size_t>(std::clamp(add_edges, 0.0, columns - 1.0));
 }
 
-// Returns the winding number: edges below the point that run to the right count up, those to the left
-// count down. An edge includes its end at the lower u but not the other, so that a corner counts once.
+// Returns the winding number: edges below the point that run to the right count up, those to the left count
+// down. An edge includes its end at the lower u but not the other, so that a corner counts once.
 int TrimmedArea::winding(double u, double v) const {
   int number = 0;
   const std::size_t column = find_column(u);

@@ -322,8 +322,8 @@ RingParameters ring_parameters(const Surface& surface, const Ring& ring, const C
   std::array<double, 5> corner{};
   for (int q = 0; q < 4; ++q) {
     // The corner divides the arc between two crossings in proportion to the cells of the two sides that it
-    // joins. The narrow side comes first after a crossing of the wide axis, the wide side after a crossing
-    // of the narrow axis.
+    // joins. The narrow side comes first after a crossing of the wide axis, the wide side after a crossing of
+    // the narrow axis.
     const double first = q % 2 == 0 ? along_narrow : along_wide;
     corner[q] =
         arc.crossing[q] + (arc.crossing[q + 1] - arc.crossing[q]) * first / (along_narrow + along_wide);

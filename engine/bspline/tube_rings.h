@@ -1,5 +1,5 @@
-// Rings of a closed tube at constant v, their profile along the tube, and the positions of lattice nodes
-// on them.
+// Rings of a closed tube at constant v, their profile along the tube, and the positions of lattice nodes on
+// them.
 #pragma once
 
 #include <algorithm>
@@ -89,8 +89,8 @@ struct Extents {
 Extents lattice_extents(const Surface& surface, const Profile& profile, const Rims& rims,
                         const CrossSection& centre_section);
 
-// Parameters u of the 2 (ni - 1) + 2 (nj - 1) nodes around a ring, in the direction of u. The first is
-// that of corner node (ni - 1, nj - 1), which is between +e1 and +e2.
+// Parameters u of the 2 (ni - 1) + 2 (nj - 1) nodes around a ring, in the direction of u. The first is that
+// of corner node (ni - 1, nj - 1), which is between +e1 and +e2.
 struct RingParameters {
   std::vector<double> u;
 };

@@ -306,10 +306,10 @@ Error not_side_by_side() {
 }
 
 Error not_around_centre() {
-  return Error(
-      ErrorCode::mismatch,
-      "the crossing on the second body does not run once around its own centre, as where one body is in "
-      "the side of another that is as wide; make one wider, or give them in the other order");
+  return Error(ErrorCode::mismatch,
+               "the curve along which the bodies intersect does not run once around its own centre, for "
+               "example because the first body enters the side of one that is no wider; make one body "
+               "wider, or give the bodies in the other order");
 }
 
 std::vector<Eigen::Vector2d> crossing_loop(const std::vector<LineCrossing>& crossings) {
@@ -490,8 +490,9 @@ Error not_reached(bool with_fillet) {
                with_fillet
                    ? "a line of constant u does not reach the other patch, or the fillet's ball does not fit "
                      "there; choose a smaller fillet"
-                   : "a line of constant u does not cross the other patch, or only touches it, as where one "
-                     "body is in the side of another that is as wide; make one wider, or move it",
+                   : "a line of constant u does not cross the other patch, or only touches it, for example "
+                     "because one body enters the side of one that is no wider; make one body wider, or "
+                     "move it",
                with_fillet ? "fillet" : "");
 }
 

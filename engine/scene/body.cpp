@@ -45,8 +45,8 @@ Status check_lattice_request(const LatticeRequest& lattice) {
   }
   if (product <= node_budget_range.high) return {};
   return Error{ErrorCode::too_many,
-               "lattice: the product of nodes is " + std::to_string(product) + ", must be at most " +
-                   std::to_string(node_budget_range.high),
+               "lattice: the product of the node counts is " + std::to_string(product) +
+                   ", must be at most " + std::to_string(node_budget_range.high),
                "nodes"};
 }
 

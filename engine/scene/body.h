@@ -20,10 +20,10 @@
 namespace spoonbill {
 
 // Parameters of the self-organising map that spreads a lattice's inner nodes (Kohonen 1990). Points of the
-// body are drawn at random. The node nearest to a point x and its neighbours at grid distance d move
-// towards it: w += rate * exp(-d^2 / 2 s^2) (x - w). The rate and the neighbourhood s shrink geometrically
-// from their first to their last values. With s below about one grid step, neighbours no longer follow,
-// and the map can stay folded (Erwin et al. 1992).
+// body are drawn at random. The node nearest to a point x and its neighbours at grid distance d move towards
+// it: w += rate * exp(-d^2 / 2 s^2) (x - w). The rate and the neighbourhood s shrink geometrically from their
+// first to their last values. With s below about one grid step, neighbours no longer follow, and the map can
+// stay folded (Erwin et al. 1992).
 struct FeatureMapSettings {
   int draws_per_node = 500;  // number of random points drawn for each inner node
   double first_rate = 0.1, last_rate = 0.01;
@@ -64,8 +64,8 @@ struct LatticeRequest {
 inline constexpr Range<int> node_budget_range{50, 40000};
 inline constexpr Range<int> node_count_range{2, 64};  // in each direction
 
-// A solid bounded by one tube (periodic in u, closed by a pole at both ends of v) or one ring (periodic in
-// u and v). With a shell thickness, the body is instead a thin shell behind one surface (shell_lattice.h).
+// A solid bounded by one tube (periodic in u, closed by a pole at both ends of v) or one ring (periodic in u
+// and v). With a shell thickness, the body is instead a thin shell behind one surface (shell_lattice.h).
 struct Body {
   std::string name;
   Surface surface;

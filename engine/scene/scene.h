@@ -22,8 +22,7 @@ struct Sculpting {
   double drag_per_s = 24.0;  // damping of all motion, proportional to mass; does not change static forces
   Vector3 gravity_m_per_s2 = Vector3::Zero();
   double force_scale = 1.0;  // force at the hand in newtons, per newton of contact force
-  // Damps each body critically as well, so that it comes to rest without ringing
-  // (critical_damping_per_s()).
+  // Damps each body critically as well, so that it comes to rest without ringing (critical_damping_per_s()).
   bool is_critically_damped = false;
   // If true, a body that nothing fixes may move away. If false, and without gravity and ground, such a body
   // keeps its mean position and orientation, as in a gentle hand (keeps_place()).

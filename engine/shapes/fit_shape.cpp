@@ -456,7 +456,7 @@ Result<FittedShape> fit_counted(const ExactShape& shape, const ShapeFit& fit) {
   if (found->folds) {
     return Error{ErrorCode::self_intersecting, "with " + std::to_string(u_count) + " x " +
                                                    std::to_string(v_count) +
-                                                   " control points the surface folds over; give it more"};
+                                                   " control points the surface folds over; allow more"};
   }
   return FittedShape{std::move(surface).value(), found->deviation_m};
 }
@@ -465,7 +465,7 @@ Error too_fine(const ShapeFit& fit, const std::string& direction) {
   return Error{ErrorCode::not_converged,
                "a tolerance of " + length_text(fit.tolerance_m) + " needs more than " +
                    std::to_string(max_control_points) + " control points along " + direction +
-                   "; make it larger, or the roundings and bends of the shape wider",
+                   "; choose a larger one, or make the roundings and bends of the shape wider",
                "tolerance"};
 }
 

@@ -16,9 +16,9 @@ using MeridianPoint = Eigen::Vector2d;
 // A profile of lines and arcs in the half-plane beside the axis, parametrised by arc length.
 class Meridian {
  public:
-  // Makes a profile through the vertices, each inner corner rounded by an arc of its radius (0: not
-  // rounded). The first and last vertex may be on the axis; their roundings apply to the corner between
-  // the profile and its mirror image. Refuses roundings that do not fit on a side, and names them.
+  // Makes a profile through the vertices, each inner corner rounded by an arc of its radius (0: not rounded).
+  // The first and last vertex may be on the axis; their roundings apply to the corner between the profile and
+  // its mirror image. Refuses roundings that do not fit on a side, and names them.
   static Result<Meridian> rounded(std::span<const MeridianPoint> vertices, std::span<const double> roundings);
 
   // Makes a half circle around the origin from its lowest point to its highest.

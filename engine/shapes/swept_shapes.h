@@ -11,9 +11,9 @@
 
 namespace spoonbill {
 
-// A tube of elliptic section, swept along a curve without twist (double reflection, Wang et al. 2008). At
-// the start of the curve, the tube's width is horizontal, or along x if the curve runs vertically. The
-// ends are half ellipsoids whose length is the smaller half axis.
+// A tube of elliptic section, swept along a curve without twist (double reflection, Wang et al. 2008). At the
+// start of the curve, the tube's width is horizontal, or along x if the curve runs vertically. The ends are
+// half ellipsoids whose length is the smaller half axis.
 struct TubeSize {
   SmoothCurve centre_line;
   double half_width_m = 0.005, half_height_m = 0.005;
