@@ -21,8 +21,8 @@ class FailedAssertion : public std::exception {
   std::array<char, 256> text_{};
 };
 
-// Handles a failed assertion. It may throw the failure to abandon the current work; if it returns, the
-// process aborts.
+// Function that handles a failed assertion. It may throw the failure to abandon the current work; if it
+// returns, the process aborts.
 using AssertionHandler = void (*)(const FailedAssertion& failure);
 
 // Sets the process's handler and returns the previous one. Must be called while the process has one thread.
@@ -31,7 +31,7 @@ AssertionHandler set_assertion_handler(AssertionHandler handler);
 // Throws the failure. This is the handler for programs that catch failures and abandon the work in progress.
 void throw_failed_assertion(const FailedAssertion& failure);
 
-// Calls the handler, and aborts if it returns.
+// Calls the process's handler with the failed assertion, and aborts if the handler returns.
 [[noreturn]] void fail_assertion(const char* condition, const char* file, int line);
 
 }  // namespace spoonbill

@@ -39,7 +39,7 @@ class DisjointSets {
     std::iota(parents_.begin(), parents_.end(), std::size_t{0});
   }
 
-  // Returns the representative of the item's set, its lowest item.
+  // Returns the representative of the item's set, which is its lowest item.
   std::size_t find(std::size_t item) {
     while (parents_[item] != item) item = parents_[item] = parents_[parents_[item]];
     return item;

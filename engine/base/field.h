@@ -74,7 +74,7 @@ struct FieldForm {
   // required; otherwise it is not accepted.
   const char* partner = nullptr;
   FieldSlider slider = {};
-  std::span<const char* const> choices = {};  // names of an enumeration's values, in order
+  std::span<const char* const> choices = {};  // names of the values of an enumeration, in order
 };
 
 // Functions that get and set an enumeration whose values are 0, 1, 2, ...

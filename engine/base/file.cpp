@@ -33,7 +33,7 @@ class OpenFile {
 
   int descriptor() const { return descriptor_; }
   int release() { return std::exchange(descriptor_, -1); }
-  std::size_t bytes() const { return bytes_; }  // size when opened
+  std::size_t bytes() const { return bytes_; }  // size of the file when it was opened
   void set_bytes(std::size_t bytes) { bytes_ = bytes; }
 
  private:
@@ -265,7 +265,7 @@ Result<std::filesystem::path> move_aside(const std::filesystem::path& file) {
 
 Status OutputFile::open_whole() {
   written_ += ".new-" + std::to_string(::getpid());
-  ::unlink(written_.c_str());  // may be left from a killed process with the same ID
+  ::unlink(written_.c_str());  // a killed process with the same ID may have left this file
   descriptor_ = ::open(written_.c_str(), new_file_flags, 0666);
   if (descriptor_ < 0) return write_error("cannot be written");
   unfinished_ = UnfinishedFile(written_);

@@ -69,7 +69,7 @@ class OutputFile {
 
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&& other) noexcept;
-  ~OutputFile();  // removes an uncommitted file of create()
+  ~OutputFile();  // removes the file of create() if it was not committed
 
   // Returns the name under which the file grows: FILE.part, or FILE itself for a device or pipe.
   const std::filesystem::path& written_file() const { return written_; }

@@ -27,8 +27,8 @@ struct Range {
   constexpr bool contains(Number value) const { return value >= low && value <= high; }
 };
 
-// Returns an out_of_range error such as "field is 12, must be 1 to 9" unless the range contains the value.
-// NaN is outside every range.
+// Returns an out_of_range error such as "field is 12, must be from 1 to 9" unless the range contains the
+// value. NaN is outside every range.
 Status check_range(std::string_view field, double value, Range<double> range);
 Status check_range(std::string_view field, int value, Range<int> range);
 
@@ -120,7 +120,7 @@ using Box = AlignedBox<Vector3>;
 using Box2 = AlignedBox<Eigen::Vector2d>;
 using FloatBox2 = AlignedBox<Eigen::Vector2f>;
 
-// Returns the smallest box around both.
+// Returns the smallest box that contains both boxes.
 inline Box joined(Box a, const Box& b) {
   a.join(b);
   return a;

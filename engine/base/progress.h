@@ -18,11 +18,11 @@ namespace spoonbill {
 //   }
 class Progress {
  public:
-  // Receives the fraction done, 0 to 1, possibly the same fraction repeatedly. Returns whether the work may
-  // continue.
+  // Function that receives the fraction done, from 0 to 1, possibly the same fraction repeatedly. It returns
+  // whether the work may continue.
   using Report = std::function<bool(double fraction)>;
 
-  Progress() = default;  // no callback
+  Progress() = default;  // makes a progress without a callback
   explicit Progress(Report report) : report_(std::move(report)) {}
 
   // Reports the fraction of this part that is done, and returns whether the work may continue. If it may not,

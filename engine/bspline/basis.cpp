@@ -34,8 +34,8 @@ Table triangular_table(const double* knots, int degree, double u) {
   return table;
 }
 
-// Computes the derivatives of basis function r up to order `highest`, without the factors degree! / (degree -
-// k)!.
+// Computes the derivatives of basis function r up to order `highest`. The derivative of order k still lacks
+// the factor degree! / (degree - k)!.
 void compute_derivatives(const Table& table, int degree, int r, int highest, BasisFunctions& basis) {
   std::array<std::array<double, max_degree + 1>, 2> rows;
   std::array<double, max_degree + 1>* current = &rows[0];

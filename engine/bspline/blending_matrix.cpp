@@ -52,9 +52,9 @@ constexpr double rank_tolerance = 1e-12;
 // Eigen's sums depends on the processor's cache sizes, and the pseudo-inverse enters the state of the
 // simulation.
 struct PivotedQr {
-  Eigen::MatrixXd q;       // orthonormal columns
-  Eigen::MatrixXd r;       // upper triangle
-  std::vector<int> order;  // column k of q r is column order[k] of the matrix
+  Eigen::MatrixXd q;       // Q, with orthonormal columns
+  Eigen::MatrixXd r;       // R, an upper triangle
+  std::vector<int> order;  // column k of Q R is column order[k] of the matrix
 };
 
 double ordered_dot(const double* a, const double* b, int count) {

@@ -23,7 +23,7 @@ struct BlendingMatrix {
   int columns = 0;
   int bandwidth = 0;
   std::vector<int> first;      // first column of each row, before wrapping
-  std::vector<double> values;  // rows * bandwidth, row-major
+  std::vector<double> values;  // nonzero entries: rows * bandwidth, row-major
 
   // Returns the column of entry k of a row.
   int column(int row, int k) const { return (first[row] + k) % columns; }

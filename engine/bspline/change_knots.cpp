@@ -23,7 +23,7 @@ namespace {
 struct Piece {
   double length = 0.0;
   int span = 0;
-  int basis = 0;  // index among the span's basis functions
+  int basis = 0;  // index of the control point's basis function among those of the span
 };
 
 std::vector<Piece> longest_pieces(const KnotVector& knots) {

@@ -66,7 +66,7 @@ bool ends_on_edge(const GridDirection& direction) {
 template <class Real>
 struct NetExtent {
   Real largest_coordinate;  // largest magnitude of a coordinate
-  Real reach;               // the longest side of the box around the net
+  Real reach;               // longest side of the box around the control net
 };
 
 template <class Real>

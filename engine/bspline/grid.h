@@ -21,7 +21,7 @@ namespace spoonbill {
 // One direction of a grid. Made outside the tick and immutable afterwards, so that any thread may read it.
 struct GridDirection {
   KnotVector knots;
-  std::vector<double> parameters;  // strictly increasing, in the domain
+  std::vector<double> parameters;  // parameters of the samples: strictly increasing, in the domain
   BlendingMatrix values;
   BlendingMatrix first_derivatives;
   BlendingMatrix second_derivatives;
@@ -89,7 +89,7 @@ struct InterpolatedEnds {
 Result<Surface> fit_grid(const KnotVector& u, const KnotVector& v, const PointGrid& points,
                          const InterpolatedEnds& interpolated = {});
 
-// Returns the surface's points at the parameters u x v.
+// Returns the surface's points at all pairs of the parameters u and v.
 PointGrid sample_grid_points(const Surface& surface, std::vector<double> u, std::vector<double> v);
 
 // Returns the largest distance in metres between a point of the grid and the surface at its parameters.
@@ -151,10 +151,12 @@ class DisplacementRefit {
   InstructionSet set_{};
   int sample_rows_ = 0, sample_columns_ = 0, sample_stride_ = 0;
   int control_rows_ = 0, control_columns_ = 0, control_stride_ = 0;
-  std::vector<float> u_inverse_;               // control_rows x sample_rows
-  AlignedVector<float> v_inverse_transposed_;  // sample_stride x control_stride, zero-padded
-  AlignedVector<float> half_;                  // control_rows x sample_stride
-  AlignedVector<float> padded_control_;        // control_rows x control_stride
+  std::vector<float> u_inverse_;  // pseudo-inverse along u: control_rows x sample_rows
+  // Transposed pseudo-inverse along v: sample_stride x control_stride, zero-padded.
+  AlignedVector<float> v_inverse_transposed_;
+  AlignedVector<float> half_;  // product with u_inverse_ only: control_rows x sample_stride
+  // Result before its padding is removed: control_rows x control_stride.
+  AlignedVector<float> padded_control_;
 };
 
 }  // namespace spoonbill

@@ -99,8 +99,8 @@ struct KnotMultiplicity {
   double knot;
   int multiplicity;
 };
-// Returns the distinct knots in the domain except its end. The start of an open direction counts as clamped;
-// the start of a period has the multiplicity of the seam.
+// Returns the distinct knots in the domain, except its end, with their multiplicities. The start of an open
+// direction counts as clamped; the start of a period has the multiplicity of the seam.
 std::vector<KnotMultiplicity> knot_multiplicities(const KnotVector& knots);
 
 // Returns the first two parameters at or after `start` that a periodic knot has, one period apart. In an open
@@ -116,8 +116,8 @@ Result<KnotVector> elevate_degree(const KnotVector& knots, int degree);
 // most C^(degree - 1). Open ends become clamped.
 Result<KnotVector> reduce_degree(const KnotVector& knots, int degree);
 
-// Returns the union: every knot with the larger of its two multiplicities. Refuses different degrees,
-// periodicity or domains.
+// Returns the union of two knot vectors: every knot with the larger of its two multiplicities. Refuses
+// different degrees, periodicity or domains.
 Result<KnotVector> knot_union(const KnotVector& a, const KnotVector& b);
 
 // Returns the part from `start` to `end` as a clamped knot vector. In a periodic direction it may cross the

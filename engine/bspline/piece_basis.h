@@ -10,8 +10,9 @@
 
 namespace spoonbill {
 
-// The polynomials of a knot vector, which must outlive the object. Allocates only when constructed; immutable
-// afterwards, so that any thread may read it. Values equal those of basis_functions() except for rounding.
+// The basis functions of a knot vector, which must outlive the object, as polynomials. Allocates only when
+// constructed; immutable afterwards, so that any thread may read it. Values equal those of basis_functions()
+// except for rounding.
 class PieceBasis {
  public:
   explicit PieceBasis(const KnotVector& knots);
@@ -51,7 +52,7 @@ struct PiecewiseSurface {
   const PieceBasis* v;
 };
 
-// Same as evaluate() and position() of the surface, except for rounding.
+// Return the same as evaluate() and position() of the surface, except for rounding.
 SurfacePoint evaluate(const PiecewiseSurface& surface, double u, double v);
 Vector3 position(const PiecewiseSurface& surface, double u, double v);
 // Returns the unit normal of the surface at u, v, given the result of evaluate() there.

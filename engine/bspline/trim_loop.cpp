@@ -173,7 +173,7 @@ double second_derivative_bound(const TrimLoop& loop, int span, const Eigen::Vect
 // Number and error of the chords, evenly spaced in the parameter, that replace one piece.
 struct PieceChords {
   int count = 1;
-  double error_fraction = 0.0;  // largest distance of a chord from the curve
+  double error_fraction = 0.0;  // largest distance of a chord from the curve, as a fraction of the domain
 };
 
 PieceChords count_chords(const TrimLoop& loop, double start, double length, const Eigen::Vector2d& lengths) {

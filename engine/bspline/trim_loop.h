@@ -16,7 +16,7 @@ namespace spoonbill {
 
 // Two crossing edges: the polygons that they belong to, possibly the same, and a point near the crossing.
 struct PolygonCrossing {
-  std::size_t first = 0, second = 0;  // first <= second
+  std::size_t first = 0, second = 0;  // indices of the two polygons, first <= second
   Eigen::Vector2d near;
 };
 
@@ -32,7 +32,7 @@ std::optional<PolygonCrossing> find_crossing(const std::vector<std::vector<Eigen
 // period.
 struct TrimLoop {
   KnotVector knots;
-  std::vector<double> u, v;  // one for each control point
+  std::vector<double> u, v;  // coordinates of the control points
 
   friend bool operator==(const TrimLoop&, const TrimLoop&) = default;
 };

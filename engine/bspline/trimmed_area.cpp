@@ -354,7 +354,7 @@ class Cutter {
  private:
   struct Piece {
     int i, j;                              // indices of the cell that contains the piece
-    std::vector<Eigen::Vector2d> corners;  // counter-clockwise, convex
+    std::vector<Eigen::Vector2d> corners;  // convex, counter-clockwise
   };
 
   void add_cell(int i, int j) {

@@ -62,7 +62,7 @@ class TrimmedArea {
 
   KnotVector along_u_, along_v_;
   std::vector<Edge> edges_;
-  int level_ = 0;  // added to the winding number; a point remains if the sum is above 0
+  int level_ = 0;  // number added to the winding number; a point remains if their sum is above 0
   double remaining_fraction_ = 1.0;
   // Indices of the edges, listed for columns of equal width in u. The edges that may cross a vertical line in
   // column c are the entries column_starts_[c] to column_starts_[c + 1] - 1 of column_edges_.
@@ -129,12 +129,13 @@ class TrimmedCells {
 struct CutVertex {
   double u = 0.0, v = 0.0;
   std::array<std::uint32_t, 4> corners{};  // samples of the grid, counter-clockwise from the lowest u and v
-  std::array<double, 4> weights{};         // their sum is 1
+  std::array<double, 4> weights{};         // bilinear weights of the corners; their sum is 1
 };
 
 // Triangles of a trimmed grid.
 struct TrimmedGrid {
-  std::vector<CutVertex> vertices;  // numbered after the grid's samples
+  // Vertices that are no samples; their numbers follow those of the grid's samples.
+  std::vector<CutVertex> vertices;
   // Counter-clockwise with u to the right and v up. No vertex is in the interior of a triangle's side.
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };

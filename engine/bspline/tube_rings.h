@@ -32,13 +32,13 @@ inline constexpr int ring_samples = 256;
 
 // A ring of a tube, in metres.
 struct Ring {
-  std::vector<Vector3> points;  // ring_samples, the seam once
+  std::vector<Vector3> points;  // ring_samples points around the ring; the seam occurs once
   Vector3 centre = Vector3::Zero();
-  Vector3 along = Vector3::Zero();  // mean derivative of the points by v
+  Vector3 along = Vector3::Zero();  // mean derivative of the points with respect to v
   double perimeter = 0.0;
 };
 
-// Samples a ring; the surface must be periodic along u.
+// Samples the ring of a surface at v. The surface must be periodic along u.
 Ring sample_ring(const Surface& surface, double v);
 
 // The centre line of a tube: v, distance from the first pole, perimeter and centre of each station.
@@ -82,7 +82,7 @@ CrossSection principal_axes(const Ring& ring, const Vector3& axis);
 // as in a spoon. The extent is then the geometric mean of its smallest and its largest value.
 struct Extents {
   double width, thickness;
-  bool bent = false;  // whether any section between the rims is bent
+  bool bent = false;  // true if any section between the rims is bent
 };
 
 // Returns the extents of the tube's sections between the rims.

@@ -154,7 +154,7 @@ std::vector<std::uint32_t> find_ring(const PointGraph& part) {
   const PointGraph rest = induced_subgraph(part, remaining);
   const ShortestPaths back = shortest_paths(rest, std::vector<std::uint32_t>{index[b]});
   if (!std::isfinite(back.length[index[a]])) return {};
-  std::reverse(there.begin(), there.end());  // from a to b
+  std::reverse(there.begin(), there.end());  // the path runs from a to b
   std::vector<std::uint32_t> ring = there;
   std::vector<std::uint32_t> rest_path{index[a]};
   for (std::uint32_t n = index[a]; n != index[b];) rest_path.push_back(n = back.predecessor[n]);

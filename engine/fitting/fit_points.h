@@ -27,7 +27,7 @@ struct FitPoints {
   PointGraph graph;                          // graph of the nodes, each of which represents nearby points
   std::vector<Vector3> node_normals;         // unit vectors, or zero where the normal is unknown
   std::vector<std::uint32_t> node_index;     // index of the node of each scan point
-  std::vector<BoundaryLoop> boundary_loops;  // longest first
+  std::vector<BoundaryLoop> boundary_loops;  // sorted by length, the longest first
   // Number of nodes that span holes and gaps. They have no points and are the last nodes of the graph.
   std::size_t spanning_nodes = 0;
   std::size_t outliers = 0;  // number of given points removed as outliers; in a mesh, number of spikes

@@ -20,7 +20,7 @@ enum class IslandChoice { largest, bridge, all };
 struct FitRequest {
   FitSettings settings;
   std::optional<ShapeKind> kind;  // kind of shape; default: detected
-  // Default: fit the largest component, which must contain half of the scan.
+  // Treatment of several components. Default: fit the largest, which must contain half of the scan.
   std::optional<IslandChoice> islands;
 };
 
@@ -36,15 +36,17 @@ struct FittedBody {
 // Connected component that could not be fitted while others could.
 struct UnfittedIsland {
   std::size_t points = 0;
-  Vector3 size_m = Vector3::Zero(), centre_m = Vector3::Zero();  // size and centre of its bounding box
+  // Size and centre of the component's bounding box.
+  Vector3 size_m = Vector3::Zero(), centre_m = Vector3::Zero();
   std::string reason;
 };
 
 struct ScanFit {
-  std::vector<FittedBody> bodies;        // largest first
+  std::vector<FittedBody> bodies;        // fitted bodies, the largest first
   std::size_t islands = 0;               // number of connected components found
-  std::vector<UnfittedIsland> unfitted;  // largest first; only with IslandChoice::all
-  std::size_t open_bridged = 0;  // bridged components with open ends away from the gaps, which were capped
+  std::vector<UnfittedIsland> unfitted;  // sorted by size, the largest first; only with IslandChoice::all
+  // Number of bridged components whose open ends away from the gaps were capped.
+  std::size_t open_bridged = 0;
   // Number of given points at different positions. For a mesh, the number of vertices after joining.
   std::size_t distinct = 0;
   double joining_distance_m = 0.0;  // 0 for a cloud

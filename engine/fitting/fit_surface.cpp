@@ -35,12 +35,12 @@ struct FittedData {
   std::vector<double> trust;
 };
 
-// Returns the 95th percentile.
+// Returns the 95th percentile of the distances.
 inline double percentile_95(std::span<const double> distances) {
   return quantile({distances.begin(), distances.end()}, 0.95);
 }
 
-// Returns a difference of periodic parameters (period 1), wrapped into [-0.5, 0.5].
+// Returns a difference of parameters with period 1, wrapped into [-0.5, 0.5].
 inline double wrapped(double difference) {
   return difference - std::round(difference);
 }
@@ -111,11 +111,11 @@ class SurfaceFitter {
   ShapeKind kind_;
   double least_agreement_, fairness_factor_, chosen_fairness_;
   SurfaceStructure structure_;
-  std::vector<double> fairness_;  // one for each pair of spans, u-major
+  std::vector<double> fairness_;  // fairness of each pair of spans, u-major
   std::vector<double> node_weights_, all_weights_;
   std::vector<Vector3> all_points_m_, all_normals_;
   FittedData nodes_, all_;
-  std::vector<std::pair<Vector3, double>> poles_;  // position and v of each pole
+  std::vector<std::pair<Vector3, double>> poles_;  // position and parameter v of each pole
   Surface surface_;
   FoldCheck folds_;
   std::vector<double> u_breaks_, v_breaks_;  // breakpoints of the final knots
@@ -423,7 +423,8 @@ Result<FittedSurface> SurfaceFitter::run() {
   return result();
 }
 
-// Spans with less than `seen_fraction` of the mean weight are stiffened by up to `unseen_fairness`.
+// Spans with less than `seen_fraction` of the mean weight are stiffened by a factor of up to
+// `unseen_fairness`.
 constexpr double seen_fraction = 0.3, unseen_fairness = 3.0;
 constexpr std::size_t pole_columns = 3;
 constexpr double least_pole_size = 0.02;

@@ -94,7 +94,8 @@ class SpanningForest {
 
  private:
   void grow_from(std::uint32_t start) {
-    using Entry = std::tuple<double, std::uint32_t, bool>;  // cost, node, flipped
+    // Cost of the edge, node, whether the node's normal is flipped.
+    using Entry = std::tuple<double, std::uint32_t, bool>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> waiting;
     waiting.emplace(0.0, start, false);
     tree_.clear();
@@ -159,7 +160,7 @@ namespace {
 constexpr double most_thickness = 0.15;
 constexpr double most_opposed = 0.2;
 
-// Returns the node and its neighbours within two steps, sorted.
+// Returns the node and its neighbours within two steps, sorted by index.
 std::vector<std::uint32_t> neighbourhood(const PointGraph& graph, std::uint32_t node) {
   std::vector<std::uint32_t> near{node};
   for (const std::uint32_t other : graph.adjacent(node)) {
@@ -246,7 +247,7 @@ constexpr double flat_cap_fraction = 0.05;
 constexpr double upright_fraction = 0.1;
 
 struct SurfaceSamples {
-  std::vector<Vector3> points_m, areas;  // u varies fastest
+  std::vector<Vector3> points_m, areas;  // points and area vectors of the samples; u varies fastest
 };
 
 SurfaceSamples sample_surface(const Surface& surface) {

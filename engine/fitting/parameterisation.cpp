@@ -137,7 +137,7 @@ bool faces_outwards(const FitPoints& island) {
   for (std::size_t n = 0; n < areas.size(); ++n) {
     volume += areas[n] * (island.graph.points_m[n] - axes.centre).dot(island.node_normals[n]);
   }
-  return volume >= 0.0;  // zero without normals
+  return volume >= 0.0;  // the sum is zero without normals
 }
 
 // Flips all normals of a scan that is inside out.
@@ -282,7 +282,7 @@ constexpr double between_fraction = 0.25;
 constexpr double covered_fraction = 0.85;
 constexpr int least_cell_points = 2;         // smallest number of points for a cell to count
 constexpr int dilation = 2;                  // number of cells by which filled cells are dilated
-constexpr double near_axis_fraction = 0.05;  // relative to the largest distance from the axis
+constexpr double near_axis_fraction = 0.05;  // fraction of the largest distance from the axis
 
 struct Axis {
   Vector3 centre = Vector3::Zero(), along = Vector3::UnitZ(), first = Vector3::UnitX();
@@ -310,7 +310,7 @@ std::optional<Axis> find_round_axis(const std::vector<Vector3>& points_m) {
 // Distance from the axis and height along the axis, for each point.
 struct AxisProfile {
   std::vector<Vector2> positions;
-  Box2 box;  // includes the axis
+  Box2 box;  // box of the positions, extended to the axis
 };
 
 AxisProfile compute_profile(const std::vector<Vector3>& points_m, const Axis& axis) {

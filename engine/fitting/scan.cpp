@@ -71,7 +71,8 @@ double voxel_side_for(const Scan& scan, std::size_t groups) {
   for (int round = 0; round < 12; ++round) {
     const double ratio = static_cast<double>(group_by_voxels(scan, side).count) / static_cast<double>(groups);
     if (ratio > 0.9 && ratio < 1.1) break;
-    if (ratio < 0.9 && side < 1e-4 * size) break;  // the points have too few distinct positions
+    // Smaller cells give no more groups, because too few positions are distinct.
+    if (ratio < 0.9 && side < 1e-4 * size) break;
     side *= std::clamp(std::sqrt(ratio), 0.3, 3.0);
   }
   while (group_by_voxels(scan, side).count > groups + groups / 4) side *= 1.2;

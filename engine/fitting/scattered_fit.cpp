@@ -106,7 +106,7 @@ void NormalEquations::add_smooth_pole(const SurfaceStructure& structure, const s
   const double period = structure.u.domain_length();
   std::vector<std::pair<int, double>> terms{{unknown[index(0, pole)], -1.0}};
   for (int i = 0; i < rows_; ++i) terms.emplace_back(unknown[index(i, ring)], 0.0);
-  // Basis function k of the span k + degree has its support from extended[k] to extended[k + degree + 1].
+  // Basis function k of the direction is nonzero between extended[k] and extended[k + degree + 1].
   for (int k = 0; k < rows_; ++k) {
     const auto first = static_cast<std::size_t>(k), last = first + static_cast<std::size_t>(pu_) + 1;
     const int control = structure.u.control_index(k + pu_, 0);

@@ -16,7 +16,7 @@ namespace {
 // edge.
 constexpr double off_knots = 1e-6;
 constexpr double off_poles = 1e-2;
-// Number of cells with the best values in which the minimum is refined.
+// Number of cells in which the minimum is refined. They are the cells with the smallest values.
 constexpr std::size_t searched = 12;
 constexpr std::size_t cells_between_reports = 256;
 // Number of times that the pattern search halves its step.

@@ -19,8 +19,8 @@ struct SolidSelfIntersection {
 };
 
 struct SolidCheck {
-  std::vector<SolidSelfIntersection> self_intersections;  // deepest first
-  bool self_intersections_complete = true;                // false if there are too many to search them all
+  std::vector<SolidSelfIntersection> self_intersections;  // sorted by depth, the deepest first
+  bool self_intersections_complete = true;  // false if there are too many intersections to search them all
   // Thinnest wall found along inward lines from the mesh's triangles, measured on the exact surfaces. The
   // true minimum may be smaller by twice the mesh's error, and a wall narrower than 1/200 of the solid's size
   // may be missed. Empty if no line leaves through a wall (exits_through_wall()), as in a tetrahedron.
@@ -36,8 +36,8 @@ std::optional<SolidCheck> check_solid(const TriangleMesh& mesh, const std::vecto
 
 // Two bodies that touch or overlap.
 struct BodyOverlap {
-  std::size_t first = 0, second = 0;  // indices of the bodies, first < second
-  bool contained = false;             // one body is inside the other
+  std::size_t first = 0, second = 0;  // indices of the two bodies, first < second
+  bool contained = false;             // true if one body is inside the other
   double depth_m = 0.0;               // distance by which the first body must move to leave the second
   Vector3 position_m = Vector3::Zero();
 };

@@ -26,7 +26,7 @@ enum class Closedness {
 // Distances between the two ends of one direction. All are 0 in a periodic direction.
 struct EdgeGap {
   double apart_m = 0.0;  // largest distance between corresponding points of the ends
-  double first_width_m = 0.0, last_width_m = 0.0;  // extent of each end, 0 for a pole
+  double first_width_m = 0.0, last_width_m = 0.0;  // extent of the edge at each end; 0 for a pole
 };
 
 struct Closing {
@@ -54,14 +54,15 @@ struct SelfIntersection {
 };
 
 struct SurfaceCheck {
-  Closing closing;  // ignores trims; everything below applies to the area within the trims
+  // How nearly the surface is closed, ignoring trims; all other members refer to the area within the trims.
+  Closing closing;
   bool is_trimmed = false;
   EnclosedMass mass;  // the volume and its centre are valid only if encloses()
   CurvatureRange curvature;
   double bending = 0.0;  // result of compute_bending_energy()
   std::vector<SurfaceDefect> surface_defects;
   std::vector<SelfIntersection> self_intersections;
-  bool self_intersections_complete = true;  // false if there are too many to search them all
+  bool self_intersections_complete = true;  // false if there are too many intersections to search them all
   std::optional<Thickness> thinnest = {};   // set only if encloses() and the volume is positive
 
   // Returns whether the surface bounds a body by itself.

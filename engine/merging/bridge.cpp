@@ -169,7 +169,7 @@ double mean_length_m(const Surface& surface, double start, double end) {
 
 namespace {
 
-// Normals du x dv at parameters u x v, not normalised.
+// Normals du x dv, not normalised, at all pairs of the parameters u and v.
 class NormalGrid {
  public:
   NormalGrid(const Surface& surface, std::vector<double> u, std::vector<double> v)
@@ -388,7 +388,7 @@ Result<BridgeLength> even_speed_length(const Surface& before, const Surface& aft
 // Form of a bridge between two rings. Further columns of control points are added between the two ends if the
 // bridge bends, or if it is long. In a long bridge, irregular patch ends would grow into folds.
 struct BridgeForm {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  // maps the ring after the gap to the ring before it
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  // rotates the ring after the gap to the ring before it
   bool bends = false, has_columns_between = false;
 };
 
@@ -396,7 +396,7 @@ BridgeForm choose_form(const Surface& before, const Surface& after) {
   if (!before.u.is_periodic()) return {};
   const RingFrame a = ring_frame(before, Side::v_end), b = ring_frame(after, Side::v_start);
   const Eigen::Matrix3d turn = rotation_towards(a, b);
-  constexpr double long_fraction = 2.0;  // relative to the sum of both rings' radii
+  constexpr double long_fraction = 2.0;  // length of a long bridge, relative to the sum of both rings' radii
   const bool bends = is_bend(turn);
   const bool is_long = (b.centre_m - a.centre_m).norm() > long_fraction * (a.radius_m + b.radius_m);
   const bool has_directions = !a.outward.isZero() && !b.outward.isZero();

@@ -139,7 +139,8 @@ std::vector<double> corresponding_parameters(const EdgeCurve& a, const EdgeCurve
   return matching;
 }
 
-// Returns the largest distance between a and b at corresponding parameters.
+// Returns the largest distance between the points of a at `along` and the corresponding points of b at
+// `matching`.
 double largest_distance_m(const EdgeCurve& a, const EdgeCurve& b, const std::vector<double>& along,
                           const std::vector<double>& matching) {
   double largest = 0.0;

@@ -13,7 +13,7 @@ namespace spoonbill {
 // Measures of the joint between two patches of a row. Parameter lengths refer to the patch before the joint.
 struct JointMeasure {
   bool bridged = false;
-  double gap_m = 0.0;          // largest gap between the edges; the mean gap for a bridge
+  double gap_m = 0.0;          // largest gap between the edges, or the mean gap if it is bridged
   double gap_parameter = 0.0;  // length of a bridge along v
   // Factor on the length of the next patch's domain, so that the speed is equal on both sides.
   double stretch_of_after = 1.0;
@@ -43,7 +43,7 @@ struct Joint {
   double gap_m = 0.0;
   bool bridged = false;
   double blend_start = 0.0, blend_end = 0.0;
-  double blend_length_m = 0.0;  // mean length of the blend along v
+  double blend_length_m = 0.0;  // mean length of the blend in metres
   double apart_m = 0.0;         // largest gap between the given edges
   double cut_back_m = 0.0;      // length cut off each of the two patches for the blend
 };

@@ -160,7 +160,7 @@ constexpr double edge_margin = 1e-7;
 constexpr int trim_lines_checked = 64;
 // Fraction of the longest line's length. A line at an end of the part that is shorter counts as a point.
 constexpr double point_fraction = 1e-3;
-// Largest change of a line's ends across a corner, relative to the part's extent in v.
+// Largest jump of a line's ends across a corner of the loops, relative to the part's extent in v.
 constexpr double jump_fraction = 1e-3;
 
 struct Interval {

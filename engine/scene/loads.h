@@ -17,7 +17,7 @@ namespace spoonbill {
 // Plane that fixes every node behind it, on the side opposite to the normal.
 struct FixingPlane {
   Vector3 point_m = Vector3::Zero();
-  Vector3 normal = Vector3::UnitX();  // unit
+  Vector3 normal = Vector3::UnitX();  // unit normal; points away from the fixed side
 };
 
 template <>
@@ -61,8 +61,8 @@ struct SupportMotion {
   MotionKind kind = MotionKind::ramp;
   // Whole displacement of a ramp, or amplitude of an oscillation.
   Vector3 displacement_m = Vector3::Zero();
-  double duration_s = 1.0;    // ramps only
-  double frequency_hz = 1.0;  // oscillations only
+  double duration_s = 1.0;    // duration of a ramp; ignored for an oscillation
+  double frequency_hz = 1.0;  // frequency of an oscillation; ignored for a ramp
 };
 
 // Fixes the nodes of a region, or moves them if a motion is given. Fixing planes take precedence over
@@ -75,18 +75,18 @@ struct Support {
 // Rigid, immovable half-space on which bodies rest. Soft tools do not touch it.
 struct Ground {
   Vector3 point_m = Vector3::Zero();
-  Vector3 normal = Vector3::UnitY();  // unit, outward
+  Vector3 normal = Vector3::UnitY();  // unit normal; points out of the ground
   double friction = 0.5;              // the smaller of the friction coefficients of ground and body applies
 };
 
 // Returns the displacement of a moving support at a time of at least 0.
 Vector3 displacement_at(const SupportMotion& motion, double time_s);
-// Returns an upper bound of a motion's speed; a ramp reaches it.
+// Returns an upper bound of a motion's speed. A ramp reaches this speed.
 double top_speed_m_per_s(const SupportMotion& motion);
 
 inline constexpr Range<int> fixing_plane_count_range{0, 64};
-inline constexpr Range<int> load_count_range{0, 64};     // per body
-inline constexpr Range<int> support_count_range{0, 64};  // per body
+inline constexpr Range<int> load_count_range{0, 64};     // number of loads of one body
+inline constexpr Range<int> support_count_range{0, 64};  // number of supports of one body
 inline constexpr Range<double> pressure_range_pa{-1e9, 1e9};
 inline constexpr double force_limit_n = 1e6;         // largest length of a force vector
 inline constexpr double displacement_limit_m = 1.0;  // largest length of a displacement vector
@@ -144,7 +144,7 @@ inline constexpr auto fields_of<Ground> = std::to_array<Field<Ground>>({
 // The error of each of the following checks names the first field that is out of range, with its value and
 // range.
 Status check_fixing_plane(const FixingPlane& plane);
-Status check_load(const Load& load);  // except u and v of a point load: see check_loads()
+Status check_load(const Load& load);  // does not check u and v of a point load: see check_loads()
 Status check_support(const Support& support);
 Status check_ground(const Ground& ground);
 

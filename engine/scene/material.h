@@ -36,7 +36,7 @@ struct Material {
   // creep.
   double relaxing_fraction = 0.0;
   double relaxation_time_s = 1.0;
-  double friction = 0.0;  // Coulomb coefficient of the surface
+  double friction = 0.0;  // Coulomb friction coefficient of the surface
 };
 
 // Ranges of the materials' properties. Stiffness reaches from the softest gel to beyond diamond, density from

@@ -35,8 +35,8 @@ struct Sculpting {
 // Symmetric sculpting: a second tool is the mirror image of the hand's tool in a plane.
 struct Symmetry {
   bool on = false;
-  Vector3 point_m = Vector3::Zero();  // any point of the plane
-  Vector3 normal = Vector3::UnitZ();  // unit
+  Vector3 point_m = Vector3::Zero();  // any point of the mirror plane
+  Vector3 normal = Vector3::UnitZ();  // unit normal of the mirror plane
 };
 
 // Returns the mirror image of a point or a pose in the plane of symmetry.
@@ -62,10 +62,11 @@ inline bool keeps_place(const Scene& scene) {
 }
 
 // Limits of files, commands and the panel's sliders, within which every solver stays finite.
-inline constexpr Range<int> body_count_range{1, 1000};        // in a document
-inline constexpr Range<int> sculpted_body_count_range{1, 8};  // in a simulation
+inline constexpr Range<int> body_count_range{1, 1000};  // number of bodies in a document
+// Number of bodies that can be simulated together.
+inline constexpr Range<int> sculpted_body_count_range{1, 8};
 inline constexpr Range<double> drag_range_per_s{0.0, 8000.0};
-inline constexpr double gravity_limit_m_per_s2 = 100.0;  // length of the vector
+inline constexpr double gravity_limit_m_per_s2 = 100.0;  // largest length of the gravity vector
 inline constexpr Range<double> force_scale_range{0.0, 1e6};
 
 template <>

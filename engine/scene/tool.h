@@ -1,7 +1,8 @@
 // The tool: its shape, its action and its material. Plain data; lengths in metres.
 //
 // The table `tool_actions` defines the actions for files, commands, the panel, keys, help and JSON schema. A
-// new action is an enumerator and a row here, and a kernel in engine/simulation/tool_step.cpp for the tick.
+// new action needs an enumerator and a row here, and a kernel in engine/simulation/tool_step.cpp for the
+// tick.
 #pragma once
 
 #include <array>
@@ -41,7 +42,7 @@ struct ToolParameter {
 
 // Key of the window that selects a kind of tool together with the action: a digit or a capital letter.
 struct ToolKey {
-  const char* key = nullptr;  // null: no key
+  const char* key = nullptr;  // null if there is no key
   ToolKind kind = ToolKind::sphere;
   const char* help = nullptr;
 };
@@ -161,13 +162,13 @@ inline constexpr int soft_mesh_triangle_limit = 20000;
 struct SoftTool {
   Material material;
   LatticeRequest lattice;
-  FixingPlane grip;  // in the tool's frame
+  FixingPlane grip;  // plane in the tool's frame; the hand holds the nodes behind it
 };
 
 // Body of a tool that is neither a point nor a sphere, in the tool's frame. Immutable once made.
 struct ToolBody {
   ToolSolid solid;
-  std::optional<SoftTool> soft;  // empty: the tool is rigid
+  std::optional<SoftTool> soft;  // properties of a soft tool; empty if the tool is rigid
 };
 
 struct Tool {

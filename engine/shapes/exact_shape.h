@@ -55,7 +55,7 @@ std::optional<Vector3> pole_normal(const ExactShape& shape, bool at_start);
 
 // Range of the sizes of stock shapes.
 inline constexpr Range<double> shape_size_range_m{1e-4, 10.0};
-// Smallest rounding, as a fraction of the shortest side that it rounds. Sharper edges need more control
+// Smallest rounding, as a fraction of the shortest side that is rounded. Sharper edges need more control
 // points than a stock shape has.
 inline constexpr double min_rounding_fraction = 0.01;
 // Default rounding, as a fraction of the shortest side that is rounded.

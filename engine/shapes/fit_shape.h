@@ -55,7 +55,7 @@ class ShapeKnots {
   bool periodic_;
   int degree_;
   std::vector<double> ends_;  // ends of the cells
-  std::vector<bool> jumps_;   // whether the curvature may jump at each end
+  std::vector<bool> jumps_;   // for each end in ends_, true if the curvature may jump there
   std::vector<int> spans_;    // number of spans in each cell
 };
 

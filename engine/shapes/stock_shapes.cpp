@@ -119,8 +119,8 @@ class RoundedRectangle {
   std::array<double, 10> ends_{};
 };
 
-// A box along its third axis. Its rings are outlines of its section, rolled over the end edges by an angle
-// and then contracted toward the centre of the end face.
+// A box with its end faces across its third axis. Its rings are outlines of its section. Towards an end, the
+// outlines first follow the rounded edge and then shrink to the centre of the end face.
 class BoxAlong {
  public:
   BoxAlong(const Vector3& half_m, double edge_rounding_m, double end_rounding_m)

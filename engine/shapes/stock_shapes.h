@@ -14,7 +14,8 @@ namespace spoonbill {
 // the corners are parts of tori.
 struct BoxSize {
   Vector3 size_m{0.06, 0.04, 0.02};
-  double rounding_m = 0.002;  // at most max_box_rounding_fraction of the shortest side
+  // Radius of the rounding, at most max_box_rounding_fraction of the shortest side.
+  double rounding_m = 0.002;
 };
 inline constexpr double max_box_rounding_fraction = 0.4;
 
@@ -26,7 +27,7 @@ double default_rounding_m(const BoxSize& size);
 // A closed horizontal slab with poles at the centres of its faces and a half-round rim.
 struct PlateSize {
   double x_size_m = 0.1, z_size_m = 0.06, thickness_m = 0.003;
-  double corner_m = 0.006;  // radius of its four corners seen from above, at least the thickness
+  double corner_m = 0.006;  // radius of the plate's four corners seen from above, at least the thickness
 };
 // Makes a plate. Refuses a thickness of more than half the width.
 Result<ExactShape> plate_shape(const PlateSize& size);

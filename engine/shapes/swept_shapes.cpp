@@ -132,7 +132,8 @@ namespace {
 // Number of evenly spaced points at which each section is sampled.
 constexpr int around = 256;
 constexpr int length_steps = 4096;
-// Handle length of a cubic that approximates a quarter circle (Goldapp 1991).
+// Distance of the inner control points from the ends, relative to the radius, of a cubic that approximates a
+// quarter circle (Goldapp 1991).
 constexpr double arc_handle = 0.5522847498;
 constexpr double default_bulge = 0.5;
 

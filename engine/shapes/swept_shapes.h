@@ -27,11 +27,11 @@ Result<ExactShape> tube_shape(const TubeSize& size);
 // last section of a single point is a pole.
 struct LoftSections {
   std::vector<std::vector<Vector3>> sections_m;
-  bool closed = true;  // whether every section is a closed curve
+  bool closed = true;  // true if every section is a closed curve
   // Height of the caps over the first and last closed section; default: half the section's mean radius. Caps
   // bulge and continue the sides' tangents, because a flat cap would meet the sides at an edge.
   std::optional<double> cap_m = {};
-  bool caps = true;  // whether caps close the ends that are not poles
+  bool caps = true;  // true if caps close the ends that are not poles
 };
 
 // Makes a surface from a curve through each section and smooth curves across the sections. To match

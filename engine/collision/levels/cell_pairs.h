@@ -82,7 +82,7 @@ class CellSlabs {
   std::vector<Slot> slots_;  // by key: first the children of each cell, then the cells themselves
   std::uint32_t generation_ = 0;
   int used_ = 0;
-  double samples_[3][9];  // working memory
+  double samples_[3][9];  // working memory: 3 x 3 samples of each coordinate
 };
 
 // Binary tree of boxes over the elements of one surface. It limits the parameter ranges that can meet another
@@ -128,13 +128,13 @@ class ElementTree {
   std::vector<Box> boxes_;
   std::vector<double> sizes_;
   std::vector<Box> strip_;      // working memory: boxes of the elements of one span of u
-  std::vector<double> bulges_;  // working memory: bulges of the same elements
+  std::vector<double> bulges_;  // working memory: bulges of the elements of one span of u
   std::vector<int> leaf_;       // node index of each element's leaf
 };
 
 inline constexpr std::size_t cell_pair_capacity = 1 << 19;
 
-// One cell of each surface.
+// A pair of cells, one of each surface.
 struct CellPair {
   LevelCell first, second;
   // Index of the region, which ContactRegions sets. Before that, -1 if both cells are equal or adjacent to
@@ -216,7 +216,7 @@ class CellPairs {
     }
   }
 
-  // True if the last search exceeded a capacity, so that pairs may be missing.
+  // Returns true if the last search exceeded a capacity, so that pairs may be missing.
   bool overflow() const { return overflow_; }
 
   const ElementTree& first_tree() const { return first_tree_; }

@@ -38,7 +38,7 @@ struct SlabGroup {
   float centre[3][slab_lanes];
   float along_u[3][slab_lanes];
   float along_v[3][slab_lanes];
-  float normal[3][slab_lanes];  // zero if the corners are collinear
+  float normal[3][slab_lanes];  // unit normal; zero if the corners are collinear
   float thickness[slab_lanes];
   float slack[slab_lanes];
 };

@@ -64,7 +64,7 @@ class SurfaceBounds {
   }
 
  private:
-  int rows_ = 0, columns_ = 0;  // size of the unrolled net
+  int rows_ = 0, columns_ = 0;  // numbers of rows and columns of the unrolled control net
   int degree_u_ = 0, degree_v_ = 0;
   void update_column_norms(const ControlNet& net, int column);
   void unroll_row(const ControlNet& net, int i);
@@ -74,7 +74,8 @@ class SurfaceBounds {
   std::vector<int> span_u_, span_v_;        // knot span of each element
   std::vector<int> control_u_, control_v_;  // control point index of each unrolled index
   std::vector<double> first_scale_u_, second_scale_u_, first_scale_v_, second_scale_v_;
-  std::vector<double> norm_uu_, norm_vv_;  // squared norms by unrolled control point
+  // Squared norms of the second derivatives' control points, by unrolled index.
+  std::vector<double> norm_uu_, norm_vv_;
   std::vector<double> second_uu_, second_vv_;
   std::uint64_t stamp_ = 1;
   // Stamp of the last update: of each unrolled column, and of the elements of each span of v.
@@ -174,7 +175,7 @@ class SurfaceLevels {
     const int* controls;
     const double* values;
   };
-  // Basis functions of each element in one direction at its finest samples.
+  // Basis functions of each element in one direction, evaluated at the element's samples of the finest level.
   struct Bands {
     int bandwidth = 0, samples = 0, padded = 0;
     std::vector<int> controls;

@@ -40,7 +40,7 @@ class BoxTree {
   // Allocates nothing.
   template <class BoxOf>
   void refit(const BoxOf& bounding_box) {
-    // Children come after their parents.
+    // Children come after their parents in nodes_, so the boxes are updated from the last node to the first.
     for (auto index = static_cast<std::uint32_t>(nodes_.size()); index-- > 0;) {
       Node& node = nodes_[index];
       node.box =
@@ -118,7 +118,7 @@ class LineExits {
 bool exits_through_wall(const Triangle& triangle, const Vector3& direction);
 
 struct MeshIntersection {
-  std::uint32_t first = 0, second = 0;  // triangle indices
+  std::uint32_t first = 0, second = 0;  // indices of the two triangles
   // The smaller of the two depths, in metres, by which each triangle penetrates the plane of the other. It is
   // at most the size of the triangles.
   double depth_m = 0.0;
@@ -126,7 +126,8 @@ struct MeshIntersection {
 
 struct MeshIntersections {
   std::vector<MeshIntersection> found;
-  bool complete = true;  // false if more exist, if the pair limit was exceeded or if the search was stopped
+  // False if there are more pairs, if the pair limit was exceeded or if the search was stopped.
+  bool complete = true;
 };
 
 // Finds up to `limit` pairs of intersecting triangles. Triangles with a common corner are first shrunk by a

@@ -60,7 +60,7 @@ class DeformingMesh {
   std::vector<std::uint32_t> across_;  // for each side, numbered 3 t + k, the adjacent triangle
   // For each vertex, start of its corners in corners_; one more entry at the end.
   std::vector<std::uint32_t> first_corner_;
-  std::vector<std::uint32_t> corners_;  // 3 t + k for corner k of triangle t, grouped by vertex
+  std::vector<std::uint32_t> corners_;  // numbers 3 t + k of the corners k of triangles t, grouped by vertex
 };
 
 }  // namespace spoonbill

@@ -78,7 +78,7 @@ class ShellDistance {
 
   std::vector<Vector3> vertices_m_;
   BoxTree tree_;
-  std::vector<TriangleCorners> triangles_;  // in the order of the tree's leaves
+  std::vector<TriangleCorners> triangles_;  // triangles in the order of the tree's leaves
   Kind kind_;
   double size_m_;
   std::vector<std::uint32_t> across_;    // for each side of a triangle, the adjacent triangle
@@ -108,14 +108,14 @@ class MeshDistance final : public SignedDistance {
   struct Solid {
     std::unique_ptr<ShellDistance> outside;
     std::vector<std::unique_ptr<ShellDistance>> cavities;
-    double half_thickness_m = 0.0;  // half the thickness of sheets, 0 for solids
+    double half_thickness_m = 0.0;  // half the thickness of a sheet; 0 for a solid
     DistanceSample at(const Vector3& point_m) const;
   };
   static std::vector<Solid> make_solids(const CleanMesh& mesh, double thickness_m);
   static std::vector<Box> make_boxes(const std::vector<Solid>& solids);
 
   std::vector<Solid> solids_;
-  BoxTree tree_;  // over the solids' boxes
+  BoxTree tree_;  // tree over the boxes of the solids
   bool convex_;
 };
 

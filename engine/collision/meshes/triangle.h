@@ -26,7 +26,7 @@ bool triangles_meet(const Triangle& a, const Triangle& b, double slack_m = 0.0);
 struct LineTriangleHit {
   double along = 0.0;             // position on the line, as a multiple of its direction; may be negative
   double to_b = 0.0, to_c = 0.0;  // barycentric weights of the corners b and c
-  double facing = 0.0;            // negative if the line crosses the triangle in the direction of its normal
+  double facing = 0.0;  // negative if the line passes through the triangle from its back to its front
 };
 
 // Intersects an infinite line with a triangle (Moeller and Trumbore 1997). Returns nothing if the line is

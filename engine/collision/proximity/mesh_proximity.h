@@ -101,7 +101,7 @@ class MeshProximity {
   std::vector<int> pending_;  // working memory: stack of tree nodes
   std::uint32_t search_ = 0, elements_ = 0;
   double least_gap_m_ = 0.0;
-  PolishBudget budget_{0};  // evaluations left in the last search
+  PolishBudget budget_{0};  // surface points that the last search may still evaluate
   bool overflow_ = false;
 };
 

@@ -85,9 +85,9 @@ class RingSeparation {
   std::vector<int> column_;  // the control columns of each ring, width_ for each
   std::vector<std::array<int, 2>> pairs_, near_;
   std::vector<Vector3> centres_;    // one for each control column
-  std::vector<double> low_, high_;  // interval of each control column along the axis of each ring
+  std::vector<double> low_, high_;  // for each control column, its interval along the axis of each ring
   std::vector<Box> boxes_;          // one for each ring
-  std::vector<char> is_current_;    // true if a ring's intervals are up to date
+  std::vector<char> is_current_;    // for each ring, true if its intervals are up to date
 };
 
 // Depth in lattice cells beyond which a point is ignored, because the point nearest to it may be on another

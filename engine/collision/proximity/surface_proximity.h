@@ -22,7 +22,7 @@ NearestOnCell nearest_on_cell(const Vector3& point, const PatchCorners& at);
 // A point of one surface and the nearest point of the other.
 struct NearPoint {
   int sample = -1;          // index in the grid of its own surface; -1 for a point between samples
-  double u = 0.0, v = 0.0;  // parameters on its own surface
+  double u = 0.0, v = 0.0;  // parameters of the point on its own surface
   double other_u = 0.0, other_v = 0.0;
   Vector3 point_m = Vector3::Zero();
   Vector3 normal = Vector3::UnitY();  // unit outward normal of the other surface
@@ -72,7 +72,7 @@ class NearPoints {
   SurfaceLevels& levels() { return levels_; }
   const SurfaceLevels& levels() const { return levels_; }
   const std::vector<NearPoint>& points() const { return near_; }
-  double least_gap_m() const { return least_gap_m_; }  // infinite if nothing is near
+  double least_gap_m() const { return least_gap_m_; }  // infinite if no point is near the other surface
   // Returns true if a capacity was exceeded, so that points may be missing or may not be the nearest.
   bool overflow() const { return overflow_ || budget_.is_spent(); }
   // Returns the number of surface points evaluated since begin().
@@ -86,7 +86,7 @@ class NearPoints {
   std::vector<std::uint32_t> indexed_at_;  // for each sample, the generation in which index_ was set
   std::vector<NearPoint> near_;
   std::uint32_t generation_ = 0;
-  PolishBudget budget_{0};  // evaluations left since begin()
+  PolishBudget budget_{0};  // surface points that may still be evaluated until the next begin()
   double least_gap_m_ = 0.0;
   bool overflow_ = false;
 };
@@ -116,7 +116,7 @@ class SurfaceProximity {
   // found.
   const std::vector<NearPoint>& first_points() const { return first_.points(); }
   const std::vector<NearPoint>& second_points() const { return second_.points(); }
-  double least_gap_m() const;  // infinite if nothing is near
+  double least_gap_m() const;  // infinite if no points are near each other
   // Returns true if a capacity was exceeded, so that points may be missing. Fewer control points or a smaller
   // margin help.
   bool overflow() const { return missing_cells_ || first_.overflow() || second_.overflow(); }

@@ -63,7 +63,7 @@ class MeshDepths {
 
   const PosedMesh& mesh_;
   const PosedMesh& other_;
-  MeshDistance distance_;  // distance of the other mesh
+  MeshDistance distance_;  // signed distance of the other mesh
   Box other_box_;          // box of the other mesh
   std::vector<std::uint32_t> near_;
   std::vector<std::optional<DeepPoint>> vertices_;  // one for each vertex, evaluated on demand
@@ -307,7 +307,8 @@ class ContactSearch {
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return pairs_[a][1 - s] < pairs_[b][1 - s]; });
-    std::unordered_map<std::uint32_t, std::size_t> pair_at;  // first pair at each vertex
+    // At each vertex, the first pair whose triangle of mesh `s` has this vertex.
+    std::unordered_map<std::uint32_t, std::size_t> pair_at;
     for (std::size_t k = 0; k < order.size(); ++k) {
       const Pair& pair = pairs_[order[k]];
       if (k > 0 && pairs_[order[k - 1]][1 - s] != pair[1 - s]) pair_at.clear();

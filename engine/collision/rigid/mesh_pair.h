@@ -14,9 +14,10 @@ namespace spoonbill {
 
 // One region in which two meshes overlap or touch.
 struct MeshPairContact {
-  Vector3 first_m = Vector3::Zero(), second_m = Vector3::Zero();  // deepest points, one on each mesh
-  Vector3 normal = Vector3::UnitY();  // unit; direction in which the first mesh leaves the second
-  double depth_m = 0.0;               // along the normal; 0 if the meshes only touch
+  Vector3 first_m = Vector3::Zero(), second_m = Vector3::Zero();  // deepest point of each mesh
+  // Unit vector in the direction in which the first mesh leaves the second.
+  Vector3 normal = Vector3::UnitY();
+  double depth_m = 0.0;  // along the normal; 0 if the meshes only touch
 };
 
 // Result of collide_meshes().

@@ -32,7 +32,7 @@ constexpr std::array<double, parts> roots_of_two = make_roots_of_two();
 // Adding and then subtracting this number rounds a number below 2^51 to an integer.
 constexpr double to_whole = 0x1.8p52;
 
-// Returns 1 / 3, 1 / 5 and so on.
+// Returns the inverses of the odd numbers from 3 on.
 constexpr std::array<double, 10> make_inverse_odds() {
   std::array<double, 10> values{};
   for (int k = 0; k < 10; ++k) values[k] = 1.0 / (2 * k + 3);
@@ -57,7 +57,7 @@ double stable_exp(double x) {
       rest + square * (0.5 + rest * (1.0 / 6.0) + square * (1.0 / 24.0 + rest * (1.0 / 120.0)));
   const int number = static_cast<int>(whole), part = number & (parts - 1);
   const double root = roots_of_two[part];
-  // The power is split into two factors, each of which is in range if the product is.
+  // 2^power is split into two factors, because it may be out of range even if the result is not.
   const int power = (number - part) / parts, half = power / 2;
   return (root + root * beyond) * power_of_two(half) * power_of_two(power - half);
 }

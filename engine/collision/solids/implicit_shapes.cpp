@@ -111,7 +111,7 @@ class EllipsoidDistance final : public SignedDistance {
 
   Vector3 axes_;
   int shortest_ = 0;
-  Vector3 ratio_, excess_;  // r_i, r_i - 1
+  Vector3 ratio_, excess_;  // r_i and r_i - 1 for each axis i
 };
 
 // A direction in the meridian half-plane: away from the y axis and along it.
@@ -210,7 +210,8 @@ ConeDistance::ConeDistance(const ConeShape& shape)
 DistanceSample ConeDistance::at(const Vector3& point_m) const {
   const double from_rim = from_axis(point_m) - shape_.base_radius_m, up = point_m.y();
   const double side = normal_out_ * from_rim + normal_up_ * up;
-  const double along = normal_out_ * up - normal_up_ * from_rim;  // from the rim towards the tip
+  // Distance along the side, from the rim towards the tip.
+  const double along = normal_out_ * up - normal_up_ * from_rim;
   if (side <= 0.0 && up >= 0.0) {
     if (side > -up) return {side, rotate_from_meridian({normal_out_, normal_up_}, point_m)};
     return {-up, -Vector3::UnitY()};

@@ -50,7 +50,7 @@ class SuperquadricDistance final : public SignedDistance {
   Spot improve(Spot spot, const Vector3& point) const;
 
   Vector3 axes_, log_axes_;
-  double along_, around_;  // q1, q2
+  double along_, around_;  // the exponents q1 and q2
 };
 
 }  // namespace spoonbill

@@ -488,7 +488,7 @@ constexpr int region_cut_capacity = 16000;
 
 // Range of a region's cells in one direction.
 struct CellRange {
-  int low, high;  // cell indices
+  int low, high;  // indices of the first and the last cell
 
   void widen(int cell) {
     low = std::min(low, cell);
@@ -553,7 +553,7 @@ void SurfaceCollider::find_touched_cells(const Surface& surface, const ToolShape
   }
 }
 
-// Appends to grouped_ all cells that are connected with the first one, also across a seam.
+// Appends to grouped_ all touched cells that are connected with the cell `first`, also across a seam.
 void SurfaceCollider::join_neighbours(int first, int region) {
   const Grid& grid = levels_.nested().grid;
   std::size_t next = grouped_.size();

@@ -190,7 +190,7 @@ class SurfaceCollider {
     int region;  // -1 until it is assigned
   };
   std::vector<TouchedCell> touched_;
-  std::vector<int> grouped_;               // indices into touched_
+  std::vector<int> grouped_;               // indices into touched_, grouped by region
   std::vector<int> touched_index_;         // index into touched_ of each cell, by finest_index()
   std::vector<std::uint32_t> touched_at_;  // number of the query in which the tool last touched each cell
   std::vector<ToolContactRegion> regions_;

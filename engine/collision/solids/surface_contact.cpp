@@ -206,7 +206,7 @@ class Descent {
 
  private:
   struct Step {
-    Vector2d offset;  // in parameters
+    Vector2d offset;  // change of the parameters
     double gain;
   };
 

@@ -33,9 +33,9 @@ Tangents tangents_across(const Vector3& normal, const SurfacePoint& at);
 struct SurfaceContact {
   double u = 0.0, v = 0.0;
   Vector3 point_m = Vector3::Zero();  // point on the surface
-  Vector3 normal = Vector3::UnitY();  // unit, along du x dv
-  double depth_m = 0.0;               // depth of the tool inside the surface; negative if they are apart
-  Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();  // tangents_across() the normal
+  Vector3 normal = Vector3::UnitY();  // unit normal along du x dv
+  double depth_m = 0.0;               // depth of the tool inside the surface; negative if the tool is outside
+  Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();  // tangents_across() of the normal
 };
 
 // A connected part of the surface that a tool touches.
@@ -46,7 +46,7 @@ struct ToolContactRegion {
 
 inline constexpr int tool_region_capacity = 64;
 
-// Makes the contact at a spot; the depth is the negative of its distance.
+// Makes the contact at a spot. Its depth is the negative of the spot's distance.
 SurfaceContact contact_at(const Surface& surface, const SurfaceSpot& spot);
 
 }  // namespace spoonbill

@@ -56,7 +56,7 @@ class HullBuilder {
  private:
   struct Plane {
     HullFace face;
-    Steps normal;  // outward normal
+    Steps normal;  // outward normal, not normalised
   };
 
   Steps face_normal(const HullFace& face) const {

@@ -64,12 +64,12 @@ struct StageTriangle {
 // A contact point.
 struct StageContact {
   SurfaceContact at;
-  bool is_deepest = false;  // deepest point of its region
+  bool is_deepest = false;  // true for the deepest point of a region
 };
 
 // All stages of one or more contact searches.
 struct ContactStages {
-  std::vector<StageLine> hulls;   // edges of the hulls
+  std::vector<StageLine> hulls;   // edges of the convex hulls
   std::vector<StageLine> ranges;  // borders of the elements within the parameter ranges that may meet
   int elements = 0, elements_within = 0;
   std::vector<StageSphere> spheres;  // for each surface, level by level

@@ -60,7 +60,7 @@ class ContactRegions {
   std::vector<Region> regions_;
   // Working memory: for each region, the position at which its next pair is stored.
   std::vector<int> end_;
-  std::vector<CellPair> unordered_;  // working memory
+  std::vector<CellPair> unordered_;  // working memory: copy of the pairs before they are sorted
 };
 
 // Mean of parameters of one direction. In a periodic direction, each parameter is first moved by whole

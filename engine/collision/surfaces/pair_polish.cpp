@@ -54,9 +54,9 @@ bool solve_positive(Eigen::Matrix<double, size, size>& h, Eigen::Matrix<double, 
 // have very different speeds.
 template <int size>
 struct Problem {
-  Eigen::Matrix<double, size, 1> gradient;  // with respect to the parameters
+  Eigen::Matrix<double, size, 1> gradient;  // gradient with respect to the parameters
   Eigen::Matrix<double, size, size> curvature;
-  Eigen::Matrix<double, size, 1> speed;  // metres per unit of each parameter
+  Eigen::Matrix<double, size, 1> speed;  // metres on the surface per unit of each parameter
   std::array<const KnotVector*, size> knots;
   Eigen::Matrix<double, size, 1> parameters;
   double least_promise = 0.0;  // smallest decrease that the model must predict, in the unit of the objective

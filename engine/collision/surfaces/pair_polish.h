@@ -80,11 +80,11 @@ DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& 
 
 // One region in which two surfaces cross or touch.
 struct PairContact {
-  SurfacePair pair;              // deepest points, one on each surface
-  Vector3 normal;                // unit; direction in which the first surface leaves the second
-  double depth_m = 0.0;          // along the normal; 0 if they only touch
+  SurfacePair pair;              // deepest point of each surface
+  Vector3 normal;                // unit vector in the direction in which the first surface leaves the second
+  double depth_m = 0.0;          // depth along the normal; 0 if the surfaces only touch
   ParameterRange first, second;  // parameter rectangles that contain the region
-  Vector3 tangent_u, tangent_v;  // tangents_across() the normal, from the first surface
+  Vector3 tangent_u, tangent_v;  // tangents_across() of the normal, on the first surface
 };
 
 // Sets the contact's tangents from its normal and the first surface.

@@ -18,10 +18,10 @@ constexpr std::size_t region_seeds = 8;
 constexpr std::size_t wall_seeds = 8;
 // Number of candidates that determine the centre of a region.
 constexpr std::size_t centre_pairs = 64;
-// Number of directions from the centre in which seeds are placed.
+// Number of directions from the region's centre in which starting points are placed.
 constexpr std::size_t seed_directions = 2;
 
-// Length of the control net along a unit direction, in metres.
+// Returns the length of the control net along a unit direction, in metres.
 double length_along(const ControlNet& net, const Vector3& direction) {
   double least = infinity, most = -infinity;
   for (int i = 0; i < net.rows; ++i) {
@@ -224,7 +224,7 @@ void SurfacePairCollider::deepen_contact(PairContact& contact, PairParameters& f
   const DeepestPair first_deepest = deepest_pair(first, second, from, outside, shortest);
   from = first_deepest.pair.at;
   if (!(first_deepest.depth_m > contact.depth_m)) return;
-  // The surfaces face each other where they are deep.
+  // The outer sides of the surfaces face each other where the surfaces penetrate each other.
   const PairParameters& deep = first_deepest.pair.at;
   const double outside_first =
       facing_side(first_deepest.normal, unit_normal(first_.surface(), deep.u, deep.v));

@@ -100,7 +100,8 @@ class SurfacePairCollider {
   ContactRegions regions_;
   PairSearch search_;
   std::vector<PairContact> contacts_;
-  std::vector<Seed> seeds_, last_seeds_;  // seeds of the contacts, and of the previous collide()
+  // Seeds of the present contacts, and of those of the previous collide().
+  std::vector<Seed> seeds_, last_seeds_;
   std::size_t query_ = 0;
   PairParameters nearest_;  // nearest points of the last two surfaces that did not touch
   bool nearest_known_ = false;

@@ -378,7 +378,7 @@ void SurfaceSelfCollider::deepen_contact(PairContact& contact, const PairParamet
   const DeepestPair first_deepest = deepest_pair(pieces, pieces, from, outside, infinity);
   const PairParameters& deep = first_deepest.pair.at;
   if (!(first_deepest.depth_m > 0.0) || !not_joined_.counts(deep)) return;
-  // The parts face each other where they are deep.
+  // The outer sides of the two parts face each other where the parts penetrate each other.
   const double outside_first =
       facing_side(first_deepest.normal, unit_normal(levels_.surface(), deep.u, deep.v));
   if (query.closed && outside_first < 0.0) return;

@@ -41,7 +41,7 @@ class PatchFolds {
 
  private:
   struct Cone {
-    Vector3 axis = Vector3::Zero();  // unit
+    Vector3 axis = Vector3::Zero();  // unit axis of the cone
     double angle = 0.0;  // half angle; if it is above a right angle, the cone contains all directions
   };
   struct Cones {
@@ -56,7 +56,7 @@ class PatchFolds {
   // S_vv.
   std::vector<double> mixed_;
   struct Direction {
-    std::vector<int> span, control;  // knot span of each element; unrolled index to control index
+    std::vector<int> span, control;  // knot span of each element; control point index of each unrolled index
     std::vector<double> scale;       // degree / (u_{i+p+1} - u_{i+1}) of the unrolled index i
     int degree = 0;
   };
@@ -64,7 +64,7 @@ class PatchFolds {
   Direction u_, v_;
   // Working memory: norms of the mixed differences of the control points, by unrolled index.
   std::vector<double> steps_;
-  std::vector<Cones> cones_;  // by SurfaceLevels::cell_index()
+  std::vector<Cones> cones_;  // indexed by SurfaceLevels::cell_index()
   std::vector<std::uint32_t> computed_at_;
   std::uint32_t generation_ = 0;
 };
@@ -149,7 +149,7 @@ class SurfaceSelfCollider {
   std::vector<std::array<int, 2>> nodes_;  // working memory: stack of node pairs
   std::vector<PairContact> contacts_;
   bool overflow_ = false, stopped_ = false;
-  const SelfQuery* query_ = nullptr;  // the current query
+  const SelfQuery* query_ = nullptr;  // query of the current collide()
   std::uint64_t calls_ = 0;
 };
 
