@@ -74,7 +74,7 @@ class GridEvaluator {
   std::vector<EvaluateReach> reaches_;
   AlignedVector<Real> v_values_, v_derivatives_;
   AlignedVector<Real> blended_;           // control rows x blocks, blended along v
-  AlignedVector<Real> dv_noise_squared_;  // one value for each column of all blocks
+  AlignedVector<Real> dv_noise_squared_;  // squared rounding error of dv, one for each column of all blocks
   AlignedVector<Real> spare_;             // samples of one row
 };
 

@@ -173,8 +173,9 @@ constexpr double nearly_alike = 1e-3;
 // are only the ripple of a round ring. Here z is a point of the section as a complex number.
 constexpr double min_squareness = 0.02;
 
-// Turns e1 to the midpoint of a side of a square section, where every axis is a principal axis. The argument
-// of the fourth moment is four times the angle of a corner. The axis of a round section does not change.
+// Turns e1 to the midpoint of a side of a square section, where every axis is a principal axis. The fourth
+// moment is a complex number whose angle is four times the angle of a corner. The axis of a round section
+// does not change.
 void turn_to_sides(const Ring& ring, const Vector3& axis, Vector3& e1) {
   const Vector3 e2 = axis.cross(e1);
   std::complex<double> moment = 0.0;

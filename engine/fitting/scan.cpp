@@ -222,9 +222,9 @@ constexpr double long_ring_edge_ratio = 1.5;
 // Smallest height of a spike relative to the radius of its ring. Tips in an even mesh are lower, since the
 // ring around them is wider.
 constexpr double least_spike_height = 4.0;
-// Limits for the second ring of vertices around a tip, in radii of the first ring. Most of its vertices must
-// be farther than the first limit from the centre of the first ring, and lower than the second limit above
-// the plane of the first ring.
+// Limits for the second ring of vertices around a tip, in radii of the first ring. At least a quarter of its
+// vertices must be farther out from the first ring's centre than the first limit, and half of them nearer to
+// the first ring's plane than the second limit.
 constexpr double least_outer_radius = 1.2, most_height = 0.6;
 constexpr std::size_t most_measured = 1'000'000;
 
@@ -310,8 +310,8 @@ class RingPlane {
     normal_ = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
   }
 
-  // Returns true if the vertices behind the ring are close to the ring's plane and farther out than the ring,
-  // at least a quarter of them.
+  // Returns true if at least half of the vertices behind the ring are close to the ring's plane, and at least
+  // a quarter of them are farther out than the ring.
   bool is_continued_by(const Scan& mesh, const VertexRing& behind) const {
     std::vector<double> out, off;
     for (const std::uint32_t vertex : behind) {

@@ -472,7 +472,7 @@ using LineShape = std::function<Vector3(double u, const CornerLine& line, double
 struct PartShape {
   LineShape at;
   bool pole_at_start = false, pole_at_end = false;
-  // Fraction from which lines that start beside a pole follow the lines of the patch.
+  // Fraction of a line's length beyond which a line that starts beside a pole follows a line of the patch.
   std::optional<double> bend = {};
 };
 

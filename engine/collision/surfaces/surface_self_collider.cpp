@@ -176,7 +176,7 @@ SelfResult SurfaceSelfCollider::collide(const Surface& surface, const SelfQuery&
   search_.begin();
   int level = levels_.nested().levels;
   collect_pairs(level);
-  // At a coarser level joined cells are larger, and contacts within them are missed.
+  // At a coarser level, joined cells are larger, and contacts between parts of joined cells are missed.
   const bool coarser = overflow_;
   while (overflow_ && level > 0 && !stopped_) collect_pairs(--level);
   const std::vector<Region>& regions = regions_.group(pairs_);
