@@ -1,13 +1,5 @@
-// Assertions: a function whose contract states a precondition asserts it on entry. Input from a file, a
-// device or a person is checked earlier and refused with an Error; it never reaches an assertion.
-//
-//   SPOONBILL_ASSERT(count > 0);                  cheap; active in every build
-//   SPOONBILL_ASSERT_DEBUG(is_sorted(knots));     may walk a whole structure; Debug builds only
-//
-// A failed assertion calls the process's handler on the failing thread. The default handler prints the
-// location and aborts. The program's own handler throws the FailedAssertion, and only code that runs a unit
-// of work that can be abandoned (a tick, a save, a command) catches it. Kernels have no assertions; their
-// callers do.
+// Assertions. A function whose contract states a precondition asserts it on entry. Input from a file, a
+// device or a person is checked earlier and refused with an Error, so it never reaches an assertion.
 #pragma once
 
 #include <array>
@@ -29,8 +21,8 @@ class FailedAssertion : public std::exception {
   std::array<char, 256> text_{};
 };
 
-// Handles a failed assertion. It may throw the failure to abandon the current work; if it returns, the
-// process aborts.
+// Function that handles a failed assertion. It may throw the failure to abandon the current work; if it
+// returns, the process aborts.
 using AssertionHandler = void (*)(const FailedAssertion& failure);
 
 // Sets the process's handler and returns the previous one. Must be called while the process has one thread.
@@ -39,7 +31,7 @@ AssertionHandler set_assertion_handler(AssertionHandler handler);
 // Throws the failure. This is the handler for programs that catch failures and abandon the work in progress.
 void throw_failed_assertion(const FailedAssertion& failure);
 
-// Calls the handler, and aborts if it returns.
+// Calls the process's handler with the failed assertion, and aborts if the handler returns.
 [[noreturn]] void fail_assertion(const char* condition, const char* file, int line);
 
 }  // namespace spoonbill

@@ -31,15 +31,15 @@ struct CacheLineAllocator {
 template <class T>
 using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
 
-// A partition of the items 0 to count - 1 into sets (union-find with path halving). Each item starts as a
-// set of its own; join() merges two sets.
+// A partition of the items 0 to count - 1 into sets (union-find with path halving). Each item starts as a set
+// of its own; join() merges two sets.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parents_(count) {
     std::iota(parents_.begin(), parents_.end(), std::size_t{0});
   }
 
-  // Returns the representative of the item's set, its lowest item.
+  // Returns the representative of the item's set, which is its lowest item.
   std::size_t find(std::size_t item) {
     while (parents_[item] != item) item = parents_[item] = parents_[parents_[item]];
     return item;

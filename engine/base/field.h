@@ -8,8 +8,8 @@
 //       direction_field("normal", &FixingPlane::normal, "Points away from the fixed side"),
 //   });
 //
-// Values are in SI units; files store lengths in millimetres, and the field's name says so. Fields appear
-// in files in the order of the table. Checks of numbers allocate only for an error message.
+// Values are in SI units; files store lengths in millimetres, and the field's name says so. Fields appear in
+// files in the order of the table. Checks of numbers allocate only for an error message.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ namespace spoonbill {
 
 enum class FieldUnit {
   none,
-  times,  // a factor
+  times,  // dimensionless factor
   metre,
   pascal,
   kilogram_per_m3,
@@ -40,11 +40,12 @@ enum class FieldUnit {
   metre_per_s2
 };
 
-// Meaning of a vector: three lengths; a direction, which files may give with any length; or a quantity.
+// Meaning of a vector: a position or other three lengths; a direction, which files may give with any length;
+// or any other quantity, such as a force.
 enum class VectorSense { position, direction, quantity };
 
-// Slider of a number in the panel. Its range is within the field's range and narrow enough to set a value
-// by hand.
+// Slider of a number in the panel. Its range is within the field's range and narrow enough to set a value by
+// hand.
 struct FieldSlider {
   const char* label = nullptr;  // null: the panel has no slider for the field
   Range<double> range{0.0, 0.0};
@@ -58,7 +59,7 @@ constexpr Range<int> whole(Range<double> range) {
 
 inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-// Everything about a field except its member.
+// All properties of a field except the pointer to its member.
 struct FieldForm {
   const char* name = nullptr;  // name in files
   const char* help = "";       // a phrase without a full stop; empty if the name is self-explanatory
@@ -66,17 +67,17 @@ struct FieldForm {
   Range<double> range{-unlimited, unlimited};  // range of a number, or of each component of a vector
   double length_limit = unlimited;             // largest length of a vector
   VectorSense sense = VectorSense::quantity;   // meaning of a vector
-  // True if files may omit the field. A missing field then has its struct's default, and a field is written
-  // only if it differs from the default.
+  // True if files may omit the field. A missing field then has the default value of its struct, and the field
+  // is written only if it differs from that default.
   bool optional = false;
-  // Name of an earlier optional field, the partner. If the partner is given, this field is required;
-  // otherwise this field is unknown.
+  // Name of a partner: an optional field earlier in the table. If a file contains the partner, this field is
+  // required; otherwise it is not accepted.
   const char* partner = nullptr;
   FieldSlider slider = {};
-  std::span<const char* const> choices = {};  // names of an enumeration's values, in order
+  std::span<const char* const> choices = {};  // names of the values of an enumeration, in order
 };
 
-// Access to an enumeration whose values are 0, 1, 2, ...
+// Functions that get and set an enumeration whose values are 0, 1, 2, ...
 template <class Object>
 struct ChoiceMember {
   std::size_t (*get)(const Object&);
@@ -146,10 +147,10 @@ template <class Object>
 struct Field {
   FieldForm form;
   FieldMember<Object> member;
-  // Function that returns the number's range if the range depends on other fields of the object; otherwise
-  // null.
+  // Function that returns the range of a number that depends on other fields of the object; null if the range
+  // is fixed.
   Range<double> (*range_by_object)(const Object&) = nullptr;
-  // Function that returns whether an object has the field at all; null if every object has it.
+  // Function that returns whether an object has this field at all; null if every object has it.
   bool (*applies_to)(const Object&) = nullptr;
 
   Range<double> range_for(const Object& object) const {
@@ -157,7 +158,7 @@ struct Field {
   }
   bool applies(const Object& object) const { return applies_to == nullptr || applies_to(object); }
 
-  // Each of the following returns the field with one property changed.
+  // optional() and the functions below it return a copy of the field with one property changed.
   constexpr Field optional() const {
     Field field = *this;
     field.form.optional = true;
@@ -185,12 +186,13 @@ struct Field {
   }
 };
 
-// The table of a struct; specialised beside the struct.
+// fields_of<Object> is the table of a struct's fields. It is specialised beside the struct; NoFields marks a
+// struct without a table.
 struct NoFields {};
 template <class Object>
 inline constexpr NoFields fields_of;
 
-// Name, in files, of a struct that is one of the alternatives of a variant.
+// Name that files use for a struct that is one of the alternatives of a variant.
 template <class Object>
 inline constexpr const char* kind_name = nullptr;
 
@@ -217,7 +219,7 @@ constexpr Field<Object> number_field(const char* name, double Object::*member, R
   return {{.name = name, .help = help, .unit = unit, .range = range}, member};
 }
 
-// Describes a whole number; `Number` must be int or std::uint32_t.
+// Describes a field that holds a whole number; `Number` must be int or std::uint32_t.
 template <class Object, class Number>
 constexpr Field<Object> whole_number_field(const char* name, Number Object::*member, Range<int> range,
                                            FieldUnit unit = FieldUnit::none, const char* help = "") {
@@ -235,7 +237,7 @@ constexpr Field<Object> position_field(const char* name, Vector3 Object::*member
           member};
 }
 
-// Describes three lengths, each within the range.
+// Describes a field that holds a vector of three lengths, each within the range.
 template <class Object>
 constexpr Field<Object> lengths_field(const char* name, Vector3 Object::*member, Range<double> range_m,
                                       const char* help = "") {
@@ -252,7 +254,7 @@ constexpr Field<Object> direction_field(const char* name, Vector3 Object::*membe
   return {{.name = name, .help = help, .sense = VectorSense::direction}, member};
 }
 
-// Describes a vector whose length is at most `limit`.
+// Describes a field that holds a vector whose length is at most `limit`.
 template <class Object>
 constexpr Field<Object> vector_field(const char* name, Vector3 Object::*member, double limit, FieldUnit unit,
                                      const char* help = "") {
@@ -275,7 +277,7 @@ struct MemberParts<Value Owner::*> {
 };
 }  // namespace detail
 
-// Describes an enumeration whose values are indices into `names`.
+// Describes a field that holds an enumeration whose values are indices into `names`.
 template <auto member>
 constexpr auto choice_field(const char* name, std::span<const char* const> names, const char* help = "") {
   using Parts = detail::MemberParts<decltype(member)>;
@@ -286,7 +288,7 @@ constexpr auto choice_field(const char* name, std::span<const char* const> names
   return Field<Object>{{.name = name, .help = help, .choices = names}, choice};
 }
 
-// Returns the field of a struct's member; does not compile if the table has no such field.
+// Returns the field of a struct's member. The call does not compile if the table has no such field.
 template <class Object, class Value>
 consteval const Field<Object>& field_of(Value Object::*member) {
   for (const Field<Object>& field : fields_of<Object>) {

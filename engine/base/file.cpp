@@ -33,7 +33,7 @@ class OpenFile {
 
   int descriptor() const { return descriptor_; }
   int release() { return std::exchange(descriptor_, -1); }
-  std::size_t bytes() const { return bytes_; }  // size when opened
+  std::size_t bytes() const { return bytes_; }  // size of the file when it was opened
   void set_bytes(std::size_t bytes) { bytes_ = bytes; }
 
  private:
@@ -161,7 +161,7 @@ Status save_backup(const std::filesystem::path& file) {
 Status check_replaceable(const std::filesystem::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return {};
-  // The permission bits are tested too, because access() allows the administrator to write every file.
+  // access() lets the administrator write every file, so the permission bits are tested too.
   if ((status.st_mode & 0222) != 0 && ::access(file.c_str(), W_OK) == 0) return {};
   return Error{ErrorCode::unwritable, file.string() + ": is read-only; choose another name or use --force"};
 }
@@ -199,7 +199,8 @@ Result<OutputFile> OutputFile::create(const std::filesystem::path& file, Mode mo
   }
   Status opened = mode == Mode::growing ? out.open_growing() : out.open_whole();
   if (!opened) return opened.error();
-  // open() applies the process's umask, which must not remove permissions of the replaced file.
+  // The umask may have removed permissions of the replaced file when open() created the new one, so they are
+  // set again.
   if (replaces && ::fchmod(out.descriptor_, static_cast<mode_t>(status.permissions()) & 0777) != 0) {
     return out.write_error("cannot be given its permissions");
   }
@@ -238,7 +239,7 @@ Result<std::filesystem::path> move_aside(const std::filesystem::path& file) {
       old.descriptor() >= 0 && ::fstat(old.descriptor(), &status) == 0 && S_ISREG(status.st_mode);
   if (is_regular) {
     if (!lock_file(old.descriptor())) return held_by_another(file);
-    // Another process has moved or finished the file in the meantime.
+    // The file has lost its name since it was opened: another process has moved or finished it.
     if (!has_name(old.descriptor(), file)) return std::filesystem::path();
     if (status.st_size == 0) {
       ::unlink(file.c_str());
@@ -251,7 +252,7 @@ Result<std::filesystem::path> move_aside(const std::filesystem::path& file) {
     if (::renameat2(AT_FDCWD, file.c_str(), AT_FDCWD, other.c_str(), RENAME_NOREPLACE) == 0) return other;
     if (errno == ENOENT) return std::filesystem::path();
     if (errno == EEXIST) continue;
-    // Some file systems do not support RENAME_NOREPLACE.
+    // Fallback for file systems that do not support RENAME_NOREPLACE.
     std::error_code ignored;
     if (std::filesystem::exists(std::filesystem::symlink_status(other, ignored))) continue;
     if (::rename(file.c_str(), other.c_str()) == 0) return other;
@@ -264,7 +265,7 @@ Result<std::filesystem::path> move_aside(const std::filesystem::path& file) {
 
 Status OutputFile::open_whole() {
   written_ += ".new-" + std::to_string(::getpid());
-  ::unlink(written_.c_str());  // may be left from a killed process with the same ID
+  ::unlink(written_.c_str());  // a killed process with the same ID may have left this file
   descriptor_ = ::open(written_.c_str(), new_file_flags, 0666);
   if (descriptor_ < 0) return write_error("cannot be written");
   unfinished_ = UnfinishedFile(written_);

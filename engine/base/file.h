@@ -1,5 +1,5 @@
-// Reading of files, whole or in part, and writing of files that appear whole or not at all. Errors name
-// the file and the system's reason.
+// Reading of files, whole or in part, and writing of files that appear whole or not at all. Errors name the
+// file and the system's reason.
 #pragma once
 
 #include <cstddef>
@@ -35,9 +35,9 @@ std::string read_last_bytes(const std::filesystem::path& file, std::size_t count
 // `later`, then flushed by one call of flush_to_disk().
 enum class Durability { now, later };
 
-// The chooser of a file's name. A name given by a person may be a link, whose target is then written, or a
-// device or pipe, which is written directly. A name made by the program, a script or a recording may be in a
-// folder of unknown origin: whatever has that name is replaced, and links are not followed.
+// Origin of a file's name. A name given by a person may be a link, whose target is then written, or a device
+// or pipe, which is written directly. A name made by the program, a script or a recording may be in a folder
+// of unknown origin: whatever has that name is replaced, and links are not followed.
 enum class NamedBy { person, program };
 
 // Options for writing a file whose name may be in use. A regular file without permission to write is refused
@@ -47,11 +47,12 @@ struct OutputOptions {
   bool replaces_read_only = false;
 };
 
-// Returns an error if the name is a regular file that this process may not write, or without any
-// permission to write.
+// Returns an error if `file` is a regular file that this process may not write, or whose permissions allow no
+// one to write it.
 Status check_replaceable(const std::filesystem::path& file);
 
-// A file being written. One owner, one thread; never the haptic thread, because writing may block.
+// A file that is being written. It has one owner and is used by one thread, never the haptic thread, because
+// writing may block.
 class OutputFile {
  public:
   // Creates a file that appears under its name at commit(), whole; a crash at any moment leaves either the
@@ -68,7 +69,7 @@ class OutputFile {
 
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&& other) noexcept;
-  ~OutputFile();  // removes an uncommitted file of create()
+  ~OutputFile();  // removes the file of create() if it was not committed
 
   // Returns the name under which the file grows: FILE.part, or FILE itself for a device or pipe.
   const std::filesystem::path& written_file() const { return written_; }
@@ -99,12 +100,13 @@ class OutputFile {
   Status finish(Durability durability, bool with_backup);
   bool writes_beside() const { return written_ != target_; }
 
-  std::filesystem::path file_;     // name as given, for messages
-  std::filesystem::path target_;   // the file itself, links resolved
-  std::filesystem::path written_;  // the file beside the target, or the target itself
+  std::filesystem::path file_;    // name as given, for messages
+  std::filesystem::path target_;  // the file that is replaced or created, with links resolved
+  // The path that is written: a temporary file beside the target, or the target itself.
+  std::filesystem::path written_;
   std::filesystem::path kept_aside_;
-  UnfinishedFile unfinished_;  // while an uncommitted file of create() exists
-  std::string buffer_;         // unused while the file grows
+  UnfinishedFile unfinished_;  // entry in the list of unfinished files, for an uncommitted file of create()
+  std::string buffer_;         // bytes not yet sent to the file; stays empty for a file of create_growing()
   int descriptor_ = -1;
   Mode mode_ = Mode::whole;
 };
@@ -113,13 +115,12 @@ class OutputFile {
 Status write_file(const std::filesystem::path& file, std::string_view bytes,
                   Durability durability = Durability::now, const OutputOptions& options = {});
 
-// Same as write_file(), but keeps the replaced content as FILE.bak; for files that a user edits. Refuses
-// to replace anything but a regular file.
+// Same as write_file(), but keeps the replaced content as FILE.bak; for files that a user edits. Refuses to
+// replace anything but a regular file.
 Status replace_file(const std::filesystem::path& file, std::string_view bytes,
                     const OutputOptions& options = {});
 
-// Flushes a file that another program has finished and renames it to `file`. Both must be in the same
-// folder.
+// Flushes a file that another program has finished and renames it to `file`. Both must be in the same folder.
 Status publish_file(const std::filesystem::path& finished, const std::filesystem::path& file);
 
 // Waits until everything written to the file system of the folder is on the disk.

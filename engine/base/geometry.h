@@ -1,5 +1,5 @@
-// Elementary geometric values: ranges of numbers, vectors, poses and axis-aligned boxes, and checks of
-// values that come from outside the program.
+// Elementary geometric values: ranges of numbers, vectors, poses and axis-aligned boxes, and checks of values
+// that come from outside the program.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,8 +27,8 @@ struct Range {
   constexpr bool contains(Number value) const { return value >= low && value <= high; }
 };
 
-// Returns an out_of_range error such as "field is 12, must be 1 to 9" unless the range contains the value.
-// NaN is outside every range.
+// Returns an out_of_range error such as "field is 12, must be from 1 to 9" unless the range contains the
+// value. NaN is outside every range.
 Status check_range(std::string_view field, double value, Range<double> range);
 Status check_range(std::string_view field, int value, Range<int> range);
 
@@ -57,7 +57,7 @@ template <class Vector>
 struct AlignedBox {
   using Scalar = typename Vector::Scalar;
 
-  // A bound beyond every coordinate, small enough that the size of an empty box is finite.
+  // Coordinate larger than any in use, but small enough that the size of an empty box is finite.
   static constexpr Scalar far = Scalar(1e30);
 
   Vector low = Vector::Constant(far);
@@ -120,7 +120,7 @@ using Box = AlignedBox<Vector3>;
 using Box2 = AlignedBox<Eigen::Vector2d>;
 using FloatBox2 = AlignedBox<Eigen::Vector2f>;
 
-// Returns the smallest box around both.
+// Returns the smallest box that contains both boxes.
 inline Box joined(Box a, const Box& b) {
   a.join(b);
   return a;

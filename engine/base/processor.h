@@ -30,7 +30,7 @@ class DenormalsFlushed {
   DenormalsFlushed& operator=(const DenormalsFlushed&) = delete;
 
  private:
-  unsigned saved_;  // the control and status register (MXCSR)
+  unsigned saved_;  // previous value of the control and status register (MXCSR)
 };
 
 }  // namespace spoonbill

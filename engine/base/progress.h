@@ -18,15 +18,15 @@ namespace spoonbill {
 //   }
 class Progress {
  public:
-  // Receives the fraction done, 0 to 1, possibly the same fraction repeatedly. Returns whether the work may
-  // continue.
+  // Function that receives the fraction done, from 0 to 1, possibly the same fraction repeatedly. It returns
+  // whether the work may continue.
   using Report = std::function<bool(double fraction)>;
 
-  Progress() = default;  // no callback
+  Progress() = default;  // makes a progress without a callback
   explicit Progress(Report report) : report_(std::move(report)) {}
 
-  // Reports a fraction of this part and returns whether the work may continue. If not, the caller must end
-  // early and return stopped() if it has no result.
+  // Reports the fraction of this part that is done, and returns whether the work may continue. If it may not,
+  // the caller must end early; if it has no result, it returns stopped().
   bool report(double fraction) const { return !report_ || report_(start_ + (end_ - start_) * fraction); }
 
   // Returns the progress of a part of the work, whose fractions 0 and 1 correspond to `from` and `to` of this
@@ -39,7 +39,7 @@ class Progress {
     return part;
   }
 
-  // Returns whether there is a callback.
+  // Returns whether a callback receives the reports.
   bool is_watched() const { return static_cast<bool>(report_); }
 
   static Error stopped() { return Error{ErrorCode::cancelled, "stopped"}; }
@@ -49,8 +49,8 @@ class Progress {
   double start_ = 0.0, end_ = 1.0;
 };
 
-// An estimate of the fraction done by a loop whose number of rounds is unknown. Each round counts as a
-// fixed fraction of the remainder.
+// Estimates the fraction done by a loop whose number of rounds is unknown. Each round counts as a fixed
+// fraction of the work that remained before it.
 class RoundsDone {
  public:
   // `part_of_rest` is the fraction of the remainder that each round completes, strictly between 0 and 1.

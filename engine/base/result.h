@@ -38,8 +38,8 @@ enum class ErrorCode {
 };
 
 struct Error {
-  // `field` is the JSON field, option or parameter at fault, such as "radius_mm"; empty if there is no
-  // single one.
+  // `field` is the JSON field, option or parameter at fault, such as "radius_mm"; empty if there is no single
+  // one.
   Error(ErrorCode error_code, std::string error_message, std::string field_name = {})
       : code(error_code), message(std::move(error_message)), field(std::move(field_name)) {}
 

@@ -24,11 +24,11 @@ std::string length_text(double length_m);
 // Returns a point with tenths of a millimetre, such as "(10.0, -5.2, 0.0) mm"; zeros have no sign.
 std::string position_text(const Vector3& point_m);
 
-// Returns the text with dangerous characters in JSON's escaped form, such as "\u001b". These are the
-// characters that could control a terminal, end its line or reorder its display: control characters (U+0000
-// to U+001F, U+007F to U+009F), direction marks and line separators. Names in files can contain all of these.
-// A byte that is not UTF-8 becomes "\u00" and its two hexadecimal digits. A JSON document without line breaks
-// stays valid.
+// Returns the text with dangerous characters in JSON's escaped form, such as "\u001b". Dangerous characters
+// could control a terminal, end its line or reorder its display: control characters (U+0000 to U+001F, U+007F
+// to U+009F), direction marks and line separators. Names in files can contain all of these. A byte that is
+// not UTF-8 becomes "\u00" and its two hexadecimal digits. A valid JSON document without line breaks stays
+// valid.
 std::string escaped(std::string_view text);
 
 // Returns the text with the characters that escaped() escapes replaced by "?".

@@ -15,7 +15,8 @@ struct UnfinishedList {
   std::map<std::uint64_t, UnfinishedFile::Ending> endings;
 };
 
-// Never destroyed, because other threads may still finish files while the process exits.
+// Returns the process's list of unfinished files. The list is never destroyed, because other threads may
+// still finish files while the process exits.
 UnfinishedList& unfinished_list() {
   static auto* const list = new UnfinishedList;
   return *list;

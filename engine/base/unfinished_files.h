@@ -14,19 +14,19 @@ namespace spoonbill {
 // global, because a signal ends the whole process. Thread-safe; never constructed on the haptic thread.
 class UnfinishedFile {
  public:
-  // Removes or completes the file when the process stops early; called on a thread other than the file's own.
-  // Returns one line for the user, or an empty text.
+  // Function that removes or completes the file when the process stops early, and returns one line for the
+  // user or an empty text. It is called on a thread other than the file's own.
   using Ending = std::function<std::string()>;
 
-  UnfinishedFile() = default;                           // no entry
-  explicit UnfinishedFile(std::filesystem::path file);  // will be removed
+  UnfinishedFile() = default;                           // makes an object without an entry
+  explicit UnfinishedFile(std::filesystem::path file);  // the file will be removed if the process stops early
   explicit UnfinishedFile(Ending ending);
   UnfinishedFile(UnfinishedFile&& other) noexcept;
   UnfinishedFile& operator=(UnfinishedFile&& other) noexcept;
   ~UnfinishedFile();
 
  private:
-  std::uint64_t number_ = 0;  // 0 without an entry
+  std::uint64_t number_ = 0;  // number of the entry; 0 for an object without one
 };
 
 // Ends every unfinished file and returns the lines for the user. Afterwards the process must end, because any

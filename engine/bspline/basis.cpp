@@ -13,8 +13,8 @@ namespace {
 
 using Table = std::array<std::array<double, max_degree + 1>, max_degree + 1>;
 
-// Computes basis functions and knot differences in one table: table[j][r] for r <= j is basis function r of
-// degree j; table[j][r] for r > j is a knot difference that it is divided by.
+// Returns a table of basis functions and knot differences. Entry [j][r] is basis function r of degree j if r
+// <= j. If r > j, it is a knot difference by which basis functions are divided.
 Table triangular_table(const double* knots, int degree, double u) {
   Table table;
   std::array<double, max_degree + 1> left, right;
@@ -34,8 +34,8 @@ Table triangular_table(const double* knots, int degree, double u) {
   return table;
 }
 
-// Computes the derivatives of basis function r up to order `highest`, without the factors degree! / (degree -
-// k)!.
+// Computes the derivatives of basis function r up to order `highest`. The derivative of order k still lacks
+// the factor degree! / (degree - k)!.
 void compute_derivatives(const Table& table, int degree, int r, int highest, BasisFunctions& basis) {
   std::array<std::array<double, max_degree + 1>, 2> rows;
   std::array<double, max_degree + 1>* current = &rows[0];
@@ -156,7 +156,7 @@ DerivativeBound::DerivativeBound(const KnotVector& knots) {
   };
   for (int basis = 0; basis < last_span; ++basis) {
     const double width = extended[basis + degree + 1] - extended[basis + 1];
-    // A basis function of the derivative contributes nothing if its support has no width.
+    // A basis function of the derivative is zero everywhere if its support has no width.
     if (width == 0) continue;
     const double length = knots.domain_length();
     steps_.push_back({control(basis), control(basis + 1), degree * length / width});

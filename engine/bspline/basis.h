@@ -11,8 +11,8 @@ namespace spoonbill {
 
 inline constexpr int max_basis_derivative = 2;
 
-// The nonzero basis functions of one span and their derivatives.
-// values[d][j] is the d-th derivative of the j-th nonzero basis function of `span`, j = 0..degree.
+// The nonzero basis functions of one span and their derivatives. values[d][j] is the d-th derivative of the
+// j-th nonzero basis function of `span`, j = 0..degree.
 struct BasisFunctions {
   int span = 0;
   std::array<std::array<double, max_degree + 1>, max_basis_derivative + 1> values{};

@@ -52,9 +52,9 @@ constexpr double rank_tolerance = 1e-12;
 // Eigen's sums depends on the processor's cache sizes, and the pseudo-inverse enters the state of the
 // simulation.
 struct PivotedQr {
-  Eigen::MatrixXd q;       // orthonormal columns
-  Eigen::MatrixXd r;       // upper triangle
-  std::vector<int> order;  // column k of q r is column order[k] of the matrix
+  Eigen::MatrixXd q;       // Q, with orthonormal columns
+  Eigen::MatrixXd r;       // R, an upper triangle
+  std::vector<int> order;  // column k of Q R is column order[k] of the matrix
 };
 
 double ordered_dot(const double* a, const double* b, int count) {
@@ -63,7 +63,8 @@ double ordered_dot(const double* a, const double* b, int count) {
   return sum;
 }
 
-// Subtracts reflector (reflector . target) 2 / |reflector|^2 from the target.
+// Applies a Householder reflection: subtracts 2 (reflector . target) / |reflector|^2 times the reflector from
+// the target.
 void reflect(const double* reflector, double squared_norm, double* target, int count) {
   if (squared_norm == 0.0) return;
   const double factor = 2.0 * ordered_dot(reflector, target, count) / squared_norm;

@@ -22,8 +22,8 @@ struct BlendingMatrix {
   int rows = 0;
   int columns = 0;
   int bandwidth = 0;
-  std::vector<int> first;      // one for each row
-  std::vector<double> values;  // rows * bandwidth, row-major
+  std::vector<int> first;      // first column of each row, before wrapping
+  std::vector<double> values;  // nonzero entries: rows * bandwidth, row-major
 
   // Returns the column of entry k of a row.
   int column(int row, int k) const { return (first[row] + k) % columns; }
@@ -50,16 +50,16 @@ Result<Eigen::MatrixXd> pseudo_inverse(const KnotVector& knots, std::span<const 
 
 // Constraints of a fit in one direction.
 struct RefitConstraints {
-  // One flag for each control column, 1 for a column that never moves; empty if none is fixed.
+  // One flag for each column of control points: 1 for a column that never moves. Empty if no column is fixed.
   std::vector<std::uint8_t> fixed_columns;
   // True if the first or last sample is interpolated, so that a pole stays a pole; needs clamped knots.
   bool keep_first = false, keep_last = false;
 };
 
-// Returns the matrix of control points (rows) from samples (columns) under constraints. Fixed rows are zero,
-// interpolated ends copy their sample, and the free rows are A_free^+ (1 - A_ends S), where S selects the end
-// samples. Without constraints it is pseudo_inverse(). Refuses samples that do not determine the control
-// points.
+// Returns the matrix that computes control points (rows) from samples (columns) under constraints. Rows of
+// fixed control points are zero. Rows of interpolated ends copy their sample. All other rows are A_free^+ (1
+// - A_ends S), where S selects the end samples. Without constraints the result is pseudo_inverse(). Refuses
+// samples that do not determine the control points.
 Result<Eigen::MatrixXd> constrained_inverse(const KnotVector& knots, std::span<const double> parameters,
                                             const RefitConstraints& constraints);
 

@@ -23,7 +23,7 @@ namespace {
 struct Piece {
   double length = 0.0;
   int span = 0;
-  int basis = 0;  // index among the span's basis functions
+  int basis = 0;  // index of the control point's basis function among those of the span
 };
 
 std::vector<Piece> longest_pieces(const KnotVector& knots) {
@@ -39,7 +39,7 @@ std::vector<Piece> longest_pieces(const KnotVector& knots) {
   return longest;
 }
 
-// Returns the matrix of new control points (rows) from old ones (columns).
+// Returns the matrix that computes new control points (rows) from old ones (columns).
 Eigen::MatrixXd exact_conversion(const KnotVector& from, const KnotVector& to) {
   Eigen::MatrixXd conversion = Eigen::MatrixXd::Zero(to.control_point_count(), from.control_point_count());
   const auto& t = to.extended_knots();
@@ -96,7 +96,8 @@ Status check_contains_all(const KnotVector& from, const KnotVector& to) {
   return {};
 }
 
-// Returns enough parameters in each piece of either knot vector to distinguish their polynomials.
+// Returns parameters at which two splines over these knot vectors can be compared: in each common piece, one
+// more than determines a polynomial of the higher degree.
 std::vector<double> distinguishing_parameters(const KnotVector& a, const KnotVector& b) {
   std::vector<double> ends = a.breakpoints();
   for (const double end : b.breakpoints()) ends.push_back(std::clamp(end, ends.front(), a.domain_end()));
@@ -209,8 +210,8 @@ Result<KnotVector> without_knots(const KnotVector& knots, std::span<const SpareK
                              : KnotVector::open(knots.degree(), std::move(fewer));
 }
 
-// A part of a surface that contains everything that the removal of an inner knot changes, and the knot's
-// parameter in that part.
+// The part of a surface in which the removal of an inner knot changes anything, and the knot's parameter in
+// that part.
 struct Neighbourhood {
   Surface surface;
   double knot;

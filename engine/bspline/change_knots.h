@@ -1,6 +1,6 @@
-// Conversion of surfaces to other knot vectors: exact to finer ones (more knots, a higher degree, a part
-// of the domain), approximate to coarser ones, with a bound of the deviation. Pure functions outside the
-// tick; any thread may call them.
+// Conversion of surfaces to other knot vectors: exact to finer ones (more knots, a higher degree, a part of
+// the domain), approximate to coarser ones, with a bound of the deviation. Pure functions outside the tick;
+// any thread may call them.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,9 +14,9 @@ namespace spoonbill {
 
 // Converts a surface exactly, except for rounding, to finer knots. They must contain each of the surface's
 // knots in the domain of `finer`, with its multiplicity raised by the difference of the degrees;
-// elevate_degree(), knot_union() and clamped_part() make such knots. An open target may be a part of a
-// periodic direction. Each control point is the blossom of a polynomial piece in its support (Ramshaw 1989).
-// Refuses knots that lack one of the surface's knots, and names the missing knot.
+// elevate_degree(), knot_union() and clamped_part() make such knots. If `finer` is open, it may cover a part
+// of a periodic direction. Each control point is the blossom of a polynomial piece in its support (Ramshaw
+// 1989). The error for missing knots names one of them.
 Result<Surface> convert_to_finer_knots(const Surface& surface, Direction direction, const KnotVector& finer);
 
 // An approximation. `deviation_m` bounds the distance between both surfaces: it is the largest distance of
@@ -27,15 +27,15 @@ struct Approximation {
   double deviation_m = 0.0;
 };
 
-// Fits a surface over any knots of the same domain by least squares; clamped ends are interpolated. A
-// periodic surface may become open; an open surface whose edges meet may become periodic. Refuses knots with
-// a different domain.
+// Fits a surface over any knots of the same domain by least squares and interpolates clamped ends. A periodic
+// surface may become open; an open surface whose edges meet may become periodic. Refuses knots with a
+// different domain.
 Result<Approximation> fit_coarser_knots(const Surface& surface, Direction direction,
                                         const KnotVector& coarser);
 
-// Fits a surface over `first` and halves pieces where the deviation is too large, until the deviation is at
-// most `tolerance_m` everywhere. Refuses if `largest_count` control points do not suffice; the message states
-// the deviation reached. `progress` can cancel the fit.
+// Fits a surface, first over the knots `first`, then with pieces halved wherever the deviation exceeds
+// `tolerance_m`, until it does so nowhere. Fails if `largest_count` control points do not suffice; the
+// message states the deviation reached. `progress` can cancel the fit.
 Result<Approximation> approximated(const Surface& surface, Direction direction, const KnotVector& first,
                                    double tolerance_m, int largest_count, const Progress& progress = {});
 

@@ -9,7 +9,7 @@ Vector3 point_of(const ControlNet& net, std::size_t index) {
   return {net.x[index], net.y[index], net.z[index]};
 }
 
-// Returns the largest distance of the edge's points from its first.
+// Returns the largest distance of the edge's control points from the first of them.
 double extent_of_edge(const ControlNet& net, const NetEdge& edge) {
   const Vector3 first = point_of(net, edge.first);
   double farthest = 0.0;

@@ -17,7 +17,8 @@ struct NetEdge {
   std::size_t first = 0, stride = 1, count = 0;
 };
 
-// Returns the first or last row of control points, at an end of u, or if not `of_u` the first or last column.
+// Returns a row of control points at an end of u if `of_u`, otherwise a column at an end of v. The end is the
+// last one if `at_end`, otherwise the first.
 NetEdge find_edge(const ControlNet& net, bool of_u, bool at_end);
 
 // Returns true if the control points of the edge are a single point up to collapsed_edge_fraction.

@@ -65,8 +65,8 @@ bool ends_on_edge(const GridDirection& direction) {
 
 template <class Real>
 struct NetExtent {
-  Real largest_coordinate;  // largest magnitude
-  Real reach;               // the longest side of the box around the net
+  Real largest_coordinate;  // largest magnitude of a coordinate
+  Real reach;               // longest side of the box around the control net
 };
 
 template <class Real>
@@ -95,7 +95,7 @@ bool coincide(const NetView<Real>& net, int first, int step, int count, Real tol
   return true;
 }
 
-// Returns the largest rounding error of a derivative that is exactly zero.
+// Returns the largest rounding error of a computed derivative whose exact value is zero.
 template <class Real>
 double noise(double largest_coordinate, double magnitude) {
   return 8.0 * std::numeric_limits<Real>::epsilon() * largest_coordinate * magnitude;
@@ -168,8 +168,8 @@ void GridEvaluator<Real>::set_up_rows(const GridDirection& u) {
   u_magnitude_ = row_magnitudes(u.first_derivatives, length);
 }
 
-// Stores A_v as dense blocks, so that loads are contiguous however few samples a span has. Copies of the
-// last column pad its block, so that the padding is regular wherever the row is.
+// Stores A_v as dense blocks, so that loads are contiguous however few samples a span has. Copies of the last
+// sample column fill the last block, so that the padding causes no irregular samples.
 template <class Real>
 void GridEvaluator<Real>::set_up_columns(const GridDirection& v) {
   const double length = v.knots.domain_length();
@@ -281,7 +281,8 @@ void GridEvaluator<Real>::blend_control_rows(const NetView<Real>& net) {
 }
 
 // Fills the two limit columns, which are used only for their normals. At a collapsed column du vanishes; at a
-// distance h inside the surface, du is about h duv. The derivatives along v therefore replace the values.
+// small distance h inside the surface, du is about h duv. The normal's limit is therefore computed from
+// derivatives along v in place of the values.
 template <class Real>
 void GridEvaluator<Real>::set_up_limit_columns(const CollapsedEdges& edges) {
   const int columns = grid_->columns();

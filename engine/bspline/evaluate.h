@@ -17,7 +17,7 @@ namespace spoonbill {
 // Samples of a grid, rows x columns each, in the grid's order.
 template <class Real>
 struct GridSamples {
-  std::vector<Real> x, y, z;     // metres
+  std::vector<Real> x, y, z;     // points in metres
   std::vector<Real> nx, ny, nz;  // unit normals, see unit_normal() for poles and collapsed edges
 
   void resize(std::size_t count) {
@@ -65,15 +65,17 @@ class GridEvaluator {
 
   const Grid* grid_;
   const EvaluateKernels<Real>* kernels_;
-  std::vector<Real> u_values_, u_derivatives_;  // rows x bandwidth, derivatives scaled by the domain length
-  std::vector<double> u_magnitude_, v_magnitude_;  // row sums of the derivatives' magnitudes
+  // Values and derivatives of the basis functions: rows x bandwidth, derivatives scaled by the domain length.
+  std::vector<Real> u_values_, u_derivatives_;
+  // For each row (column) of samples, sum of the magnitudes of the basis functions' derivatives.
+  std::vector<double> u_magnitude_, v_magnitude_;
   DerivativeBound u_bound_, v_bound_;
-  int blocks_ = 0;  // including two limit columns
+  int blocks_ = 0;  // number of blocks of columns, including the two limit columns
   std::vector<EvaluateReach> reaches_;
   AlignedVector<Real> v_values_, v_derivatives_;
-  AlignedVector<Real> blended_;           // control rows x blocks
-  AlignedVector<Real> dv_noise_squared_;  // columns of all blocks
-  AlignedVector<Real> spare_;             // one row of samples
+  AlignedVector<Real> blended_;           // control rows x blocks, blended along v
+  AlignedVector<Real> dv_noise_squared_;  // squared rounding error of dv, one for each column of all blocks
+  AlignedVector<Real> spare_;             // samples of one row
 };
 
 extern template class GridEvaluator<float>;

@@ -82,7 +82,8 @@ void points_row(const EvaluateRow<Real>& row, int first_block, int blocks, const
   }
 }
 
-// Treatment of irregular samples: their normals are set to zero (full) or left undefined (if_regular).
+// Treatment of irregular samples, whose du x dv does not exceed the rounding error. Their normals are set to
+// zero (full) or left undefined (if_regular).
 enum class Care { full, if_regular };
 
 // Computes points and normals of a row; returns the number of irregular samples.

@@ -9,7 +9,8 @@ namespace spoonbill {
 // remainder, on any vector width.
 inline constexpr int evaluate_block = 16;
 
-// Size of a blended block: the values x, y, z, then their derivatives by v, evaluate_block of each.
+// Number of values in a blended block: x, y and z, then their derivatives with respect to v, evaluate_block
+// values of each.
 inline constexpr int evaluate_block_size = 6 * evaluate_block;
 
 // A block of columns that a control point affects.
@@ -30,8 +31,8 @@ struct EvaluateBand {
   int blocks;
 };
 
-// One row of A_u and the blended control rows (those of P A_v^T) that it combines. Entry k of the row
-// applies to blended row first + k, wrapped around at `control_rows`.
+// One row of A_u and the blended control rows (those of P A_v^T) that it combines. Entry k of the row applies
+// to blended row first + k, wrapped around at `control_rows`.
 template <class Real>
 struct EvaluateRow {
   const Real* blended;
@@ -43,7 +44,7 @@ struct EvaluateRow {
   const Real* derivatives;
   Real du_noise_squared;         // squared rounding error of du in this row
   const Real* dv_noise_squared;  // squared rounding error of dv in each column
-  Real surely_regular;           // |du x dv|^2 above this exceeds the rounding error in every column
+  Real surely_regular;           // largest |du x dv|^2 that may be rounding error in any column
 };
 
 // Destinations of a row of samples; no alignment is required.
@@ -63,16 +64,16 @@ struct EvaluateKernels {
   // Blends one control row along v into band.blocks blocks.
   void (*blend)(const EvaluateBand<Real>& band, const Real* x, const Real* y, const Real* z, Real* blended);
 
-  // Computes only points.
+  // Computes only the points of a row.
   void (*points)(const EvaluateRow<Real>& row, int first_block, int blocks, const EvaluateOutput<Real>& out);
 
-  // Computes points and unit normals. Returns the number of samples whose du x dv does not exceed the
-  // rounding error; their normals are zero.
+  // Computes the points and unit normals of a row. Returns the number of samples whose du x dv does not
+  // exceed the rounding error; their normals are zero.
   int (*points_and_normals)(const EvaluateRow<Real>& row, int first_block, int blocks,
                             const EvaluateOutput<Real>& out);
 
-  // Same as points_and_normals(), bit for bit, at a fraction of the cost; valid only if every sample is
-  // surely regular. Returns whether that is so; if not, the normals are undefined.
+  // Computes the same as points_and_normals(), bit for bit, at a fraction of the cost, but only if every
+  // sample is surely regular. Returns whether all samples are; if not, the normals are undefined.
   bool (*points_and_normals_if_regular)(const EvaluateRow<Real>& row, int first_block, int blocks,
                                         const EvaluateOutput<Real>& out);
 };

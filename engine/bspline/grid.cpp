@@ -137,7 +137,7 @@ Lines banded_product(const BlendingMatrix& matrix, const Lines& lines) {
   return product;
 }
 
-// Transposes the points; the three coordinates of each stay together.
+// Transposes the matrix of points. The three coordinates of a point stay together.
 Lines transpose_points(const Lines& lines) {
   Lines result(lines.cols() / 3, lines.rows() * 3);
   for (Eigen::Index i = 0; i < result.rows(); ++i) {

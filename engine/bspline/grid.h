@@ -21,14 +21,15 @@ namespace spoonbill {
 // One direction of a grid. Made outside the tick and immutable afterwards, so that any thread may read it.
 struct GridDirection {
   KnotVector knots;
-  std::vector<double> parameters;  // strictly increasing, in the domain
+  std::vector<double> parameters;  // parameters of the samples: strictly increasing, in the domain
   BlendingMatrix values;
   BlendingMatrix first_derivatives;
   BlendingMatrix second_derivatives;
 
   // Returns the number of cells; each cell is between two neighbouring parameters.
   int cell_count() const { return static_cast<int>(parameters.size()) - 1; }
-  // Returns the cell that contains the parameter; outside the sampled range, the first or the last cell.
+  // Returns the cell that contains the parameter: the first or the last cell for a parameter outside the
+  // sampled range.
   int find_cell(double parameter) const;
   // Maps a cell index across the seam of a periodic direction; returns -1 beyond an open end.
   int wrap_cell(int i) const;
@@ -57,8 +58,8 @@ std::vector<double> uniform_parameters(const KnotVector& knots, int count);
 std::vector<double> uniform_parameters_without_seam(const KnotVector& knots, int count);
 
 // Parameters of a grid with nested levels: each polynomial piece is cut into pieces_per_span * 2^levels equal
-// parts, both domain ends included. Level l (0 = coarsest) is every 2^(levels - l)-th parameter, so that the
-// blending matrices of a coarse level are rows of the finest, and no cell has a knot inside.
+// parts, both domain ends included. Level l (0 = coarsest) has every 2^(levels - l)-th parameter. No cell has
+// a knot inside, and the blending matrices of a coarse level consist of rows of those of the finest level.
 struct NestedParameters {
   int levels = 0;
   std::vector<double> parameters;
@@ -88,7 +89,7 @@ struct InterpolatedEnds {
 Result<Surface> fit_grid(const KnotVector& u, const KnotVector& v, const PointGrid& points,
                          const InterpolatedEnds& interpolated = {});
 
-// Returns the surface's points at the parameters u x v.
+// Returns the surface's points at all pairs of the parameters u and v.
 PointGrid sample_grid_points(const Surface& surface, std::vector<double> u, std::vector<double> v);
 
 // Returns the largest distance in metres between a point of the grid and the surface at its parameters.
@@ -128,14 +129,15 @@ class DisplacementRefit {
   // pseudo_inverse()).
   static Result<DisplacementRefit> make(const Grid& grid, InstructionSet set);
 
-  // Makes a refit with constraints on the control columns; free columns fit the remainder by least squares.
+  // Makes a refit under constraints on the control points. The columns of control points that are not fixed
+  // fit the samples by least squares.
   static Result<DisplacementRefit> make(const Grid& grid, const RefitConstraints& constraints,
                                         InstructionSet set);
 
   int sample_rows() const { return sample_rows_; }
   int sample_columns() const { return sample_columns_; }
 
-  // Returns the length of a row of samples in memory; values past grid.columns() have no effect.
+  // Returns the number of values in memory for a row of samples; values past grid.columns() have no effect.
   int sample_stride() const { return sample_stride_; }
 
   // Computes the displacements of the control points (rows x columns) from those of the samples. `sample`
@@ -149,10 +151,12 @@ class DisplacementRefit {
   InstructionSet set_{};
   int sample_rows_ = 0, sample_columns_ = 0, sample_stride_ = 0;
   int control_rows_ = 0, control_columns_ = 0, control_stride_ = 0;
-  std::vector<float> u_inverse_;               // control_rows x sample_rows
-  AlignedVector<float> v_inverse_transposed_;  // sample_stride x control_stride, zero-padded
-  AlignedVector<float> half_;                  // control_rows x sample_stride
-  AlignedVector<float> padded_control_;        // control_rows x control_stride
+  std::vector<float> u_inverse_;  // pseudo-inverse along u: control_rows x sample_rows
+  // Transposed pseudo-inverse along v: sample_stride x control_stride, zero-padded.
+  AlignedVector<float> v_inverse_transposed_;
+  AlignedVector<float> half_;  // product with u_inverse_ only: control_rows x sample_stride
+  // Result before its padding is removed: control_rows x control_stride.
+  AlignedVector<float> padded_control_;
 };
 
 }  // namespace spoonbill

@@ -191,7 +191,7 @@ double KnotVector::into_domain(double u) const {
   const double start = domain_start(), end = domain_end();
   if (!periodic_) return u > start ? std::min(u, end) : start;
   if (u >= start && u < end) return u;
-  if (u == end) return start;  // subtracting the rounded period may miss the start
+  if (u == end) return start;  // subtracting the period, which is rounded, may give a value beside the start
   const double period = end - start;
   const double wrapped = u - period * std::floor((u - start) / period);
   return wrapped >= start && wrapped < end ? wrapped : start;
@@ -344,7 +344,7 @@ Result<KnotVector> with_domain(const KnotVector& knots, double start, double end
   if (start == from && end == to) return knots;
   std::vector<double> all = knots.knots();
   for (double& knot : all) {
-    // The ends are exact to the last bit.
+    // The last knot must be exactly `end`, without rounding.
     knot = knot == to ? end : start + (knot - from) / (to - from) * (end - start);
   }
   return knots.is_periodic() ? KnotVector::periodic(knots.degree(), std::move(all))

@@ -40,14 +40,14 @@ class KnotVector {
   // seam).
   static Result<KnotVector> periodic(int degree, std::vector<double> knots);
 
-  // Makes uniform knots over [0, 1].
+  // Makes evenly spaced knots over [0, 1].
   static Result<KnotVector> clamped_uniform(int degree, int control_point_count);
   static Result<KnotVector> periodic_uniform(int degree, int control_point_count);
 
   int degree() const { return degree_; }
   int control_point_count() const { return control_point_count_; }
   bool is_periodic() const { return periodic_; }
-  // Returns true if the surface meets its control points at this end; false for a periodic direction.
+  // Returns true if the surface interpolates its control points at this end; false for a periodic direction.
   bool is_clamped(bool at_end) const {
     if (periodic_) return false;
     return at_end ? knots_.back() == domain_end() : knots_.front() == domain_start();
@@ -65,7 +65,8 @@ class KnotVector {
   // on either side if periodic.
   const std::vector<double>& extended_knots() const { return extended_; }
 
-  // Returns the distinct knots in the domain, both ends included: the ends of the polynomial pieces.
+  // Returns the distinct knots in the domain, both ends included, which are the ends of the polynomial
+  // pieces.
   std::vector<double> breakpoints() const;
 
   // Returns u wrapped (periodic; the end maps to the start) or clamped (open) into the domain. NaN maps to
@@ -98,12 +99,12 @@ struct KnotMultiplicity {
   double knot;
   int multiplicity;
 };
-// Returns the distinct knots in the domain except its end. The start of an open direction counts as
-// clamped; the start of a period has the multiplicity of the seam.
+// Returns the distinct knots in the domain, except its end, with their multiplicities. The start of an open
+// direction counts as clamped; the start of a period has the multiplicity of the seam.
 std::vector<KnotMultiplicity> knot_multiplicities(const KnotVector& knots);
 
-// Returns the first two positions of a periodic knot at or after `start`, one period apart; in an open
-// direction, the knot itself.
+// Returns the first two parameters at or after `start` that a periodic knot has, one period apart. In an open
+// direction, returns the knot itself.
 std::vector<double> knot_positions_from(const KnotVector& knots, double knot, double start);
 
 // Returns a knot vector of a higher or equal degree that represents every spline over `knots`: each
@@ -111,12 +112,12 @@ std::vector<double> knot_positions_from(const KnotVector& knots, double knot, do
 // one above max_degree.
 Result<KnotVector> elevate_degree(const KnotVector& knots, int degree);
 
-// Returns a knot vector of a lower or equal degree with the same continuity at every knot, but at most
-// C^(degree - 1). Open ends become clamped.
+// Returns a knot vector of a lower or equal degree. The continuity at every knot stays the same but is at
+// most C^(degree - 1). Open ends become clamped.
 Result<KnotVector> reduce_degree(const KnotVector& knots, int degree);
 
-// Returns the union: every knot with the larger of its two multiplicities. Refuses different degrees,
-// periodicity or domains.
+// Returns the union of two knot vectors: every knot with the larger of its two multiplicities. Refuses
+// different degrees, periodicity or domains.
 Result<KnotVector> knot_union(const KnotVector& a, const KnotVector& b);
 
 // Returns the part from `start` to `end` as a clamped knot vector. In a periodic direction it may cross the

@@ -122,7 +122,7 @@ SurfacePoint evaluate(const PiecewiseSurface& surface, double u, double v) {
   const double* const controls[3] = {whole.net.x.data(), whole.net.y.data(), whole.net.z.data()};
   SurfacePoint point;
   for (int axis = 0; axis < 3; ++axis) {
-    double sums[6] = {};  // position, du, dv, duu, duv, dvv
+    double sums[6] = {};  // sums for the position, du, dv, duu, duv and dvv
     for (int i = 0; i <= surface.u->degree(); ++i) {
       const double* const row = controls[axis] + bu.controls[i] * whole.net.columns;
       double value = 0.0, dv = 0.0, dvv = 0.0;

@@ -10,8 +10,9 @@
 
 namespace spoonbill {
 
-// The polynomials of a knot vector, which must outlive the object. Allocates only when constructed; immutable
-// afterwards, so that any thread may read it. Values equal those of basis_functions() except for rounding.
+// The basis functions of a knot vector, which must outlive the object, as polynomials. Allocates only when
+// constructed; immutable afterwards, so that any thread may read it. Values equal those of basis_functions()
+// except for rounding.
 class PieceBasis {
  public:
   explicit PieceBasis(const KnotVector& knots);
@@ -21,7 +22,7 @@ class PieceBasis {
     // value[d][j] is the d-th derivative of the basis function of controls[j].
     std::array<std::array<double, 12>, 3> value;
   };
-  // Computes the values and both derivatives at u, which must be in the domain.
+  // Computes the values and the first and second derivatives at u, which must be in the domain.
   void evaluate(double u, Values& values) const;
 
   // Computes only value[0] at u, which must be in the domain.
@@ -37,9 +38,10 @@ class PieceBasis {
   int degree_, padded_;  // padded_ is degree + 1 rounded up to whole vectors
   std::vector<double> breaks_;
   double pieces_a_unit_;
-  std::vector<double> scales_;  // dx / du of each piece, see coefficients_
-  std::vector<int> controls_;   // degree + 1 for each piece
-  // Coefficients in x = -1..1 across each piece: degree + 1 rows of padded_ values, highest power first.
+  std::vector<double> scales_;  // dx / du of each piece, with x as for coefficients_
+  std::vector<int> controls_;   // degree + 1 indices of control points for each piece
+  // Polynomial coefficients of each piece, in a variable x that runs from -1 to 1 across the piece: degree +
+  // 1 rows of padded_ values, highest power first.
   std::vector<double> coefficients_;
 };
 
@@ -50,7 +52,7 @@ struct PiecewiseSurface {
   const PieceBasis* v;
 };
 
-// Same as evaluate() and position() of the surface, except for rounding.
+// Return the same as evaluate() and position() of the surface, except for rounding.
 SurfacePoint evaluate(const PiecewiseSurface& surface, double u, double v);
 Vector3 position(const PiecewiseSurface& surface, double u, double v);
 // Returns whether u, v is at the end of an open domain.

@@ -6,9 +6,9 @@ namespace spoonbill {
 
 inline constexpr int product_lanes = 16;  // the row lengths of b and out are multiples of this
 
-// Computes out (rows x columns) = a (rows x depth) b (depth x columns). All are row-major without gaps; b and
-// out are at addresses that are multiples of 64 bytes, and out overlaps neither a nor b. Each entry is summed
-// in order of depth, whatever the vector width.
+// Computes out (rows x columns) = a (rows x depth) b (depth x columns). The matrices are row-major without
+// gaps; b and out are at addresses that are multiples of 64 bytes, and out overlaps neither a nor b. Each
+// entry is summed in order of depth, whatever the vector width.
 using MultiplyInOrder = void (*)(const float* a, const float* b, float* out, int rows, int depth,
                                  int columns);
 

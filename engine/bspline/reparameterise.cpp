@@ -13,7 +13,8 @@ namespace spoonbill {
 
 namespace {
 
-using ControlLine = std::vector<double>;  // coordinates of all control points with one index
+// Coordinates of all control points that have one index along the direction.
+using ControlLine = std::vector<double>;
 
 // A sequence of lines of control points; the support of the basis function of line i is from knots[i] to
 // knots[i + degree + 1].
@@ -29,7 +30,7 @@ ControlLine mix(const ControlLine& a, const ControlLine& b, double weight_of_b) 
   return mixed;
 }
 
-// Inserts a knot once; it must have `degree` knots on either side.
+// Inserts a knot once. The sequence must have `degree` knots on either side of it.
 void insert_once(Sequence& sequence, double knot) {
   const auto& knots = sequence.knots;
   const int degree = sequence.degree;
@@ -55,9 +56,9 @@ std::vector<double> with_knot(const KnotVector& knots, double knot) {
   return more;
 }
 
-// Inserts the knot into the central period and into every period whose insertion affects it, and returns the
-// lines of the central period. Further periods are added on either side, so that each inserted knot is an
-// inner one.
+// Inserts the knot into the central period and into every period in which it affects the central one. Returns
+// the lines of the central period. Further periods are added on either side, so that each inserted knot is an
+// inner knot.
 std::vector<ControlLine> insert_into_periodic(const KnotVector& knots, const std::vector<ControlLine>& lines,
                                               double knot) {
   const int degree = knots.degree(), count = knots.control_point_count();
@@ -194,7 +195,7 @@ Result<KnotVector> rotate_knots(const KnotVector& knots, int first) {
   for (int i = 0; i < count; ++i) {
     const int from = (first + i) % count;
     const bool wrapped = first + i >= count;
-    // The seam's first knot is exactly at the domain's start.
+    // The first knot of the seam must be exactly the start of the domain, without rounding.
     turned.push_back(wrapped ? (all[from] - start) + (end - all[first]) + start
                              : start + (all[from] - all[first]));
   }

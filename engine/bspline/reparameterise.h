@@ -1,5 +1,5 @@
-// Exact changes of a surface's parameters: knot insertion, reversal, exchange of u and v, another seam,
-// another domain, a part. Pure functions; any thread may call them.
+// Exact changes of a surface's parameters: inserting knots, reversing a direction, exchanging u and v, moving
+// the seam, changing the domain, cutting out a part. Pure functions; any thread may call them.
 #pragma once
 
 #include "engine/base/result.h"

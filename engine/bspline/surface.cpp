@@ -116,7 +116,7 @@ SurfacePoint evaluate(const Surface& surface, double u, double v) {
 
 Vector3 position(const Surface& surface, double u, double v) {
   SPOONBILL_ASSERT_DEBUG(has_matching_net(surface));
-  // basis_values() sets only values[0], which is all that is read.
+  // basis_values() sets only values[0]; nothing else is read here.
   BasisFunctions bu, bv;
   basis_values(surface.u, surface.u.into_domain(u), bu);
   basis_values(surface.v, surface.v.into_domain(v), bv);
@@ -144,18 +144,19 @@ Vector3 unit_normal(const Surface& surface, double u, double v) {
 
 namespace {
 
-// Smallest usable ratio of |du x dv| to the largest value that the control points in reach allow. A smaller
-// product is rounding noise of the coordinates themselves.
+// Smallest usable ratio of |du x dv| to the largest value that the control points in reach allow. Where the
+// ratio is smaller, the product is rounding noise of the coordinates.
 template <class Real>
 constexpr double product_noise = 16.0 * std::numeric_limits<Real>::epsilon();
 
-// Distance, in domain lengths. An edge counts as collapsed if du x dv, over this distance, grows by more than
-// its own size at the edge. A ring of control points that a refit in single precision has moved together
-// coincides only to about 1e-7, and the normals of the remaining hole would be arbitrary.
+// Distance from an edge, in domain lengths. The edge counts as collapsed if du x dv grows over this distance
+// by more than its size at the edge. Exact coincidence is not required, because a refit in single precision
+// moves the control points of a ring together only to about 1e-7. The normals around the remaining hole would
+// be arbitrary.
 constexpr double hole = 1e-6;
 
-// Distances, in domain lengths, to the points from which the normal is taken where the first-order limit
-// vanishes too.
+// Distances from the edge, in domain lengths, of the points at which the normal is taken if the first-order
+// limit vanishes too.
 constexpr double steps_inside[] = {0x1p-14, 0x1p-10, 0x1p-6};
 
 // Derivatives for parameters scaled to a domain of length 1, and an upper bound of |du x dv| that follows

@@ -19,8 +19,8 @@ struct NetView {
   int columns;
 };
 
-// Returns the unit normal as unit_normal(Surface) does, computed in double. u, v are wrapped or clamped into
-// the domain. Does not allocate.
+// Returns the unit normal as unit_normal(Surface) does, but from a view of the control points; computes in
+// double. u and v are wrapped or clamped into the domain. Does not allocate.
 template <class Real>
 Vector3 unit_normal(const KnotVector& u_knots, const KnotVector& v_knots, const NetView<Real>& net, double u,
                     double v);
@@ -56,7 +56,7 @@ struct ControlNet {
 // Returns the box around the control points, which also contains the surface.
 Box bounding_box(const ControlNet& net);
 
-// A surface, a plain value with one owner. `net` may be changed in place, but its size must stay what the
+// A surface, a plain value with one owner. `net` may be changed in place, but it must keep the size that the
 // knots require.
 struct Surface {
   KnotVector u;
@@ -64,9 +64,9 @@ struct Surface {
   ControlNet net;
 };
 
-// Returns whether the net has the size that the knots require.
+// Returns whether the net has as many rows and columns as the knots require.
 bool has_matching_net(const Surface& surface);
-// Returns whether the net also has finite coordinates throughout.
+// Returns whether the net has the size that the knots require and only finite coordinates.
 bool is_valid(const Surface& surface);
 
 // Returns the knot vector of a direction.

@@ -86,8 +86,8 @@ std::optional<PolygonCrossing> find_crossing(const std::vector<std::vector<Eigen
 
 namespace {
 
-// Largest number of chords of one piece: that of a curve of max_degree whose control points span three
-// domains. Only curves with control points far away need more.
+// Largest number of chords of one piece. A curve of degree max_degree whose control points span three domains
+// needs this many; only curves with control points even farther away would need more.
 constexpr double largest_piece_chord_count = 8000.0;
 
 std::string point_text(const Eigen::Vector2d& point) {
@@ -173,7 +173,7 @@ double second_derivative_bound(const TrimLoop& loop, int span, const Eigen::Vect
 // Number and error of the chords, evenly spaced in the parameter, that replace one piece.
 struct PieceChords {
   int count = 1;
-  double error_fraction = 0.0;  // largest distance of a chord from the curve
+  double error_fraction = 0.0;  // largest distance of a chord from the curve, as a fraction of the domain
 };
 
 PieceChords count_chords(const TrimLoop& loop, double start, double length, const Eigen::Vector2d& lengths) {
@@ -349,7 +349,8 @@ TrimLoop with_seam_at(const TrimLoop& loop, Direction direction, const KnotVecto
   std::vector<double>& values = along(moved, direction);
   const double start = knots.domain_start(), length = knots.domain_length();
   double shift = start - knots.into_domain(seam);
-  // The shift brings the loop's start into the domain, so that the rest stays within a period of it.
+  // The shift brings the start of the loop into the domain, so that the whole loop is within one period of
+  // the domain.
   const Eigen::Vector2d first = position(loop, loop.knots.domain_start());
   const double moved_first = (direction == Direction::u ? first.x() : first.y()) + shift;
   shift -= length * std::floor((moved_first - start) / length);

@@ -43,7 +43,7 @@ bool reaches_into(const Polygon& polygon, const KnotVector& along_u, const KnotV
          box.high.y() > along_v.domain_start() && box.low.y() < along_v.domain_end();
 }
 
-// Returns copies of the polygon, shifted by periods, that extend into the domain.
+// Returns those copies of the polygon, shifted by whole periods, that reach into the domain.
 std::vector<Polygon> periodic_copies(const Polygon& polygon, const KnotVector& along_u,
                                      const KnotVector& along_v) {
   std::vector<Polygon> copies;
@@ -115,8 +115,8 @@ Status TrimmedArea::add_edges(const std::vector<std::vector<Eigen::Vector2d>>& p
   return {};
 }
 
-// Samples winding numbers beside edges of the polygon, on the left for a positive offset, and returns how
-// often each number occurs.
+// Samples winding numbers beside edges of the polygon and returns how often each number occurs. The samples
+// are on the left of the edges if the offset is positive.
 std::map<int, int> TrimmedArea::windings_beside(const std::vector<Eigen::Vector2d>& polygon,
                                                 double offset) const {
   const Eigen::Vector2d lengths(along_u_.domain_length(), along_v_.domain_length());
@@ -155,7 +155,7 @@ Status TrimmedArea::compute_level(const std::vector<std::vector<Eigen::Vector2d>
                        " and trim loop 0 keep different parts; outer loops must run counter-clockwise and "
                        "holes clockwise"};
     }
-    // On the right of a loop nothing remains, except the part inside another loop that shares the edge.
+    // Nothing remains on the right of a loop, except the part inside another loop that shares the edge.
     const auto beyond = windings_beside(polygons[k], -sample_offset);
     if (level_ < 0 || level_ > 1 || (!beyond.contains(-level_) && !beyond.contains(1 - level_))) {
       return Error{ErrorCode::duplicate,
@@ -181,8 +181,8 @@ std::size_t TrimmedArea::find_column(double u) const {
   return static_cast<std::size_t>(std::clamp(add_edges, 0.0, columns - 1.0));
 }
 
-// Returns the winding number: edges below the point that run to the right count up, those to the left
-// count down. An edge includes its end at the lower u but not the other, so that a corner counts once.
+// Returns the winding number: edges below the point that run to the right count up, those to the left count
+// down. An edge includes its end at the lower u but not the other, so that a corner counts once.
 int TrimmedArea::winding(double u, double v) const {
   int number = 0;
   const std::size_t column = find_column(u);
@@ -219,7 +219,8 @@ bool TrimmedArea::fill_columns(std::size_t columns) {
 
 namespace {
 
-constexpr double snap_fraction = 1e-9;  // as a fraction of the domain
+// Distance at which a parameter snaps to a grid line, as a fraction of the domain.
+constexpr double snap_fraction = 1e-9;
 
 using Edge = TrimmedArea::Edge;
 
@@ -332,7 +333,7 @@ double v_at(const TrimmedArea::Edge& edge, double u) {
   return edge.from.y() + (u - edge.from.x()) / (edge.to.x() - edge.from.x()) * (edge.to.y() - edge.from.y());
 }
 
-// A side of a piece of a cell: its v at two lines of u.
+// Lower or upper side of a piece of a cell: its v at the two lines of u that bound the piece.
 struct CutSide {
   double v_first, v_last;
 };
@@ -352,8 +353,8 @@ class Cutter {
 
  private:
   struct Piece {
-    int i, j;                              // its cell
-    std::vector<Eigen::Vector2d> corners;  // counter-clockwise, convex
+    int i, j;                              // indices of the cell that contains the piece
+    std::vector<Eigen::Vector2d> corners;  // convex, counter-clockwise
   };
 
   void add_cell(int i, int j) {
@@ -368,7 +369,8 @@ class Cutter {
     }
   }
 
-  // Adds the pieces between two lines of u, where edges are ordered by v.
+  // Adds the pieces of a cell between u = `first` and u = `last`. No edge begins or ends in between, so the
+  // edges can be ordered by v.
   void add_slab(int i, int j, double first, double last) {
     const double v0 = v_.at(j), v1 = v_.at(j + 1);
     std::vector<CutSide> sides{{v0, v0}, {v1, v1}};
@@ -396,7 +398,8 @@ class Cutter {
     if (piece.corners.front() == piece.corners.back()) piece.corners.pop_back();
     if (piece.corners.size() < 3) return;
     for (const Eigen::Vector2d& corner : piece.corners) {
-      // A crossing of two grid lines is already a corner of every piece that meets it, and needs no entry.
+      // A crossing of two grid lines needs no entry, because it is already a corner of every piece that
+      // touches it.
       if (u_.find_line(corner.x()) >= 0 && v_.find_line(corner.y()) >= 0) continue;
       on_u_line_[u_.merge_seam(corner.x())].insert(corner.y());
       if (v_.find_line(corner.y()) >= 0) on_v_line_[v_.merge_seam(corner.y())].insert(corner.x());
@@ -404,8 +407,8 @@ class Cutter {
     pieces_.push_back(std::move(piece));
   }
 
-  // Adds the triangles of a piece, with the corners that neighbours have on its sides as further vertices.
-  // If there are any, the triangles form a fan around the piece's centre.
+  // Adds the triangles of a piece. Corners that neighbouring pieces have on its sides become further
+  // vertices; if there are any, the triangles form a fan around the piece's centre.
   void emit(const Piece& piece) {
     std::vector<std::uint32_t> ring;
     Eigen::Vector2d centre = Eigen::Vector2d::Zero();

@@ -28,9 +28,9 @@ class TrimmedArea {
   // Constructs the untrimmed area of any domain.
   TrimmedArea() = default;
 
-  // Makes the area of loops made by make_trim_loop(). Refuses too many loops or chords, loops that cross or
-  // coincide, loops that disagree on the remaining part (such as a counter-clockwise hole), and loops that
-  // leave nothing.
+  // Makes the area of loops that make_trim_loop() returned. Refuses too many loops or chords, loops that
+  // cross or coincide, loops that disagree on which part remains (such as a counter-clockwise hole), and
+  // loops that leave no area.
   static Result<TrimmedArea> make(const KnotVector& along_u, const KnotVector& along_v,
                                   const std::vector<TrimLoop>& loops);
 
@@ -62,15 +62,15 @@ class TrimmedArea {
 
   KnotVector along_u_, along_v_;
   std::vector<Edge> edges_;
-  int level_ = 0;  // added to the winding number; a point remains if the sum is above 0
+  int level_ = 0;  // number added to the winding number; a point remains if their sum is above 0
   double remaining_fraction_ = 1.0;
   // Indices of the edges, listed for columns of equal width in u. The edges that may cross a vertical line in
   // column c are the entries column_starts_[c] to column_starts_[c + 1] - 1 of column_edges_.
   std::vector<std::size_t> column_starts_, column_edges_;
 };
 
-// The grid lines of one direction that bound its cells, the ends of the domain included. Where a periodic
-// direction omits the seam's second line, its last cells end at the first line.
+// The grid lines of one direction that bound its cells, including the ends of the domain. In a periodic
+// direction, the grid may omit the second line at the seam; its last cells then end at the first line.
 class GridLines {
  public:
   // The parameters must include both ends of an open direction.
@@ -81,14 +81,14 @@ class GridLines {
   double at(int line) const { return at_[static_cast<std::size_t>(line)]; }
   const std::vector<double>& all() const { return at_; }
 
-  // Returns the parameter, or the nearest line if that is within a billionth of the domain, so that no sliver
-  // is cut off.
+  // Returns the nearest grid line if it is within a billionth of the domain, so that no sliver is cut off;
+  // otherwise the parameter itself.
   double snap(double parameter) const;
   // Returns the cell of a parameter, clamped to the domain; for a parameter on a line, the cell after it.
   int find_cell(double parameter) const;
-  // Returns the line exactly at a parameter, or -1.
+  // Returns the index of the line exactly at a parameter, or -1 if there is none.
   int find_line(double parameter) const;
-  // Returns the parameter. Where the seam has a single line, both ends of the period give the same value.
+  // Returns the parameter. If the seam has a single line, both ends of the period give the same value.
   double merge_seam(double parameter) const;
 
  private:
@@ -101,7 +101,7 @@ class GridLines {
 // may read it.
 class TrimmedCells {
  public:
-  // Position of a cell relative to the area: outside, cut by its edges, or inside.
+  // State of a cell: outside the area (away), cut by edges of the area, or entirely inside (kept).
   enum class State : std::uint8_t { away, cut, kept };
 
   TrimmedCells(const GridLines& u, const GridLines& v, const TrimmedArea& area);
@@ -129,23 +129,24 @@ class TrimmedCells {
 struct CutVertex {
   double u = 0.0, v = 0.0;
   std::array<std::uint32_t, 4> corners{};  // samples of the grid, counter-clockwise from the lowest u and v
-  std::array<double, 4> weights{};         // their sum is 1
+  std::array<double, 4> weights{};         // bilinear weights of the corners; their sum is 1
 };
 
 // Triangles of a trimmed grid.
 struct TrimmedGrid {
-  std::vector<CutVertex> vertices;  // numbered after the grid's samples
+  // Vertices that are no samples; their numbers follow those of the grid's samples.
+  std::vector<CutVertex> vertices;
   // Counter-clockwise with u to the right and v up. No vertex is in the interior of a triangle's side.
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-// Cuts a grid along the trims; sample (i, j) has the number i * columns + j. A periodic direction may omit
-// the seam's second line; its last cells then end at the first line. The parameters must include both ends of
-// an open direction.
+// Cuts a grid along the trims. In the result, sample (i, j) of the grid has the number i * columns + j. A
+// periodic direction may omit the second line at the seam; its last cells then end at the first line. The
+// parameters must include both ends of an open direction.
 TrimmedGrid trim_grid(const GridDirection& u, const GridDirection& v, const TrimmedArea& area);
 
-// Returns the remaining fraction of a surface's area in space, from triangles of 8 x 8 cells in each
-// polynomial piece. The error shrinks with the square of the cell size.
+// Returns the remaining fraction of a surface's area in space. It is computed from triangles of 8 x 8 cells
+// in each polynomial piece; the error shrinks with the square of the cell size.
 double remaining_area_fraction(const Surface& surface, const TrimmedArea& area);
 
 }  // namespace spoonbill

@@ -30,8 +30,8 @@ std::size_t near_rim(const Profile& profile, bool from_end) {
   return station(s);
 }
 
-// Distance from the pole, as a fraction of the body's length, within which a hollow end must be, with
-// everything that protrudes around it.
+// Largest distance from a pole, as a fraction of the body's length, at which the hollow around the pole and
+// everything that protrudes around it may extend.
 constexpr double end_fraction = 0.4;
 
 std::size_t shoulder(const Profile& profile, bool from_end) {
@@ -54,8 +54,9 @@ std::size_t shoulder(const Profile& profile, bool from_end) {
   return station(s);
 }
 
-// A section is not bent if the wide axis through its centre crosses its outline twice, both times farther
-// from the centre than this fraction of the distance to the tip on that side.
+// A section is not bent if a straight line along its wide axis, through its centre, crosses the outline far
+// enough out on both sides: farther from the centre than this fraction of the distance to the tip on that
+// side.
 constexpr double bent_fraction = 0.9;
 
 // Indices of the ring's points that are farthest along +e1 and along -e1.
@@ -90,8 +91,8 @@ bool is_bent(const Ring& ring, const Vector3& e1, const Vector3& e2) {
   return crossings > 0 && !(crossings == 2 && at_ends);
 }
 
-// Measures a bent section's width along the bend and its thickness across it, from points at equal fractions
-// of the two sides between the tips.
+// Measures the width of a bent section along the bend, and its thickness across the bend. Both are computed
+// from points at equal fractions of the two sides between the tips.
 void measure_bent(const Ring& ring, CrossSection& section) {
   const Tips tips = find_tips(ring, section.e1);
   const auto samples = [](int from, int to) { return (to - from + ring_samples) % ring_samples; };
@@ -110,8 +111,8 @@ void measure_bent(const Ring& ring, CrossSection& section) {
   section.thickness = across;
 }
 
-// A table from the ring's arc length to u (unwrapped past the seam), and the arc lengths at which the ring
-// crosses +e1, +e2, -e1, -e2 and +e1. Crossings are found from signs rather than angles, because some
+// A table that maps the arc length of a ring to u (continued past the seam), and the arc lengths at which the
+// ring crosses +e1, +e2, -e1, -e2 and +e1. Crossings are found from signs rather than angles, because some
 // library functions return different bits on different processors.
 struct RingArc {
   LinearTable arc_to_u;
@@ -123,7 +124,7 @@ RingArc ring_arc(const Surface& surface, const Ring& ring, const CrossSection& s
   const auto point = [&](int s) -> const Vector3& {
     return ring.points[static_cast<std::size_t>(s % ring_samples)];
   };
-  // Returns a value that is negative before crossing q and not negative after it.
+  // Returns a value that changes from negative to positive or zero at crossing q.
   const auto side = [&](int q, int s) {
     const Vector3 axes[4] = {section.e2, -section.e1, -section.e2, section.e1};
     return axes[q % 4].dot(point(s) - ring.centre);
@@ -166,14 +167,15 @@ RingArc bent_arc(const Surface& surface, const Ring& ring, const CrossSection& s
   return result;
 }
 
-// Relative difference between the variances along the two axes below which the axes are arbitrary.
+// Largest relative difference between the variances along the two axes at which the axes count as arbitrary.
 constexpr double nearly_alike = 1e-3;
-// Smallest ratio of |sum of z^4| to the sum of |z|^4 at which a ring has corners rather than the ripple of
-// a round ring; z is a point of the section as a complex number.
+// Smallest ratio of |sum of z^4| to the sum of |z|^4 at which a ring counts as having corners. Smaller ratios
+// are only the ripple of a round ring. Here z is a point of the section as a complex number.
 constexpr double min_squareness = 0.02;
 
-// Turns e1 to the midpoint of a side of a square section, where every axis is a principal one. The
-// argument of the fourth moment is four times the angle of a corner. A round section keeps its axis.
+// Turns e1 to the midpoint of a side of a square section, where every axis is a principal axis. The fourth
+// moment is a complex number whose angle is four times the angle of a corner. The axis of a round section
+// does not change.
 void turn_to_sides(const Ring& ring, const Vector3& axis, Vector3& e1) {
   const Vector3 e2 = axis.cross(e1);
   std::complex<double> moment = 0.0;
@@ -192,7 +194,8 @@ void turn_to_sides(const Ring& ring, const Vector3& axis, Vector3& e1) {
 
 Ring sample_ring(const Surface& surface, double v) {
   SPOONBILL_ASSERT(surface.u.is_periodic());
-  // The control points of the ring and of its derivative by v, with the same bits as evaluate().
+  // Blends the control points of the ring and of its derivative with respect to v, with the same bits as
+  // evaluate().
   const BasisFunctions along = basis_functions(surface.v, surface.v.into_domain(v));
   std::vector<Vector3> controls, derivatives;
   for (int i = 0; i < surface.net.rows; ++i) {
@@ -320,8 +323,8 @@ RingParameters ring_parameters(const Surface& surface, const Ring& ring, const C
   std::array<double, 5> corner{};
   for (int q = 0; q < 4; ++q) {
     // The corner divides the arc between two crossings in proportion to the cells of the two sides that it
-    // joins. The narrow side comes first after a crossing of the wide axis, the wide side after a crossing
-    // of the narrow axis.
+    // joins. The narrow side comes first after a crossing of the wide axis, the wide side after a crossing of
+    // the narrow axis.
     const double first = q % 2 == 0 ? along_narrow : along_wide;
     corner[q] =
         arc.crossing[q] + (arc.crossing[q + 1] - arc.crossing[q]) * first / (along_narrow + along_wide);

@@ -1,5 +1,5 @@
-// Rings of a closed tube at constant v, their profile along the tube, and the positions of lattice nodes
-// on them.
+// Rings of a closed tube at constant v, their profile along the tube, and the positions of lattice nodes on
+// them.
 #pragma once
 
 #include <algorithm>
@@ -32,13 +32,13 @@ inline constexpr int ring_samples = 256;
 
 // A ring of a tube, in metres.
 struct Ring {
-  std::vector<Vector3> points;  // ring_samples, the seam once
+  std::vector<Vector3> points;  // ring_samples points around the ring; the seam occurs once
   Vector3 centre = Vector3::Zero();
-  Vector3 along = Vector3::Zero();  // mean derivative of the points by v
+  Vector3 along = Vector3::Zero();  // mean derivative of the points with respect to v
   double perimeter = 0.0;
 };
 
-// Samples a ring; the surface must be periodic along u.
+// Samples the ring of a surface at v. The surface must be periodic along u.
 Ring sample_ring(const Surface& surface, double v);
 
 // The centre line of a tube: v, distance from the first pole, perimeter and centre of each station.
@@ -55,16 +55,16 @@ struct Rims {
   std::size_t first = 0, last = 0;
 };
 
-// Returns, from each pole, the first station whose perimeter reaches 85 % of the largest perimeter nearby
-// (within a tenth of the length).
+// Returns, from each pole, the first station whose perimeter is at least 85 % of the largest perimeter within
+// a tenth of the length from that pole.
 Rims near_rims(const Profile& profile);
 
-// Returns, for each end, the first station after the outermost one from which the length along the tube grows
-// at least as fast as the mean radius (perimeter / 2 pi). The cap of a body that is hollow around its pole
-// therefore extends over the edge of the hollow to the side.
+// Returns, for each end of the tube, the first station from which the tube advances at least as fast as its
+// mean radius (perimeter / 2 pi) grows. The search begins at the station that protrudes farthest. If a body
+// is hollow around its pole, its cap therefore extends over the edge of the hollow to the side.
 Rims shoulder_rims(const Profile& profile);
 
-// Returns, for each end, the rim that is farther from the pole.
+// Returns, for each end of the tube, that one of the two rims that is farther from the pole.
 Rims further_rims(const Rims& a, const Rims& b);
 
 // Axes and extents of a cross-section, in metres.
@@ -77,20 +77,20 @@ struct CrossSection {
 // Returns the axes and extents of a ring's section perpendicular to `axis`.
 CrossSection principal_axes(const Ring& ring, const Vector3& axis);
 
-// Extents for choosing cell counts. Counts that suit the section at half length make slender cells
-// elsewhere if an extent varies by more than a factor of 2.5 along the body, as in a spoon. The extent is
-// then the geometric mean of its smallest and its largest value.
+// Width and thickness from which the numbers of lattice cells are chosen. Numbers that suit the section at
+// half length make slender cells elsewhere if an extent varies by more than a factor of 2.5 along the body,
+// as in a spoon. The extent is then the geometric mean of its smallest and its largest value.
 struct Extents {
   double width, thickness;
-  bool bent = false;  // whether any section between the rims is bent
+  bool bent = false;  // true if any section between the rims is bent
 };
 
 // Returns the extents of the tube's sections between the rims.
 Extents lattice_extents(const Surface& surface, const Profile& profile, const Rims& rims,
                         const CrossSection& centre_section);
 
-// Parameters u of the 2 (ni - 1) + 2 (nj - 1) nodes around a ring, in the direction of u. The first is
-// that of corner node (ni - 1, nj - 1), which is between +e1 and +e2.
+// Parameters u of the 2 (ni - 1) + 2 (nj - 1) nodes around a ring, in the direction of u. The first is that
+// of corner node (ni - 1, nj - 1), which is between +e1 and +e2.
 struct RingParameters {
   std::vector<double> u;
 };
@@ -99,8 +99,8 @@ struct RingParameters {
 RingParameters ring_parameters(const Surface& surface, const Ring& ring, const CrossSection& section, int ni,
                                int nj);
 
-// Returns the index, possibly fractional, in RingParameters::u of a point (s, t) on the boundary of the
-// square [-1, 1] x [-1, 1].
+// Returns the index into RingParameters::u of a point (s, t) on the boundary of the square [-1, 1] x [-1, 1].
+// The index is fractional for a point between two nodes.
 double ring_position(double s, double t, int ni, int nj);
 
 // Returns the parameter u at a fractional index in RingParameters::u.

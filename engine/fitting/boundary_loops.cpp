@@ -44,8 +44,8 @@ void append_ring(std::vector<std::uint32_t> ring, const PointGraph& graph,
   boundary_loops.push_back(std::move(loop));
 }
 
-// Appends the simple loops of a closed path: each time the path returns to a node, the part in between is a
-// loop.
+// Divides a closed path into simple loops and appends them: each time the path returns to a node, the part
+// since the last visit is a loop.
 void append_simple_loops(const std::vector<std::uint32_t>& path, const PointGraph& graph,
                          std::vector<BoundaryLoop>& boundary_loops) {
   std::vector<std::uint32_t> open;
@@ -65,8 +65,8 @@ void append_simple_loops(const std::vector<std::uint32_t>& path, const PointGrap
   append_ring(std::move(open), graph, boundary_loops);
 }
 
-// Returns the widest empty angle around a node, in radians: an angle without neighbours within two steps,
-// measured in the plane of the neighbours. Returns 0 with fewer than three neighbours.
+// Returns the widest angle around a node, in radians, in which the node has no neighbours within two steps.
+// The angle is measured in the plane of the neighbours. Returns 0 with fewer than three neighbours.
 double widest_gap(const PointGraph& graph, std::uint32_t node) {
   std::set<std::uint32_t> near;
   for (const std::uint32_t other : graph.adjacent(node)) {
@@ -154,7 +154,7 @@ std::vector<std::uint32_t> find_ring(const PointGraph& part) {
   const PointGraph rest = induced_subgraph(part, remaining);
   const ShortestPaths back = shortest_paths(rest, std::vector<std::uint32_t>{index[b]});
   if (!std::isfinite(back.length[index[a]])) return {};
-  std::reverse(there.begin(), there.end());  // from a to b
+  std::reverse(there.begin(), there.end());  // the path runs from a to b
   std::vector<std::uint32_t> ring = there;
   std::vector<std::uint32_t> rest_path{index[a]};
   for (std::uint32_t n = index[a]; n != index[b];) rest_path.push_back(n = back.predecessor[n]);
@@ -204,8 +204,8 @@ std::vector<TriangleCorners> least_area_triangles(const std::vector<Vector3>& pa
   return triangles;
 }
 
-// Inserts a node between two consecutive nodes of the ring that have no edge: the neighbour of both on the
-// shortest path, if there is one.
+// Completes a ring of nodes: between two consecutive nodes without an edge, inserts their common neighbour on
+// the shortest path, if they have one.
 std::vector<std::uint32_t> fill_steps(const PointGraph& graph, const std::vector<std::uint32_t>& ring) {
   std::vector<std::uint32_t> steps;
   std::set<std::uint32_t> is_taken(ring.begin(), ring.end());
@@ -268,7 +268,7 @@ std::vector<BoundaryLoop> find_cloud_boundaries(const PointGraph& graph) {
     if (widest_gap(graph, node) > open_angle) open.push_back(node);
   }
   // Numbers of graph steps within which boundary nodes are linked, tried in this order. Noise can hide single
-  // boundary nodes; more steps bridge the gaps that this leaves in a ring.
+  // boundary nodes, which leaves gaps in a ring; more steps bridge these gaps.
   constexpr std::array steps{2, 4};
   std::vector<BoundaryLoop> boundary_loops;
   if (open.empty()) return boundary_loops;
@@ -295,7 +295,7 @@ std::vector<BoundaryLoop> find_cloud_boundaries(const PointGraph& graph) {
 }
 
 Cap cap_hole(const PointGraph& graph, const BoundaryLoop& loop, std::uint32_t first) {
-  // The loop's own nodes come first, then the nodes added by splitting.
+  // The nodes of the loop come first, then the nodes added by splitting edges.
   std::vector<Vector3> points;
   for (const std::uint32_t node : loop.nodes) points.push_back(graph.points_m[node]);
   std::vector<TriangleCorners> triangles = least_area_triangles(points);

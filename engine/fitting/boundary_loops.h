@@ -8,8 +8,8 @@
 
 namespace spoonbill {
 
-// Closed path along the nodes of a boundary. The loop of a mesh runs in the direction in which the normals of
-// a cap over the hole agree with those of the mesh.
+// Closed path along the nodes of a boundary. In a mesh, the loop runs such that a cap over the hole, oriented
+// by the loop, has normals that agree with those of the mesh.
 struct BoundaryLoop {
   std::vector<std::uint32_t> nodes;
   double length_m = 0.0;
@@ -26,12 +26,12 @@ std::vector<BoundaryLoop> find_mesh_boundaries(const std::vector<TriangleCorners
 // closed rings. Open chains are dropped.
 std::vector<BoundaryLoop> find_cloud_boundaries(const PointGraph& graph);
 
-// Surface over a hole: the triangulation of its loop with the least area (Barequet and Sharir 1995), refined
-// to the nodes' spacing.
+// Surface over a hole: the triangulation of the hole's loop with the least area (Barequet and Sharir 1995),
+// refined to the spacing of the graph's nodes.
 struct Cap {
-  std::vector<Vector3> points_m;  // added nodes, numbered from `first` on
+  std::vector<Vector3> points_m;  // positions of the added nodes, whose numbers begin at `first`
   std::vector<Vector3> normals;   // unit normals of the added nodes, oriented by the loop's sense of rotation
-  std::vector<NodePair> pairs;    // edges among the added nodes and the loop's nodes
+  std::vector<NodePair> pairs;    // edges between added nodes, and between these and nodes of the loop
   double area_m2 = 0.0;
 };
 Cap cap_hole(const PointGraph& graph, const BoundaryLoop& loop, std::uint32_t first);

@@ -20,9 +20,9 @@ namespace {
 
 inline constexpr std::size_t nodes_around_bridge = 24;
 
-// Component with a hole cut into it, where a bridge begins.
+// A component with a hole cut into it, at which a bridge begins.
 struct Opening {
-  FitPoints island;  // without the nodes that were cut out
+  FitPoints island;  // the component without the nodes that were cut out
   // Nodes at even steps along the hole's boundary, counterclockwise seen from outside. Their number is
   // nodes_around_bridge, or zero if the component is too small.
   std::vector<std::uint32_t> loop;
@@ -72,8 +72,8 @@ std::vector<std::uint32_t> sample_evenly(const PointGraph& graph, const std::vec
   return chosen;
 }
 
-// Step lengths along a ring. A step counts as longer where the normals turn, so that no ring steps across a
-// thin wall.
+// Lengths of the steps along a ring. A step counts as longer where the normals turn, so that no step of a
+// ring crosses a thin wall from one face to the other.
 class RingSteps {
  public:
   RingSteps(const FitPoints& points, double reach) : points_(&points), reach_(reach) {}
@@ -87,7 +87,7 @@ class RingSteps {
     for (std::size_t k = 0; k < ring.size(); ++k) sum += length(ring[k], ring[(k + 1) % ring.size()]);
     return sum;
   }
-  // Reverses parts of the closed path while that shortens it (2-opt, Croes 1958).
+  // Reverses parts of the closed path as long as this shortens the path (2-opt, Croes 1958).
   void shorten(std::vector<std::uint32_t>& ring) const {
     constexpr int most_passes = 50;
     bool shorter = true;
@@ -123,8 +123,8 @@ std::vector<std::uint32_t> sort_by_angle(const std::vector<std::uint32_t>& ring,
   return ordered;
 }
 
-// Sorts the nodes of the ring by angle on each of several planes and returns the shortest of the closed
-// paths, which crosses itself least.
+// Sorts the nodes of the ring by angle in each of several planes and returns the shortest of the resulting
+// closed paths, because the shortest path crosses itself least.
 std::vector<std::uint32_t> order_ring(const FitPoints& points, const std::vector<std::uint32_t>& ring,
                                       const ShortestPaths& paths, double reach, const Vector3& facing,
                                       const Vector3& towards) {
@@ -143,7 +143,8 @@ std::vector<std::uint32_t> order_ring(const FitPoints& points, const std::vector
 }
 
 // Returns true if the ring runs counterclockwise seen from outside, with the remaining surface on its right.
-// Each node votes with its normal; without normals, the enclosed area seen from `towards` decides.
+// Each node votes with its normal. Without normals, the area that the ring encloses as seen from `towards`
+// decides.
 bool runs_counterclockwise(const FitPoints& points, const std::vector<std::uint32_t>& ring,
                            const ShortestPaths& paths, double reach, const Vector3& towards) {
   const PointGraph& graph = points.graph;
@@ -166,9 +167,9 @@ bool runs_counterclockwise(const FitPoints& points, const std::vector<std::uint3
 // Cuts out the nodes within a path length of `node` and assigns their points to the nearest remaining nodes.
 // The loop is the shortest closed path found through the boundary nodes; steps count as longer where the
 // normals turn. The search starts from the order of the nodes in several planes: two views, and the plane
-// onto which the surface is unrolled along shortest paths (Schmidt, Grimm and Wyvill 2006), because a
-// boundary that runs over the edge of a thin wall is folded onto itself in every view. `towards` replaces the
-// normal of a component without normals.
+// onto which the surface is unrolled along shortest paths (Schmidt, Grimm and Wyvill 2006). The unrolled
+// plane is needed where the boundary runs over the edge of a thin wall, because it is then folded onto itself
+// in every view. `towards` replaces the normal of a component without normals.
 Opening cut_opening(const FitPoints& whole, std::uint32_t node, const Vector3& towards) {
   SPOONBILL_ASSERT(node < whole.graph.size());
   const double reach = opening_fraction * bounding_diagonal_m(whole.graph.points_m);
@@ -219,8 +220,8 @@ NearestPair nearest_pair(const PointGraph& a, const PointGraph& b) {
   return pair;
 }
 
-// Combines two components without adding edges between them; spanning nodes go last. `index_a` and `index_b`
-// receive the new node numbers.
+// Combines two components without adding edges between them. Spanning nodes get the last numbers. `index_a`
+// and `index_b` receive the new number of each node.
 FitPoints combine(const FitPoints& a, const FitPoints& b, std::vector<std::uint32_t>& index_a,
                   std::vector<std::uint32_t>& index_b) {
   FitPoints both = a;
@@ -316,8 +317,8 @@ void span_gap(FitPoints& points, const std::vector<std::uint32_t>& a, const std:
   add_spanning_nodes(points, positions, normals, pairs);
 }
 
-// Joins two components by a tube between openings at their nearest pair of nodes. The loops of openings that
-// face each other run in opposite directions, so one of the two is reversed.
+// Joins two components by a tube between two openings, which are cut at the nearest pair of nodes. The loops
+// of openings that face each other run in opposite directions, so one loop is reversed.
 Result<FitPoints> join_at(const FitPoints& a, const FitPoints& b, const NearestPair& pair) {
   const Vector3 between = (b.graph.points_m[pair.b] - a.graph.points_m[pair.a]).normalized();
   const Opening open_a = cut_opening(a, pair.a, between), open_b = cut_opening(b, pair.b, -between);
@@ -335,8 +336,8 @@ Result<FitPoints> join_at(const FitPoints& a, const FitPoints& b, const NearestP
   return both;
 }
 
-// Returns true if more than a third of a loop's nodes are far from all other components: farther than the two
-// facing ends of a body with a gap would be.
+// Returns true if more than a third of a loop's nodes are far from all other components. Far is more than a
+// quarter of the loop's diameter, a distance that facing ends of one body do not have.
 bool is_free_end(const FitPoints& island, const BoundaryLoop& loop, const NearestPoints& others) {
   constexpr double most_distance_ratio = 0.25, most_node_fraction = 1.0 / 3.0;
   const double far = most_distance_ratio * loop.length_m / M_PI;

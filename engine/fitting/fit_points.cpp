@@ -19,8 +19,8 @@ namespace {
 constexpr std::size_t least_scan_points = 30;
 constexpr std::size_t neighbours_per_node = 9;
 
-// Vertices that are closer together than this fraction of the median edge are merged. The fraction is above
-// the rounding errors of files with few digits, and below any edge that a scanner resolves.
+// Vertices of a mesh that are closer together than this fraction of the median edge are merged. The fraction
+// is above the rounding errors of files with few digits, and below any edge that a scanner resolves.
 constexpr double joining_edge_fraction = 1e-3;
 
 // Returns the distance within which the vertices of a mesh are joined.
@@ -53,7 +53,7 @@ void join_near_vertices(Scan& scan, double distance_m) {
   scan.triangles = std::move(remaining);
 }
 
-// Returns true if the spread across the main axis is only rounding error compared with the spread along it.
+// Returns true if the points spread across their main axis only by rounding errors.
 bool are_collinear(const std::vector<Vector3>& points_m) {
   const auto count = static_cast<double>(points_m.size());
   Vector3 centre = Vector3::Zero();
@@ -97,8 +97,9 @@ std::vector<double> compute_vertex_normals(Scan& scan) {
   return weights;
 }
 
-// Reduces the number of points to the limit by voxels and sums the weights; the weights of a cloud are
-// numbers of points. A triangle whose corners are in two or three voxels leaves edges between their nodes.
+// Reduces the number of points to the limit by voxels and sums the weights of merged points. In a cloud, a
+// weight is a number of points. A triangle whose corners are in two or three voxels leaves edges between the
+// voxels' points.
 void thin(Scan& scan, std::vector<double>& weights, std::vector<std::uint32_t>& representative) {
   if (scan.points_m.size() <= fitted_point_limit + fitted_point_limit / 4) return;
   const VoxelGroups groups = group_by_voxels(scan, voxel_side_for(scan, fitted_point_limit));
@@ -142,7 +143,8 @@ std::vector<NodePair> mesh_pairs(const Scan& scan, const std::vector<std::uint32
   return pairs;
 }
 
-// Pairs each node with its nearest nodes, unless they are much farther than usual or have opposed normals.
+// Pairs each node with its nearest nodes, except with nodes much farther away than usual or with opposed
+// normals.
 std::vector<NodePair> cloud_pairs(const Scan& nodes) {
   const NearestPoints nearest(nodes.points_m);
   std::vector<NearestPoints::Neighbour> found;
@@ -167,8 +169,8 @@ std::vector<NodePair> cloud_pairs(const Scan& nodes) {
   return pairs;
 }
 
-// Groups the points into nodes. In a cloud there are at least three points per node on average, which spreads
-// the nodes more evenly than the points.
+// Groups the points into nodes. In a cloud there are at least three points per node on average, because the
+// nodes are then spaced more evenly than the points.
 VoxelGroups groups_for_nodes(const Scan& scan) {
   const std::size_t count = scan.points_m.size();
   const std::size_t target = scan.triangles.empty() ? std::min(node_target, count / 3) : 4 * node_target;
@@ -249,7 +251,7 @@ Result<FitPoints> make_fit_points(Scan scan) {
   for (const std::uint32_t spike : spikes) fit.representative[spike] = no_point;
   if (!is_mesh) {
     remove_points(fit, find_outliers(fit.scan.points_m, fit.weights));
-    // The weights are equal, so that dense and sparse regions count alike.
+    // All weights are set equal, so that dense and sparse regions count alike.
     fit.weights.assign(fit.weights.size(), 1.0);
   }
   make_nodes(fit);

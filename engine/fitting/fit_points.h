@@ -17,27 +17,28 @@ inline constexpr std::size_t node_target = 5000;
 inline constexpr std::uint32_t no_point = 0xffffffffU;
 
 struct FitPoints {
-  bool is_mesh = false;  // only spikes count as outliers of a mesh
-  Scan scan;             // thinned and cleaned, without triangles
-  // Positions of the given points, or of a mesh's vertices after joining. For each of them, `representative`
-  // holds the index of the scan point that represents it, or no_point if it was removed.
+  bool is_mesh = false;  // in a mesh, only spikes count as outliers
+  Scan scan;             // points after thinning and cleaning, without triangles
+  // Positions of the points that were given, or of a mesh's vertices after joining. For each of them,
+  // `representative` holds the index of the scan point that represents it, or no_point if it was removed.
   std::vector<Vector3> given_m;
   std::vector<std::uint32_t> representative;
   std::vector<double> weights;               // weight of each scan point: its area in a mesh, 1 in a cloud
   PointGraph graph;                          // graph of the nodes, each of which represents nearby points
-  std::vector<Vector3> node_normals;         // unit, or zero where unknown
-  std::vector<std::uint32_t> node_index;     // node of each scan point
-  std::vector<BoundaryLoop> boundary_loops;  // longest first
-  // Number of nodes at the end of the graph that have no points and span holes and gaps.
+  std::vector<Vector3> node_normals;         // unit vectors, or zero where the normal is unknown
+  std::vector<std::uint32_t> node_index;     // index of the node of each scan point
+  std::vector<BoundaryLoop> boundary_loops;  // sorted by length, the longest first
+  // Number of nodes that span holes and gaps. They have no points and are the last nodes of the graph.
   std::size_t spanning_nodes = 0;
-  std::size_t outliers = 0;         // given points removed as outliers; spikes of a mesh
-  std::size_t joined = 0;           // mesh vertices merged with another within the joining distance
+  std::size_t outliers = 0;  // number of given points removed as outliers; in a mesh, number of spikes
+  std::size_t joined = 0;    // number of mesh vertices merged with another vertex within the joining distance
   double joining_distance_m = 0.0;  // 0 for a cloud, whose points are not joined
-  std::size_t flipped_normals = 0;  // given points whose normals were flipped to agree with their neighbours
+  // Number of given points whose normals were flipped to agree with neighbouring normals.
+  std::size_t flipped_normals = 0;
 };
 
-// Prepares a scan. Meshes: joins vertices nearer than a thousandth of the median edge, flattens spikes,
-// refines triangles to the nodes' spacing and computes vertex normals. Clouds: thins by voxels, removes
+// Prepares a scan. In a mesh, joins vertices nearer than a thousandth of the median edge, flattens spikes,
+// refines triangles to the nodes' spacing and computes vertex normals. Thins a cloud by voxels, removes its
 // outliers and flips inconsistent normals. Fails with fewer than 30 points, or if all points coincide or are
 // collinear.
 Result<FitPoints> make_fit_points(Scan scan);

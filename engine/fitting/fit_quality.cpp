@@ -71,7 +71,8 @@ ClosestPoint ClosestParameters::project_from(const Vector3& point, const Vector2
     const Vector3 away = at.position_m - point;
     const double a = at.du.squaredNorm(), b = at.du.dot(at.dv), c = at.dv.squaredNorm();
     const double p = at.du.dot(away), q = at.dv.dot(away);
-    // Uses Newton's matrix where it is positive definite, otherwise that of the Gauss-Newton method.
+    // Uses the matrix of Newton's method where it is positive definite, otherwise that of the Gauss-Newton
+    // method.
     double m = a + at.duu.dot(away), n = b + at.duv.dot(away), o = c + at.dvv.dot(away);
     if (!(m > 0.1 * a && o > 0.1 * c && m * o - n * n > 0.1 * (a * c - b * b))) m = a, n = b, o = c;
     const double ridge = 1e-9 * (m + o) + 1e-300;
@@ -231,12 +232,12 @@ namespace {
 constexpr int distance_steps = 4;
 constexpr int error_samples_per_span = 4;
 constexpr std::size_t plane_points = 10;
-// A sample of the surface counts as seen if a data point is within this many mean spacings. At a boundary,
-// the limit is a single mean spacing.
+// Largest distance from a surface sample to the nearest data point, in mean spacings, at which the sample
+// counts as scanned. At a boundary, the limit is one mean spacing.
 constexpr double seen_spacings = 3.0;
 
 // Returns true if errors are measured at the fitted points instead of the given ones: the given vertices of a
-// refined mesh may be just a few corners of large triangles.
+// mesh that was refined may be just the few corners of large triangles.
 bool measures_fitted_points(const FitPoints& points) {
   return points.is_mesh && points.scan.points_m.size() > points.given_m.size();
 }
@@ -250,7 +251,7 @@ void measure_data(const FittedSurface& fit, const FitPoints& points, FitErrors& 
     const std::size_t fitted = are_fitted ? g : points.representative[g];
     const Vector3& point = errors.positions_m[g];
     ClosestPoint found = closest.project_from(point, fit.uv[fitted], distance_steps);
-    // For points caught in a local minimum, the search also starts from the nearest sample.
+    // The point may be caught in a local minimum, so the search also starts from the nearest sample.
     if (found.distance_m > 1.5 * fit.distance_m[fitted] || fit.trust[fitted] < 1.0) {
       const ClosestPoint other = closest.project(point, distance_steps);
       if (other.distance_m < found.distance_m) found = other;
@@ -285,7 +286,7 @@ std::vector<Vector3> surface_samples(const Surface& surface) {
   return samples;
 }
 
-// Returns the distance of the sample from the plane through the found points.
+// Returns the distance of the sample from a plane fitted through the found points.
 double plane_distance(const Vector3& sample, const std::vector<Vector3>& points,
                       const std::vector<NearestPoints::Neighbour>& found) {
   Vector3 mean = Vector3::Zero();

@@ -27,11 +27,11 @@ class ClosestParameters {
   ClosestParameters(const ClosestParameters&) = delete;
   ClosestParameters& operator=(const ClosestParameters&) = delete;
 
-  // Returns the stationary point that Gauss-Newton steps reach from `start`. Each step is shortened until it
-  // reduces the distance and is never longer than 0.75 of a mean span.
+  // Returns the point at which Gauss-Newton steps from `start` become stationary. Each step is shortened
+  // until it reduces the distance and is never longer than 0.75 of a mean span.
   ClosestPoint project_from(const Vector3& point, const Vector2& start, int steps) const;
 
-  // Does the same search, started from the surface sample nearest to the point.
+  // Makes the same search as project_from(), starting from the surface sample nearest to the point.
   ClosestPoint project(const Vector3& point, int steps) const;
 
  private:
@@ -55,8 +55,8 @@ struct FoldCheck {
   }
 };
 
-// Normals of a scan at parameters of the surface. `normals` is empty or as long as `uv`; `are_estimated`
-// marks estimates for a scan without normals.
+// Normals of a scan and the surface parameters `uv` of their points. `normals` is empty or as long as `uv`;
+// `are_estimated` is true if the scan had no normals and these are estimates.
 struct NormalsAtParameters {
   std::span<const Vector2> uv;
   std::span<const Vector3> normals;
@@ -65,32 +65,36 @@ struct NormalsAtParameters {
 
 // Counts folds and cusps.
 //
-// Folds: each span has 4 x 4 samples at cell centres, off poles and seams. A sample folds if its normal
+// Folds: each span has 4 x 4 samples at cell centres, away from poles and seams. A sample folds if its normal
 // opposes those of the six data points nearest in (u, v), the nearest of them being less than a span away.
-// Distances in space would mislead on thin walls, and normals vary from point to point at sharp rims. Without
-// data normals, or with estimated ones, a sample also folds if its normal opposes the next sample's.
+// Distances in space would be misleading on thin walls. Six points are needed because normals vary from point
+// to point at sharp rims. Without data normals, or with estimated ones, a sample also folds if its normal
+// opposes that of the next sample.
 //
 // Cusps: each span has 12 x 12 samples. A cusp is a turn of the normal by more than 120 degrees between
-// neighbouring samples. It is a loop too small for the points to show, or an edge sharper than the knots can
-// follow.
+// neighbouring samples. It is a loop smaller than the spacing of the points, or an edge sharper than the
+// knots can follow.
 FoldCheck check_folds(const Surface& surface, const NormalsAtParameters& data);
 
 struct Deviation {
   double max_m = 0.0, p95_m = 0.0, mean_m = 0.0;  // p95_m: 95th percentile
 };
-// Returns zeros for an empty list.
+// Returns the deviation of a list of distances; all its values are zero if the list is empty.
 Deviation compute_deviation(std::vector<double> distances_m);
 
 struct FitErrors {
-  // Distances from the data to their closest surface points: data_to_surface excludes strays, all_to_surface
-  // includes them. The data are the given points or, for a coarse mesh, points all over it.
+  // Distances from the data points to their closest surface points: data_to_surface excludes strays,
+  // all_to_surface includes them. The data points are the given points or, for a coarse mesh, points all over
+  // it.
   Deviation data_to_surface, all_to_surface;
-  std::size_t strays = 0;  // given points of zero trust: off the surface, unlike the points around them
-  // Distances from surface samples, 4 x 4 per span, to the plane of the nearest data points, or to the
-  // nearest point if that is closer.
+  // Number of strays: given points of zero trust, which are off the surface while their neighbours are not.
+  std::size_t strays = 0;
+  // Distances from surface samples, 4 x 4 per span, to the plane through the nearest data points or to the
+  // nearest data point, whichever is closer.
   Deviation surface_to_data;
-  double unseen_fraction = 0.0;  // fraction of samples without data nearby, which surface_to_data ignores
-  // Values for each data point, for pictures: position, surface parameters, distance, and the stray flag.
+  // Fraction of the samples without nearby data; surface_to_data ignores these samples.
+  double unseen_fraction = 0.0;
+  // Values of each data point, for drawing: position, surface parameters, distance, and the stray flag.
   std::vector<Vector3> positions_m;
   std::vector<Vector2> uv;
   std::vector<double> distance_m;

@@ -13,7 +13,7 @@
 namespace spoonbill {
 namespace {
 
-// Smallest number of points of a cloud: a component needs 30 nodes, and each node needs three points.
+// Smallest number of points of a cloud: a component needs at least 30 nodes, and each node three points.
 constexpr std::size_t least_cloud_points = 90;
 
 IslandChoice island_choice(const FitRequest& request) {
@@ -35,8 +35,8 @@ Result<FittedBody> fit_body(FitPoints island, const Parameterisation& start, Fit
   return body;
 }
 
-// Returns true if the points belong to a real wall: the two faces of a wall fit them much more closely than a
-// single surface between the faces does.
+// Returns true if the points belong to a real wall. Its two faces then fit the points much more closely than
+// a single surface between the faces does.
 bool is_closer_as_wall(const FittedBody& wall, const FittedBody& face) {
   constexpr double fraction = 0.8;
   return wall.errors.data_to_surface.p95_m < fraction * face.errors.data_to_surface.p95_m;

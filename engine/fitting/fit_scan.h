@@ -19,8 +19,9 @@ enum class IslandChoice { largest, bridge, all };
 
 struct FitRequest {
   FitSettings settings;
-  std::optional<ShapeKind> kind;        // default: detected
-  std::optional<IslandChoice> islands;  // default: the largest, which must hold half of the scan
+  std::optional<ShapeKind> kind;  // kind of shape; default: detected
+  // Treatment of several components. Default: fit the largest, which must contain half of the scan.
+  std::optional<IslandChoice> islands;
 };
 
 struct FittedBody {
@@ -35,30 +36,32 @@ struct FittedBody {
 // Connected component that could not be fitted while others could.
 struct UnfittedIsland {
   std::size_t points = 0;
-  Vector3 size_m = Vector3::Zero(), centre_m = Vector3::Zero();  // size and centre of its bounding box
+  // Size and centre of the component's bounding box.
+  Vector3 size_m = Vector3::Zero(), centre_m = Vector3::Zero();
   std::string reason;
 };
 
 struct ScanFit {
-  std::vector<FittedBody> bodies;        // largest first
+  std::vector<FittedBody> bodies;        // fitted bodies, the largest first
   std::size_t islands = 0;               // number of connected components found
-  std::vector<UnfittedIsland> unfitted;  // largest first; only with IslandChoice::all
-  std::size_t open_bridged = 0;  // bridged components with open ends away from the gaps, which were capped
-  // Number of points at different positions; for a mesh, the number of vertices after joining.
+  std::vector<UnfittedIsland> unfitted;  // sorted by size, the largest first; only with IslandChoice::all
+  // Number of bridged components whose open ends away from the gaps were capped.
+  std::size_t open_bridged = 0;
+  // Number of given points at different positions. For a mesh, the number of vertices after joining.
   std::size_t distinct = 0;
   double joining_distance_m = 0.0;  // 0 for a cloud
-  // Numbers of points that the bodies leave out: duplicates, outliers, points of tiny components, and points
-  // of components that were not fitted.
+  // Numbers of points that no body uses, by reason: merged with another point, outliers, points of tiny
+  // components, and points of components that were not fitted.
   std::size_t joined = 0, outliers = 0, dust = 0, other_islands = 0;
   // Number of cloud points whose normals were flipped to agree with their neighbours. Flipping is needed when
   // all normals face the scanner.
   std::size_t flipped_normals = 0;
 };
 
-// Fits a scan with finite points. Fails with advice if there are too few points (a cloud needs at least 90),
-// if a shape cannot be parameterised as the requested kind, or if less than half of the distinct points are
-// used although the request does not choose islands. Also fails if components cannot be bridged, and on a
-// request to stop. With IslandChoice::all, components that cannot be fitted are listed in `unfitted`.
+// Fits a scan with finite points. Fails with advice in these cases: there are too few points (a cloud needs
+// at least 90); a shape cannot be parameterised as the requested kind; less than half of the distinct points
+// are used although the request does not choose islands; components cannot be bridged; or `progress` stopped
+// the fit. With IslandChoice::all, components that cannot be fitted are listed in `unfitted`.
 Result<ScanFit> fit_scan(Scan scan, const FitRequest& request);
 
 }  // namespace spoonbill

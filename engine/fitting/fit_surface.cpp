@@ -22,31 +22,31 @@ namespace spoonbill {
 namespace {
 
 inline constexpr int projection_steps = 3;
-// Lower bound of the fairness, low enough for a surface to follow data without noise closely.
+// Lower bound of the fairness, low enough for a surface to follow noise-free data closely.
 inline constexpr double least_fairness = 3e-4;
 
-// Data of one fitting stage: the nodes first, then all points.
+// Data of one stage of the fit. A first stage fits the nodes, a later one all points.
 struct FittedData {
   std::span<const Vector3> points_m;
   std::span<const double> weights;
-  std::span<const Vector3> normals;  // empty, or one for each point, zero where unknown
+  std::span<const Vector3> normals;  // empty, or one normal for each point, which is zero where unknown
   std::vector<Vector2> uv;
   std::vector<double> distance_m;
   std::vector<double> trust;
 };
 
-// Returns the 95th percentile.
+// Returns the 95th percentile of the distances.
 inline double percentile_95(std::span<const double> distances) {
   return quantile({distances.begin(), distances.end()}, 0.95);
 }
 
-// Returns a difference of periodic parameters (period 1), wrapped into [-0.5, 0.5].
+// Returns a difference of parameters with period 1, wrapped into [-0.5, 0.5].
 inline double wrapped(double difference) {
   return difference - std::round(difference);
 }
 
-// Rank of a fit: fits without folds come first; otherwise the error decides, with a surcharge for each fold
-// and cusp.
+// Quality of a fit, for comparison with other fits. Fits without folds are better; otherwise the error
+// decides, with a surcharge for each fold and cusp.
 struct FitQuality {
   std::size_t folds, cusps;
   double error_m;
@@ -68,7 +68,7 @@ class SurfaceFitter {
   Result<FittedSurface> run();
 
  private:
-  // Copy of the state that unfolding changes, from which unfolding can restart.
+  // Copy of the state that unfold() changes, to which it can return.
   struct Folding {
     Surface surface;
     FoldCheck folds;
@@ -111,11 +111,11 @@ class SurfaceFitter {
   ShapeKind kind_;
   double least_agreement_, fairness_factor_, chosen_fairness_;
   SurfaceStructure structure_;
-  std::vector<double> fairness_;  // one for each pair of spans, u-major
+  std::vector<double> fairness_;  // fairness of each pair of spans, u-major
   std::vector<double> node_weights_, all_weights_;
   std::vector<Vector3> all_points_m_, all_normals_;
   FittedData nodes_, all_;
-  std::vector<std::pair<Vector3, double>> poles_;  // position and v of each pole
+  std::vector<std::pair<Vector3, double>> poles_;  // position and parameter v of each pole
   Surface surface_;
   FoldCheck folds_;
   std::vector<double> u_breaks_, v_breaks_;  // breakpoints of the final knots
@@ -126,15 +126,16 @@ constexpr int first_controls = 10;
 constexpr double growth = 1.35;
 constexpr double first_fairness = 1e-2;
 constexpr int point_round_count = 3;
-// Weight of a node that spans a hole, relative to the mean: its position is a guess.
+// Weight of a node that spans a hole, relative to the mean weight. It is small, because the position of such
+// a node is a guess.
 constexpr double spanning_weight = 0.15;
-constexpr double pole_weight = 0.5;  // weight of a pole, relative to one span's points
+constexpr double pole_weight = 0.5;  // weight of a pole, relative to the points of one span
 
 const ClosestPoint& nearer(const ClosestPoint& one, const ClosestPoint& other) {
   return other.distance_m < one.distance_m ? other : one;
 }
 
-// Returns the 95th percentile of the given points' distances, without strays.
+// Returns the 95th percentile of the distances of the given points, without strays.
 double percentile_error(const FittedSurface& fitted, const FitPoints& points) {
   std::vector<double> distances;
   for (const std::uint32_t point : points.representative) {
@@ -213,7 +214,7 @@ void SurfaceFitter::add_poles() {
     bool exact = false;
     for (std::size_t n = 0; n < nodes_.uv.size(); ++n) {
       const double away = std::abs(nodes_.uv[n].y() - v);
-      if (exact || !(away < near)) continue;  // also skips NaN
+      if (exact || !(away < near)) continue;  // the condition is also true for NaN
       if (away == 0.0) {
         exact = true;
         sum.setZero();
@@ -254,8 +255,8 @@ void SurfaceFitter::smooth_shifts(const std::vector<Vector2>& before, std::vecto
   }
 }
 
-// Returns true if the point may get the parameters `uv`: the surface normal there agrees with the point's own
-// normal. Spanning nodes may always move, because their normals are guesses.
+// Returns true if the point may get the parameters `uv`, because the surface normal there agrees with the
+// point's own normal. Spanning nodes may always move, because their normals are guesses.
 bool SurfaceFitter::can_move_to(const FittedData& data, std::size_t point, const Vector2& uv) const {
   if (least_agreement_ <= -1.0 || point + points_->spanning_nodes >= data.normals.size()) return true;
   const SurfacePoint at = evaluate(surface_, uv.x(), uv.y());
@@ -288,8 +289,8 @@ bool SurfaceFitter::within_tolerance(const FittedData& data) const {
   return true;
 }
 
-// Inserts knots. Returns false without a change if both directions have their full number of control points,
-// or if the fit is within the tolerance.
+// Inserts knots. Returns false, without a change, if both directions have their largest number of control
+// points or if the fit is within the tolerance.
 bool SurfaceFitter::add_control_points() {
   const int u = structure_.u.control_point_count(), v = structure_.v.control_point_count();
   if (u >= settings_->control_u && v >= settings_->control_v) return false;
@@ -306,7 +307,7 @@ bool SurfaceFitter::add_control_points() {
   return true;
 }
 
-// Returns true if the surface normals oppose those of the scan at most nodes; spanning nodes do not count.
+// Returns true if the surface normals oppose those of the scan at most nodes, not counting spanning nodes.
 // Without normals, the sign of the enclosed volume decides for a closed shape, and is_inside_out() for an
 // open one.
 bool SurfaceFitter::has_inward_normals() const {
@@ -321,7 +322,7 @@ bool SurfaceFitter::has_inward_normals() const {
   return closed() ? compute_enclosed_mass(surface_).volume_m3 < 0.0 : is_inside_out(surface_);
 }
 
-// Reverses a closed surface of negative volume, which can result from early rounds on a thin wall.
+// Reverses a closed surface of negative volume. Early rounds can produce such a surface on a thin wall.
 Status SurfaceFitter::orient_outwards() {
   if (!closed() || compute_enclosed_mass(surface_).volume_m3 >= 0.0) return {};
   surface_ = reversed(surface_, Direction::u);
@@ -390,10 +391,10 @@ Status SurfaceFitter::point_rounds() {
   return {};
 }
 
-// Returns the fit. For each point, the closest point is searched from the point's parameters and from the
-// nearest sample, because a point may have been held back or caught in a local minimum; the nearer result
-// counts. Normals that are estimated for clouds are used only to count folds: on thin walls some of them
-// belong to the other face, so they must not steer the fit.
+// Returns the fit. For each point, the closest surface point is searched from the point's parameters and from
+// the nearest sample, and the nearer result counts. One search is not enough, because a point may have kept
+// old parameters or be caught in a local minimum. Normals that are estimated for clouds are used only to
+// count folds: on thin walls some of them belong to the other face, so they must not steer the fit.
 FittedSurface SurfaceFitter::result() {
   const std::size_t count = points_->scan.points_m.size();
   all_.uv.resize(count);
@@ -422,17 +423,18 @@ Result<FittedSurface> SurfaceFitter::run() {
   return result();
 }
 
-// Spans with less than `seen_fraction` of the mean weight are stiffened by up to `unseen_fairness`.
+// Spans with less than `seen_fraction` of the mean weight are stiffened by a factor of up to
+// `unseen_fairness`.
 constexpr double seen_fraction = 0.3, unseen_fairness = 3.0;
 constexpr std::size_t pole_columns = 3;
 constexpr double least_pole_size = 0.02;
 
-// Candidates for the fairness, in units of the least fairness.
+// Candidates for the fairness, as multiples of the least fairness.
 constexpr std::array fairness_factors{1.0, 3.0, 10.0, 30.0, 100.0, 300.0};
-// About every fourth point is held out of the fit for cross-validation.
+// Every fourth point, on average, is held out of the fit for cross-validation.
 constexpr std::size_t held_out_stride = 4;
-// Largest ratio of the chosen fairness's held-out error to the smallest one. The largest fairness within this
-// ratio is chosen.
+// Largest allowed ratio of the error at held-out points to the smallest such error of all candidates. The
+// largest fairness within this ratio is chosen.
 constexpr double most_error_ratio = 1.03;
 
 // Sets the fairness of all spans; spans with few data get up to `unseen_fairness` times more.
@@ -458,7 +460,7 @@ void SurfaceFitter::set_fairness(double fairness, const FittedData& data) {
     for (std::size_t s = 0; s < u_spans; ++s) {
       column += weight[s * v_spans + t] / static_cast<double>(u_spans);
     }
-    // Spans about a pole are small, with few points to counter their stiffness.
+    // Spans around a pole are small and have few points, which could not counter the full stiffness.
     const bool is_at_pole = closed() && std::min(t, v_spans - 1 - t) < pole_columns;
     const double size = is_at_pole ? std::clamp(column / mean, least_pole_size, 1.0) : 1.0;
     for (std::size_t s = 0; s < u_spans; ++s) {
@@ -468,8 +470,8 @@ void SurfaceFitter::set_fairness(double fairness, const FittedData& data) {
   }
 }
 
-// Chooses the largest fairness that predicts held-out points nearly as well as the best: noise is
-// unpredictable, shape is not (cross-validation, Craven and Wahba 1979).
+// Chooses the largest fairness whose fit predicts held-out points nearly as well as the best candidate does
+// (cross-validation, Craven and Wahba 1979). Noise cannot be predicted, the shape can.
 Status SurfaceFitter::choose_fairness(const FittedData& data) {
   set_fairness(least_fairness, data);
   std::vector<double> weights(data.weights.begin(), data.weights.end());
@@ -477,7 +479,7 @@ Status SurfaceFitter::choose_fairness(const FittedData& data) {
   for (std::size_t p = 0; p < weights.size(); ++p) {
     weights[p] *= data.trust[p];
     if (data.uv[p].hasNaN() || weights[p] == 0.0) continue;
-    // hashed, since neighbouring points may follow each other along scan lines
+    // The index is hashed, because consecutive points may follow each other along a scan line.
     if ((p * 2654435761U >> 7) % held_out_stride != 0) continue;
     if (p + points_->spanning_nodes < weights.size()) held_out.push_back(p);
   }
@@ -513,7 +515,7 @@ constexpr double least_stray_fraction = 3e-4;
 constexpr double edge_fraction = 0.02;
 
 // Reduces the weights of points that are farther from the surface than nearly all others. At most one point
-// in twenty is affected, because in early rounds large distances mean that the surface is wrong, not the
+// in twenty is affected: in early rounds, many large distances mean that the surface is wrong, not the
 // points.
 void SurfaceFitter::update_trust(FittedData& data) const {
   std::vector<double> sorted(data.distance_m.begin(),
@@ -532,8 +534,8 @@ void SurfaceFitter::update_trust(FittedData& data) const {
   }
 }
 
-// Returns the distance of a point from the surface. For a point slightly beyond an open edge, returns the
-// distance from the tangent plane instead, because the edge must be extended towards such points.
+// Returns the distance of a point from the surface. A point slightly beyond an open edge should pull the edge
+// outwards, so its distance is only that from the tangent plane.
 double SurfaceFitter::off_surface_distance(const FittedData& data, std::size_t point) const {
   const Vector2& uv = data.uv[point];
   const auto is_end = [](double parameter) { return parameter <= 0.0 || parameter >= 1.0; };
@@ -545,8 +547,8 @@ double SurfaceFitter::off_surface_distance(const FittedData& data, std::size_t p
   return std::abs(at.du.cross(at.dv).normalized().dot(data.points_m[point] - at.position_m));
 }
 
-// Sets the trust of a cloud's strays to 0. A stray is a point whose height above the surface differs from
-// those of its neighbours in (u, v). Where the surface is wrong, neighbours have similar heights.
+// Sets the trust of a cloud's strays to 0. A stray is a point whose height above the surface differs from the
+// heights of its neighbours in (u, v). Where only the surface is wrong, neighbours have similar heights.
 void SurfaceFitter::distrust_strays() {
   if (points_->is_mesh) return;
   const Vector2 scale(static_cast<double>(span_count(structure_.u)),
@@ -577,7 +579,7 @@ void SurfaceFitter::distrust_strays() {
   const double reach = std::max(stray_deviations * 1.4826 * *median,
                                 least_stray_fraction * bounding_diagonal_m(points_->scan.points_m));
   const auto strays = std::count_if(off.begin(), off.end(), [&](double height) { return height > reach; });
-  // A larger number means that the surface cannot follow the data.
+  // More strays than this fraction mean that the surface cannot follow the data.
   if (static_cast<double>(strays) > most_strays * static_cast<double>(count)) return;
   for (std::size_t p = 0; p < count; ++p) {
     if (off[p] > reach) all_.trust[p] = 0.0;
@@ -589,11 +591,11 @@ constexpr int fold_rounds = 30, cusp_rounds = 60;
 // do not cross.
 constexpr std::array relaxation_rounds{10, 0};
 constexpr double most_fairness = 10.0;
-// Largest factor by which removing cusps may increase the error of the surface without folds.
+// Largest factor by which the removal of cusps may increase the error of a surface without folds.
 constexpr double most_smoothing_ratio = 1.2;
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-// Returns the spans with folds or, if there are none, the spans with cusps. Cusps are the lesser fault.
+// Returns the spans with folds or, if there are none, the spans with cusps, which are a lesser fault.
 const std::vector<bool>& SurfaceFitter::faulty_spans() const {
   return folds_.folds > 0 ? folds_.span_folds : folds_.span_cusps;
 }
@@ -617,7 +619,7 @@ void SurfaceFitter::stiffen_faulty_spans() {
 }
 
 // Moves the parameters of nodes in faulty spans towards the mean of their neighbours' parameters. In a
-// harmonic map, where every node is at this mean, no parameters cross.
+// harmonic map every node is at this mean, and no parameters cross.
 void SurfaceFitter::relax_faulty_spans(int rounds) {
   const PointGraph& graph = points_->graph;
   const std::size_t count = points_->scan.points_m.size(), spanning = points_->spanning_nodes;
@@ -669,7 +671,7 @@ bool SurfaceFitter::is_in_faulty_span(const Vector2& uv) const {
   return false;
 }
 
-// Wraps u if periodic; clamps everything else to [0, 1].
+// Wraps u into [0, 1) if it is periodic. Otherwise clamps u, and always v, to [0, 1].
 Vector2 SurfaceFitter::clamp_to_domain(Vector2 uv) const {
   uv.y() = std::clamp(uv.y(), 0.0, 1.0);
   uv.x() = periodic() ? uv.x() - std::floor(uv.x()) : std::clamp(uv.x(), 0.0, 1.0);
@@ -742,17 +744,17 @@ Status SurfaceFitter::unfold(int relaxation) {
 
 }  // namespace
 
-// Tries several bounds on the agreement of normals, since the best bound differs from scan to scan. A strict
-// bound keeps points in the folds of the initial parameters; a loose bound lets points slip to the other
-// face. If all results fold or have large errors, a larger fairness is tried.
+// Fits with several bounds on the agreement of normals, because the best bound differs from scan to scan. A
+// strict bound keeps points in the folds of the initial parameters; a loose bound lets points move to the
+// other face of a wall. If all results fold or have large errors, a larger fairness is tried.
 Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
                                   const FitSettings& settings) {
   SPOONBILL_ASSERT(start.uv.size() == points.graph.size());
   SPOONBILL_ASSERT(settings.tolerance_m >= 0.0);
   struct Trial {
     double agreement, fairness_factor;
-    std::size_t cusps;      // largest number of cusps with which a result without folds is accepted
-    double error_fraction;  // error below which the result is accepted, as a fraction of the size
+    std::size_t cusps;      // the result is accepted only with at most this many cusps and without folds
+    double error_fraction;  // the result is accepted only with a smaller error; as a fraction of the size
   };
   constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
   constexpr std::array trials{Trial{0.0, 1.0, 0, 0.005}, Trial{-0.3, 1.0, 0, 0.005},

@@ -14,7 +14,7 @@ namespace spoonbill {
 
 struct FitSettings {
   int control_u = 24, control_v = 24;  // largest numbers of control points
-  // The fit stops adding control points once all points except outliers are within this distance. 0: it
+  // Largest distance of points, except outliers, at which the fit stops adding control points. 0: the fit
   // always uses the full number.
   double tolerance_m = 0.0;
   Progress progress = {};  // a stop request makes the fit fail
@@ -24,7 +24,7 @@ struct FittedSurface {
   Surface surface;
   std::vector<Vector2> uv;         // parameters of each point
   std::vector<double> distance_m;  // distance of each point from the surface
-  // Weight factor of each point, from 1 down to 0: reduced for a point far from the surface, 0 for strays.
+  // Factor on the weight of each point, from 1 to 0: reduced for a point far from the surface, 0 for a stray.
   std::vector<double> trust;
   FoldCheck folds;
 };
@@ -34,8 +34,8 @@ struct FittedSurface {
 // outliers get less weight (Huber 1964). The fairness is the largest that cross-validation permits, raised
 // further where the surface folds. On thin walls several rules for keeping points on their face are tried,
 // and the best result is returned. Normals point out of closed shapes. On open shapes they agree with the
-// scan's normals; without such normals they point away from a tube's axis, from a sheet's hollow side, or to
-// +z.
+// scan's normals. Without such normals they point away from a tube's axis, away from a sheet's hollow side
+// or, on a flat sheet, to +z.
 Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
                                   const FitSettings& settings);
 

@@ -21,9 +21,9 @@ double edge_weight(const PointGraph& graph, std::uint32_t a, std::uint32_t b, do
   return 1.0 / (0.25 + fraction * fraction);
 }
 
-// Minimises sum w (f_b - f_a - jump(a, b))^2 over the edges for which use(a, b) is true. `fixed` holds given
-// values of f, and NaN elsewhere. A weak spring to zero determines f at nodes without edges. Returns nothing
-// if the system is singular.
+// Returns f that minimises the sum of w (f_b - f_a - jump(a, b))^2 over the edges for which use(a, b) is
+// true. `fixed` holds given values of f, and NaN where f is unknown. A weak spring to zero determines f at
+// nodes without edges. Returns nothing if the system is singular.
 template <class Use, class Jump>
 std::optional<Eigen::VectorXd> solve_harmonic(const PointGraph& graph, const std::vector<double>& fixed,
                                               const Use& use, const Jump& jump) {
@@ -65,7 +65,7 @@ std::optional<Eigen::VectorXd> solve_harmonic(const PointGraph& graph, const std
   return all;
 }
 
-// Rising piecewise linear function through (key[k], value[k]).
+// Increasing piecewise linear function through the points (key[k], value[k]).
 struct RisingTable {
   std::vector<double> key, value;
   double at(double k) const {
@@ -77,7 +77,8 @@ struct RisingTable {
   }
 };
 
-// Builds the table from means over groups of equal size by key, from (0, 0) to (1, 1).
+// Builds an increasing table from (0, 0) to (1, 1). The entries in between are means over groups of equal
+// size, sorted by key.
 RisingTable rising_means(const Eigen::VectorXd& key, const std::vector<double>& value, std::size_t groups) {
   std::vector<Eigen::Index> order(value.size());
   std::iota(order.begin(), order.end(), Eigen::Index{0});
@@ -139,8 +140,8 @@ Vector3 estimate_local_normal(const PointGraph& graph, std::uint32_t node) {
 
 enum class SquareSide : unsigned char { none, left, right };
 
-// Cut along the shortest path between the ends. For each node near the path, `side` is the side of the path
-// on which the node is.
+// A cut along the shortest path between the ends. For each node near the path, `side` tells on which side of
+// the path the node is.
 struct Cut {
   std::vector<SquareSide> side;
   std::vector<bool> near_pole;
@@ -161,8 +162,9 @@ void mark_around(const PointGraph& graph, std::uint32_t node, int rings, std::ve
   for (const std::uint32_t other : graph.adjacent(node)) mark_around(graph, other, rings - 1, marks);
 }
 
-// Returns unit vectors to the left of the path within the surface. They turn slowly even across sharp edges,
-// so the mean of many previous vectors decides the sign of each.
+// Returns, for each node of the path, the unit vector within the surface that points to the left of the path.
+// The sign of each vector follows from the mean of many previous vectors, so that it stays consistent across
+// sharp edges.
 std::vector<Vector3> compute_lefts(const PointGraph& graph, const std::vector<std::uint32_t>& path) {
   constexpr std::size_t reach = 3, memory = 14;
   std::vector<Vector3> lefts(path.size());
@@ -255,7 +257,7 @@ Result<std::vector<Vector2>> harmonic_square_map(const PointGraph& graph,
                                                  const std::vector<std::uint32_t>& loop,
                                                  const std::array<std::size_t, 4>& corners) {
   SPOONBILL_ASSERT(loop.size() >= 4);
-  // The corners are in the order of the loop, which may start between any two of them.
+  // The corners must be in the order of the loop, which may start between any two corners.
   const auto ahead = [&](std::size_t c) { return (corners[c] + loop.size() - corners[0]) % loop.size(); };
   SPOONBILL_ASSERT(0 < ahead(1) && ahead(1) < ahead(2) && ahead(2) < ahead(3));
   static const std::array<Vector2, 4> square{Vector2(0, 0), Vector2(1, 0), Vector2(1, 1), Vector2(0, 1)};
@@ -289,7 +291,8 @@ Result<std::vector<Vector2>> harmonic_square_map(const PointGraph& graph,
 
 ShapeEnds farthest_ends(const PointGraph& graph) {
   SPOONBILL_ASSERT(graph.size() > 0);
-  // Uses the centroid of the farthest 4 % of the nodes, since the single farthest node may be any corner.
+  // Uses the centroid of the farthest 4 % of the nodes, because the single farthest node may be at any corner
+  // of the end.
   constexpr double nearly = 0.04;
   const auto farthest = [&](std::uint32_t from) {
     const std::array<std::uint32_t, 1> source{from};

@@ -17,13 +17,14 @@ struct ShapeEnds {
   std::vector<std::uint32_t> start, end;
 };
 
-// Returns (u, v) in [0, 1] for each node of a connected graph, periodic in u. Near poles u is NaN, since the
-// nodes do not resolve it there. The path length from start to end determines v; a harmonic function
-// determines u. Fails if the ends touch or u does not close.
+// Returns (u, v) in [0, 1] for each node of a connected graph, periodic in u. The path length from start to
+// end determines v; a harmonic function determines u. Near poles u is NaN, because the nodes are too coarse
+// to resolve it there. Fails if the ends touch or u does not close.
 Result<std::vector<Vector2>> harmonic_tube_map(const PointGraph& graph, const ShapeEnds& ends);
 
-// Maps a disc onto the unit square by Tutte's embedding. The ordered `loop` maps to the sides by arc length;
-// corners[0] maps to (0, 0), the other corners to the other vertices in the order of the loop.
+// Maps a disc onto the unit square by Tutte's embedding. The nodes of `loop`, in order, map to the sides of
+// the square by arc length. corners[0] maps to (0, 0), the other corners to the other vertices of the square,
+// in the order of the loop.
 Result<std::vector<Vector2>> harmonic_square_map(const PointGraph& graph,
                                                  const std::vector<std::uint32_t>& loop,
                                                  const std::array<std::size_t, 4>& corners);

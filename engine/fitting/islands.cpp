@@ -13,21 +13,21 @@
 namespace spoonbill {
 namespace {
 
-// Pairs longer than the median length times this factor are not direct neighbours and may bridge a gap.
+// Factor on the median length. A longer pair does not connect direct neighbours and may bridge a gap.
 constexpr double doubtful_length = 1.5;
-// Least ratio of a gap to the widest step between the points of a node; within one surface, random points
-// leave no gap as wide as this.
+// Least ratio of a gap to the widest step between the points of a node. Random points within one surface have
+// no gap as wide as this.
 constexpr double gap_steps = 3.0;
 // Smallest cosine of the angle between the gap and the normals on both sides (45 degrees).
 constexpr double facing_fraction = 0.7;
 constexpr std::size_t least_around = 5;
-// Smallest number of points of a component; fewer do not determine their spacing.
+// Smallest number of points of a node from which the spacing of its points is measured.
 constexpr std::size_t least_island_points = 3;
-// Largest number of points that are used; larger groups are subsampled.
+// Largest number of points of a node that are used; more points are subsampled.
 constexpr std::size_t most_points = 64;
 
-// Returns the direction in which a node and its neighbours spread least, or zero with fewer than five
-// neighbours.
+// Returns the direction in which a node and its neighbours spread least, which is normal to the surface.
+// Returns zero with fewer than five neighbours.
 Vector3 normal_at(const PointGraph& graph, std::uint32_t node) {
   const auto around = graph.adjacent(node);
   if (around.size() < least_around) return Vector3::Zero();
@@ -72,7 +72,7 @@ class NodePoints {
   }
 
  private:
-  // Returns the longest edge of the minimum spanning tree (Prim 1957).
+  // Returns the longest edge of the minimum spanning tree of the points (Prim 1957).
   static double widest_step(const std::vector<Vector3>& points) {
     std::vector<double> away(points.size(), std::numeric_limits<double>::infinity());
     std::vector<bool> reached(points.size(), false);
@@ -102,8 +102,8 @@ std::vector<double> pair_lengths(const std::vector<Vector3>& nodes_m, const std:
   return lengths;
 }
 
-// Returns the body to which each component belongs: the component itself or, if it is dust, the body with the
-// shortest pair to it; no_point if no pair leads to a body.
+// Returns the body to which each component belongs. A component that is dust belongs to the body to which its
+// shortest pair leads, or to no_point if no pair leads to a body. Any other component is a body itself.
 std::vector<std::uint32_t> assign_bodies(const ConnectedComponents& parts,
                                          const std::vector<std::size_t>& component_points,
                                          const std::vector<NodePair>& pairs,

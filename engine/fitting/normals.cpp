@@ -15,16 +15,17 @@
 namespace spoonbill {
 namespace {
 
-// Number of neighbours of a node. Two nodes may coincide with opposite normals, so enough neighbours are
-// needed to reach all around.
+// Number of neighbours of a node. It is large enough to reach all around the node even if nodes coincide in
+// pairs with opposite normals.
 constexpr std::size_t normal_neighbours = 12;
-constexpr double longest_pair = 3.0;  // relative to the median
+constexpr double longest_pair = 3.0;  // longest pair of neighbours, relative to the median length
 constexpr double opposite_cosine = -0.5;
-// Largest height of a neighbour on the same face, relative to its distance. A greater height is the thickness
-// of a wall.
+// Largest height of a neighbour above a node's tangent plane, relative to its distance, at which it is on the
+// same face. A greater height means that the neighbour is on the other face of a wall.
 constexpr double most_height_fraction = 0.25;
-// Smallest fraction of all pairs in which normals must be opposite, and smallest fraction of these pairs
-// above and below the node's face. At a wall, all opposite pairs are on one side.
+// Normals count as inconsistent only if both fractions are exceeded: that of pairs with opposite normals
+// among all pairs, and that of the rarer side, above or below the face, among the opposite pairs. At a wall,
+// all opposite pairs are on one side.
 constexpr double least_flipped_fraction = 0.003, least_side_fraction = 0.2;
 constexpr double clear_majority = 0.75;
 
@@ -65,14 +66,16 @@ bool are_inconsistent(const Scan& nodes, const std::vector<NodePair>& pairs) {
          std::min(above, below) > least_side_fraction * flipped;
 }
 
-// Returns the cosine between a normal at one end of a chord and the mirrored normal at the other.
+// Returns the cosine between the normal at one end of a chord and the normal at the other end, mirrored in
+// the plane that bisects the chord.
 double agreement(const Vector3& normal_a, const Vector3& normal_b, const Vector3& chord) {
   const double square = chord.squaredNorm();
   if (!(square > 0.0)) return normal_a.dot(normal_b);
   return normal_a.dot(normal_b - 2.0 / square * normal_b.dot(chord) * chord);
 }
 
-// Minimum spanning trees of the components. The sign of each node follows from its predecessor.
+// Minimum spanning trees of the graph's components. The sign of each node's normal follows from that of its
+// predecessor in the tree.
 class SpanningForest {
  public:
   SpanningForest(const PointGraph& graph, const std::vector<Vector3>& normals)
@@ -91,7 +94,8 @@ class SpanningForest {
 
  private:
   void grow_from(std::uint32_t start) {
-    using Entry = std::tuple<double, std::uint32_t, bool>;  // cost, node, flipped
+    // Cost of the edge, node, whether the node's normal is flipped.
+    using Entry = std::tuple<double, std::uint32_t, bool>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> waiting;
     waiting.emplace(0.0, start, false);
     tree_.clear();
@@ -151,12 +155,12 @@ std::vector<bool> find_inconsistent_normals(const Scan& nodes) {
 
 namespace {
 
-// Largest spread across a node's plane, relative to the spread along it. A greater spread means that the
-// points are at an edge or on two faces.
+// Largest spread of points across a node's plane, relative to their spread along it. A greater spread means
+// that the points are at an edge or on two faces.
 constexpr double most_thickness = 0.15;
 constexpr double most_opposed = 0.2;
 
-// Returns the node and its neighbours within two steps, sorted.
+// Returns the node and its neighbours within two steps, sorted by index.
 std::vector<std::uint32_t> neighbourhood(const PointGraph& graph, std::uint32_t node) {
   std::vector<std::uint32_t> near{node};
   for (const std::uint32_t other : graph.adjacent(node)) {
@@ -193,8 +197,8 @@ std::vector<NodePair> pairs_between(const PointGraph& graph, const std::vector<V
   return pairs;
 }
 
-// Number of points of each component where the surface normal agrees with the node normal, and where it
-// opposes it.
+// Numbers of points of each component at which the surface normal agrees with the node's normal, and at which
+// it opposes it.
 struct Votes {
   std::vector<double> along, against;
 
@@ -236,14 +240,14 @@ std::vector<Vector3> estimate_normals(const FitPoints& points, const Surface& su
 namespace {
 
 constexpr int orientation_samples = 32;
-// Sheets whose net outward area is below this fraction of their area count as flat, such as a cap whose
-// height is below a sixtieth of its width.
+// Fraction of a sheet's area below which its net outward area is too small to tell a hollow side. Such a
+// sheet counts as flat, for example a cap whose height is below a sixtieth of its width.
 constexpr double flat_cap_fraction = 0.05;
-// Components of the mean normal below this fraction of its length count as zero.
+// Fraction of the mean normal's length below which a component of the mean normal counts as zero.
 constexpr double upright_fraction = 0.1;
 
 struct SurfaceSamples {
-  std::vector<Vector3> points_m, areas;  // u varies fastest
+  std::vector<Vector3> points_m, areas;  // points and area vectors of the samples; u varies fastest
 };
 
 SurfaceSamples sample_surface(const Surface& surface) {
@@ -272,7 +276,7 @@ bool faces_down(const std::vector<Vector3>& areas) {
 
 bool is_inside_out(const Surface& surface) {
   const SurfaceSamples sampled = sample_surface(surface);
-  // one ring of a tube, or a whole sheet
+  // A group is one ring of a tube, or a whole sheet.
   const std::size_t group = surface.u.is_periodic() ? orientation_samples : sampled.points_m.size();
   double outwards = 0.0, whole = 0.0;
   for (std::size_t first = 0; first < sampled.points_m.size(); first += group) {

@@ -11,9 +11,9 @@
 namespace spoonbill {
 
 // Returns one flag per normal, true if the normal must be flipped so that all normals agree along the
-// surface. Normals at both ends of a chord should be mirror images in its bisecting plane; signs are
-// propagated along the minimum spanning tree of this measure (Hoppe et al. 1992). Each component keeps the
-// orientation of the majority of its normals if the majority is at least three quarters; otherwise its
+// surface. At both ends of a chord, normals should be mirror images in the plane that bisects the chord.
+// Signs are propagated along the minimum spanning tree of this measure (Hoppe et al. 1992). Each component
+// keeps the orientation of the majority of its normals if that is at least three quarters; otherwise its
 // normals point away from its centre. Zero normals are ignored.
 std::vector<bool> orient_consistently(const std::vector<Vector3>& points_m,
                                       const std::vector<Vector3>& normals,
@@ -24,16 +24,17 @@ std::vector<bool> orient_consistently(const std::vector<Vector3>& points_m,
 // behind the other, they belong to the two faces of a wall.
 std::vector<bool> find_inconsistent_normals(const Scan& nodes);
 
-// Estimates a normal for each parameter pair in `uv`. The pairs belong to the points in order; any pairs
-// beyond these get zero. Normals are perpendicular to the local plane of the nodes and oriented consistently.
-// In each component they agree with the surface's normals at most points. A normal is zero where the nodes
-// have no clear plane. All normals of a component are zero if more than a fifth of them oppose the surface's
-// normals, as where both faces of a thin wall are mixed.
+// Estimates a normal for each parameter pair in `uv`. The first pairs belong to the points in order; any
+// further pairs get zero normals. A normal is perpendicular to the local plane of the nodes, or zero where
+// the nodes have no clear plane. In each component, normals are oriented consistently and agree with the
+// surface's normals at most points. All normals of a component are zero if more than a fifth of them oppose
+// the surface's normals, which happens where both faces of a thin wall are mixed.
 std::vector<Vector3> estimate_normals(const FitPoints& points, const Surface& surface,
                                       const std::vector<Vector2>& uv);
 
-// Returns true if the normals of a sheet or a tube (periodic in u) point inwards: towards a tube's axis, or
-// into a sheet's hollow side. Nearly flat sheets should face +z; upright ones +y, then +x.
+// Returns true if the normals of a sheet or a tube (periodic in u) point inwards: towards the tube's axis, or
+// into the sheet's hollow side. For a nearly flat sheet, returns true if its normals do not point to +z or,
+// if it is upright, to +y or else +x.
 bool is_inside_out(const Surface& surface);
 
 }  // namespace spoonbill

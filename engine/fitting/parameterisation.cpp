@@ -17,9 +17,9 @@ namespace spoonbill {
 namespace {
 
 constexpr double sheet_fraction = 0.12;
-// A surface that faces outwards counts as a sheet if the ratio of the loop's area to the total area is at
-// least this. The ratio is larger than sheet_fraction, because the underside of a closed body may not have
-// been scanned.
+// Smallest ratio of the loop's area to the total area at which a surface with outward normals counts as a
+// sheet. The ratio is larger than sheet_fraction, because the underside of a closed body may not have been
+// scanned.
 constexpr double outward_sheet_fraction = 0.3;
 constexpr double tube_fraction = 0.75;
 constexpr double roundness = 0.12;
@@ -33,7 +33,7 @@ Vector3 vector_area(const PointGraph& graph, const BoundaryLoop& loop) {
   return area;
 }
 
-// Returns the area of each node, computed as in a hexagonal lattice with the node's edge lengths.
+// Returns the area of each node, estimated from its edge lengths as in a hexagonal lattice.
 std::vector<double> node_areas(const PointGraph& graph) {
   std::vector<double> areas(graph.size(), 0.0);
   for (std::uint32_t n = 0; n < graph.size(); ++n) {
@@ -51,10 +51,10 @@ double total_area(const PointGraph& graph) {
   return std::accumulate(areas.begin(), areas.end(), 0.0);
 }
 
-// Centroid and principal axes of the surface, the longest last.
+// Centroid and principal axes of the surface; the longest axis is the last.
 struct Axes {
   Vector3 centre = Vector3::Zero();
-  Vector3 squares = Vector3::Zero();  // mean squared extents, ascending
+  Vector3 squares = Vector3::Zero();  // mean squared extents along the axes, ascending
   Eigen::Matrix3d axes;
 };
 
@@ -82,8 +82,8 @@ void span_holes(FitPoints& island, std::size_t first_loop) {
   }
 }
 
-// Returns nodes that are local minima of the distance from the axis, at least 0.4 of the largest radius
-// apart.
+// Returns nodes at which the distance from the axis is a local minimum. They are at least 0.4 of the largest
+// radius apart.
 std::vector<std::uint32_t> find_axis_nodes(const PointGraph& graph, const Vector3& centre,
                                            const Vector3& axis) {
   std::vector<double> radius(graph.size());
@@ -119,7 +119,8 @@ std::optional<ShapeEnds> find_poles(const PointGraph& graph, const Vector3& cent
                                                  : ShapeEnds{{on_axis[1]}, {on_axis[0]}};
 }
 
-// Returns the poles on the short axis of a round, flat shape (bowl, plate), or on the long axis of any other.
+// Returns the nodes where the short axis of a round, flat shape (bowl, plate) leaves the shape; for any other
+// shape, uses its long axis.
 std::optional<ShapeEnds> find_axis_poles(const PointGraph& graph) {
   const Axes axes = principal_axes(graph);
   const bool is_disc = axes.squares[2] - axes.squares[1] < roundness * axes.squares[2] &&
@@ -127,8 +128,8 @@ std::optional<ShapeEnds> find_axis_poles(const PointGraph& graph) {
   return find_poles(graph, axes.centre, axes.axes.col(is_disc ? 0 : 2));
 }
 
-// Returns true if the normals point away from the centroid, as on a closed shape of which only the outside
-// was scanned.
+// Returns true if the normals point away from the centroid, as they do on a closed shape that was scanned
+// only from outside.
 bool faces_outwards(const FitPoints& island) {
   const Axes axes = principal_axes(island.graph);
   const std::vector<double> areas = node_areas(island.graph);
@@ -136,7 +137,7 @@ bool faces_outwards(const FitPoints& island) {
   for (std::size_t n = 0; n < areas.size(); ++n) {
     volume += areas[n] * (island.graph.points_m[n] - axes.centre).dot(island.node_normals[n]);
   }
-  return volume >= 0.0;  // zero without normals
+  return volume >= 0.0;  // the sum is zero without normals
 }
 
 // Flips all normals of a scan that is inside out.
@@ -191,8 +192,8 @@ std::array<std::size_t, 4> find_corners(const PointGraph& graph, const BoundaryL
   return corners;
 }
 
-// Parameterises a sheet by projection onto its principal plane. The sheet should be a height field over that
-// plane.
+// Parameterises a sheet by projection onto its principal plane. This works well if the sheet is a height
+// field over that plane.
 Parameterisation start_sheet_on_plane(const FitPoints& island) {
   const Axes axes = principal_axes(island.graph);
   Parameterisation start;
@@ -267,20 +268,21 @@ Result<Parameterisation> initial_parameterisation(FitPoints& island, ShapeKind k
 namespace {
 
 constexpr double axis_roundness = 0.1;
-// Largest thickness of a thin wall, as a fraction of the size, and smallest thickness at which its two faces
-// can be separated, in raster cells.
+// Limits of a thin wall: its largest thickness as a fraction of the size, and the smallest thickness, in
+// raster cells, at which its two faces can be separated.
 constexpr double thin_fraction = 0.1;
 constexpr double separable_cells = 3.0;
-// Number of points per raster cell, on average, if all points were on a path three times as long as the size.
+// Mean number of points per raster cell for which the cell size is chosen. It assumes that the profile is
+// three times as long as the size.
 constexpr double points_per_cell = 12.0;
-constexpr double face_fraction = 0.2;  // relative to the wall's thickness
-// If half of the points are deeper than this fraction of the thickness, all points may belong to one noisy
-// face.
+constexpr double face_fraction = 0.2;  // largest depth of points on a face, relative to the wall's thickness
+// Fraction of the wall's thickness. If half of the points are deeper than this, all points may belong to a
+// single noisy face.
 constexpr double between_fraction = 0.25;
 constexpr double covered_fraction = 0.85;
-constexpr int least_cell_points = 2;         // for a cell to count
-constexpr int dilation = 2;                  // in cells
-constexpr double near_axis_fraction = 0.05;  // relative to the largest distance from the axis
+constexpr int least_cell_points = 2;         // smallest number of points for a cell to count
+constexpr int dilation = 2;                  // number of cells by which filled cells are dilated
+constexpr double near_axis_fraction = 0.05;  // fraction of the largest distance from the axis
 
 struct Axis {
   Vector3 centre = Vector3::Zero(), along = Vector3::UnitZ(), first = Vector3::UnitX();
@@ -305,10 +307,10 @@ std::optional<Axis> find_round_axis(const std::vector<Vector3>& points_m) {
   return axis;
 }
 
-// Distance from the axis and height along it for each point.
+// Distance from the axis and height along the axis, for each point.
 struct AxisProfile {
   std::vector<Vector2> positions;
-  Box2 box;  // includes the axis
+  Box2 box;  // box of the positions, extended to the axis
 };
 
 AxisProfile compute_profile(const std::vector<Vector3>& points_m, const Axis& axis) {
@@ -324,8 +326,8 @@ AxisProfile compute_profile(const std::vector<Vector3>& points_m, const Axis& ax
   return profile;
 }
 
-// Raster of the half plane beside the axis, which is the left side of column 0, with a margin on the other
-// sides.
+// Raster of the half plane beside the axis. The axis is the left side of column 0; the other sides have a
+// margin.
 class ProfileRaster {
  public:
   ProfileRaster(const AxisProfile& profile, double cell_m) : cell_m_(cell_m), low_(profile.box.low) {
@@ -338,8 +340,8 @@ class ProfileRaster {
     filled_.assign(counts.size(), false);
     for (int row = 0; row < rows_; ++row) {
       for (int column = 0; column < columns_; ++column) {
-        // Rings near the axis are short and have few points, so a single point there fills all cells between
-        // it and the axis.
+        // Rings near the axis are short and have few points. A single point there therefore counts, and fills
+        // all cells between it and the axis.
         const bool near_axis = column < near_axis_fraction * columns_;
         if (counts[index(column, row)] < (near_axis ? 1 : least_cell_points)) continue;
         for (int c = near_axis ? 0 : column; c <= column; ++c) fill_around(c, row);
@@ -402,7 +404,7 @@ class ProfileRaster {
 };
 
 std::vector<Vector2> ProfileRaster::outline() const {
-  // Each corner has the row and column of the cell above and to the right of it. The walk keeps filled cells
+  // The row and column of a corner are those of the cell above it on its right. The path keeps filled cells
   // on its right and starts at the top filled cell on the axis.
   int row = rows_;
   while (row > 0 && !inside(0, row - 1)) --row;
@@ -416,10 +418,10 @@ std::vector<Vector2> ProfileRaster::outline() const {
     row += dr;
     put();
     if (column == 0) return path;
-    // Tests one of the two cells ahead, to the left or right of the path.
+    // Tests one of the two cells ahead of the corner: the cell to the left or to the right of the path.
     const auto ahead = [&](bool left) {
       const int side = left ? 1 : -1;
-      // Direction (x, y) of that cell from the corner, each +-1.
+      // Direction (x, y) of the tested cell from the corner; each component is 1 or -1.
       const int x = dc + side * -dr, y = dr + side * dc;
       return inside(x > 0 ? column : column - 1, y > 0 ? row : row - 1);
     };
@@ -433,7 +435,7 @@ std::vector<Vector2> ProfileRaster::outline() const {
   return {};
 }
 
-// Smooths away the steps of the raster.
+// Smooths the path, which follows the steps of the raster.
 std::vector<Vector2> smooth_path(const std::vector<Vector2>& path) {
   std::vector<Vector2> smoothed = path;
   constexpr int reach = 3;
@@ -447,7 +449,7 @@ std::vector<Vector2> smooth_path(const std::vector<Vector2>& path) {
   return smoothed;
 }
 
-// Returns the fraction of the path length at each corner.
+// Returns, for each corner, the fraction of the path's length at which it is.
 std::vector<double> path_fractions(const std::vector<Vector2>& path) {
   std::vector<double> fractions(path.size(), 0.0);
   for (std::size_t k = 1; k < path.size(); ++k)
@@ -463,9 +465,9 @@ double path_length(const std::vector<Vector2>& path) {
   return length;
 }
 
-// Returns the fraction of the cells of a grid over (u, v) that have a point no deeper than `reach` below the
-// outline. The fraction is small for wavy sheets, which fill the profile only when all sides are projected
-// onto it together.
+// Divides the domain of (u, v) into cells and returns the fraction of cells that have a point no deeper than
+// `reach` below the outline. The fraction is small for wavy sheets, which fill the profile only because all
+// sides are projected onto it together.
 double face_coverage(const std::vector<Vector2>& uv, const std::vector<double>& depths, double reach) {
   constexpr int sectors = 8, lengths = 16;
   std::array<bool, sectors * lengths> seen{};

@@ -1,4 +1,4 @@
-// Initial parameters of points in the (u, v) square of a surface that is yet to be fitted.
+// Initial parameters of points in the (u, v) square of a surface that will be fitted to them.
 #pragma once
 
 #include <optional>
@@ -38,12 +38,13 @@ void span_all_holes(FitPoints& island);
 Result<Parameterisation> initial_parameterisation(FitPoints& island, ShapeKind kind);
 
 // Parameterisation of a thin wall about an axis, such as a bowl, cup or plate. Its two faces may be closer
-// than neighbouring points, but all points together draw its profile clearly. The angle about the axis gives
-// u; the profile's outline, from the axis over the rim back to the axis, gives v. There is no such map if the
-// points are not round about an axis, have no such outline, or are not a thin wall with two faces.
+// together than neighbouring points, but the profile of all points together is clear. The angle about the
+// axis gives u. The outline of the profile, from the axis over the rim back to the axis, gives v. There is no
+// such map if the points are not round about an axis, have no such outline, or are not a thin wall with two
+// faces.
 struct ProfileMap {
   Parameterisation start;
-  bool may_be_one_face;  // a single face whose noise may look like a wall
+  bool may_be_one_face;  // true if the points may be a single face whose noise looks like a wall
 };
 std::optional<ProfileMap> map_profile(const std::vector<Vector3>& points_m);
 

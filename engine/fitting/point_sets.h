@@ -14,7 +14,7 @@
 
 namespace spoonbill {
 
-// Returns the quantile below which the given fraction (0 to 1) of the values are; 0 for an empty list.
+// Returns the value below which the given fraction (0 to 1) of the values are; 0 for an empty list.
 inline double quantile(std::vector<double> values, double fraction) {
   SPOONBILL_ASSERT(fraction >= 0.0 && fraction <= 1.0);
   if (values.empty()) return 0.0;
@@ -67,10 +67,10 @@ struct PointGraph {
   double length(std::uint32_t a, std::uint32_t b) const { return (points_m[a] - points_m[b]).norm(); }
 };
 
-// Builds a graph; pairs may repeat, in either order.
+// Builds a graph with an edge for each pair. Pairs may occur repeatedly and in either order.
 PointGraph make_point_graph(std::vector<Vector3> points_m, const std::vector<NodePair>& pairs);
 
-// Returns the graph of the given nodes, in their order, and of the edges between them.
+// Returns the graph that consists of the given nodes, in the given order, and of the edges between them.
 PointGraph induced_subgraph(const PointGraph& graph, const std::vector<std::uint32_t>& nodes);
 
 // Component of each node; components are numbered by decreasing node count.
@@ -80,8 +80,8 @@ struct ConnectedComponents {
 };
 ConnectedComponents connected_components(const PointGraph& graph);
 
-// Path length from the nearest source, infinite if unreachable, and each node's predecessor on that path
-// (itself at a source).
+// Shortest paths from any of the sources: the length of each node's path (infinite if unreachable) and the
+// node's predecessor on it (the node itself at a source).
 struct ShortestPaths {
   std::vector<double> length;
   std::vector<std::uint32_t> predecessor;

@@ -67,11 +67,12 @@ double voxel_side_for(const Scan& scan, std::size_t groups) {
   SPOONBILL_ASSERT(groups >= 1);
   const double size = bounding_diagonal_m(scan.points_m);
   double side = 1.5 * size / std::sqrt(static_cast<double>(groups));
-  // The number of cells that a surface meets is inversely proportional to the square of their side.
+  // The number of cells that a surface meets is inversely proportional to the square of the cells' side.
   for (int round = 0; round < 12; ++round) {
     const double ratio = static_cast<double>(group_by_voxels(scan, side).count) / static_cast<double>(groups);
     if (ratio > 0.9 && ratio < 1.1) break;
-    if (ratio < 0.9 && side < 1e-4 * size) break;  // the points have too few distinct positions
+    // Smaller cells give no more groups, because too few positions are distinct.
+    if (ratio < 0.9 && side < 1e-4 * size) break;
     side *= std::clamp(std::sqrt(ratio), 0.3, 3.0);
   }
   while (group_by_voxels(scan, side).count > groups + groups / 4) side *= 1.2;
@@ -100,16 +101,16 @@ Scan average_groups(const Scan& scan, const VoxelGroups& groups) {
 namespace {
 
 constexpr std::size_t neighbours_per_point = 8, plane_neighbours = 16;
-// Number of deviations beyond which a point is an outlier; scanner noise stays within three.
+// Number of standard deviations beyond which a point is an outlier. Scanner noise stays within three.
 constexpr double outlier_deviations = 6.0;
-// Largest spacing relative to the median; sampling density on one surface does not drop faster from voxel to
-// voxel.
+// Largest spacing of points on a surface, relative to the median. From voxel to voxel, the sampling density
+// of one surface does not drop faster.
 constexpr double sparse_spacings = 8.0;
-// Largest spread across a plane relative to the spread along it; for points that fill space, this ratio is
-// about twice as large.
+// Largest spread of points across a plane, relative to their spread along it, at which they are on the plane.
+// For points that fill space, this ratio is about twice as large.
 constexpr double flatness = 0.3;
 
-// Weighted quantiles: `counts` holds the number of given points for each value.
+// Quantiles of values with weights: `counts` holds the number of given points for each value.
 class WeightedQuantiles {
  public:
   WeightedQuantiles(const std::vector<double>& values, const std::vector<double>& counts)
@@ -176,7 +177,7 @@ bool is_on_plane(const Vector3& point, const std::vector<Vector3>& points_m,
 }
 
 // Clears the outlier flag of a point on a plane if two thirds of its neighbours are on planes too. Points
-// that fill space can be flat by chance, but then most of their neighbours are not.
+// that fill space can be on a plane by chance, but then most of their neighbours are not.
 void clear_surface_points(const std::vector<Vector3>& points_m, const NearestPoints& nearest,
                           std::vector<bool>& is_outlier) {
   std::vector<NearestPoints::Neighbour> found;
@@ -212,17 +213,18 @@ std::vector<bool> find_outliers(const std::vector<Vector3>& points_m, const std:
 
 namespace {
 
-// Smallest ratio of the shortest edge at a tip to the median edge; the corners of an even mesh have shorter
-// edges.
+// Smallest ratio of the shortest edge at a spike's tip to the mesh's median edge. At the corners of an even
+// mesh the ratio is smaller.
 constexpr double long_edge_ratio = 3.0;
-// Smallest ratio of the shortest edge at a tip to the mean edge of its ring; a few of the ring's edges may
-// lead to neighbouring tips.
+// Smallest ratio of the shortest edge at a tip to the mean edge of the ring around it. The mean may be large,
+// because a few of the ring's edges may lead to neighbouring tips.
 constexpr double long_ring_edge_ratio = 1.5;
 // Smallest height of a spike relative to the radius of its ring. Tips in an even mesh are lower, since the
 // ring around them is wider.
 constexpr double least_spike_height = 4.0;
-// Limits for the ring of vertices behind the tip's ring, in radii of the tip's ring: its smallest distance
-// from the centre of the tip's ring and its largest height above the plane of the tip's ring.
+// Limits for the second ring of vertices around a tip, in radii of the first ring. At least a quarter of its
+// vertices must be farther out from the first ring's centre than the first limit, and half of them nearer to
+// the first ring's plane than the second limit.
 constexpr double least_outer_radius = 1.2, most_height = 0.6;
 constexpr std::size_t most_measured = 1'000'000;
 
@@ -242,8 +244,8 @@ double median_edge(const Scan& mesh) {
   return median(std::move(lengths));
 }
 
-// Returns the vertices whose edges are all long compared with the edges of the mesh and of the ring around
-// the vertex.
+// Returns the vertices whose edges are all long compared with the median edge of the mesh and with the ring
+// around the vertex.
 std::set<std::uint32_t> find_tips(const Scan& mesh) {
   std::vector<double> shortest(mesh.points_m.size(), std::numeric_limits<double>::infinity());
   std::vector<double> around(mesh.points_m.size(), 0.0), sides(mesh.points_m.size(), 0.0);
@@ -308,8 +310,8 @@ class RingPlane {
     normal_ = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
   }
 
-  // Returns true if the vertices behind the ring are farther out along the ring's plane, at least on its
-  // longer sides.
+  // Returns true if at least half of the vertices behind the ring are close to the ring's plane, and at least
+  // a quarter of them are farther out than the ring.
   bool is_continued_by(const Scan& mesh, const VertexRing& behind) const {
     std::vector<double> out, off;
     for (const std::uint32_t vertex : behind) {
@@ -361,7 +363,7 @@ std::vector<std::uint32_t> level_spikes(Scan& mesh) {
 
 namespace {
 
-// Splits each triangle between the midpoints of its long edges.
+// Splits triangles at the midpoints of their long edges.
 class EdgeSplitter {
  public:
   EdgeSplitter(std::vector<Vector3>& points_m, double longest_m)
@@ -378,7 +380,7 @@ class EdgeSplitter {
       for (std::size_t k = 0; k < 3; ++k) pieces.push_back({t[k], midpoint[k], midpoint[(k + 2) % 3]});
     }
     if (split_count != 1 && split_count != 2) return;
-    // Starts at the edge that is split if there is only one, otherwise behind the one edge that is not split.
+    // Starts at the split edge if there is only one, otherwise behind the one edge that is not split.
     std::size_t k = 0;
     while (split_count == 1 ? !is_split[k] : is_split[(k + 2) % 3]) ++k;
     const std::uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3], m = midpoint[k];

@@ -12,7 +12,8 @@ namespace spoonbill {
 
 struct Scan {
   std::vector<Vector3> points_m;
-  std::vector<Vector3> normals;  // empty, or one for each point: unit outward, or zero where unknown
+  // Empty, or one for each point: an outward unit vector, or zero where unknown.
+  std::vector<Vector3> normals;
   std::vector<TriangleCorners> triangles;
 
   bool has_normals() const { return !normals.empty(); }
@@ -30,8 +31,8 @@ struct VoxelGroups {
 // groups, so that the two faces of a thin wall stay separate.
 VoxelGroups group_by_voxels(const Scan& scan, double side_m);
 
-// Returns a cell side that gives about `groups` groups: within 10 % of this number where possible, never more
-// than 25 % above it.
+// Returns the side of voxels for which the scan has about `groups` groups: within 10 % of this number where
+// possible, never more than 25 % above it.
 double voxel_side_for(const Scan& scan, std::size_t groups);
 
 // Returns the mean position and mean unit normal of each group.
@@ -40,18 +41,18 @@ Scan average_groups(const Scan& scan, const VoxelGroups& groups);
 // Flags points that are much farther from their neighbours than usual. `counts` holds how many given points
 // each point represents: 1, or in a thinned cloud the number of points in its voxel. The usual values are
 // weighted by these counts, as most given points are on the surface. A thinned point that represents far
-// fewer points than usual is an outlier too. Sparse points are not flagged where they and most of their
-// neighbours are on planes, as on a surface.
+// fewer points than usual is an outlier too. In a thinned cloud, sparse points are not flagged where they and
+// most of their neighbours are on planes, as on a surface.
 std::vector<bool> find_outliers(const std::vector<Vector3>& points_m, const std::vector<double>& counts);
 
-// Moves the tip of each spike into the centre of its ring of vertices and returns the tips; the connectivity
+// Moves the tip of each spike to the centre of its ring of vertices and returns the tips; the connectivity
 // does not change. All edges of a spike are much longer than usual, its height is at least four ring radii,
-// and the surface around its ring is flat. The tip of a cone counts as a spike only if the cone is as
-// slender, consists of a single fan of triangles, and rises from a plate.
+// and the surface around its ring is flat. The tip of a cone therefore counts as a spike only if the cone is
+// that slender, consists of a single fan of triangles, and rises from a plate.
 std::vector<std::uint32_t> level_spikes(Scan& mesh);
 
-// Halves edges until none is longer than `longest_m` or the triangle limit is reached. Both triangles of an
-// edge are split, so no gap opens. Existing points keep their positions; added points are appended.
+// Halves edges until none is longer than `longest_m` or the triangle limit is reached. Both triangles at an
+// edge are split, so that no gap opens. Existing points keep their positions; added points are appended.
 void split_long_edges(std::vector<Vector3>& points_m, std::vector<TriangleCorners>& triangles,
                       double longest_m, std::size_t triangle_limit);
 

@@ -17,17 +17,18 @@
 namespace spoonbill {
 namespace {
 
-// Weight of a smooth pole, measured in the weight of one span's points. It is low, since u may run unevenly
-// around a pole.
+// Weight of the condition that makes a pole smooth, relative to the weight of one span's points. It is low,
+// because u may run unevenly around a pole.
 constexpr double smooth_pole_fraction = 0.1;
-// Weight that keeps the rings next to a pole round, measured in the weight of one span's points. It falls
-// with the cube of the distance, as deviations from an ellipse grow with that cube on a smooth surface.
+// Weight of the condition that keeps the rings next to a pole elliptic, relative to the weight of one span's
+// points. It falls with the cube of the distance from the pole, because deviations from an ellipse grow with
+// that cube on a smooth surface.
 constexpr double round_pole_fraction = 0.003;
 constexpr int round_pole_spans = 3;
 
-// Normal equations of the fit: for each control point, the products of its basis function with those of its
-// neighbours up to `degree` away, so that adding needs no search. The indices of an entry are (control, du +
-// degree, dv + degree).
+// Normal equations of the fit. For each control point they hold the products of its basis function with the
+// basis functions of all control points up to `degree` away, so that adding needs no search. The indices of
+// an entry are (control, du + degree, dv + degree).
 class NormalEquations {
  public:
   NormalEquations(const SurfaceStructure& structure)
@@ -40,8 +41,8 @@ class NormalEquations {
         products_(static_cast<std::size_t>(rows_) * columns_ * block_),
         right_(static_cast<std::size_t>(rows_) * columns_, Vector3::Zero()) {}
 
-  // Adds the weighted equation: sum over k and l of a_k b_l times the control point (rows[k], columns[l]) =
-  // value. A null `value` stands for zeros.
+  // Adds a weighted equation: the sum over k and l of a_k b_l times the control point (rows[k], columns[l])
+  // equals `value`. If `value` is null, it is zero.
   void add(const double* a, const int* rows, const double* b, const int* columns, double weight,
            const Vector3* value) {
     for (int k = 0; k <= pu_; ++k) {
@@ -60,7 +61,7 @@ class NormalEquations {
   }
 
   void set_pole_weight(double weight) { pole_weight_ = weight; }
-  // Adds the matrix of another system, multiplied by the factor, without its right-hand side.
+  // Adds the matrix of another system, multiplied by the factor; its right-hand side is not added.
   void add(const NormalEquations& other, double factor) {
     for (std::size_t k = 0; k < products_.size(); ++k) products_[k] += factor * other.products_[k];
   }
@@ -96,8 +97,8 @@ std::vector<int> NormalEquations::unknowns(const SurfaceStructure& structure, in
   return unknown;
 }
 
-// Around a pole with a tangent plane, the mean of the v derivative is zero. The pole is therefore the mean of
-// the next ring of control points, weighted by the integrals of their basis functions.
+// Around a pole with a tangent plane, the mean of the derivative with respect to v is zero. The pole is
+// therefore the mean of the next ring of control points, weighted by the integrals of their basis functions.
 template <class Put>
 void NormalEquations::add_smooth_pole(const SurfaceStructure& structure, const std::vector<int>& unknown,
                                       int pole, int ring, const Put& put) const {
@@ -105,7 +106,7 @@ void NormalEquations::add_smooth_pole(const SurfaceStructure& structure, const s
   const double period = structure.u.domain_length();
   std::vector<std::pair<int, double>> terms{{unknown[index(0, pole)], -1.0}};
   for (int i = 0; i < rows_; ++i) terms.emplace_back(unknown[index(i, ring)], 0.0);
-  // Basis function k of the span k + degree has its support from extended[k] to extended[k + degree + 1].
+  // Basis function k of the direction is nonzero between extended[k] and extended[k + degree + 1].
   for (int k = 0; k < rows_; ++k) {
     const auto first = static_cast<std::size_t>(k), last = first + static_cast<std::size_t>(pu_) + 1;
     const int control = structure.u.control_index(k + pu_, 0);
@@ -138,7 +139,7 @@ Result<Surface> NormalEquations::solve(const SurfaceStructure& structure) const 
           const double value = block[(di + pu_) * width_ + dj + pv_];
           const int other = unknown[index((i + di) % rows_, j + dj)];
           put(unknown[control], other, value);
-          // adds the half of the matrix that add() leaves out
+          // Adds the symmetric half of the matrix, which add() does not store.
           if (di > 0) put(other, unknown[control], value);
         }
       }
@@ -216,8 +217,8 @@ void add_fairness(const SurfaceStructure& structure, double weight, std::span<co
   }
 }
 
-// Returns the non-elliptic part of a ring (see the header) at two Gauss points of each span of u, as factors
-// of the control points.
+// Returns the non-elliptic part of a ring, S_u + S_uuu / (2 pi)^2 divided by 2 pi, at two Gauss points of
+// each span of u. The values are factors of the control points.
 std::vector<PieceBasis::Values> ring_bases(const PieceBasis& u_basis) {
   constexpr double turn = 2.0 * std::numbers::pi;
   const std::vector<double> breaks = u_basis.knots().breakpoints();
@@ -229,7 +230,8 @@ std::vector<PieceBasis::Values> ring_bases(const PieceBasis& u_basis) {
       u_basis.evaluate(breaks[s] + fraction * length, values);
       return values;
     };
-    // A cubic's second derivative is linear within a span, so two values determine it.
+    // The second derivative of a cubic is linear within a span, so its values at two points determine the
+    // third derivative.
     const PieceBasis::Values low = at(0.25), high = at(0.75);
     for (const double fraction : {0.5 - 0.5 / std::sqrt(3.0), 0.5 + 0.5 / std::sqrt(3.0)}) {
       PieceBasis::Values ring = at(fraction);
@@ -366,7 +368,8 @@ KnotVector refine_knots(const KnotVector& knots, int direction, int count, std::
     };
     const auto most = std::max_element(spans.begin(), spans.end(),
                                        [&](const Span& a, const Span& b) { return worth(a) < worth(b); });
-    // The errors of cubic pieces fall steeply with the length of the pieces.
+    // Each half gets a quarter of the error, because the error of a cubic piece falls steeply with its
+    // length.
     const Span whole = *most;
     const double midpoint = 0.5 * (whole.begin + whole.end);
     *most = {whole.begin, midpoint, 0.25 * whole.error};

@@ -12,10 +12,11 @@
 namespace spoonbill {
 namespace {
 
-// Fractions of a piece that are left out at knots and at collapsed edges.
+// Fractions of a polynomial piece that its cells leave out: at each end, because of knots, and at a collapsed
+// edge.
 constexpr double off_knots = 1e-6;
 constexpr double off_poles = 1e-2;
-// Number of best cells that are refined.
+// Number of cells in which the minimum is refined. They are the cells with the smallest values.
 constexpr std::size_t searched = 12;
 constexpr std::size_t cells_between_reports = 256;
 // Number of times that the pattern search halves its step.
@@ -41,8 +42,8 @@ ParameterMinimum find_best_in_cell(const PieceCell& cell,
   return best;
 }
 
-// Searches for a minimum within the cell by a pattern search: moves to the best of the eight neighbours, or
-// halves the step if none is better.
+// Searches for a minimum within the cell by a pattern search. Each step moves to the best of the eight
+// neighbours, or halves the distance of the neighbours if none is better.
 ParameterMinimum search_cell(Candidate from, const std::function<double(double, double)>& value) {
   double step_u = 0.5 * (from.cell.u1 - from.cell.u0), step_v = 0.5 * (from.cell.v1 - from.cell.v0);
   for (int halving = 0; halving < halvings;) {
@@ -132,12 +133,12 @@ ParameterMinimum find_minimum(const std::vector<PieceCell>& cells,
 namespace {
 
 constexpr int samples_per_span = 3;
-// Smallest |du x dv| as a fraction of |du| |dv| that is not rounding.
+// Smallest |du x dv|, as a fraction of |du| |dv|, that is more than rounding.
 constexpr double min_relative_area = 1e-9;
 
 }  // namespace
 
-// Uses the first and second fundamental forms (do Carmo 1976, section 3.3).
+// Computes the curvatures from the first and second fundamental forms (do Carmo 1976, section 3.3).
 std::optional<PrincipalCurvatures> compute_principal_curvatures(const SurfacePoint& point) {
   const Vector3 product = point.du.cross(point.dv);
   const double area = product.norm();
@@ -145,7 +146,7 @@ std::optional<PrincipalCurvatures> compute_principal_curvatures(const SurfacePoi
   const Vector3 inward = -product / area;
   const double e = point.du.dot(point.du), f = point.du.dot(point.dv);
   const double l = point.duu.dot(inward), m = point.duv.dot(inward), n = point.dvv.dot(inward);
-  // An orthonormal frame of the tangent plane keeps the digits where u and v differ much in scale.
+  // An orthonormal frame of the tangent plane keeps precision if the scales of u and v are very different.
   const double along = std::sqrt(e), across = area / along;
   const double a = l / e, b = (m - f / e * l) / (along * across);
   const double c = (n - 2.0 * f / e * m + f / e * f / e * l) / (across * across);
@@ -155,11 +156,12 @@ std::optional<PrincipalCurvatures> compute_principal_curvatures(const SurfacePoi
 
 namespace {
 
-// Size up to which the extent of a surface is the rounding of its coordinates. It is a point.
+// Largest extent of a surface that counts as a point. It may be only the rounding of the coordinates.
 constexpr double least_size_m = 1e-9;
 
-// Returns the curvatures at a point of a surface of this size. Returns nothing where a derivative consists of
-// rounding errors, or where the radius of curvature is below the length of a collapsed edge, as at a cusp.
+// Returns the curvatures at a point of a surface of the given size. Returns nothing where a derivative
+// consists of rounding errors, or where the radius of curvature is below the length of a collapsed edge, as
+// at a cusp.
 std::optional<PrincipalCurvatures> physical_curvatures(const Surface& surface, const SurfacePoint& point,
                                                        double size_m) {
   constexpr double least_relative_speed = 1e-9;
@@ -206,7 +208,7 @@ double compute_bending_energy(const Surface& surface, const TrimmedArea& area) {
   double sum = 0.0;
   for (const PieceCell& cell : piece_cells(surface, 2 * samples_per_span)) {
     if (!area.contains(cell.centre_u(), cell.centre_v())) continue;
-    // Midpoint rule, because the integrand is not smooth at knots, poles and trims.
+    // The midpoint rule is used because the integrand is not smooth at knots, poles and trims.
     const SurfacePoint point = evaluate(surface, cell.centre_u(), cell.centre_v());
     const auto found = physical_curvatures(surface, point, size_m);
     if (!found) continue;

@@ -1,5 +1,5 @@
-// Principal curvatures of a trimmed surface and their extremes, and the search for extremes over its
-// polynomial pieces. Pure functions, outside the tick; any thread.
+// Principal curvatures of a trimmed surface and their extremes, and a search for minima over the polynomial
+// pieces of a surface. Pure functions, outside the tick; any thread.
 #pragma once
 
 #include <functional>
@@ -20,9 +20,9 @@ struct PieceCell {
   double centre_v() const { return 0.5 * (v0 + v1); }
 };
 
-// Divides every piece into parts x parts cells, parts at least 1. The cells leave out a millionth of a piece
-// at each end, because derivatives jump at knots, and a hundredth at a collapsed edge, where derivatives are
-// lost in rounding.
+// Divides every polynomial piece into parts x parts cells; `parts` must be at least 1. The cells leave out a
+// millionth of a piece at each end, because derivatives jump at knots. At a collapsed edge they leave out a
+// hundredth, because derivatives are lost in rounding there.
 std::vector<PieceCell> piece_cells(const Surface& surface, int parts);
 
 struct ParameterMinimum {
@@ -36,8 +36,8 @@ ParameterMinimum find_minimum(const std::vector<PieceCell>& cells,
                               const std::function<double(double u, double v)>& value,
                               const Progress& progress = {});
 
-// Curvatures in 1/m, positive where the surface is convex seen from the side of its normals du x dv. Both
-// curvatures are 1 / r on a ball of radius r with outward normals.
+// Principal curvatures in 1/m. They are positive where the surface is convex seen from the side of its
+// normals du x dv. On a ball of radius r with outward normals, both are 1 / r.
 struct PrincipalCurvatures {
   double smallest = 0.0, largest = 0.0;
 };
@@ -53,18 +53,18 @@ struct CurvatureExtreme {
 
 struct CurvatureRange {
   CurvatureExtreme smallest, largest;
-  bool exists = false;  // false: no part of the surface has a curvature, and the extremes mean nothing
+  bool exists = false;  // false if no part of the surface has a curvature; the extremes then mean nothing
 };
 
-// Finds the extremes over all pieces, on both sides of each knot, except within a hundredth of a piece
-// from a pole. A smooth extreme has a relative accuracy of a millionth. None exists on a surface without
-// extent or area, or if `progress` stopped the search. Radii below a millionth of the
-// surface's size are left out.
+// Finds the extremes over all pieces, on both sides of each knot, except within a hundredth of a piece from a
+// pole. A smooth extreme has a relative accuracy of a millionth. Radii of curvature below a millionth of the
+// surface's size are ignored. No extreme exists on a surface without extent or area, or if `progress` stopped
+// the search.
 CurvatureRange find_curvature_range(const Surface& surface, const TrimmedArea& area = {},
                                     const Progress& progress = {});
 
-// Returns the integral of the squared principal curvatures over the area, a dimensionless measure that is
-// small for fair surfaces. It is 8 pi for a ball of any size.
+// Returns the integral of the squared principal curvatures over the area. It has no unit, is small for fair
+// surfaces, and is 8 pi for a ball of any size.
 double compute_bending_energy(const Surface& surface, const TrimmedArea& area = {});
 
 }  // namespace spoonbill

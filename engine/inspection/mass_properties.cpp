@@ -19,11 +19,11 @@ namespace spoonbill {
 namespace {
 
 struct Quadrature {
-  std::vector<double> nodes, weights;  // on the interval -1 to 1
+  std::vector<double> nodes, weights;  // nodes and weights for the interval from -1 to 1
 };
 
-// Returns the Gauss-Legendre rule. Its nodes are the roots of the Legendre polynomial, found by Newton's
-// method from Tricomi's estimate.
+// Returns the Gauss-Legendre rule with `count` nodes. The nodes are the roots of the Legendre polynomial,
+// found by Newton's method from Tricomi's estimate.
 Quadrature gauss_legendre(int count) {
   Quadrature rule;
   for (int k = 0; k < count; ++k) {
@@ -77,7 +77,8 @@ void visit_whole_surface(const Surface& surface, const AreaVisitor& visit) {
   }
 }
 
-// Radon's seven-point rule: the centroid, and two sets of three points on the medians.
+// Uses Radon's rule of seven points: the centroid of the triangle, and three points on its medians at each of
+// two distances.
 void visit_triangle(const Surface& surface, const std::array<Parameters, 3>& corners,
                     const AreaVisitor& visit) {
   const Parameters first = corners[1] - corners[0], second = corners[2] - corners[0];
@@ -117,10 +118,10 @@ void visit_area(const Surface& surface, const TrimmedArea& area, const AreaVisit
 
 EnclosedMass compute_enclosed_mass(const Surface& surface, const TrimmedArea& area) {
   SPOONBILL_ASSERT_DEBUG(is_valid(surface));
-  // Moments about a point of the body lose no digits to its distance from the origin.
+  // Moments are taken about a point of the body, so that a large distance from the origin costs no precision.
   const Vector3 origin = surface.net.point(0, 0);
   EnclosedMass mass;
-  // The integrand of the first moment has degree 4 p - 1 in a direction of degree p.
+  // Along a direction of degree p, the integrand of the first moment has degree 4 p - 1.
   visit_area(surface, area, [&](const SurfacePoint& point, double weight) {
     const Vector3 offset = point.position_m - origin;
     const Vector3 normal = weight * point.du.cross(point.dv);
@@ -147,7 +148,7 @@ ShellMass compute_shell_mass(const Surface& surface, double thickness_m, const T
     const double size = weight * normal.norm();
     const double mean = 0.5 * (curvatures->smallest + curvatures->largest);
     const double gaussian = curvatures->smallest * curvatures->largest;
-    // Integrals of the parallel area, and of depth times that area, over the thickness.
+    // Integral over the thickness of the area of parallel surfaces, and the same integral weighted by depth.
     const double volume = size * t * (1.0 - mean * t + gaussian * t * t / 3.0);
     const double depth = size * t * t * (0.5 - 2.0 / 3.0 * mean * t + 0.25 * gaussian * t * t);
     mass.volume_m3 += volume;

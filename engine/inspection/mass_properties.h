@@ -20,66 +20,67 @@ struct PieceQuadrature {
   std::vector<double> parameters, weights;
 };
 
-// Returns a rule with `nodes` nodes in each piece, at least 1. It is exact up to degree 2 nodes - 1.
+// Returns a rule with `nodes` nodes in each piece; `nodes` must be at least 1. It is exact up to degree 2
+// nodes - 1.
 PieceQuadrature make_piece_quadrature(const KnotVector& knots, int nodes);
 
-// Receives a surface point and the part of the parameter domain that it represents. `weight` times |du x dv|
-// is an area.
+// Function that receives a surface point and its weight, the part of the parameter domain that the point
+// represents. `weight` times |du x dv| is an area.
 using AreaVisitor = std::function<void(const SurfacePoint& point, double weight)>;
 
 // Visits the quadrature points of the area within the trims. For a whole surface the rule is exact up to
-// degree 4 p + 1 in a direction of degree p. For a trimmed surface it is exact up to degree 5 on triangles,
-// of which a whole polynomial piece has eight (Radon 1948); the trim loops are approximated by the triangles'
-// edges.
+// degree 4 p + 1 in a direction of degree p. A trimmed surface is divided into triangles, eight for a whole
+// polynomial piece, on which the rule is exact up to degree 5 (Radon 1948); the triangles' edges approximate
+// the trim loops.
 void visit_area(const Surface& surface, const TrimmedArea& area, const AreaVisitor& visit);
 
-// Area and its centre; for a closed surface without trims also the enclosed volume and its centre, by the
-// divergence theorem.
+// Area of a surface and its centre. For a closed surface without trims, also the enclosed volume and its
+// centre, by the divergence theorem.
 struct EnclosedMass {
   double area_m2 = 0.0;
   Vector3 area_centre_m = Vector3::Zero();
   // Positive if the normals point outwards. Exact up to rounding, because the integrand is a polynomial.
   double volume_m3 = 0.0;
-  Vector3 centre_m = Vector3::Zero();  // of the volume
+  Vector3 centre_m = Vector3::Zero();  // centre of the volume
 };
 
 EnclosedMass compute_enclosed_mass(const Surface& surface, const TrimmedArea& area = {});
 
-// Volume between the part of a surface within its trims and that part's offset against the normals.
+// Volume of a shell: between the part of a surface within its trims and the offset of that part against the
+// normals.
 struct ShellMass {
   double volume_m3 = 0.0;
-  Vector3 centre_m = Vector3::Zero();  // of the volume
+  Vector3 centre_m = Vector3::Zero();  // centre of the volume
 };
 
-// Integrates the area of parallel surfaces, dA (1 - 2 H s + K s^2) at depth s (Steiner 1840), with mean
-// and Gaussian curvature H and K. Valid while the thickness, above 0, is less than every convex radius of
-// curvature.
+// Integrates the area of parallel surfaces over the thickness. At depth s that area is dA (1 - 2 H s + K s^2)
+// with the mean curvature H and the Gaussian curvature K (Steiner 1840). Valid while the thickness is above 0
+// and less than every convex radius of curvature.
 ShellMass compute_shell_mass(const Surface& surface, double thickness_m, const TrimmedArea& area = {});
 
 // Mass of a body made of several materials.
 struct MaterialMix {
-  double density_kg_per_m3 = 0.0;           // mean over the body
+  double density_kg_per_m3 = 0.0;           // mean density of the body
   double own_density_kg_per_m3 = 0.0;       // density of the body's own material
   double own_fraction = 1.0;                // fraction of the volume that the body's own material fills
   Vector3 mass_offset_m = Vector3::Zero();  // from the centre of the volume to the centre of mass
   std::vector<std::string> materials;       // names of the materials in use, the body's own first
 };
 
-// Adds up the cells of the body's lattice, each with the material of its region. Refuses a body for which no
-// lattice can be made, and regions that lattice_materials() refuses.
+// Adds up the cells of the body's lattice, each with the material of its region. Fails for a body for which
+// no lattice can be made, and for regions that lattice_materials() refuses.
 Result<MaterialMix> compute_material_mix(const Body& body);
 
-// Mass of a body, the same number wherever the program states it: the exact volume times the mean density.
-// The mass of the body's lattice, on which forces act, equals it up to rounding, except where trims cut the
-// surface.
+// Mass of a body: the exact volume times the mean density. The program states this mass everywhere. The mass
+// of the body's lattice, on which forces act, equals it up to rounding, except where trims cut the surface.
 struct BodyMass {
   double volume_m3 = 0.0;
   Vector3 centre_m = Vector3::Zero();  // centre of mass
   MaterialMix mix;
-  std::string note;  // reason why the regions are ignored; empty if they count
+  std::string note;  // reason why the material regions are ignored; empty if they are used
 
   double mass_kg() const { return volume_m3 * mix.density_kg_per_m3; }
-  // Returns the mass with another density of the body's own material.
+  // Returns the mass that the body would have with another density of its own material.
   double mass_kg(double own_density_kg_per_m3) const {
     return mass_kg() + volume_m3 * mix.own_fraction * (own_density_kg_per_m3 - mix.own_density_kg_per_m3);
   }
@@ -88,7 +89,7 @@ struct BodyMass {
 // Returns the mass of a body whose volume and centre have been computed from its surface.
 BodyMass mass_of_volume(const Body& body, double volume_m3, const Vector3& centre_m);
 
-// Returns the mass of a body; nothing if the body neither encloses its material nor is a shell with a
+// Returns the mass of a body. Returns nothing if the body neither encloses a volume nor is a shell with a
 // thickness.
 std::optional<BodyMass> compute_body_mass(const Body& body);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int edge_samples = 512;
 
-// Compares the two ends of u (edges along v) if `along_u`, otherwise the two ends of v.
+// Compares the two ends of a direction: of u (edges along v) if `along_u`, otherwise of v.
 EdgeGap measure_edge_gap(const Surface& surface, bool along_u) {
   EdgeGap gap;
   const KnotVector& knots = along_u ? surface.u : surface.v;
@@ -69,21 +69,23 @@ Closing find_closing(const Surface& surface) {
 
 namespace {
 
-// Cells in each direction of a polynomial piece.
+// Number of cells in each direction of a polynomial piece.
 constexpr int cells_per_span = 4;
-// Smallest |du x dv| that is not a defect, as a fraction of the mean over the surface.
+// Smallest |du x dv| that is not a defect, as a fraction of its mean over the surface.
 constexpr double min_area_ratio = 1e-7;
 constexpr std::size_t max_defects = 16;
-// Number of control points above which elements are not halved. Halving resolves loops of half a cell on
-// usual nets; larger nets are fine enough.
+// Number of control points above which elements are not halved for the search. With halved elements, loops of
+// half a cell are found on usual nets; the elements of larger nets are fine enough.
 constexpr std::size_t large_net = 2500;
 
-// Determines which neighbouring cells of one direction belong to the same smooth sheet. Sheets that may
-// meet at any angle are separated by an edge, a knot whose multiplicity is at least the degree.
+// Determines which neighbouring cells along one direction belong to the same smooth sheet. Sheets are
+// separated by an edge, at a knot whose multiplicity is at least the degree; they may meet there at any
+// angle.
 class SmoothNeighbours {
  public:
   explicit SmoothNeighbours(const KnotVector& knots) {
-    // Each entry is the start of a piece. The last piece ends at the first entry, or at an open end.
+    // Each entry is the start of a piece. The last piece ends at the first entry, which for an open direction
+    // counts as clamped.
     const std::vector<KnotMultiplicity> starts = knot_multiplicities(knots);
     for (std::size_t piece = 0; piece < starts.size(); ++piece) {
       smooth_after_.push_back(starts[(piece + 1) % starts.size()].multiplicity < knots.degree());
@@ -91,19 +93,20 @@ class SmoothNeighbours {
   }
 
   std::size_t cells() const { return cells_per_span * smooth_after_.size(); }
-  // Returns whether the cell and next(cell) belong to one sheet.
+  // Returns whether `cell` and next(cell) belong to the same sheet.
   bool is_smooth_after(std::size_t cell) const {
     return (cell + 1) % cells_per_span != 0 || smooth_after_[cell / cells_per_span];
   }
-  // Returns the next cell; after the last cell, the first.
+  // Returns the index of the next cell; the first cell follows the last.
   std::size_t next(std::size_t cell) const { return cell + 1 < cells() ? cell + 1 : 0; }
 
  private:
-  std::vector<bool> smooth_after_;  // by piece
+  // One flag for each piece: true if the surface is smooth across the piece's end.
+  std::vector<bool> smooth_after_;
 };
 
-// Detects flips of the normal on the straight line between two parameters. A flip persists under refinement
-// of the steps, unlike a normal that turns quickly about a tight rim.
+// Detects flips of the normal on the straight line between two parameter pairs. A flip remains if the steps
+// are refined, unlike a fast turn of the normal about a tight rim.
 class NormalFlips {
  public:
   NormalFlips(const Surface& surface, double least_area) : surface_(surface), least_area_(least_area) {}
@@ -129,7 +132,7 @@ class NormalFlips {
     for (int step = 1; step <= steps; ++step) {
       const Parameters point = from + (to - from) * step / steps;
       const Vector3 here = product(point);
-      // The normal has no direction on the fold itself.
+      // On the fold itself the normal has no direction, so this point is skipped.
       if (here.norm() < least_area_ && step < steps) continue;
       const bool turns = before.dot(here) < 0.0;
       if (turns && (refinements_left == 1 || flips_between(since, point, refinements_left - 1))) return true;

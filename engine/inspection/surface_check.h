@@ -14,7 +14,7 @@
 
 namespace spoonbill {
 
-// Edges nearer to each other than this coincide.
+// Edges whose distance is below this value coincide.
 inline constexpr double closing_tolerance_m = 1e-6;
 
 enum class Closedness {
@@ -23,29 +23,29 @@ enum class Closedness {
   sheet,  // open in both directions
 };
 
-// Distances between the two ends of one direction. All are 0 for a periodic direction.
+// Distances between the two ends of one direction. All are 0 in a periodic direction.
 struct EdgeGap {
   double apart_m = 0.0;  // largest distance between corresponding points of the ends
-  double first_width_m = 0.0, last_width_m = 0.0;  // extent of each end, 0 for a pole
+  double first_width_m = 0.0, last_width_m = 0.0;  // extent of the edge at each end; 0 for a pole
 };
 
 struct Closing {
   Closedness closedness = Closedness::sheet;
   EdgeGap u, v;
-  // Width of the gap that keeps the surface from being closed: 0 for a solid, the width of the widest open
-  // end for a tube. For a sheet it is the smaller of two values, one for each direction: the larger of the
-  // distance between that direction's ends and the width of the other direction's widest end.
+  // Width of the gap that keeps the surface from being closed. For a solid it is 0, for a tube the width of
+  // its widest open end. For a sheet it is the smaller of two values, one for each direction: the larger of
+  // the distance between that direction's ends and the width of the other direction's widest end.
   double gap_m = 0.0;
 };
 
-// Samples the edges of a surface, ignoring trims.
+// Measures how nearly a surface is closed, from samples of its edges. Trims are ignored.
 Closing find_closing(const Surface& surface);
 
-// Point other than a pole where du x dv vanishes, or flips within a smooth part of the surface.
+// A point at which du x dv vanishes, other than a pole, or flips within a smooth part of the surface.
 struct SurfaceDefect {
   double u = 0.0, v = 0.0;
   Vector3 position_m = Vector3::Zero();
-  bool folds = false;  // du x dv flips; false: it vanishes
+  bool folds = false;  // true if du x dv flips, false if it vanishes
 };
 
 struct SelfIntersection {
@@ -54,22 +54,23 @@ struct SelfIntersection {
 };
 
 struct SurfaceCheck {
-  Closing closing;  // ignores trims; everything below applies to the area within the trims
+  // How nearly the surface is closed, ignoring trims; all other members refer to the area within the trims.
+  Closing closing;
   bool is_trimmed = false;
-  EnclosedMass mass;  // volume and its centre are valid only if encloses()
+  EnclosedMass mass;  // the volume and its centre are valid only if encloses()
   CurvatureRange curvature;
-  double bending = 0.0;  // compute_bending_energy()
+  double bending = 0.0;  // result of compute_bending_energy()
   std::vector<SurfaceDefect> surface_defects;
   std::vector<SelfIntersection> self_intersections;
-  bool self_intersections_complete = true;  // false: there are too many to search them all
-  std::optional<Thickness> thinnest = {};   // only if encloses() and the volume is positive
+  bool self_intersections_complete = true;  // false if there are too many intersections to search them all
+  std::optional<Thickness> thinnest = {};   // set only if encloses() and the volume is positive
 
   // Returns whether the surface bounds a body by itself.
   bool encloses() const { return closing.closedness == Closedness::solid && !is_trimmed; }
 };
 
 // Checks a surface. Edges shorter than collapsed_edge_fraction of its size count as points. Returns nothing
-// if `progress` stopped it.
+// if `progress` stopped the check.
 std::optional<SurfaceCheck> check_surface(const Surface& surface, const TrimmedArea& area = {},
                                           const Progress& progress = {});
 

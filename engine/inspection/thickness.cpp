@@ -70,8 +70,8 @@ std::optional<SurfaceExit> ThicknessSearch::exit(const Vector3& from, const Vect
   return refine_exit(*met, from, direction);
 }
 
-// Moves the exit from the facet to the surface by Newton's method. Keeps the facet's exit if that does not
-// converge, as at a pole.
+// Moves the exit from the facet to the exact surface by Newton's method. Keeps the exit on the facet if the
+// method does not converge, as at a pole.
 SurfaceExit ThicknessSearch::refine_exit(const LineExit& exit, const Vector3& from,
                                          const Vector3& direction) const {
   const Triangle& facet = exits_.triangles()[exit.triangle];
@@ -127,7 +127,7 @@ ExactWalls::ExactWalls(const std::vector<const Surface*>& surfaces, double error
   }
 }
 
-// Returns the exit nearest to `expected`, through any surface whose net reaches there.
+// Returns the exit nearest to `expected`, through any surface whose control net reaches there.
 std::optional<ExactWalls::FoundExit> ExactWalls::find_exit_near(const Vector3& from, const Vector3& expected,
                                                                 const Vector3& direction) const {
   std::optional<FoundExit> best;

@@ -1,5 +1,5 @@
-// Thickness of closed bodies: the distance from a surface point straight inwards to where the line leaves
-// the body through a wall. Measured on one surface, or on a mesh and then corrected to the exact surfaces.
+// Thickness of closed bodies: the distance from a surface point straight inwards to where the line leaves the
+// body through a wall. It is measured on one surface, or on a mesh and then corrected to the exact surfaces.
 // Outside the tick; any thread.
 #pragma once
 
@@ -14,14 +14,14 @@
 
 namespace spoonbill {
 
-// Inward line from a surface point to the opposite wall.
+// An inward line from a surface point to the opposite wall: its length, and the parameters of both ends.
 struct Thickness {
   double thickness_m = 0.0;
   double u = 0.0, v = 0.0, opposite_u = 0.0, opposite_v = 0.0;
   Vector3 position_m = Vector3::Zero(), opposite_m = Vector3::Zero();
 };
 
-// Point where a line leaves through a surface.
+// The point where a line leaves a body through a surface.
 struct SurfaceExit {
   double distance_m = 0.0;
   double u = 0.0, v = 0.0;
@@ -34,16 +34,16 @@ class ThicknessSearch {
   explicit ThicknessSearch(const Surface& surface);
 
   // Returns the first exit along a unit direction through a wall (exits_through_wall()). The exit is exact up
-  // to rounding where Newton's method converges, and on a facet elsewhere.
+  // to rounding where Newton's method converges; elsewhere it is on a facet.
   std::optional<SurfaceExit> exit(const Vector3& from, const Vector3& direction) const;
 
   // Returns the thickness at a surface point. Returns nothing where the surface has no normal, or where the
-  // inward line leaves through no wall (exits_through_wall()): near an edge it may leave too obliquely or
-  // pass between the samples.
+  // inward line leaves through no wall (exits_through_wall()). Near an edge the line may leave too obliquely
+  // or pass between the samples.
   std::optional<Thickness> at(double u, double v) const;
 
-  // Returns the smallest thickness at the samples, refined around the best of them. Finds a wall thinner
-  // than the spacing of the samples only if a sample's line crosses it.
+  // Returns the smallest thickness at the samples, refined around the best of them. A wall thinner than the
+  // spacing of the samples is found only if the line of a sample crosses it.
   std::optional<Thickness> smallest(const Progress& progress = {}) const;
 
  private:
@@ -60,22 +60,22 @@ class ThicknessSearch {
   LineExits exits_;
 };
 
-// Distance through a solid from one side straight inwards to the other.
+// A wall, measured from one side of a solid straight inwards to the other side.
 struct WallThickness {
   double thickness_m = 0.0;
   Vector3 position_m = Vector3::Zero(), opposite_m = Vector3::Zero();
 };
 
-// Corrects thicknesses measured on a mesh to the surfaces that the mesh approximates. The surfaces must
-// outlive the object, and all their normals must point out of the material. One owner.
+// Corrects thicknesses that were measured on a mesh to the exact surfaces that the mesh approximates. The
+// surfaces must outlive the object, and all their normals must point out of the material. One owner.
 class ExactWalls {
  public:
-  // `error_m`, at least 0, is the largest distance of the mesh from the surfaces.
+  // `error_m` is the largest distance of the mesh from the surfaces, at least 0.
   ExactWalls(const std::vector<const Surface*>& surfaces, double error_m);
 
   // Returns the wall between the surfaces nearest to the ends of `mesh_wall`, along the normal of the first
-  // surface, exact up to rounding. Returns nothing if no two surfaces are there, or if their distance differs
-  // by more than the mesh's error explains, as at a sliver that faces askew.
+  // surface, exact up to rounding. Returns nothing if there are no two surfaces, or if their distance differs
+  // from the mesh's by more than its error explains, as at a sliver whose normal is wrong.
   std::optional<WallThickness> at(const WallThickness& mesh_wall) const;
 
  private:

@@ -35,12 +35,12 @@ Gaps gaps_between(const std::vector<Vector3>& a, const std::vector<Vector3>& b) 
   return gaps;
 }
 
-// An edge prepared for comparison with several others.
+// An edge with its samples, prepared for comparison with several other edges.
 struct PreparedEdge {
   PatchEdge name;
   EdgeCurve curve;
-  std::vector<Vector3> points_m;  // at equal fractions of the length, for open edges
-  RingFrame frame;                // for rings only
+  std::vector<Vector3> points_m;  // points at equal fractions of the length; for open edges only
+  RingFrame frame;                // frame of the ring; for rings only
 };
 
 PreparedEdge prepare_edge(const std::vector<Surface>& patches, PatchEdge name) {
@@ -64,14 +64,14 @@ EdgeMatch match_open(const PreparedEdge& a, const PreparedEdge& b, std::optional
   return {a.name, b.name, reversed, 0.0, gaps.largest, gaps.mean};
 }
 
-// Ring relative to its centre, so that the gap between rings does not affect their fit. The second ring is
-// rotated to face the first.
+// A ring in coordinates relative to its centre, so that the gap between two rings does not affect their fit.
+// The second ring is also rotated to face the first.
 class EdgeRing {
  public:
   explicit EdgeRing(const PreparedEdge& edge) : curve_(edge.curve), centre_(edge.frame.centre_m) {}
   void turn(const Eigen::Matrix3d& turn) { turn_ = turn; }
 
-  // Returns the parameter at a fraction of the period from `from`, forwards or backwards.
+  // Returns the parameter at a fraction of the period, counted from `from` forwards or backwards.
   double parameter(double from, double fraction, bool backwards) const {
     const double length = curve_.knots.domain_length();
     return from + (backwards ? -fraction : fraction) * length;
@@ -96,7 +96,8 @@ double misfit(const EdgeRing& a, const EdgeRing& b, double seam, bool backwards)
   return sum;
 }
 
-// Returns the seam after a Gauss-Newton step. Steps converge to rounding for identical rings.
+// Makes one Gauss-Newton step and returns the improved seam. For identical rings the steps converge up to
+// rounding.
 double improve_seam(const EdgeRing& a, const EdgeRing& b, double seam, bool backwards) {
   double along = 0.0, squared = 0.0;
   for (int k = 0; k < rotation_samples; ++k) {
@@ -136,10 +137,10 @@ RingFit fit_best(const EdgeRing& a, const EdgeRing& b, std::optional<bool> reque
   return best;
 }
 
-// Returns the best fit of two rings. Coincident rings are compared without moving them, which is exact for
-// identical rings; other rings are compared after a rotation.
+// Returns the best fit of two rings. Coincident rings are compared where they are, which is exact for
+// identical rings. Other rings are compared after one is rotated.
 RingFit fit_best_rotated(const PreparedEdge& a, const PreparedEdge& b, std::optional<bool> requested) {
-  constexpr double coincidence_fraction = 0.02;  // relative to the radius
+  constexpr double coincidence_fraction = 0.02;  // fraction of the ring's radius
   const EdgeRing ring_a(a);
   EdgeRing ring_b(b);
   const RingFit unrotated = fit_best(ring_a, ring_b, requested);
@@ -187,7 +188,7 @@ std::vector<PatchEdge> joinable_edges(const std::vector<Surface>& patches) {
   return edges;
 }
 
-// Connected sets of patches.
+// Sets of patches that matches connect.
 class Groups {
  public:
   explicit Groups(std::size_t count) : group_(count) { std::iota(group_.begin(), group_.end(), 0); }
@@ -196,7 +197,7 @@ class Groups {
     const int from = group_[b], to = group_[a];
     for (int& group : group_) group = group == from ? to : group;
   }
-  int find_loose() const {  // a patch not connected to the first, or -1
+  int find_loose() const {  // returns a patch that is not connected to the first patch, or -1
     for (std::size_t p = 0; p < group_.size(); ++p) {
       if (group_[p] != group_[0]) return static_cast<int>(p);
     }
@@ -275,7 +276,8 @@ struct GridCell {
 
 constexpr bool both[] = {false, true};
 
-// Returns the orientation that brings the side to `target` with the given direction of its edge.
+// Returns the orientation of a patch that moves its side `side` to `target` and reverses the direction of
+// that edge if `reversed`; nothing if there is none.
 std::optional<Orientation> facing(Side side, Side target, bool reversed) {
   for (const bool exchange : both) {
     for (const bool reverse_u : both) {
@@ -322,8 +324,8 @@ Error layout_error(int patch, const char* what) {
                                         "; merge patches that make a row or a full grid, or name the edges");
 }
 
-// Sorts the matches between patches that are not grid neighbours: the matches close the grid if there is one
-// for each row or column; otherwise they stay open.
+// Sorts the matches between patches that are not neighbours in the grid. Such matches close the grid if there
+// is one for each row or for each column; otherwise they stay open.
 void sort_closing_matches(const std::vector<std::optional<GridCell>>& cells,
                           const std::vector<EdgeMatch>& matches, Arrangement& arrangement) {
   arrangement.closing_u.clear();
@@ -352,8 +354,8 @@ void sort_closing_matches(const std::vector<std::optional<GridCell>>& cells,
   open_unless_all(arrangement.closing_v, arrangement.rows);
 }
 
-// Shifts the cells of closed directions so that the first patch, which is at 0, follows the seam. Returns
-// true if there are closed directions.
+// Wraps the cells of closed directions so that the first patch, which is at 0, comes directly after the seam.
+// Returns true if there are closed directions.
 bool start_rings_at_first(const Arrangement& arrangement, std::vector<std::optional<GridCell>>& cells) {
   const auto wrapped = [](int cell, int count) { return (cell % count + count) % count; };
   for (std::optional<GridCell>& cell : cells) {

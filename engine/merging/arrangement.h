@@ -13,10 +13,10 @@ namespace spoonbill {
 // Two edges to join and their relative position.
 struct EdgeMatch {
   PatchEdge a, b;
-  bool reversed = false;  // b runs against a
-  double seam = 0.0;      // parameter on b at the seam of a, if b is periodic
-  // Largest and mean distance between points at equal fractions of the arc length; for rings, at equal
-  // fractions of the period from their seams.
+  bool reversed = false;  // b runs in the opposite direction to a
+  double seam = 0.0;      // if b is periodic, the parameter on b that corresponds to the seam of a
+  // Largest and mean distance between corresponding points. These are points at equal fractions of the arc
+  // length or, for rings, at equal fractions of the period from the seams.
   double gap_m = 0.0;
   double mean_gap_m = 0.0;
 };
@@ -24,17 +24,17 @@ struct EdgeMatch {
 // Returns text such as "patch 2's v_start", with patches counted from 1.
 std::string edge_name(PatchEdge edge);
 
-// Returns the best match of two edges. `reversed`, if given, sets the direction of b relative to a. Separate
-// rings are compared after rotating b to face a. Fails for a ring and an open edge.
+// Returns the best match of two edges. If `reversed` is given, it sets the direction of b relative to a.
+// Separate rings are compared after b is rotated to face a. Fails for a ring and an open edge.
 Result<EdgeMatch> match_edges(const std::vector<Surface>& patches, PatchEdge a, PatchEdge b,
                               std::optional<bool> reversed = std::nullopt);
 
-// Returns matches that connect all patches: first every pair of edges within `together_m`, then pairs of free
-// edges, the smallest mean gap first, until no patch is separate. Fails if a patch has no suitable edge; the
-// message names it.
+// Returns matches that connect all patches. Every pair of edges within `together_m` is matched first. Then
+// pairs of free edges are matched, the smallest mean gap first, until all patches are connected. Fails if a
+// patch has no suitable edge; the message names it.
 Result<std::vector<EdgeMatch>> find_edge_matches(const std::vector<Surface>& patches, double together_m);
 
-// Orientation of a patch in the grid: u and v are exchanged first, then directions reversed.
+// Orientation of a patch in the grid. First u and v may be exchanged, then directions may be reversed.
 struct Orientation {
   bool exchanged = false, reversed_u = false, reversed_v = false;
 
@@ -43,7 +43,7 @@ struct Orientation {
 
 Surface orient(const Surface& surface, const Orientation& orientation);
 
-// Side after applying an orientation, and whether the direction of its edge is reversed.
+// The side to which an orientation moves a given side, and whether it reverses the direction of its edge.
 struct TurnedSide {
   Side side;
   bool reversed;
@@ -56,16 +56,18 @@ struct Arrangement {
   int rows = 0, columns = 0;
   std::vector<int> patches;
   std::vector<Orientation> orientations;
-  // Matches that close the grid: from the last row to the first, one for each column, and from the last
-  // column to the first, one for each row. Empty if the grid is not a ring in that direction.
+  // Matches that close the grid. closing_u joins the last row to the first, with one match for each column;
+  // closing_v joins the last column to the first, with one match for each row. Empty if the grid is not a
+  // ring in that direction.
   std::vector<EdgeMatch> closing_u, closing_v;
-  std::vector<EdgeMatch> left_open;  // matches between patches that are not neighbours in the grid
+  // Matches between patches that are not neighbours in the grid, which are not joined.
+  std::vector<EdgeMatch> left_open;
 
   int cell(int a, int b) const { return a * columns + b; }
 };
 
-// Lays out the patches from matches that connect them all. Rings start at the first patch. Fails if the
-// patches do not fill a rectangle with one patch in each cell; the message names a patch.
+// Lays out the patches in a grid, from matches that connect them all. A ring of patches starts at the first
+// patch. Fails if the patches do not fill a rectangle with one patch in each cell; the message names a patch.
 Result<Arrangement> arrange(const std::vector<Surface>& patches, const std::vector<EdgeMatch>& matches);
 
 }  // namespace spoonbill

@@ -21,7 +21,8 @@ namespace {
 
 constexpr int samples_across = 64;
 
-// Returns how far point k of the second edge is ahead of the first edge; 0 where the patches turn back.
+// Returns the distance by which point k of the second edge is ahead of the first edge, along the mean
+// direction of both patches. Returns 0 where their directions are opposite.
 double advance_m(const JointEdges& edges, std::size_t k) {
   const SurfacePoint &a = edges.before[k], &b = edges.after[k];
   const Vector3 ahead = a.dv.normalized() + b.dv.normalized();
@@ -34,7 +35,7 @@ double gap_m(const JointEdges& edges, std::size_t k) {
   return (edges.before[k].position_m - edges.after[k].position_m).norm();
 }
 
-// Returns the k-th difference of a line's control points at one end of a polynomial piece, inwards.
+// Returns the k-th difference of a line's control points at one end of a polynomial piece.
 Vector3 difference_at_end(const Surface& piece, int line, int k, bool at_end) {
   std::vector<Vector3> points;
   const int last = piece.net.columns - 1;
@@ -45,8 +46,8 @@ Vector3 difference_at_end(const Surface& piece, int line, int k, bool at_end) {
   return points[0];
 }
 
-// Returns true if the Taylor terms of third and higher order agree across the joint, within the bound used
-// for the first-order term.
+// Returns true if the Taylor terms of third and higher order agree across the joint. The allowed difference
+// is the same as for the first-order term.
 bool agree_beyond_second(const Surface& before, const Surface& after, double stretch, int continuity,
                          double speed) {
   const std::vector<double> breaks_before = before.v.breakpoints(), breaks_after = after.v.breakpoints();
@@ -56,7 +57,7 @@ bool agree_beyond_second(const Surface& before, const Surface& after, double str
   if (!last || !first) return false;
   const double length = breaks_before.back() - breaks_before[breaks_before.size() - 2];
   const double ratio = length / (stretch * (breaks_after[1] - breaks_after[0]));
-  // Binomial factor of the k-th difference.
+  // Binomial coefficient of the k-th difference.
   double choices = 0.5 * before.v.degree() * (before.v.degree() - 1.0);
   for (int k = 3; k <= std::min(continuity, before.v.degree()); ++k) {
     choices *= (before.v.degree() - k + 1.0) / k;
@@ -168,7 +169,7 @@ double mean_length_m(const Surface& surface, double start, double end) {
 
 namespace {
 
-// Normals du x dv at parameters u x v, not normalised.
+// Normals du x dv, not normalised, at all pairs of the parameters u and v.
 class NormalGrid {
  public:
   NormalGrid(const Surface& surface, std::vector<double> u, std::vector<double> v)
@@ -225,8 +226,8 @@ constexpr int cells_in_bridge_piece = 4;
 
 struct Cells {
   std::vector<double> centres;
-  // True where the surface is smooth from a cell to the next, and from the last to the first; false across a
-  // crease.
+  // For each cell, true if the surface is smooth up to the next cell (the first follows the last), false if a
+  // crease is in between.
   std::vector<bool> is_smooth;
 };
 
@@ -240,13 +241,13 @@ Cells cells_along(const KnotVector& knots) {
                               (ends[piece + 1] - ends[piece]) * (k + 0.5) / cells_in_bridge_piece);
       cells.is_smooth.push_back(true);
     }
-    // Open ends count as clamped, so the surface is not smooth across them.
+    // Open ends count as clamped. Their knot has full multiplicity, so the surface is not smooth across them.
     cells.is_smooth.back() = starts[(piece + 1) % starts.size()].multiplicity < knots.degree();
   }
   return cells;
 }
 
-// Least numbers of samples, for strips of few pieces.
+// Least numbers of samples, needed for strips with few polynomial pieces.
 constexpr int least_lines = 32, least_steps = 24;
 
 std::vector<double> sample_lines(const KnotVector& u) {
@@ -303,7 +304,7 @@ std::optional<Vector3> find_fold_between(const Surface& surface, double start, d
 
 namespace {
 
-// Returns clamped knots with `count` control points and equal pieces.
+// Returns clamped knots for `count` control points, with pieces of equal length.
 Result<KnotVector> strip_knots(int degree, int count, double start, double end) {
   std::vector<double> knots(static_cast<std::size_t>(degree) + 1, start);
   const int pieces = count - degree;
@@ -312,7 +313,7 @@ Result<KnotVector> strip_knots(int degree, int count, double start, double end) 
   return KnotVector::open(degree, std::move(knots));
 }
 
-// Sets control point column j of the strip by extending the patch's first or last piece.
+// Sets column j of the strip's control points so that the strip extends the patch's last or first piece.
 void continue_into(const Surface& patch, bool from_end, const KnotVector& strip, int j, ControlNet& net) {
   const double at = from_end ? patch.v.domain_end() : patch.v.domain_start();
   const int span = patch.v.find_span(at);
@@ -366,7 +367,7 @@ Result<Surface> make_strip(const Surface& before, const Surface& after, const Br
   return bridge(before, moved.value(), continuity);
 }
 
-// Returns the length of a bridge that crosses the gap at the speed that the patches have at its edges.
+// Returns the length of a bridge that crosses the gap at the mean speed that the patches have at the gap.
 Result<BridgeLength> even_speed_length(const Surface& before, const Surface& after) {
   double chord = 0.0, speed_before = 0.0, speed_after = 0.0;
   const std::vector<double> parameters = uniform_parameters_without_seam(before.u, 64);
@@ -384,10 +385,10 @@ Result<BridgeLength> even_speed_length(const Surface& before, const Surface& aft
   return BridgeLength{chord / speed_before, speed_after / speed_before, chord};
 }
 
-// Form of a bridge between rings. Columns in between are added if it bends, or if it is so long that
-// irregular patch ends would grow into folds along it.
+// Form of a bridge between two rings. Further columns of control points are added between the two ends if the
+// bridge bends, or if it is long. In a long bridge, irregular patch ends would grow into folds.
 struct BridgeForm {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  // maps the ring after the gap to the ring before it
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  // rotates the ring after the gap to the ring before it
   bool bends = false, has_columns_between = false;
 };
 
@@ -395,7 +396,7 @@ BridgeForm choose_form(const Surface& before, const Surface& after) {
   if (!before.u.is_periodic()) return {};
   const RingFrame a = ring_frame(before, Side::v_end), b = ring_frame(after, Side::v_start);
   const Eigen::Matrix3d turn = rotation_towards(a, b);
-  constexpr double long_fraction = 2.0;  // relative to the sum of both radii
+  constexpr double long_fraction = 2.0;  // length of a long bridge, relative to the sum of both rings' radii
   const bool bends = is_bend(turn);
   const bool is_long = (b.centre_m - a.centre_m).norm() > long_fraction * (a.radius_m + b.radius_m);
   const bool has_directions = !a.outward.isZero() && !b.outward.isZero();
@@ -435,7 +436,7 @@ Result<Surface> bridge(const Surface& before, const Surface& after, int continui
   SPOONBILL_ASSERT(before.u.control_point_count() == after.u.control_point_count() &&
                    before.v.degree() == after.v.degree());
   const int degree = before.v.degree();
-  // The order is higher than requested if the degree permits it without further pieces.
+  // The order of continuity is higher than requested if the degree permits that without further pieces.
   const int order = std::max(continuity, degree / 2);
   const BridgeForm form = choose_form(before, after);
   const int between = form.has_columns_between ? columns_between : 0;

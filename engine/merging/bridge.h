@@ -1,5 +1,5 @@
-// Joints between consecutive patches of a row: measures of their edges, search for folds, bridges over gaps.
-// Pure functions, outside the tick; any thread.
+// Joints between consecutive patches of a row: measures of their edges, a search for folds, and bridges over
+// gaps. Pure functions, outside the tick; any thread.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,8 @@
 
 namespace spoonbill {
 
-// Samples of the end edge of one patch and the start edge of the next, at the same parameters u.
+// Surface points on both edges of a joint, at the same parameters u: on the end edge of one patch and on the
+// start edge of the next.
 struct JointEdges {
   std::vector<SurfacePoint> before, after;
 };
@@ -19,19 +20,20 @@ JointEdges joint_edges(const Surface& before, const Surface& after);
 double largest_gap_m(const JointEdges& edges);
 double mean_gap_m(const JointEdges& edges);
 
-// Returns the mean distance by which the second edge is ahead of the first, along the patches' direction
-// there; negative where they overlap.
+// Returns the mean distance by which the second edge is ahead of the first, along the direction of the
+// patches at the joint. It is negative where the patches overlap.
 double mean_advance_m(const JointEdges& edges);
 
-// A deviation below this is rounding.
+// Largest deviation that counts as rounding.
 inline constexpr double rounding_m = 1e-12;
 
-// Returns true if, across every gap wider than `touching_m`, the patches continue straight ahead, neither
-// sideways nor backwards.
+// Returns true if the patches continue straight ahead, neither sideways nor backwards, across every gap wider
+// than `touching_m`.
 bool continues_ahead(const JointEdges& edges, double touching_m);
 
-// Returns the stretch s that minimises the sum of |before' - after' / s|^2; exact if the derivatives differ
-// by a constant factor. Derivatives that point in different directions give the ratio of their lengths.
+// Returns the stretch s that minimises the sum of |before' - after' / s|^2 over the derivatives across the
+// joint. It is exact if the derivatives differ by a constant factor. If they point in different directions,
+// it is the ratio of their lengths.
 double stretch_at_edge(const JointEdges& edges);
 
 // Returns true if the derivatives of both patches agree up to order `continuity`, so that no blend is needed.
@@ -40,28 +42,28 @@ bool is_smooth(const Surface& before, const Surface& after, double stretch, int 
 
 double mean_speed(const std::vector<SurfacePoint>& points);
 
-// Returns the length of the last (`at_end`) or first polynomial piece along v at the given speed (metres per
-// unit of v).
+// Returns the length, along v, of the last (`at_end`) or first polynomial piece of a patch, at the given
+// speed in metres per unit of v.
 double piece_length_m(const Surface& patch, bool at_end, double speed);
 
-// Returns the mean arc length of the lines along v from `start` to `end`.
+// Returns the mean arc length of the surface's lines of constant u between v = `start` and v = `end`.
 double mean_length_m(const Surface& surface, double start, double end);
 
 // Returns a position where the normal turns by more than 90 degrees from one cell to the next. Each
-// polynomial piece has 4 x 4 cells. Creases (knots of full multiplicity) are not crossed, since two sides may
-// meet there at any angle.
+// polynomial piece has 4 x 4 cells. Cells on both sides of a crease (a knot of full multiplicity) are not
+// compared, because the surface may bend there by any angle.
 std::optional<Vector3> find_fold(const Surface& surface);
 
-// Finds folds in the strip from v = `start` to v = `end`. Besides sudden turns it detects slow ones: normals
-// that oppose the normals at both edges although these agree, and neighbouring lines that oppose each other
-// although they agree at both edges.
+// Finds folds in the strip from v = `start` to v = `end`. Finds sudden turns of the normal, as find_fold()
+// does, and slow ones in two forms: normals that oppose the normals at both edges although these agree, and
+// neighbouring lines that oppose each other although they agree at both edges.
 std::optional<Vector3> find_fold_between(const Surface& surface, double start, double end);
 
-// Length of a bridge. The speed across the gap is the same for both patches; it follows from the chords
-// between the edges and the mean derivatives there. The parameter length is reduced until the bridge does not
-// fold. Between rings it is also reduced, to a quarter at most, until the bridge is nowhere narrower than the
-// narrower ring. Fails for edges without a direction across v, and for bridges that fold at any length unless
-// `may_fold` is set.
+// Length of a bridge. At its ends the bridge has the same speed relative to each patch; the speed follows
+// from the chords between the edges and the mean derivatives there. The parameter length is reduced until the
+// bridge does not fold. Between rings it is also reduced, to about a quarter at most, until the bridge is
+// nowhere narrower than the narrower ring. Fails for edges at which the derivatives along v vanish, and for
+// bridges that fold at any length unless `may_fold` is set.
 struct BridgeLength {
   double parameter = 0.0;
   double stretch_of_after = 1.0;
@@ -71,10 +73,10 @@ Result<BridgeLength> bridge_length(const Surface& before, const Surface& after, 
                                    bool may_fold = false);
 
 // Returns the bridge from the end of `before` to the start of `after`, over the domain between them. Both
-// need the same knots along u and the same degree along v. The outer control points continue the patches' end
-// pieces with at least the given continuity. Between rings that are more than 45 degrees from facing each
-// other, or farther apart than twice the sum of their radii, columns in between follow a bend and keep the
-// tube open. Fails for an empty gap.
+// patches need the same knots along u and the same degree along v. The outer control points continue the
+// patches' end pieces with at least the given continuity. Further columns in between follow a bend and keep
+// the tube open. They are added between rings that are more than 45 degrees from facing each other, or
+// farther apart than twice the sum of their radii. Fails for a gap of no length in v.
 Result<Surface> bridge(const Surface& before, const Surface& after, int continuity);
 
 }  // namespace spoonbill

@@ -17,7 +17,7 @@
 namespace spoonbill {
 namespace {
 
-// Returns the distinct knots, without the end of a period.
+// Returns the distinct knots. For a periodic direction, the end of the period is omitted.
 std::vector<double> distinct_knots(const KnotVector& knots) {
   std::vector<double> all = knots.breakpoints();
   if (knots.is_periodic()) all.pop_back();
@@ -35,8 +35,8 @@ double nearest_to(const std::vector<double>& sorted, double knot) {
   return std::abs(*after - knot) < std::abs(after[-1] - knot) ? *after : after[-1];
 }
 
-// Returns the inner knots of `from` that nearly equal a knot of `to`, each with its target, unless another
-// knot of `from` is closer to it.
+// Returns pairs of knots: an inner knot of `from`, and the knot of `to` that it nearly equals. Knots of
+// `from` are omitted if another knot of `from` is nearer to that knot of `to`.
 std::vector<std::pair<double, double>> find_moves(const KnotVector& from, const KnotVector& to) {
   const std::vector<double> own = from.breakpoints(), targets = to.breakpoints();
   const double reach = snap_fraction * from.domain_length();
@@ -97,15 +97,15 @@ std::string patch_name(std::size_t patch) {
   return "patch " + std::to_string(patch + 1) + " of the row";
 }
 
-// Moves the patch to the u domain of the first. A domain that is already equal is not touched, which avoids
-// rounding errors.
+// Changes the patch's u domain to that of the first patch. A domain that is already equal is not changed,
+// which avoids rounding errors.
 Result<Surface> match_domain(const Surface& first, const Surface& patch) {
   const double start = first.u.domain_start(), end = first.u.domain_end();
   if (patch.u.domain_start() == start && patch.u.domain_end() == end) return patch;
   return with_domain(patch, Direction::u, start, end);
 }
 
-// Returns the parameter of the curve's point nearest to `point`, from an initial guess.
+// Returns the parameter of the curve's point nearest to `point`, starting from the guess.
 double nearest_parameter(const EdgeCurve& curve, const Vector3& point, double guess) {
   double t = guess;
   for (int step = 0; step < 20; ++step) {
@@ -119,8 +119,8 @@ double nearest_parameter(const EdgeCurve& curve, const Vector3& point, double gu
   return t;
 }
 
-// Returns the parameters on b nearest to a's points, from guesses at equal fractions of the length. Both must
-// be open or have adjacent seams.
+// Returns the parameters of b's points nearest to a's points. The search starts from points at equal
+// fractions of the length. Both curves must be open or have seams close to each other.
 std::vector<double> corresponding_parameters(const EdgeCurve& a, const EdgeCurve& b,
                                              const std::vector<double>& along) {
   constexpr int steps = 129;
@@ -139,7 +139,8 @@ std::vector<double> corresponding_parameters(const EdgeCurve& a, const EdgeCurve
   return matching;
 }
 
-// Returns the largest distance between a and b at corresponding parameters.
+// Returns the largest distance between the points of a at `along` and the corresponding points of b at
+// `matching`.
 double largest_distance_m(const EdgeCurve& a, const EdgeCurve& b, const std::vector<double>& along,
                           const std::vector<double>& matching) {
   double largest = 0.0;
@@ -149,7 +150,7 @@ double largest_distance_m(const EdgeCurve& a, const EdgeCurve& b, const std::vec
   return largest;
 }
 
-// Returns the parameter of the ring's nearest point, from samples all around.
+// Returns the parameter of the ring's point nearest to `point`. The search starts from the nearest sample.
 double nearest_on_ring(const EdgeCurve& ring, const Vector3& point) {
   const std::vector<double> parameters = nested_parameters(ring.knots, 16, 0).parameters;
   const auto distance = [&](double t) { return (position(ring, t) - point).squaredNorm(); };
@@ -165,9 +166,10 @@ Result<Surface> align_seam(const Surface& before, const Surface& patch, const Jo
   const EdgeCurve a = edge_curve(before, Side::v_end), b = edge_curve(patch, Side::v_start);
   const Vector3 seam_point = position(a, a.knots.domain_start());
   const double nearest = nearest_on_ring(b, seam_point);
-  // The seam nearest to the last ring's seam replaces the best fit if the two seams coincide, within this
-  // fraction of the tolerance. The nearest seam and the best fit differ if the parameters differ, and by
-  // rounding for identical rings with corners.
+  // Fraction of the tolerance for touching rings; rings that do not touch have the whole tolerance. If the
+  // point of this ring nearest to the previous ring's seam is within it of that seam, the point becomes the
+  // seam instead of the best fit. The two differ if the parameters differ, or by rounding for identical rings
+  // with corners.
   constexpr double coincidence_fraction = 1e-6;
   const double near_m =
       request.tolerance_m * (match->gap_m > request.tolerance_m ? 1.0 : coincidence_fraction);
@@ -177,18 +179,19 @@ Result<Surface> align_seam(const Surface& before, const Surface& patch, const Jo
   return with_seam_at(patch, Direction::u, align_seam_to_knots(before.u, patch.u, target));
 }
 
-// Numbers of samples in each piece: for fitting, for finding where knots are needed, and for measuring.
+// Numbers of samples in each polynomial piece: for fitting, for finding where knots are needed, and for
+// measuring.
 constexpr int fitted_per_piece = 5, checked_per_piece = 10, measured_per_piece = 40;
 
-// Returns evenly spaced parameters in each piece, without the end of a period.
+// Returns evenly spaced parameters in each piece. In a periodic direction, the end of the period is omitted.
 std::vector<double> dense_parameters(const KnotVector& knots, int per_piece) {
   std::vector<double> dense = nested_parameters(knots, per_piece, 0).parameters;
   if (knots.is_periodic()) dense.pop_back();
   return dense;
 }
 
-// Returns the surface with u reparameterised over `knots`: the new parameters `fitted` correspond to
-// `matching` on the given surface.
+// Returns the surface reparameterised along u, over `knots`. The new parameters `fitted` correspond to the
+// parameters `matching` of the given surface.
 Result<Surface> compose(const Surface& surface, const KnotVector& knots, const std::vector<double>& fitted,
                         const std::vector<double>& matching) {
   const bool open = !knots.is_periodic();
@@ -208,8 +211,8 @@ Vector3 blended(const BlendingMatrix& blending, int row, const ControlNet& net, 
   return sum;
 }
 
-// Returns upper bounds, over all v, of the distances between two surfaces with equal v knots, at
-// corresponding parameters u.
+// Returns, for each pair of corresponding parameters u, an upper bound over all v of the distance between two
+// surfaces with equal v knots.
 std::vector<double> distances_m(const Surface& surface, const std::vector<double>& along,
                                 const Surface& other, const std::vector<double>& matching) {
   const BlendingMatrix own = blending_matrix(surface.u, along, 0),
@@ -226,7 +229,7 @@ std::vector<double> distances_m(const Surface& surface, const std::vector<double
   return distances;
 }
 
-// Reparameterises the patch to the parameters of `before` on their shared edge.
+// Reparameterises the patch so that it has the parameters of `before` on the shared edge.
 Result<CompatiblePatches> match_parameters_to(const Surface& before, const Surface& patch, double tolerance_m,
                                               int largest_count, const Progress& progress) {
   const EdgeCurve a = edge_curve(before, Side::v_end), b = edge_curve(patch, Side::v_start);
@@ -261,7 +264,7 @@ Result<CompatiblePatches> match_parameters_to(const Surface& before, const Surfa
                "tolerance");
 }
 
-// Fraction of the tolerance that snapping knots may use.
+// Fraction of the tolerance that may be used for snapping knots.
 constexpr double knots_fraction = 0.05;
 
 // Refines all patches to the union of their u knots.
@@ -300,11 +303,11 @@ Result<Surface> elevate(const Surface& patch, int degree_u, int degree_v) {
   return convert_to_finer_knots(along_u.value(), Direction::v, v.value());
 }
 
-// Fractions of the tolerance: the largest distance at which edges count as shared, and the largest error that
-// different parameters may leave.
+// Fractions of the tolerance: the largest distance between edges that count as shared, and the largest error
+// that different parameters of shared edges may leave.
 constexpr double distance_fraction = 0.75, matching_fraction = 0.25;
 
-// Returns true if the edges are one curve with different parameters.
+// Returns true if the two edges are one curve in space but have different parameters.
 bool needs_matching(const Surface& before, const Surface& patch, double tolerance_m) {
   const EdgeCurve a = edge_curve(before, Side::v_end), b = edge_curve(patch, Side::v_start);
   std::vector<double> along = nested_parameters(a.knots, 4, 0).parameters;

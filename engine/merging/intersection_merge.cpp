@@ -28,28 +28,29 @@
 namespace spoonbill {
 namespace {
 
-// Lines from a loop beside a body's pole to the pole on the far side.
-// The body's parameters map to a plane: v from the near pole is the radius, u the angle. Each line leaves the
-// loop away from its centre, bends, and becomes one of the body's lines of constant u at a circle around the
-// loop. Beyond the circle, the body's curvature is aligned with the lines. All lines leave the loop at one
-// speed, as at the end of a fillet.
+// Lines on a body from a loop near one pole to the pole on the far side.
+//
+// The body's parameters are mapped to a plane by polar coordinates: v, from the near pole on, is the radius
+// and u the angle. Each line leaves the loop away from the loop's centre, bends, and becomes a line of
+// constant u of the body at a circle around the loop. Beyond the circle, the body's curvature is aligned with
+// the lines. All lines leave the loop at the same speed, as they would the end of a fillet.
 class LinesFromLoop {
  public:
-  // `body` runs along v from the pole beside the loop, is periodic in u, and must outlive this object. `loop`
-  // holds (u, v) in order, with each u in any period.
+  // `body` starts along v at the pole near the loop, is periodic in u, and must outlive this object. `loop`
+  // contains pairs (u, v) in order; each u may be in any period.
   LinesFromLoop(const Surface& body, const std::vector<Eigen::Vector2d>& loop);
 
-  // Returns the angle about the loop's centre, as a fraction of a turn.
+  // Returns the angle of a point about the loop's centre, as a fraction of a turn.
   double turn_at(const Eigen::Vector2d& start) const;
-  // Returns (u, v) at a fraction of the length of the line from `start`.
+  // Returns (u, v) at a fraction of the length of the line that begins at `start`.
   Eigen::Vector2d at(const Eigen::Vector2d& start, double fraction) const;
-  // Returns the fraction at which the lines become the body's own.
+  // Returns the fraction of a line's length at which it becomes a line of constant u of the body.
   double bend_fraction() const { return bend_; }
 
  private:
   Eigen::Vector2d to_plane(const Eigen::Vector2d& uv) const;
   Eigen::Vector2d from_plane(const Eigen::Vector2d& point) const;
-  // Returns metres on the body per unit step on the plane.
+  // Returns the length in metres on the body per unit of length in the plane.
   double metres_per_step(const Eigen::Vector2d& point, const Eigen::Vector2d& direction) const;
 
   const Surface* body_;
@@ -60,30 +61,33 @@ class LinesFromLoop {
   double speed_at_bend_ = 0.0, start_speed_m_ = 0.0;
 };
 
-// Both patches run along v: the first towards the intersection, the second away from it.
+// Two patches that intersect. Both run along v: the first towards the intersection, the second away from it.
 struct CrossingPatches {
   Surface first, second;
-  // True if the intersection is beside the pole at the second's v start, which needs LinesFromLoop.
+  // True if the intersection is near the pole at the start of the second patch's v, and does not go around
+  // the pole. Lines then come from LinesFromLoop.
   bool beside_pole = false;
 };
 
-// End of the first patch's line at u, start of the second's line, and the arc between them.
+// Line of the first patch at one u, with its continuation: where it ends on the first patch, and where it
+// starts on the second. With a fillet, an arc is in between.
 struct CornerLine {
   double first_v = 0.0;
   double second_u = 0.0, second_v = 0.0;
-  std::optional<Vector3> centre_m;  // centre of the rolling ball
+  std::optional<Vector3> centre_m;  // centre of the rolling ball; empty for a sharp edge
 };
 
-// Caches corner lines, since fits evaluate the same ones repeatedly. One owner.
+// Stores corner lines, because fits evaluate the same lines repeatedly. One owner.
 class CornerLines {
  public:
   // `patches` must outlive this object. A radius of 0 gives a sharp edge.
   CornerLines(const CrossingPatches& patches, double fillet_m);
 
-  // Returns nothing if the line does not cross or no ball fits.
+  // Returns nothing if the line does not cross the second patch or no ball fits.
   const std::optional<CornerLine>& at(double u);
 
-  // Returns the start points (u, v) on the second patch, for enough lines to resolve the loop.
+  // Returns the points (u, v) on the second patch at which its lines start, enough of them to resolve the
+  // loop.
   std::vector<Eigen::Vector2d> loop_on_second();
 
  private:
@@ -99,8 +103,8 @@ class CornerLines {
 
 using std::numbers::pi;
 
-// Radius of the circle relative to the loop's farthest point, and its limit as a fraction of the remaining
-// distance to the far pole.
+// Radius of the circle, relative to the distance of the loop's farthest point from the pole. The circle
+// covers at most the second fraction of the remaining distance to the far pole.
 constexpr double circle_ratio = 1.3, most_rest_fraction = 0.5;
 
 Eigen::Vector2d polar(double radius, double angle) {
@@ -129,7 +133,7 @@ LinesFromLoop::LinesFromLoop(const Surface& body, const std::vector<Eigen::Vecto
     shortest = std::min(shortest, length);
   }
   bend_ = to_circle / (to_circle + 1.0 - circle_);
-  // A higher speed would make the shortest line turn back.
+  // Limit on the speed relative to the shortest line, which would otherwise turn back.
   constexpr double most_shortest_ratio = 1.5;
   speed_at_bend_ = std::min(to_circle, most_shortest_ratio * shortest) / bend_;
   start_speed_m_ = most_shortest_ratio * shortest_m;
@@ -152,7 +156,7 @@ Eigen::Vector2d LinesFromLoop::at(const Eigen::Vector2d& start, double fraction)
     const double s = (fraction - bend_) / (1.0 - bend_), start_slope = speed_at_bend_ * (1.0 - bend_);
     point = polar(circle_ + s * start_slope + s * s * (1.0 - circle_ - start_slope), angle);
   } else {
-    // Hermite cubic that joins the part of the line beyond the bend smoothly and at the same speed.
+    // Hermite cubic. At the bend it continues into the rest of the line smoothly and at the same speed.
     const Eigen::Vector2d from = to_plane(start), to = polar(circle_, angle);
     const Eigen::Vector2d away = (from - centre_).normalized();
     const Eigen::Vector2d out = start_speed_m_ / metres_per_step(from, away) * away;
@@ -177,17 +181,17 @@ double LinesFromLoop::metres_per_step(const Eigen::Vector2d& point, const Eigen:
 }
 
 constexpr int lines_checked = 24;
-// Number of lines in the finer search for positions where a body leaves the other between two of the checked
-// lines.
+// Number of lines in the finer search. It looks for positions, between the lines that were checked first,
+// where a body leaves the other one.
 constexpr int lines_searched = 8 * lines_checked;
 
 Surface run_along_v(const Surface& patch) {
   if (!is_tube(patch) || patch.u.is_periodic()) return patch;
-  // Exchanging flips the normals; reversing restores them.
+  // Exchanging u and v flips the normals; reversing u restores them.
   return reversed(exchanged(patch), Direction::u);
 }
 
-// Reverses the patch along v and keeps its normals.
+// Returns the patch reversed along v, with the same normals.
 Surface reverse_along_v(const Surface& patch) {
   return reversed(reversed(patch, Direction::v), Direction::u);
 }
@@ -213,11 +217,11 @@ double line_length_m(const Surface& patch, double u, double from, double to) {
   return length;
 }
 
-// Crossings of a patch's lines with the other patch: the number of lines that cross, votes for keeping the
-// part before the crossing, and positions.
+// Crossings of a patch's lines with the other patch: the number of lines that cross, votes for the part to be
+// kept, and the crossings.
 struct Crossed {
   int lines = 0;
-  double before_votes = 0.0;  // positive: keep the part before the crossing
+  double before_votes = 0.0;  // if positive, the part before the crossing is kept
   std::vector<LineCrossing> crossings;
 };
 
@@ -242,7 +246,7 @@ Crossed cross_lines(const Surface& patch, const Surface& other, const CrossingFi
   return crossed;
 }
 
-// Returns true if the crossings go around a pole of the other body: other_u then covers one period.
+// Returns true if the crossings go around a pole of the other body. Their other_u then covers one period.
 bool goes_around_pole(const Surface& other, const std::vector<LineCrossing>& crossings) {
   const double period = other.u.domain_length();
   double total = 0.0;
@@ -280,7 +284,7 @@ Error pokes_out(const Vector3& exit_m) {
                    "narrower, or give the patches in the other order");
 }
 
-// Checks that no line leaves the other body after entering it.
+// Checks that no line of the first patch leaves the other body after entering it.
 Status check_stays_inside(const Surface& first, const CrossingFinder& other) {
   int repeatedly = 0;
   std::optional<Vector3> exit_m;
@@ -302,10 +306,10 @@ Error not_side_by_side() {
 }
 
 Error not_around_centre() {
-  return Error(
-      ErrorCode::mismatch,
-      "the crossing on the second body does not run once around its own centre, as where one body is in "
-      "the side of another that is as wide; make one wider, or give them in the other order");
+  return Error(ErrorCode::mismatch,
+               "the curve along which the bodies intersect does not run once around its own centre, for "
+               "example because the first body enters the side of one that is no wider; make one body "
+               "wider, or give the bodies in the other order");
 }
 
 std::vector<Eigen::Vector2d> crossing_loop(const std::vector<LineCrossing>& crossings) {
@@ -315,7 +319,7 @@ std::vector<Eigen::Vector2d> crossing_loop(const std::vector<LineCrossing>& cros
   return loop;
 }
 
-// Starts the body at the pole nearer to the intersection.
+// Reverses the body if needed, so that v starts at the pole nearer to the intersection.
 Surface start_at_nearer_pole(const Surface& body, const std::vector<LineCrossing>& crossings) {
   double sum = 0.0;
   for (const LineCrossing& crossing : crossings) sum += crossing.other_v;
@@ -323,8 +327,8 @@ Surface start_at_nearer_pole(const Surface& body, const std::vector<LineCrossing
   return sum > centre * static_cast<double>(crossings.size()) ? reverse_along_v(body) : body;
 }
 
-// Returns where each crossing line of the first starts on the second: its u, or beside a pole the angle about
-// the intersection in turns.
+// Returns, for each crossing line of the first patch, where it starts along the second patch. This is the u
+// of the second patch or, beside a pole, the angle about the loop in turns.
 std::vector<double> find_starts_along(const CrossingPatches& patches,
                                       const std::vector<LineCrossing>& crossings) {
   std::vector<double> starts;
@@ -338,7 +342,7 @@ std::vector<double> find_starts_along(const CrossingPatches& patches,
   return starts;
 }
 
-// Returns the wrapped differences between consecutive starts.
+// Returns the differences between consecutive starts, wrapped into half a period around 0.
 std::vector<double> steps_between(std::vector<double> starts, bool closed, double period) {
   if (closed && !starts.empty()) starts.push_back(starts.front());
   std::vector<double> steps;
@@ -404,8 +408,8 @@ CornerLines::CornerLines(const CrossingPatches& patches, double fillet_m)
   choose_sides();
 }
 
-// Chooses the side of both remaining parts on which the ball rolls: on each surface, the side to which the
-// other surface's part leads.
+// Chooses the side of each surface on which the ball rolls: the side to which the remaining part of the other
+// surface leads.
 void CornerLines::choose_sides() {
   const Surface &first = patches_->first, &second = patches_->second;
   const std::vector<LineCrossing> crossings = cross_lines(first, second, second_).crossings;
@@ -451,11 +455,11 @@ std::optional<CornerLine> CornerLines::find(double u) const {
   return CornerLine{contact->v, contact->other_u, contact->other_v, contact->centre_m};
 }
 
-// Fraction of the tolerance for fitting each part. The edges of two parts then meet within twice this
-// tolerance, and joining uses the rest of the tolerance. Parts that start beside a pole get more, as their
-// curvature is not aligned with their lines.
+// Fraction of the tolerance for fitting each part. The edges of two parts are then within twice this distance
+// of each other; joining uses the rest of the tolerance. Parts that start beside a pole have a larger
+// fraction, because their curvature is not aligned with their lines.
 constexpr double part_fraction = 0.2, askew_fraction = 0.5;
-// Fraction of the work that fitting each of up to three parts takes, for the progress.
+// Fraction of the work that the fit of one part takes, for the progress. There are at most three parts.
 constexpr double fitted_fraction = 0.25;
 
 double interpolate(double from, double to, double fraction) {
@@ -468,12 +472,12 @@ using LineShape = std::function<Vector3(double u, const CornerLine& line, double
 struct PartShape {
   LineShape at;
   bool pole_at_start = false, pole_at_end = false;
-  // Fraction from which lines that start beside a pole follow the lines of the patch.
+  // Fraction of a line's length beyond which a line that starts beside a pole follows a line of the patch.
   std::optional<double> bend = {};
 };
 
-// Smallest number of spans that a fit starts with: at first, and in a second attempt that resolves local
-// detail.
+// Smallest numbers of spans with which a fit starts: in the first attempt, and in a second one that resolves
+// local detail.
 constexpr int few_spans = 4, local_spans = 48;
 
 Error not_fitted(const Error& error, double fraction, double tolerance_m) {
@@ -486,8 +490,9 @@ Error not_reached(bool with_fillet) {
                with_fillet
                    ? "a line of constant u does not reach the other patch, or the fillet's ball does not fit "
                      "there; choose a smaller fillet"
-                   : "a line of constant u does not cross the other patch, or only touches it, as where one "
-                     "body is in the side of another that is as wide; make one wider, or move it",
+                   : "a line of constant u does not cross the other patch, or only touches it, for example "
+                     "because one body enters the side of one that is no wider; make one body wider, or "
+                     "move it",
                with_fillet ? "fillet" : "");
 }
 
@@ -527,7 +532,8 @@ Result<FittedShape> fit_part(const Surface& first, CornerLines& lines, const Par
   return fitted;
 }
 
-// Interpolates on the arc about the ball's centre, from one contact to the other.
+// Returns a point on the arc about the ball's centre, at a fraction of the angle from one contact to the
+// other.
 Vector3 point_on_arc(const Vector3& from, const Vector3& to, const Vector3& centre, double fraction) {
   const Vector3 a = from - centre, b = to - centre;
   const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
@@ -598,7 +604,7 @@ Status check_folds(const Surface& merged, const Surface& first, const Surface& s
           "nearer to a pole, or give the patches in the other order");
 }
 
-// Describes the corner from the end of the first part to the start of the last.
+// Describes the joint from the end of the first part to the start of the last part.
 Joint describe_corner(const Joined& joined) {
   Joint corner;
   for (const Joint& joint : joined.joints) corner.gap_m = std::max(corner.gap_m, joint.gap_m);
@@ -612,7 +618,7 @@ Joint describe_corner(const Joined& joined) {
   return corner;
 }
 
-// Returns true for a closed body whose normals point inwards.
+// Returns true if the patch is a closed body whose normals point inwards.
 bool is_inward(const Surface& patch) {
   if (!is_tube(patch)) return false;
   const auto [start, end] = tube_sides(patch);

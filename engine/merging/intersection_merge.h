@@ -1,6 +1,6 @@
-// Merges two intersecting patches at an edge or a fillet. A single B-spline patch cannot hold such a corner
-// exactly, so both are resampled along lines of constant u that meet on the intersection, fitted and joined.
-// Pure function, outside the tick.
+// Merges two intersecting patches at an edge or a fillet. A single B-spline patch cannot represent such a
+// corner exactly, so both patches are resampled along lines of constant u that meet on the intersection, then
+// fitted and joined. Pure function, outside the tick.
 #pragma once
 
 #include "engine/merging/join_row.h"
@@ -8,26 +8,26 @@
 namespace spoonbill {
 
 struct IntersectionRequest {
-  JoinRequest join;       // its continuity applies to the fillet
-  double fillet_m = 0.0;  // radius of a ball that rolls along the corner; 0: a sharp edge
+  JoinRequest join;       // its continuity applies to the ends of the fillet
+  double fillet_m = 0.0;  // radius of the ball that rolls along the corner; 0 for a sharp edge
 };
 
 struct IntersectionMerge {
   Surface surface;
   double deviation_m = 0.0;  // largest distance from the patches, outside the fillet
-  // Joint of the two patches; its blend, from blend_start to blend_end along v, is the fillet.
+  // Joint of the two patches. With a fillet, the fillet is its blend, from blend_start to blend_end along v.
   Joint corner;
   bool first_was_inward = false, second_was_inward = false;
 };
 
-// Merges two intersecting patches. Each closed body contributes the part outside the other; open patches
+// Merges two intersecting patches. Each closed body contributes the part outside the other. Open patches
 // contribute the longer part of their lines. Closed bodies with inward normals are reversed first. The first
-// patch keeps its parameters in the direction around it. If the first crosses a closed body beside its poles,
-// the body is resampled along lines from the intersection to the far pole.
+// patch keeps its parameters in the direction around it. If the first patch crosses a closed body beside its
+// poles, the body is resampled along lines from the intersection to the far pole.
 //
-// Fails if a line of constant u does not cross the other patch, or if lines do not follow each other along
-// the intersection. It also fails if a patch leaves a closed body after entering it, or the fillet does not
-// fit. The message names a position where possible.
+// Fails if a line of constant u does not cross the other patch, if the lines do not follow each other along
+// the intersection, if a patch leaves a closed body after entering it, or if the fillet does not fit. The
+// message names a position where possible.
 Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& second,
                                          const IntersectionRequest& request);
 

@@ -37,13 +37,14 @@ Result<JointMeasure> measure(const Surface& before, const Surface& after, const 
   return JointMeasure{true, length->chord_m, length->parameter, length->stretch_of_after};
 }
 
-// State of one joint over all rows.
+// State of one joint, combined over all rows.
 struct JointState {
   bool any_touching = false, any_open = false, all_smooth = true, all_continue_ahead = true;
-  double apart_m = 0.0;                                               // largest gap
-  double mean_gap_m = 0.0, advance_m = 0.0;                           // means
-  double shortest_piece_m = std::numeric_limits<double>::infinity();  // beside the joint
-  double speed_before = 0.0, speed_after = 0.0;                       // means
+  double apart_m = 0.0;                      // largest gap in any row
+  double mean_gap_m = 0.0, advance_m = 0.0;  // means over the rows
+  // Length of the shortest polynomial piece beside the joint, in any row.
+  double shortest_piece_m = std::numeric_limits<double>::infinity();
+  double speed_before = 0.0, speed_after = 0.0;  // means over the rows
 };
 
 JointState joint_state(const std::vector<PreparedRow>& rows, std::size_t joint, const JoinRequest& request) {
@@ -70,11 +71,12 @@ JointState joint_state(const std::vector<PreparedRow>& rows, std::size_t joint, 
   return state;
 }
 
-// Lengths of blends at small gaps that are not straight ahead, where a bridge of the gap's length would make
-// a step or fold. A blend spans one polynomial piece; its length is limited to these multiples of the gap,
-// and the length cut off to this fraction of each patch.
+// Limits of blends at small gaps where the patches do not continue straight ahead, so that a bridge as long
+// as the gap would make a step or fold. A blend is as long as one polynomial piece, but at least and at most
+// these multiples of the gap. At most this fraction of each patch is cut off.
 constexpr double least_gap_ratio = 10.0, most_gap_ratio = 40.0, most_cut_fraction = 0.25;
-// Largest overlap that is not cut off, relative to the gap.
+// Largest overlap, relative to the gap, that is bridged without cutting if the patches are too short to be
+// cut.
 constexpr double most_back_fraction = 0.5;
 
 bool is_short_cut(const std::vector<PreparedRow>& rows, std::size_t joint, double cut_m) {
@@ -87,7 +89,7 @@ bool is_short_cut(const std::vector<PreparedRow>& rows, std::size_t joint, doubl
   });
 }
 
-// Returns the length to cut off each patch for a blend; 0 without one.
+// Returns the length to be cut off each patch so that a blend fits; 0 if there is no blend.
 Result<double> blend_cut_m(const std::vector<PreparedRow>& rows, std::size_t joint, const JointState& state,
                            const JoinRequest& request) {
   if (request.blend_m > 0.0) {
@@ -114,7 +116,8 @@ Result<double> blend_cut_m(const std::vector<PreparedRow>& rows, std::size_t joi
   return 0.0;
 }
 
-// Cuts back the patches of a joint in all rows alike, so that their joints stay at the same parameter.
+// Cuts the patches of a joint by the same parameter length in all rows, so that the joints of all rows remain
+// at the same parameter.
 Status cut_for_blend(std::vector<PreparedRow>& rows, std::size_t joint, const JoinRequest& request) {
   const JointState state = joint_state(rows, joint, request);
   const auto cut_m = blend_cut_m(rows, joint, state, request);
@@ -135,8 +138,8 @@ Status cut_for_blend(std::vector<PreparedRow>& rows, std::size_t joint, const Jo
   return {};
 }
 
-// Measures a joint in each row, and sets common values for all rows: the mean stretch and the shortest
-// bridge.
+// Measures a joint in each row, then sets the same values in all rows: the mean stretch and the length of the
+// shortest bridge.
 Status measure_joint(std::vector<PreparedRow>& rows, std::size_t joint, const JoinRequest& request) {
   double stretch = 0.0, shortest = std::numeric_limits<double>::infinity();
   for (PreparedRow& row : rows) {
@@ -194,7 +197,7 @@ Result<std::vector<PreparedRow>> prepare_rows(std::vector<std::vector<Surface>> 
 
 namespace {
 
-// Moves the patches to their domains in the merged surface.
+// Moves the patches of a row to their v domains in the merged surface.
 Result<std::vector<Surface>> place_in_row(const PreparedRow& row) {
   std::vector<Surface> placed{row.patches[0]};
   double stretch = 1.0;
@@ -206,8 +209,8 @@ Result<std::vector<Surface>> place_in_row(const PreparedRow& row) {
     const double start = placed.back().v.domain_end() + gap;
     const double length = patch.v.domain_length();
     double end = start + stretch * length;
-    // Parts of one patch keep their knots to the last bit: an end that differs only by rounding is set to the
-    // patch's end.
+    // Parts of one patch must have knots that are equal to the last bit. An end that differs only by rounding
+    // is therefore set to the patch's end.
     if (std::abs(end - patch.v.domain_end()) <= same_knot_fraction * length) end = patch.v.domain_end();
     auto moved = with_domain(patch, Direction::v, start, end);
     if (!moved) return moved.error();
@@ -216,7 +219,7 @@ Result<std::vector<Surface>> place_in_row(const PreparedRow& row) {
   return placed;
 }
 
-// Inserts the bridges between the patches.
+// Returns the strips of a row: the patches with bridges inserted between them.
 Result<std::vector<Surface>> add_bridges(const std::vector<Surface>& placed, const PreparedRow& row,
                                          int continuity) {
   std::vector<Surface> strips{placed[0]};
@@ -231,7 +234,7 @@ Result<std::vector<Surface>> add_bridges(const std::vector<Surface>& placed, con
   return strips;
 }
 
-// Joins strips that meet at their edges; the joint knots have full multiplicity.
+// Joins strips that meet at their edges. At the joints, the knots have full multiplicity.
 Result<Surface> concatenate(const std::vector<Surface>& strips) {
   const int degree = strips[0].v.degree(), rows = strips[0].net.rows;
   std::vector<double> knots = strips[0].v.knots();
@@ -259,7 +262,7 @@ Result<Surface> concatenate(const std::vector<Surface>& strips) {
   return make_surface(strips[0].u, std::move(v).value(), std::move(net));
 }
 
-// Reduces the multiplicity of each joint's knot to what the continuity permits.
+// Reduces the multiplicity of the knot at each joint to what the continuity permits.
 Result<KnotVector> smooth_knots(const KnotVector& knots, const std::vector<double>& joints, int continuity) {
   std::vector<double> fewer = knots.knots();
   for (const double joint : joints) {
@@ -270,7 +273,8 @@ Result<KnotVector> smooth_knots(const KnotVector& knots, const std::vector<doubl
   return KnotVector::open(knots.degree(), std::move(fewer));
 }
 
-// Samples the patch in every piece of the merged surface, which has more pieces along v.
+// Samples the patch in every piece of the merged surface. The merged surface has more pieces along v than the
+// patch.
 PointGrid sample_patch(const Surface& patch, const KnotVector& merged_v, int in_piece) {
   const std::vector<double> all = nested_parameters(merged_v, in_piece, 0).parameters;
   const double start = patch.v.domain_start(), end = patch.v.domain_end();
@@ -281,8 +285,8 @@ PointGrid sample_patch(const Surface& patch, const KnotVector& merged_v, int in_
   return sample_grid_points(patch, nested_parameters(patch.u, in_piece, 0).parameters, std::move(along));
 }
 
-// Returns the largest deviation, refined around the worst sample, unless the coarse samples show nothing but
-// rounding errors.
+// Returns the largest deviation of the merged surface from a patch, refined around the worst sample. If a
+// coarse set of samples shows only rounding errors, their result is returned.
 double deviation_m_from(const Surface& merged, const Surface& patch) {
   constexpr int few = 3, many = 6;
   const double at_few = largest_deviation_m(merged, sample_patch(patch, merged.v, few));
@@ -322,7 +326,8 @@ Result<double> measured_deviation_m(const Surface& merged, const std::vector<Sur
   return largest;
 }
 
-// Returns the tolerance left for fitting the joints; touching edges each move by half their gap.
+// Returns the tolerance that remains for fitting the joints. At a joint that is not bridged, each edge moves
+// by half the gap.
 double tolerance_left_m(const PreparedRow& row, const JoinRequest& request) {
   double gap_m = 0.0;
   for (const JointMeasure& joint : row.joints) gap_m = std::max(gap_m, joint.bridged ? 0.0 : joint.gap_m);
@@ -359,8 +364,8 @@ std::optional<Vector3> find_fold_in(const Surface& merged, const std::vector<Joi
   return find_fold(merged);
 }
 
-// Checks for folds that no patch has. Exact joins are not searched, since they fold only where the patches
-// do.
+// Checks for folds that no patch has. Joins that are exact are not searched, because they fold only where the
+// patches do.
 Status check_folds(const Surface& merged, const std::vector<Surface>& placed,
                    const std::vector<Joint>& joints, double moved_m) {
   const bool bridged = std::any_of(joints.begin(), joints.end(), [](const Joint& j) { return j.bridged; });
@@ -373,7 +378,8 @@ Status check_folds(const Surface& merged, const std::vector<Surface>& placed,
                    "blend, or cut a piece off");
 }
 
-// Fractions of the work that are done after preparing and after approximating, for the progress.
+// Fractions of the work that are done after preparing the patches and after approximating them, for the
+// progress.
 constexpr double prepared_fraction = 0.3, approximated_fraction = 0.6;
 
 }  // namespace

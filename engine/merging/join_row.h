@@ -10,39 +10,40 @@
 
 namespace spoonbill {
 
-// Measures of the joint between two patches of a row. Parameter lengths are measured on the patch before the
-// joint.
+// Measures of the joint between two patches of a row. Parameter lengths refer to the patch before the joint.
 struct JointMeasure {
   bool bridged = false;
-  double gap_m = 0.0;             // largest gap between the edges; the mean gap for a bridge
-  double gap_parameter = 0.0;     // length of a bridge
-  double stretch_of_after = 1.0;  // factor on the domain of the patch after the joint, for equal speed
-  double apart_m = 0.0;           // largest gap before cutting back
-  double cut_back_m = 0.0;        // length cut off each of the two patches
+  double gap_m = 0.0;          // largest gap between the edges, or the mean gap if it is bridged
+  double gap_parameter = 0.0;  // length of a bridge along v
+  // Factor on the length of the next patch's domain, so that the speed is equal on both sides.
+  double stretch_of_after = 1.0;
+  double apart_m = 0.0;     // largest gap before patches were cut back
+  double cut_back_m = 0.0;  // length cut off each of the two patches
 };
 
-// Patches along v with a common knot vector along u.
+// Patches in order along v, with a common knot vector along u.
 struct PreparedRow {
   std::vector<Surface> patches;
   std::vector<JointMeasure> joints;
   double deviation_m = 0.0;
 };
 
-// Prepares adjacent rows of equally many patches. The patches of a column share the first row's v domain and
-// are cut back and joined at the same parameters. They are cut back to fit a requested blend if the joint
-// lacks the continuity, and at small gaps that are not straight ahead, far enough to avoid a step. Fails if a
-// joint touches in one row and is open in another without a blend, or if a blend takes more than half of a
-// patch. It also fails where make_compatible() and bridge_length() do.
+// Prepares adjacent rows with equal numbers of patches. The patches of a column share the v domain of the
+// first row, and are cut back and joined at the same parameters. They are cut back in two cases: for a
+// requested blend if the joint lacks the continuity, and at small gaps where the patches do not continue
+// straight ahead, far enough to avoid a step. Fails if a joint touches in one row and is open in another
+// without a blend, or if a blend takes more than half of a patch. Also fails where make_compatible() and
+// bridge_length() fail.
 Result<std::vector<PreparedRow>> prepare_rows(std::vector<std::vector<Surface>> rows,
                                               const JoinRequest& request);
 
-// Joint of the merged surface, which differs from the patches from blend_start to blend_end along v; the two
-// are equal without a blend or bridge.
+// A joint of the merged surface. The surface differs from the patches between blend_start and blend_end along
+// v; both are equal without a blend or bridge.
 struct Joint {
   double gap_m = 0.0;
   bool bridged = false;
   double blend_start = 0.0, blend_end = 0.0;
-  double blend_length_m = 0.0;  // mean length of the blend along v
+  double blend_length_m = 0.0;  // mean length of the blend in metres
   double apart_m = 0.0;         // largest gap between the given edges
   double cut_back_m = 0.0;      // length cut off each of the two patches for the blend
 };
@@ -55,12 +56,13 @@ struct Joined {
 
 // Joins the patches of a row. The result is exact if the derivatives up to the continuity agree. Otherwise
 // the multiplicity of the joint knot is reduced by fitting, and knots are added beside it until the tolerance
-// is met. A knot of multiplicity m at degree p has continuity C^(p - m). Control point counts r1 and r2
-// become r1 + r2 + m - p - 1 (Pungotra et al. 2013 give r1 + r2 - 1, which holds for C0 only). Fails on too
-// many control points, on folds that no patch has (except where bridges may fold), or when stopped.
+// is met. A knot of multiplicity m has continuity C^(p - m) at degree p. Patches with r1 and r2 control
+// points give r1 + r2 + m - p - 1 (Pungotra et al. 2013 give r1 + r2 - 1, which holds for C0 only). Fails if
+// too many control points are needed, if the result has folds that no patch has (unless bridges may fold), or
+// if stopped.
 Result<Joined> join_prepared(const PreparedRow& row, const JoinRequest& request);
 
-// Prepares and joins a single row. Edges within the tolerance are joined directly, others by a bridge.
+// Prepares and joins a single row. Edges within the tolerance are joined directly, all others by a bridge.
 Result<Joined> join_row(std::vector<Surface> patches, const JoinRequest& request);
 
 }  // namespace spoonbill

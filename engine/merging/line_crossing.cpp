@@ -17,8 +17,8 @@ namespace {
 constexpr int cells_in_piece = 6;
 constexpr int chords_in_piece = 8;
 constexpr int ray_chords = 64;
-// Tolerance, relative to chords, triangle sides and the surface's size, so that no crossing is lost between
-// two triangles or along a border.
+// Tolerance relative to chords, triangle sides and the surface's size. It ensures that no crossing is lost
+// between two triangles or along a border.
 constexpr double loose = 1e-9;
 
 struct CurvePoint {
@@ -29,8 +29,8 @@ Box box_around(const Vector3& a, const Vector3& b) {
   return box_about(std::array{a, b});
 }
 
-// Residual below which Newton's method has converged, relative to the surface's size; grazing crossings leave
-// more than rounding errors.
+// Residual at which Newton's method has converged, relative to the surface's size. It is above rounding
+// errors, because grazing crossings leave a larger residual.
 constexpr double converged_fraction = 1e-10;
 
 void drop_repeated(std::vector<LineCrossing>& crossings, double nearness) {
@@ -88,7 +88,7 @@ std::vector<CrossingFinder::Start> CrossingFinder::find_starts(const Vector3& fr
   return starts;
 }
 
-// Solves curve(along) = other(u, v) by Newton's method.
+// Solves curve(along) = other(u, v) for along, u and v by Newton's method.
 template <class Curve>
 std::optional<LineCrossing> CrossingFinder::polish(const Curve& curve, double along,
                                                    const Start& start) const {
@@ -140,7 +140,7 @@ std::vector<LineCrossing> CrossingFinder::intersect_ray(const Vector3& from_m, c
   SPOONBILL_ASSERT(length_m >= 0.0);
   const auto curve = [&](double along) { return CurvePoint{from_m + along * direction, direction}; };
   std::vector<LineCrossing> crossings;
-  // The ray is cut into short chords, because their boxes contain few cells.
+  // The ray is divided into short chords, whose boxes meet few cells.
   const double step = length_m / ray_chords;
   for (int k = 0; k < ray_chords; ++k) {
     for (const Start& start :
@@ -160,7 +160,7 @@ struct ContactParameters {
   double v, other_u, other_v;
 };
 
-// Finite difference step relative to the domain.
+// Step of finite differences, relative to the domain.
 constexpr double small_step = 1e-6;
 
 // Clamps t to the domain. Returns false if it is outside by more than rounding.
@@ -172,7 +172,7 @@ bool clamp_to_domain(const KnotVector& knots, double& t) {
   return true;
 }
 
-// Returns the step for finite differences at t, negative near the end of the domain.
+// Returns the step of a finite difference at t. It is negative near the end of an open domain.
 double step_from(const KnotVector& knots, double t) {
   const double step = small_step * knots.domain_length();
   return !knots.is_periodic() && t + step > knots.domain_end() ? -step : step;
@@ -220,7 +220,7 @@ class Corner {
   }
 
  private:
-  // Moves parameters that have run past a pole to the opposite side of the pole.
+  // Moves parameters that are beyond a pole to the opposite side of that pole.
   void cross_poles(ContactParameters& at) const {
     const double start = other_.v.domain_start(), end = other_.v.domain_end();
     const bool before = pole_at_start_ && at.other_v < start, behind = pole_at_end_ && at.other_v > end;

@@ -1,5 +1,5 @@
-// Intersections of a surface with lines (lines of constant u of another surface, or straight ones), and the
-// ball that rolls along a corner. Outside the tick.
+// Intersections of a surface with lines, which are straight or are lines of constant u of another surface,
+// and the contact of the ball that rolls along a corner. Outside the tick.
 #pragma once
 
 #include <optional>
@@ -11,13 +11,13 @@
 namespace spoonbill {
 
 struct LineCrossing {
-  double along = 0.0;  // v on the crossing line, or the distance along a straight line
+  double along = 0.0;  // v on the crossing line, or the distance along a straight one
   double other_u = 0.0, other_v = 0.0;
   Vector3 point_m = Vector3::Zero();
 };
 
-// Finds where lines cross a surface. A triangle mesh, fine enough for all crossings steeper than a few
-// degrees, gives start values; the results are exact on the surface, except for rounding. Immutable; any
+// Finds where lines cross a surface. A triangle mesh gives start values; it is fine enough for all crossings
+// steeper than a few degrees. The results are exact on the surface, except for rounding. Immutable; any
 // thread.
 class CrossingFinder {
  public:
@@ -46,18 +46,18 @@ class CrossingFinder {
 
 // Contact of a ball that touches the first surface on a line of constant u and the other surface anywhere.
 struct BallContact {
-  double v = 0.0;                       // on the first surface
-  double other_u = 0.0, other_v = 0.0;  // on the other surface
+  double v = 0.0;                       // parameter of the contact on the first surface, with the given u
+  double other_u = 0.0, other_v = 0.0;  // parameters of the contact on the other surface
   Vector3 centre_m = Vector3::Zero();
 };
 
-// Side of each surface on which the ball is: +1 along its normals, -1 against them.
+// Side of each surface on which the ball is: 1 along the surface's normals, -1 against them.
 struct BallSides {
   int of_surface = 1, of_other = 1;
 };
 
-// Solves for the contact by Newton's method, starting from the crossing with a radius that grows from zero.
-// Returns nothing if no ball of that radius fits.
+// Finds the contact of a ball by Newton's method. It starts at the crossing with a radius of zero and
+// increases the radius in steps. Returns nothing if no ball of the given radius fits.
 std::optional<BallContact> ball_contact(const Surface& surface, double u, const Surface& other,
                                         const LineCrossing& crossing, BallSides sides, double radius_m);
 

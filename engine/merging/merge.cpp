@@ -26,7 +26,7 @@ struct PatchGrid {
   }
 };
 
-// Returns the patch's own side that becomes `in_grid`.
+// Returns the side of the patch that becomes the side `in_grid` by the orientation.
 Side own_side(Side in_grid, const Orientation& orientation) {
   for (const Side side : all_sides) {
     if (turn_side(side, orientation).side == in_grid) return side;
@@ -34,7 +34,7 @@ Side own_side(Side in_grid, const Orientation& orientation) {
   return in_grid;
 }
 
-// Describes the joint from a cell to the next along a direction; after the last cell comes the first.
+// Describes the joint between a cell and the next cell along a direction. The first cell follows the last.
 MergedJoint describe(const PatchGrid& grid, int a, int b, Direction along, const Joint& joint) {
   const Arrangement& all = grid.arrangement;
   const int cell = all.cell(a, b);
@@ -47,7 +47,8 @@ MergedJoint describe(const PatchGrid& grid, int a, int b, Direction along, const
           joint};
 }
 
-// Joins every row along v. A single column is not changed, since it may become periodic along v.
+// Joins every row along v. A grid of a single column is not changed, because it may still become periodic
+// along v.
 Result<std::vector<Joined>> join_along_v(const PatchGrid& grid, const JoinRequest& request) {
   std::vector<Joined> joined;
   if (grid.arrangement.columns == 1) {
@@ -74,7 +75,7 @@ Result<std::vector<Joined>> join_along_v(const PatchGrid& grid, const JoinReques
   return joined;
 }
 
-// Divides the remaining tolerance and progress among the steps of a merge.
+// Divides the tolerance and progress that remain among the steps of a merge.
 class ToleranceSteps {
  public:
   ToleranceSteps(const JoinRequest& request, int steps) : request_(request), steps_(steps) {}
@@ -107,7 +108,7 @@ Result<Approximation> close_without_folds(const Surface& surface, Direction dire
   return Error(ErrorCode::self_intersecting, "the surface would fold over at " + position_text(*fold_m));
 }
 
-// Makes the direction periodic if the grid is a ring along it.
+// Makes the direction periodic if the patches form a ring along it.
 Status close_ring(const PatchGrid& grid, Direction direction, ToleranceSteps& steps, Merged& merged) {
   const Arrangement& all = grid.arrangement;
   const bool along_u = direction == Direction::u;
@@ -182,11 +183,11 @@ Result<Merged> merge_grid(const PatchGrid& grid, const JoinRequest& request) {
   return merged;
 }
 
-// Largest ratio of the wider tube's opening to the narrower tube's; a larger ratio would give the bridge a
+// Largest ratio of the radii of two openings that are bridged. With a larger ratio, the bridge would have a
 // step.
 constexpr double wider = 1.25;
 
-// Opens the poles of a pair; rings stay unchanged.
+// Cuts the poles of a pair of ends open. Ends that are rings are not changed.
 Status open_poles(std::vector<Surface>& patches, const PatchEdge& a, const PatchEdge& b) {
   const auto open = [&](const PatchEdge& end, double wide_enough_m) -> Result<Surface> {
     const Surface& patch = patches[end.patch];
@@ -207,7 +208,8 @@ Status open_poles(std::vector<Surface>& patches, const PatchEdge& a, const Patch
   return {};
 }
 
-// Returns the chosen edges, the nearest ends of tubes, or none if edges are to be matched automatically.
+// Returns the chosen edges or, if there are none and all patches are tubes, the nearest ends of the tubes.
+// Otherwise returns nothing, and edges are matched automatically.
 std::vector<ChosenEdges> edges_to_join(const std::vector<Surface>& patches, const MergeRequest& request) {
   std::vector<ChosenEdges> pairs = request.chosen;
   if (!pairs.empty() || !std::all_of(patches.begin(), patches.end(), is_tube)) return pairs;
@@ -215,7 +217,7 @@ std::vector<ChosenEdges> edges_to_join(const std::vector<Surface>& patches, cons
   return pairs;
 }
 
-// Adds the match of the two remaining ends of a row of tubes if they touch.
+// Adds a match of the two ends of a row of tubes that are still free, if they touch.
 void add_closing_ends(const std::vector<Surface>& tubes, double touching_m, std::vector<EdgeMatch>& matches) {
   std::vector<PatchEdge> free;
   for (int p = 0; p < static_cast<int>(tubes.size()); ++p) {
@@ -248,7 +250,8 @@ Result<std::vector<EdgeMatch>> find_matches(std::vector<Surface>& patches, const
   return matches;
 }
 
-// Returns true if both surfaces coincide in any orientation; periodic surfaces must have the same seam.
+// Returns true if both surfaces coincide in any of their orientations. Periodic surfaces must have the same
+// seam.
 bool are_same(const Surface& a, const Surface& b, double tolerance_m) {
   constexpr int steps = 5;
   const auto is_near = [&](const Surface& other) {
@@ -297,7 +300,8 @@ Status check_named_once(const std::vector<ChosenEdges>& chosen) {
   return {};
 }
 
-// Fails if a chosen pair of edges would stay open. Matched pairs touch and may stay open.
+// Fails if a pair of edges that the user chose would stay open. Pairs that were matched automatically touch
+// and may stay open.
 Status check_left_open(const Arrangement& arrangement, const std::vector<ChosenEdges>& chosen) {
   if (arrangement.left_open.empty() || chosen.empty()) return {};
   const EdgeMatch& match = arrangement.left_open.front();

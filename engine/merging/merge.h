@@ -11,7 +11,7 @@
 
 namespace spoonbill {
 
-// Pair of edges to join, with an optional relative direction (default: the best fit).
+// A pair of edges to join. `reversed` is their relative direction; default: the best fit.
 struct ChosenEdges {
   PatchEdge a, b;
   std::optional<bool> reversed = {};
@@ -19,14 +19,15 @@ struct ChosenEdges {
 
 struct MergeRequest {
   JoinRequest join;
-  std::vector<ChosenEdges> chosen;  // used instead of automatic matching if not empty
+  // Pairs of edges that replace automatic matching; empty for automatic matching.
+  std::vector<ChosenEdges> chosen;
 };
 
 struct MergedJoint {
-  PatchEdge a, b;   // numbered as given
+  PatchEdge a, b;   // the patches are numbered as they were given
   Direction along;  // direction of the merged surface across the joint
   Joint joint;
-  bool closes = false;  // joins the last edge to the first and makes the direction periodic
+  bool closes = false;  // the joint connects the last edge to the first and makes the direction periodic
 };
 
 struct OpenEdges {
@@ -38,15 +39,15 @@ struct Merged {
   Surface surface;
   double deviation_m = 0.0;  // largest distance from the patches, outside blends
   std::vector<MergedJoint> joints;
-  std::vector<OpenEdges> left_open = {};  // pairs that touch but were not joined
+  std::vector<OpenEdges> left_open = {};  // pairs of edges that touch but were not joined
 };
 
 // Merges patches. A row or grid whose last edges meet its first becomes periodic with the requested
-// continuity, or stays open if that fails. Chosen poles, or the nearest poles of tubes that do not touch, are
-// cut off, and a bridge joins the tubes. Bridges may fold only if some chosen pair has a given direction. A
-// single patch is returned unchanged. Fails for no patches, more than 64, or two identical ones;
-// contradicting chosen edges; patches that do not fill a grid; failures of join_row(); or a deviation above
-// the tolerance. Can be stopped.
+// continuity, or stays open if that fails. Poles are cut off, and a bridge joins the tubes, if they were
+// chosen or are the nearest ends of tubes that do not touch. Bridges may fold only if some chosen pair has a
+// given direction. A single patch is returned unchanged. Fails for no patches, more than 64, or two identical
+// ones; for contradicting chosen edges; for patches that do not fill a grid; if join_row() fails; or for a
+// deviation above the tolerance. Can be stopped.
 Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& request);
 
 }  // namespace spoonbill

@@ -28,7 +28,7 @@ Vector3 blended(const EdgeCurve& curve, double t, int derivative_order) {
   return sum;
 }
 
-// Smallest numbers of chords for arc lengths: in total and in each piece.
+// Smallest numbers of chords from which an arc length is computed: in total, and in each piece.
 constexpr int least_chords = 256, least_chords_in_piece = 8;
 
 std::vector<double> fine_parameters(const KnotVector& knots) {
@@ -148,7 +148,8 @@ Vector3 column_centre(const ControlNet& net, int column) {
   return sum / net.rows;
 }
 
-// Returns the point at s, from 0 to 1, of the Hermite cubic with the given end slopes.
+// Returns the point at s, from 0 to 1, of the Hermite cubic from `from` to `to` with the slopes `out` and
+// `in` at its ends.
 Vector3 on_cubic(const Vector3& from, const Vector3& to, const Vector3& out, const Vector3& in, double s) {
   const double t = 1.0 - s;
   return t * t * (1.0 + 2.0 * s) * from + s * s * (1.0 + 2.0 * t) * to + t * t * s * out - s * s * t * in;
@@ -196,7 +197,7 @@ void fill_bend(ControlNet& net, int first, int last, const Vector3& outward, con
   SPOONBILL_ASSERT(first >= 0 && first <= last && last < net.columns);
   const Vector3 from = column_centre(net, first), to = column_centre(net, last);
   const Eigen::AngleAxisd whole(Eigen::Matrix3d(turn.transpose()));
-  // These slopes bring the Hermite cubic closest to an arc.
+  // With these slopes the Hermite cubic is closest to a circular arc.
   const double half = 0.5 * whole.angle();
   const double slope = (to - from).norm() * (half > 0.0 ? 2.0 * std::tan(0.5 * half) / std::sin(half) : 1.0);
   const Vector3 out = slope * outward, in = slope * (turn.transpose() * outward);

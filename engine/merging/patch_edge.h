@@ -14,8 +14,8 @@ enum class Side { u_start, u_end, v_start, v_end };
 
 inline constexpr Side all_sides[] = {Side::u_start, Side::u_end, Side::v_start, Side::v_end};
 
-// across() returns the direction that is constant along the edge, is_start() whether the side is at its
-// start.
+// across() returns the parameter direction that leads across the side, and is constant along its edge.
+// is_start() returns whether the side is at the start of that direction.
 Direction across(Side side);
 bool is_start(Side side);
 Side opposite(Side side);
@@ -23,7 +23,7 @@ Side opposite(Side side);
 // Returns the name used in files and commands, such as "u_start".
 const char* side_name(Side side);
 
-// Side of one of several patches, counted from 0.
+// Side of one of several patches. Patches are counted from 0.
 struct PatchEdge {
   int patch = 0;
   Side side = Side::v_end;
@@ -31,7 +31,7 @@ struct PatchEdge {
   friend bool operator==(const PatchEdge&, const PatchEdge&) = default;
 };
 
-// Curve of a patch's edge, a function of the parameter along the edge.
+// The curve of a patch's edge, as a function of the parameter along the edge.
 struct EdgeCurve {
   KnotVector knots;
   std::vector<Vector3> control_points_m;
@@ -42,14 +42,15 @@ Vector3 position(const EdgeCurve& curve, double t);
 // Returns the first derivative with respect to the parameter.
 Vector3 derivative(const EdgeCurve& curve, double t);
 
-// Returns true if the direction across the side is open and the edge is not a pole.
+// Returns true if the edge can be joined: it is not a pole, and the direction across it is open.
 bool is_joinable(const Surface& surface, Side side);
 
-// Returns the mean unit direction that leads out of the patch across an edge; zero if the directions cancel.
+// Returns the mean unit direction that leads out of the patch across an edge. Returns zero if the directions
+// cancel each other.
 Vector3 outward(const Surface& surface, Side side);
 
-// Points at equal steps of the arc length, including the ends. Periodic edges start at the seam and do not
-// repeat it.
+// Points of an edge at equal steps of arc length, including both ends. On a periodic edge they start at the
+// seam and do not repeat it.
 struct EdgeSamples {
   std::vector<double> parameters;
   std::vector<Vector3> points_m;
@@ -57,7 +58,8 @@ struct EdgeSamples {
 };
 EdgeSamples edge_samples(const EdgeCurve& curve, int count);
 
-// End ring of a tube: centre, largest radius, and unit direction out of the tube (zero if undefined).
+// The end ring of a tube: its centre, its largest radius, and the unit direction out of the tube (zero if
+// undefined).
 struct RingFrame {
   Vector3 centre_m = Vector3::Zero();
   double radius_m = 0.0;
@@ -65,20 +67,21 @@ struct RingFrame {
 };
 RingFrame ring_frame(const Surface& surface, Side side);
 
-// Returns the smallest rotation that aligns the inward direction at b with the outward direction at a. For
-// rings that face in the same direction, it rotates in the plane of the bend that joins them. Returns the
+// Returns the smallest rotation that maps the inward direction at b to the outward direction at a. If both
+// rings face in the same direction, the rotation is in the plane of the bend that joins them. Returns the
 // identity for nested rings that face in the same direction, such as both walls of a cup at its rim, and for
 // rings without a direction.
 Eigen::Matrix3d rotation_towards(const RingFrame& a, const RingFrame& b);
 
-// Returns the ratio of arc length to chord of a circular bend that turns by this rotation.
+// Returns the ratio of arc length to chord for a circular bend that turns by the given rotation.
 double bend_stretch(const Eigen::Matrix3d& turn);
 
-// Returns true if a straight strip would pinch at this rotation, which is the case above 45 degrees.
+// Returns true if a straight strip between rings with this relative rotation would be pinched, which is the
+// case above 45 degrees.
 bool is_bend(const Eigen::Matrix3d& turn);
 
-// Fills the net's columns between two rings along a bend that leaves the first ring in direction `outward`.
-// `turn` rotates the last ring back to the first.
+// Fills the columns of a net between two rings along a bend. The bend leaves the first ring in the direction
+// `outward`. `turn` rotates the last ring back to the first.
 void fill_bend(ControlNet& net, int first, int last, const Vector3& outward, const Eigen::Matrix3d& turn);
 
 }  // namespace spoonbill

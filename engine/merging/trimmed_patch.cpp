@@ -19,7 +19,7 @@ namespace {
 
 using Polygon = std::vector<Eigen::Vector2d>;
 
-// Smallest cosine of the angle between consecutive chords of a smooth loop.
+// Smallest cosine of the angle between consecutive chords at which a loop is smooth.
 constexpr double smooth_cosine = 0.98;
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -37,8 +37,8 @@ Eigen::Vector2d centroid(const Polygon& polygon) {
   return polygon[0] + sum / twice;
 }
 
-// Returns true if every ray from the centre meets the polygon once; `turn` is +1 for counterclockwise, -1 for
-// clockwise.
+// Returns true if every ray from the centre meets the polygon once. `turn` is 1 for a counterclockwise
+// polygon, -1 for a clockwise one.
 bool is_star_about(const Polygon& polygon, const Eigen::Vector2d& centre, double turn) {
   for (std::size_t c = 0; c < polygon.size(); ++c) {
     const Eigen::Vector2d &from = polygon[c], &to = polygon[(c + 1) % polygon.size()];
@@ -47,7 +47,8 @@ bool is_star_about(const Polygon& polygon, const Eigen::Vector2d& centre, double
   return true;
 }
 
-// Returns true if the closed path has no corner. Corners are visible in space, not in the parameters.
+// Returns true if the closed path has no corner. The points are in space, because parameters do not show
+// corners reliably.
 bool is_smooth(const std::vector<Vector3>& points_m) {
   const std::size_t count = points_m.size();
   for (std::size_t c = 0; c < count; ++c) {
@@ -64,7 +65,7 @@ std::vector<Vector3> evaluate_positions(const Surface& surface, const Polygon& p
   return points_m;
 }
 
-// Closed polygon parameterised by the fraction of its length in metres.
+// A closed polygon as a function of the fraction of its length in metres.
 class RoundEdge {
  public:
   RoundEdge(Polygon polygon, const std::vector<Vector3>& points_m) : polygon_(std::move(polygon)) {
@@ -87,11 +88,11 @@ class RoundEdge {
 
  private:
   Polygon polygon_;
-  std::vector<double> ends_;  // ends of the chords
+  std::vector<double> ends_;  // fractions at the ends of the chords
 };
 
-// Returns where the ray from the centre towards `to` meets the edge of a hole that is star-shaped about the
-// centre.
+// Returns where the ray from the centre through `to` meets the edge of a hole. The hole must be star-shaped
+// about the centre.
 Eigen::Vector2d project_to_hole(const Polygon& hole, const Eigen::Vector2d& centre,
                                 const Eigen::Vector2d& to) {
   const Eigen::Vector2d offset = to - centre;
@@ -123,7 +124,7 @@ std::optional<Result<FittedShape>> resample_round_part(const Surface& surface,
   }
 
   const RoundEdge edge(outer, outer_m);
-  // cached, since a fit evaluates the same lines repeatedly
+  // Cache of lines, because a fit evaluates the same lines repeatedly.
   std::map<double, std::pair<Eigen::Vector2d, Eigen::Vector2d>> lines;
   ExactShape shape;
   shape.u = {true, {0.0, 1.0}};
@@ -148,18 +149,18 @@ std::optional<Result<FittedShape>> resample_round_part(const Surface& surface,
 namespace {
 
 using Edge = TrimmedArea::Edge;
-// Loops with the kept part on their left.
+// Loops over the parameters, with the kept part on their left.
 using Polygons = std::vector<std::vector<Eigen::Vector2d>>;
 
-// Smallest cosine of the angle between consecutive chords of a smooth trim.
+// Smallest cosine of the angle between consecutive chords at which a trim is smooth.
 constexpr double corner_cosine = 0.98;
-// Distance of the last line from the edge, and the largest width that is ignored as too narrow, as a fraction
-// of the part's extent in u.
+// Distance of the outermost lines from the part's edge, and largest width that is ignored as too narrow. Both
+// are fractions of the part's extent in u.
 constexpr double edge_margin = 1e-7;
 constexpr int trim_lines_checked = 64;
-// A line at an end of the part that is shorter than this fraction of the longest line counts as a point.
+// Fraction of the longest line's length. A line at an end of the part that is shorter counts as a point.
 constexpr double point_fraction = 1e-3;
-// Largest change of a line's ends across a corner, relative to the part's extent in v.
+// Largest jump of a line's ends across a corner of the loops, relative to the part's extent in v.
 constexpr double jump_fraction = 1e-3;
 
 struct Interval {
@@ -196,7 +197,8 @@ class KeptPart {
 
   const Interval& along_u() const { return along_u_; }
 
-  // Returns the interval of a line of constant u that is in the part; nothing if it is not a single interval.
+  // Returns the interval of a line of constant u that is inside the part; nothing if the line is inside in
+  // several intervals or not at all.
   std::optional<Interval> on_line(double u) const {
     std::optional<double> enters, leaves;
     for (const auto& [from, to] : edges_) {
@@ -224,8 +226,8 @@ class KeptPart {
     return first > point_fraction * longest && last > point_fraction * longest && changes_steadily();
   }
 
-  // Returns the parameters u of the part's ends and of the loops' corners, at which the ends of the lines
-  // have kinks.
+  // Returns the parameters u of the part's ends and of the corners of the loops. There, the ends of the
+  // lines, as functions of u, have kinks.
   std::vector<double> breaks_in_u() const {
     std::vector<double> breaks{along_u_.low, along_u_.high};
     const Eigen::Vector2d lengths(along_u_.length(), along_v_.length());
@@ -249,7 +251,8 @@ class KeptPart {
   }
 
  private:
-  // Returns true if the ends of the lines do not jump at any corner, as they would at a step.
+  // Returns true if the ends of the lines do not jump from one side of a corner to the other, as they would
+  // at a step.
   bool changes_steadily() const {
     const double beside = 2.0 * edge_margin * along_u_.length();
     for (const double at : breaks_in_u()) {
@@ -262,10 +265,11 @@ class KeptPart {
     return true;
   }
 
-  // Returns true if each line meets two edges. The edges are counted between consecutive corners, so that
-  // none is missed.
+  // Returns true if each line of constant u meets exactly two edges. The edges are counted in each interval
+  // between consecutive corners, so that no line is missed.
   bool meets_all_lines_twice() const {
-    std::vector<std::pair<double, int>> changes;  // u, and the change of the number of edges there
+    // A parameter u, and the change of the number of edges there.
+    std::vector<std::pair<double, int>> changes;
     for (const auto& [from, to] : edges_) {
       changes.emplace_back(std::min(from.x(), to.x()), 1);
       changes.emplace_back(std::max(from.x(), to.x()), -1);
@@ -298,7 +302,7 @@ Error no_single_pieces() {
 Result<FittedShape> resample_piece(const Surface& surface, const KeptPart& part, const Interval& piece,
                                    double tolerance_m) {
   bool missed = false;
-  // Cached, since a fit evaluates the same lines repeatedly.
+  // Cache of intervals, because a fit evaluates the same lines repeatedly.
   std::map<double, std::optional<Interval>> lines;
   ExactShape shape;
   shape.u = {false, {piece.low, piece.high}};
@@ -320,12 +324,12 @@ Result<FittedShape> resample_piece(const Surface& surface, const KeptPart& part,
   return fitted;
 }
 
-// Fraction of the tolerance for resampling; joining the pieces uses the rest.
+// Fraction of the tolerance that is used for resampling the pieces; joining them uses the rest.
 constexpr double piece_fraction = 0.3;
-// Largest number of pieces: a piece has at least six control points, and a patch at most 200.
+// Largest number of pieces. A piece has at least six control points and a patch at most 200.
 constexpr std::size_t most_pieces = 33;
 
-// Resamples each piece between corners, where the lines' ends have kinks, and joins the pieces.
+// Resamples each piece between corners, where the ends of the lines have kinks, and joins the pieces.
 Result<FittedShape> resample(const Surface& surface, const KeptPart& part, double tolerance_m) {
   const std::vector<double> breaks = part.breaks_in_u();
   if (breaks.size() > most_pieces + 1) {
@@ -349,7 +353,7 @@ Result<FittedShape> resample(const Surface& surface, const KeptPart& part, doubl
   return FittedShape{exchanged(whole->surface), deviation_m + whole->deviation_m};
 }
 
-// Reverses the loops as well, so that the kept part stays on the left.
+// Exchanges u and v of the loops and reverses them, so that the kept part stays on their left.
 Polygons exchange_polygons(const Polygons& polygons) {
   Polygons result;
   for (const auto& polygon : polygons) {
@@ -377,7 +381,7 @@ bool is_rectangle(const Polygons& polygons) {
   return std::abs(enclosed(polygons[0]) - whole) <= rounding * whole;
 }
 
-// Cuts an exact part if the loops are a rectangle in u and v.
+// Cuts the part out exactly if the loops form a rectangle in u and v.
 Result<FittedShape> cut_rectangle(const Surface& surface, const Polygons& polygons) {
   const Interval u = extent(polygons, 0), v = extent(polygons, 1);
   const auto strip = part_of(surface, Direction::u, u.low, u.high);

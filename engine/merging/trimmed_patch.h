@@ -1,4 +1,4 @@
-// Resampling of trimmed patches as untrimmed ones. Pure functions, outside the tick.
+// Resampling of trimmed patches as patches without trims. Pure functions, outside the tick.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,16 +14,17 @@ namespace spoonbill {
 
 // Resamples the part between a smooth outer loop and its centroid or a smooth hole. `polygons` are loops over
 // the parameters with the kept part on their left. The result is periodic in u, which follows the outer loop
-// by its length in metres. Along v, straight parameter lines run towards the centroid, up to the hole or a
-// pole. Returns nothing if there are more than two loops, a loop has corners, or a line from the centroid
-// meets a loop more than once. Fails if fit_shape() does.
+// by its length in metres. Its lines along v are straight in the old parameters; they run towards the
+// centroid and end at the hole or in a pole. Returns nothing if there are more than two loops, a loop has
+// corners, or a line from the centroid meets a loop more than once. Fails if fit_shape() fails.
 std::optional<Result<FittedShape>> resample_round_part(
     const Surface& surface, const std::vector<std::vector<Eigen::Vector2d>>& polygons, double tolerance_m);
 
-// Resamples the part inside the loops; without loops the surface itself. Its v edges follow the trims, as
-// polygons (to_polygon), with C0 lines at their corners. The part must meet each line of constant u in one
-// piece; otherwise lines of constant v are tried, and then lines towards the centre of a disc or hole. Fails
-// if none of these work, or if the part ends in a point.
+// Resamples the part inside the loops; without loops, returns the surface itself. The edges of the result at
+// both ends of v follow the trims, as polygons (to_polygon()). At the corners of the trims, the result is
+// only C0 across a line of constant u. The part must meet each line of constant u in a single interval.
+// Otherwise lines of constant v are tried, and then lines towards the centre of a disc or hole. Fails if none
+// of these work, or if the part ends in a point.
 Result<FittedShape> untrimmed(const Surface& surface, const std::vector<TrimLoop>& trims, double tolerance_m);
 
 }  // namespace spoonbill

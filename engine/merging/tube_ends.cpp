@@ -68,7 +68,8 @@ namespace {
 
 constexpr int rim_samples = 48;
 
-// Control point distance of a cubic quarter circle: 4 (sqrt 2 - 1) / 3.
+// Distance of the inner control points of a cubic quarter circle from its ends, relative to its radius: 4
+// (sqrt 2 - 1) / 3.
 constexpr double quarter_circle = 0.5522847498307936;
 
 struct RingSize {
@@ -76,7 +77,7 @@ struct RingSize {
   double radius_m = 0.0;
 };
 
-// Returns the centre and mean radius of the ring at v. The length of `tube` must be along v.
+// Returns the centre and mean radius of the ring at v. The axis of `tube` must be along v.
 RingSize ring_at(const Surface& tube, double v) {
   const std::vector<double> parameters = uniform_parameters_without_seam(tube.u, rim_samples);
   RingSize ring;
@@ -89,7 +90,7 @@ RingSize ring_at(const Surface& tube, double v) {
   return ring;
 }
 
-// Orients the tube along v, with the given side at v_end.
+// Returns the tube with its axis along v and the given side at the end of v.
 Surface with_end_at_v_end(const Surface& tube, Side side) {
   Surface along = across(side) == Direction::u ? exchanged(tube) : tube;
   return is_start(side) ? reversed(along, Direction::v) : along;
@@ -100,7 +101,8 @@ Surface turn_back(const Surface& along, Side side) {
   return across(side) == Direction::u ? exchanged(tube) : tube;
 }
 
-// Returns the cap from the tube's ring to the pole; its control points next to the ring continue the sides.
+// Returns the cap from the end ring of the tube to the pole. The control points next to the ring continue the
+// sides of the tube.
 Result<Surface> make_cap(const Surface& tube, double height_m) {
   const double end = tube.v.domain_end();
   const TubeEnd ring = tube_end(tube, Side::v_end);
@@ -140,8 +142,8 @@ Result<Surface> make_cap(const Surface& tube, double height_m) {
   return make_surface(tube.u, knots.value(), std::move(net));
 }
 
-// Returns a position on the ring where the flat cap folds. Each spoke is straight and has a constant normal,
-// so the cap folds where a spoke's normal opposes the ring's area vector.
+// Returns a position on the ring at which a flat cap folds. Each spoke of the cap is straight and has a
+// constant normal. The cap therefore folds where the normal of a spoke opposes the ring's area vector.
 std::optional<Vector3> find_fold_in_flat(const Surface& cap) {
   constexpr int spokes_in_piece = 16;
   const double start = cap.v.domain_start();
@@ -196,7 +198,7 @@ Result<Joined> add_cap(const Surface& surface, Side side, double height_m, const
                  std::string(side_name(side)) + " is not the open end of a tube; choose one that is");
   }
   Surface along = with_end_at_v_end(surface, side);
-  // Makes the knots clamped, so that the last control points give the ring and its tangents.
+  // The knots are made clamped, so that the last control points give the ring and its tangents.
   auto clamped = part_of(along, Direction::v, along.v.domain_start(), along.v.domain_end());
   if (!clamped) return clamped.error();
   auto cap = make_cap(clamped.value(), height_m);
@@ -246,8 +248,8 @@ std::vector<std::pair<PatchEdge, PatchEdge>> find_nearest_ends(const std::vector
     PatchEdge a, b;
     double cost_m;
   };
-  // The centre of a flat disc may be as near to a ring as the disc's edge is; the end of similar width then
-  // takes precedence.
+  // Weight of the difference in width. The centre of a flat disc may be as near to a ring as the disc's edge
+  // is; an end of similar width is then preferred.
   constexpr double width_fraction = 0.01;
   std::vector<std::pair<PatchEdge, TubeEnd>> ends;
   for (int p = 0; p < static_cast<int>(tubes.size()); ++p) {

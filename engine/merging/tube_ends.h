@@ -1,5 +1,5 @@
-// Ends of tubes: closing seams, capping open rings, and opening poles for a joint to another tube. A tube is
-// periodic in one direction and open in the other. Pure functions, outside the tick; any thread.
+// Ends of tubes: closing seams, capping open rings, and opening poles so that another tube can be joined. A
+// tube is periodic in one direction and open in the other. Pure functions, outside the tick; any thread.
 #pragma once
 
 #include <utility>
@@ -13,16 +13,16 @@
 
 namespace spoonbill {
 
-// Makes a direction periodic if its first and last edge meet, with the given continuity at the seam; raises
-// the degree if needed. Exact if the derivatives agree there; otherwise knots are added beside the seam until
-// the tolerance is met. Fails for a periodic direction, or edges farther apart than the tolerance. Can be
-// stopped.
+// Makes a direction periodic if its first and last edge meet. The seam has the given continuity; the degree
+// is raised if needed. The result is exact if the derivatives agree at the seam. Otherwise knots are added
+// beside the seam until the tolerance is met. Fails for a periodic direction, or for edges farther apart than
+// the tolerance. Can be stopped.
 Result<Approximation> close_around(const Surface& surface, Direction direction, int continuity,
                                    double tolerance_m, const Progress& progress = {});
 
 bool is_tube(const Surface& surface);
 
-// Returns the two end sides. The surface must be a tube.
+// Returns the sides at the two ends of a tube.
 std::pair<Side, Side> tube_sides(const Surface& surface);
 
 bool is_pole(const Surface& surface, Side side);
@@ -35,19 +35,19 @@ struct TubeEnd {
 };
 TubeEnd tube_end(const Surface& surface, Side side);
 
-// Closes an open end with a cap of height `height_m` over a nearly plane ring. Above zero, the cap continues
-// the sides with the requested continuity, as a quarter ellipse: the cubic with its tangents and midpoint
-// (Goldapp 1991). At zero it is flat and meets them at an edge. Fails if a flat cap would fold because the
-// centre does not see the whole ring.
+// Closes an open end, whose ring must be nearly plane, with a cap of height `height_m`. A cap with a height
+// above zero continues the sides with the requested continuity, as a quarter ellipse: the cubic with the
+// ellipse's tangents and midpoint (Goldapp 1991). A cap of height zero is flat and meets the sides at an
+// edge. Fails if a flat cap would fold because the whole ring is not visible from its centre.
 Result<Joined> add_cap(const Surface& surface, Side side, double height_m, const JoinRequest& request);
 
-// Cuts off a pole so that the tube ends in a ring: where the radius grows by less than 0.1 of the distance
-// along the axis, or earlier where the ring is as wide as `wide_enough_m`. Fails if half of the tube would be
-// lost.
+// Cuts off a pole so that the tube ends in a ring. The cut is where the radius grows by less than 0.1 of the
+// distance along the axis, or earlier where the ring is as wide as `wide_enough_m`. Fails if half of the tube
+// would be lost.
 Result<Surface> open_pole(const Surface& surface, Side side, double wide_enough_m);
 
-// Returns pairs of ends that connect the tubes, nearest first, each end used once. Among equally near ends,
-// those of similar width come first.
+// Returns pairs of ends that connect the tubes, the nearest first. Each end is used once. Among pairs that
+// are equally near, those of similar width come first.
 std::vector<std::pair<PatchEdge, PatchEdge>> find_nearest_ends(const std::vector<Surface>& tubes);
 
 }  // namespace spoonbill

@@ -10,7 +10,8 @@ Status check_in_domain(const std::string& field, double parameter, const KnotVec
   return check_range(field, parameter, Range<double>{knots.domain_start(), knots.domain_end()});
 }
 
-// Checks a point load's parameters. Everything else about a load is checked where the lattice receives it.
+// Checks that the parameters of a point load are within the surface's domain. check_load() checks all other
+// values of a load.
 Status check_point(const Load& load, std::size_t index, const Surface& surface) {
   const auto* point = std::get_if<PointLoad>(&load);
   if (point == nullptr) return {};
@@ -44,8 +45,8 @@ Status check_lattice_request(const LatticeRequest& lattice) {
   }
   if (product <= node_budget_range.high) return {};
   return Error{ErrorCode::too_many,
-               "lattice: the product of nodes is " + std::to_string(product) + ", must be at most " +
-                   std::to_string(node_budget_range.high),
+               "lattice: the product of the node counts is " + std::to_string(product) +
+                   ", must be at most " + std::to_string(node_budget_range.high),
                "nodes"};
 }
 

@@ -20,14 +20,14 @@
 namespace spoonbill {
 
 // Parameters of the self-organising map that spreads a lattice's inner nodes (Kohonen 1990). Points of the
-// body are drawn at random. The node nearest to a point x and its neighbours at grid distance d move
-// towards it: w += rate * exp(-d^2 / 2 s^2) (x - w). The rate and the neighbourhood s shrink geometrically
-// from their first to their last values. With s below about one grid step, neighbours no longer follow,
-// and the map can stay folded (Erwin et al. 1992).
+// body are drawn at random. The node nearest to a point x and its neighbours at grid distance d move towards
+// it: w += rate * exp(-d^2 / 2 s^2) (x - w). The rate and the neighbourhood s shrink geometrically from their
+// first to their last values. With s below about one grid step, neighbours no longer follow, and the map can
+// stay folded (Erwin et al. 1992).
 struct FeatureMapSettings {
-  int draws_per_node = 500;  // per inner node
+  int draws_per_node = 500;  // number of random points drawn for each inner node
   double first_rate = 0.1, last_rate = 0.01;
-  double first_neighbourhood = 2.0, last_neighbourhood = 1.0;  // s, in grid steps
+  double first_neighbourhood = 2.0, last_neighbourhood = 1.0;  // width s of the neighbourhood, in grid steps
   std::uint32_t seed = 1;
   friend bool operator==(const FeatureMapSettings&, const FeatureMapSettings&) = default;
 };
@@ -49,7 +49,7 @@ inline constexpr auto fields_of<FeatureMapSettings> = std::to_array<Field<Featur
 
 // Size of a body's lattice: either the node counts, or a budget from which near-cubic cells are derived.
 struct LatticeRequest {
-  int node_budget = 2000;  // most nodes that may be used; ignored if `counts` is given
+  int node_budget = 2000;  // largest number of nodes; ignored if `counts` is given
   // Nodes in each direction, at least 2. The directions are:
   // - tubes and rings: across (first, second) and along (third) the body;
   // - triangle meshes and bodies in a box of cells (box_lattice.h): x, y and z;
@@ -62,16 +62,17 @@ struct LatticeRequest {
 };
 
 inline constexpr Range<int> node_budget_range{50, 40000};
-inline constexpr Range<int> node_count_range{2, 64};  // in each direction
+inline constexpr Range<int> node_count_range{2, 64};  // number of nodes in each direction
 
-// A solid bounded by one tube (periodic in u, closed by a pole at both ends of v) or one ring (periodic in
-// u and v). With a shell thickness, the body is instead a thin shell behind one surface (shell_lattice.h).
+// A solid bounded by one tube (periodic in u, closed by a pole at both ends of v) or one ring (periodic in u
+// and v). With a shell thickness, the body is instead a thin shell behind one surface (shell_lattice.h).
 struct Body {
   std::string name;
   Surface surface;
-  Material material;  // applies outside the regions
+  Material material;  // material of the body outside its regions
   LatticeRequest lattice;
-  std::vector<MaterialRegion> regions = {};  // later ones override earlier ones
+  // Parts of the body with their own material or friction; later ones override earlier ones.
+  std::vector<MaterialRegion> regions = {};
   std::vector<Load> loads = {};
   std::vector<Support> supports = {};
   std::optional<double> shell_thickness_m = {};
@@ -81,7 +82,7 @@ struct Body {
   std::string solid = {};
 };
 
-inline constexpr Range<int> control_point_count_range{2, 200};  // in each direction
+inline constexpr Range<int> control_point_count_range{2, 200};  // number of control points in each direction
 inline constexpr Range<double> shell_thickness_range_m{1e-5, 0.1};
 
 // The error of each of the following checks names the first field that is out of range, with its value and

@@ -37,7 +37,7 @@ struct LoadChecker {
     if (Status status = check_region(load.region); !status.ok()) return status;
     return check_fields("", load);
   }
-  // The limits of u and v depend on the body; check_loads() checks them.
+  // Checks the force only: the limits of u and v depend on the body, and check_loads() checks them.
   Status operator()(const PointLoad& load) const {
     return check_value("", field_of(&PointLoad::force_n).form, load.force_n);
   }
@@ -62,8 +62,8 @@ Vector3 displacement_at(const SupportMotion& motion, double time_s) {
   return smooth_step(turns) * sine_of_turns(turns) * motion.displacement_m;
 }
 
-// A ramp is fastest at half its duration, with 15/8 of its mean speed. A growing sine is never faster than at
-// its full amplitude.
+// A ramp is fastest at half its duration, where its speed is 15/8 of its mean speed. An oscillation is never
+// faster while it grows than at its full amplitude.
 double top_speed_m_per_s(const SupportMotion& motion) {
   const double distance_m = motion.displacement_m.norm();
   if (motion.kind == MotionKind::ramp) return 1.875 * distance_m / motion.duration_s;

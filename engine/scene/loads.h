@@ -17,7 +17,7 @@ namespace spoonbill {
 // Plane that fixes every node behind it, on the side opposite to the normal.
 struct FixingPlane {
   Vector3 point_m = Vector3::Zero();
-  Vector3 normal = Vector3::UnitX();  // unit
+  Vector3 normal = Vector3::UnitX();  // unit normal; points away from the fixed side
 };
 
 template <>
@@ -26,8 +26,8 @@ inline constexpr auto fields_of<FixingPlane> = std::to_array<Field<FixingPlane>>
     direction_field("normal", &FixingPlane::normal),
 });
 
-// Pressure on the surface of a region. A positive pressure acts inwards, a negative one pulls; both follow
-// the deformation.
+// Pressure on the surface of a region. A positive pressure pushes inwards, a negative one pulls outwards. Its
+// direction and area follow the deformation of the surface.
 struct PressureLoad {
   BodyRegion region;
   double pressure_pa = 0.0;
@@ -42,7 +42,7 @@ struct ForceLoad {
   ForceDistribution distributed_by = ForceDistribution::surface;
 };
 
-// Force on the surface point (u, v) of the knot domain.
+// Force on the surface point with the parameters (u, v).
 struct PointLoad {
   double u = 0.0, v = 0.0;
   Vector3 force_n = Vector3::Zero();
@@ -52,18 +52,17 @@ using Load = std::variant<PressureLoad, ForceLoad, PointLoad>;
 
 enum class MotionKind { ramp, oscillation };
 
-// Prescribed motion of a support from the first tick on. One tick is one
-// millisecond.
+// Prescribed motion of a support, starting at the first tick. One tick is one millisecond.
 //
-// A ramp moves once over the displacement, as 10 t^3 - 15 t^4 + 6 t^5 of t = time / duration. Its speed
-// and acceleration vanish at both ends. An oscillation is a sine about the start; its amplitude grows by
-// the same polynomial over the first period.
+// A ramp moves once by the displacement. The fraction covered at t = time / duration is 10 t^3 - 15 t^4 + 6
+// t^5, so that speed and acceleration vanish at both ends. An oscillation is a sine about the initial
+// position; its amplitude grows by the same polynomial over the first period.
 struct SupportMotion {
   MotionKind kind = MotionKind::ramp;
   // Whole displacement of a ramp, or amplitude of an oscillation.
   Vector3 displacement_m = Vector3::Zero();
-  double duration_s = 1.0;    // ramps only
-  double frequency_hz = 1.0;  // oscillations only
+  double duration_s = 1.0;    // duration of a ramp; ignored for an oscillation
+  double frequency_hz = 1.0;  // frequency of an oscillation; ignored for a ramp
 };
 
 // Fixes the nodes of a region, or moves them if a motion is given. Fixing planes take precedence over
@@ -76,27 +75,28 @@ struct Support {
 // Rigid, immovable half-space on which bodies rest. Soft tools do not touch it.
 struct Ground {
   Vector3 point_m = Vector3::Zero();
-  Vector3 normal = Vector3::UnitY();  // unit, outward
-  double friction = 0.5;              // the smaller coefficient of ground and body applies
+  Vector3 normal = Vector3::UnitY();  // unit normal; points out of the ground
+  double friction = 0.5;              // the smaller of the friction coefficients of ground and body applies
 };
 
 // Returns the displacement of a moving support at a time of at least 0.
 Vector3 displacement_at(const SupportMotion& motion, double time_s);
-// Returns an upper bound of a motion's speed; a ramp reaches it.
+// Returns an upper bound of a motion's speed. A ramp reaches this speed.
 double top_speed_m_per_s(const SupportMotion& motion);
 
 inline constexpr Range<int> fixing_plane_count_range{0, 64};
-inline constexpr Range<int> load_count_range{0, 64};     // per body
-inline constexpr Range<int> support_count_range{0, 64};  // per body
+inline constexpr Range<int> load_count_range{0, 64};     // number of loads of one body
+inline constexpr Range<int> support_count_range{0, 64};  // number of supports of one body
 inline constexpr Range<double> pressure_range_pa{-1e9, 1e9};
-inline constexpr double force_limit_n = 1e6;         // length of the vector
-inline constexpr double displacement_limit_m = 1.0;  // length of the vector
+inline constexpr double force_limit_n = 1e6;         // largest length of a force vector
+inline constexpr double displacement_limit_m = 1.0;  // largest length of a displacement vector
 inline constexpr Range<double> motion_duration_range_s{0.01, 3600.0};
 inline constexpr Range<double> motion_frequency_range_hz{0.01, 100.0};
 inline constexpr double motion_speed_limit_m_per_s = 5.0;
 inline constexpr Range<double> ground_friction_range{0.0, 5.0};
 
-// Fields of each load, which files store after its region; a point load has no region.
+// Tables of the fields of each load. Files store these fields after the load's region; a point load has no
+// region.
 template <>
 inline constexpr const char* kind_name<PressureLoad> = "pressure";
 template <>
@@ -113,7 +113,7 @@ inline constexpr auto fields_of<ForceLoad> = std::to_array<Field<ForceLoad>>({
     choice_field<&ForceLoad::distributed_by>("shared_by", force_distribution_names),
 });
 
-// check_loads() checks u and v against the domain of the body's surface.
+// check_loads() checks u and v, because their range is the domain of the body's surface.
 template <>
 inline constexpr const char* kind_name<PointLoad> = "point";
 template <>
@@ -144,7 +144,7 @@ inline constexpr auto fields_of<Ground> = std::to_array<Field<Ground>>({
 // The error of each of the following checks names the first field that is out of range, with its value and
 // range.
 Status check_fixing_plane(const FixingPlane& plane);
-Status check_load(const Load& load);  // except u and v of a point load: see check_loads()
+Status check_load(const Load& load);  // does not check u and v of a point load: see check_loads()
 Status check_support(const Support& support);
 Status check_ground(const Ground& ground);
 

@@ -12,45 +12,48 @@
 
 namespace spoonbill {
 
-// Properties of a material as the solvers use them. The table below defines how files, the panel and the
-// checks name and limit them.
+// Properties of a material as the solvers use them. fields_of<Material> defines their names and ranges in
+// files, in the panel and in checks.
 struct Material {
   std::string name;
   std::string source;
   double youngs_modulus_pa = 0.0;
   double poissons_ratio = 0.0;
   double density_kg_per_m3 = 0.0;
-  // Voigt damping of changes of shape, not of volume: the stress follows the strain rate with this time. A
-  // vibration of frequency f has the loss factor 2 pi f times the damping time.
+  // Voigt damping of changes of shape, not of volume: the stress has a viscous part, the elastic stiffness
+  // times this time times the strain rate. A vibration of frequency f has the loss factor 2 pi f times the
+  // damping time.
   double damping_time_s = 0.0;
   bool plastic = false;
-  double yield_strain = 0.0;     // deviatoric strain of a spring above which its rest length flows
-  double flow_rate_per_s = 0.0;  // rate of the rest length per unit of strain beyond yield, in real time
-  double hardening = 0.0;        // growth of the yield strain per unit of permanent strain
-  // Stiffening b of the springs with their strain e: the factor 1 + b e^2, at most 2, for b > 0; the factor
-  // (1 - b e^2)^(-1/2) for b < 0, which softens.
+  double yield_strain = 0.0;  // deviatoric strain of a spring above which its rest length flows
+  // Rate at which the rest length grows per unit of strain beyond yield, in real time.
+  double flow_rate_per_s = 0.0;
+  double hardening = 0.0;  // growth of the yield strain per unit of permanent strain
+  // Factor by which springs stiffen with their strain e. With b for this value, the factor is 1 + b e^2, at
+  // most 2, for b > 0; for b < 0 it is (1 - b e^2)^(-1/2), which softens.
   double stiffening = 0.0;
-  // Fraction of the stress that relaxes at constant strain, with the time constant below. 0: no creep.
+  // Fraction of the stress that relaxes at constant strain, with the time constant `relaxation_time_s`. 0: no
+  // creep.
   double relaxing_fraction = 0.0;
   double relaxation_time_s = 1.0;
-  double friction = 0.0;  // Coulomb coefficient of the surface
+  double friction = 0.0;  // Coulomb friction coefficient of the surface
 };
 
-// The range of stiffness reaches from the softest gel to beyond diamond, the range of density from aerogel to
-// beyond osmium. Every solver stays finite within all ranges.
+// Ranges of the materials' properties. Stiffness reaches from the softest gel to beyond diamond, density from
+// aerogel to beyond osmium. Every solver stays finite within all ranges.
 inline constexpr Range<double> youngs_modulus_range_pa{1.0, 1e12};
 inline constexpr Range<double> poissons_ratio_range{0.0, 0.49};
-// Smallest Poisson's ratio of plastic, creeping and stiffening materials, which are simulated with
-// springs. The volume force that springs need below it is unstable under contact.
+// Smallest Poisson's ratio of plastic, creeping and stiffening materials, which are simulated with springs.
+// Below it, springs would need a volume force that is unstable under contact.
 inline constexpr double min_spring_poissons_ratio = 0.2;
 inline constexpr Range<double> density_range_kg_per_m3{1.0, 30000.0};
-// A longer damping time would cost more substeps than a tick may take.
+// With a longer damping time, a tick would need more substeps than it has time for.
 inline constexpr Range<double> damping_time_range_s{0.0, 0.005};
-inline constexpr Range<double> yield_strain_range{1e-4, 0.5};  // plastic materials
-// Materials that are not plastic ignore the value.
+inline constexpr Range<double> yield_strain_range{1e-4, 0.5};  // range for plastic materials
+// Range for materials that are not plastic, which ignore the value.
 inline constexpr Range<double> elastic_yield_strain_range{0.0, 0.5};
 inline constexpr Range<double> flow_rate_range_per_s{0.0, 8000.0};
-// With a hardening above the upper limit, clay would spring back.
+// Range of the hardening. Above the upper limit, clay would spring back.
 inline constexpr Range<double> hardening_range{0.0, 1.0};
 inline constexpr Range<double> stiffening_range{-1000.0, 1000.0};
 inline constexpr Range<double> relaxing_fraction_range{0.0, 1.0};
@@ -88,17 +91,17 @@ inline constexpr auto fields_of<Material> = std::to_array<Field<Material>>({
         .with_partner("relaxing_share"),
 });
 
-// Returns whether the material neither flows, creeps nor stiffens. Hexahedra can simulate such a material,
-// at any Poisson's ratio.
+// Returns whether the material neither flows, creeps nor stiffens. Such a material can be simulated with
+// hexahedra, at any Poisson's ratio.
 bool is_linear_elastic(const Material& material);
 
-// Refuses a material outside the ranges above, or one that both flows and creeps. The error names the field,
-// its value and its range.
+// Refuses a material with a value outside its range, or a material that both flows and creeps. The error
+// names the field, its value and its range.
 Status check_material(const Material& material);
 
-// Position of a point in the body's own coordinates. NaN for lattice nodes outside the body.
+// Position of a point in the body's own coordinates. All values are NaN for lattice nodes outside the body.
 struct BodyCoordinates {
-  double along = 0.0;   // fraction of the body's length, 0 to 1; of the turn for a ring
+  double along = 0.0;   // fraction of the body's length, or of the turn of a ring; 0 to 1
   double around = 0.0;  // fraction of a turn, 0 to 1; 0 on the axis, where it is undefined
   double depth_m = 0.0;
 };
@@ -106,8 +109,8 @@ struct BodyCoordinates {
 // Part of a body in the body's own coordinates, which deformation does not change. The default is the whole
 // body.
 struct BodyRegion {
-  Range<double> along{0.0, 1.0};   // fraction of the length in the direction of v; for a ring, of the turn
-  Range<double> around{0.0, 1.0};  // fraction of a turn in the direction of u; crosses the seam if low > high
+  Range<double> along{0.0, 1.0};   // fraction of the body's length along v, or of the turn of a ring
+  Range<double> around{0.0, 1.0};  // fraction of a turn along u; the range crosses the seam if low > high
   Range<double> depth_m{0.0, std::numeric_limits<double>::infinity()};  // depth below the surface at rest
 };
 
@@ -120,7 +123,8 @@ Status check_region(const BodyRegion& region);
 // Region of a body whose material or friction differs from the rest.
 struct MaterialRegion {
   BodyRegion region;
-  std::optional<Material> material = {};  // empty: the material that the region has without this entry
+  // Material of the region; if empty, the region keeps the material that it has without this entry.
+  std::optional<Material> material = {};
   // Friction of the region. If empty, the friction of `material`; if that is empty too, the friction stays
   // unchanged.
   std::optional<double> friction = {};

@@ -11,8 +11,8 @@ Vector3 mirror_point(const Symmetry& symmetry, const Vector3& point_m) {
   return point_m - 2.0 * symmetry.normal.dot(point_m - symmetry.point_m) * symmetry.normal;
 }
 
-// A reflection reverses rotations. The rotation axis, a pseudovector, keeps its component along the
-// normal; its other components are negated.
+// A reflection reverses rotations. The rotation axis, a pseudovector, keeps its component along the normal;
+// its other components are negated.
 Pose mirror_pose(const Symmetry& symmetry, const Pose& pose) {
   SPOONBILL_ASSERT_DEBUG(std::abs(symmetry.normal.squaredNorm() - 1.0) < 1e-5);
   const Vector3 axis = pose.orientation.vec();

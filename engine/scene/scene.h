@@ -19,25 +19,24 @@ namespace spoonbill {
 // Settings by which sculpting deviates from real behaviour: drag, slower responses, no gravity by default,
 // and scaled forces.
 struct Sculpting {
-  double drag_per_s = 24.0;  // damping of all motion, proportional to mass; leaves static forces unchanged
+  double drag_per_s = 24.0;  // damping of all motion, proportional to mass; does not change static forces
   Vector3 gravity_m_per_s2 = Vector3::Zero();
-  double force_scale = 1.0;  // newtons at the hand per newton of contact
-  // Damps each body critically as well, so that it comes to rest without ringing
-  // (critical_damping_per_s()).
+  double force_scale = 1.0;  // force at the hand in newtons, per newton of contact force
+  // Damps each body critically as well, so that it comes to rest without ringing (critical_damping_per_s()).
   bool is_critically_damped = false;
-  // Lets a body that nothing fixes move away. Without it, and without gravity and ground, the body keeps its
-  // mean position and orientation, as in a gentle hand (keeps_place()).
+  // If true, a body that nothing fixes may move away. If false, and without gravity and ground, such a body
+  // keeps its mean position and orientation, as in a gentle hand (keeps_place()).
   bool free = false;
-  // Gives every body its true inertia and takes as many substeps as that needs. Without it, inertia is scaled
-  // up until the tool's substeps suffice (SpringLattice::set_inertia()).
+  // If true, every body has its true inertia, and a tick takes as many substeps as that needs. If false,
+  // inertia is scaled up until the tool's number of substeps suffices (SpringLattice::set_inertia()).
   bool real_time = false;
 };
 
 // Symmetric sculpting: a second tool is the mirror image of the hand's tool in a plane.
 struct Symmetry {
   bool on = false;
-  Vector3 point_m = Vector3::Zero();  // any point of the plane
-  Vector3 normal = Vector3::UnitZ();  // unit
+  Vector3 point_m = Vector3::Zero();  // any point of the mirror plane
+  Vector3 normal = Vector3::UnitZ();  // unit normal of the mirror plane
 };
 
 // Returns the mirror image of a point or a pose in the plane of symmetry.
@@ -45,9 +44,9 @@ Vector3 mirror_point(const Symmetry& symmetry, const Vector3& point_m);
 Pose mirror_pose(const Symmetry& symmetry, const Pose& pose);
 
 struct Scene {
-  // Touching bodies push each other; a document may have more than can be simulated.
+  // Bodies that touch push each other. A document may have more bodies than can be simulated.
   std::vector<Body> bodies;
-  std::vector<FixingPlane> planes;  // each fixes nodes of every body
+  std::vector<FixingPlane> planes;  // each plane fixes nodes of all bodies
   Tool tool;
   Sculpting sculpting;
   Symmetry symmetry = {};
@@ -63,10 +62,11 @@ inline bool keeps_place(const Scene& scene) {
 }
 
 // Limits of files, commands and the panel's sliders, within which every solver stays finite.
-inline constexpr Range<int> body_count_range{1, 1000};        // in a document
-inline constexpr Range<int> sculpted_body_count_range{1, 8};  // in a simulation
+inline constexpr Range<int> body_count_range{1, 1000};  // number of bodies in a document
+// Number of bodies that can be simulated together.
+inline constexpr Range<int> sculpted_body_count_range{1, 8};
 inline constexpr Range<double> drag_range_per_s{0.0, 8000.0};
-inline constexpr double gravity_limit_m_per_s2 = 100.0;  // length of the vector
+inline constexpr double gravity_limit_m_per_s2 = 100.0;  // largest length of the gravity vector
 inline constexpr Range<double> force_scale_range{0.0, 1e6};
 
 template <>
@@ -121,8 +121,8 @@ struct SetSculpting {
 struct SetSymmetry {
   Symmetry symmetry;
 };
-// Moves the tool to the hand without contact along the path between them. Sent when the tool starts to
-// follow the hand after a pause.
+// Moves the tool to the hand, ignoring contact on the path between them. This command is sent when the tool
+// starts to follow the hand after a pause.
 struct ResetProxy {};
 // Suspends the tool until it has left the body.
 struct LiftTool {};
@@ -137,7 +137,7 @@ struct RefineKnots {
 using Command = std::variant<PlacePlane, RemovePlanes, SetTool, SetMaterial, SetSculpting, SetSymmetry,
                              ResetProxy, LiftTool, KeepShape, RefineKnots>;
 
-// Names in scripts and recordings.
+// Names of the commands in scripts and recordings.
 template <>
 inline constexpr const char* kind_name<PlacePlane> = "place_plane";
 template <>

@@ -10,8 +10,7 @@
 namespace spoonbill {
 namespace {
 
-// Returns whether the parameter's name is that of a field of Tool, and its range is within the range of that
-// field.
+// Returns whether Tool has a field with the parameter's name whose range contains the parameter's range.
 constexpr bool is_tool_field(const ToolParameter& parameter) {
   for (const Field<Tool>& field : fields_of<Tool>) {
     if (std::string_view(field.form.name) != parameter.field) continue;

@@ -1,7 +1,8 @@
 // The tool: its shape, its action and its material. Plain data; lengths in metres.
 //
 // The table `tool_actions` defines the actions for files, commands, the panel, keys, help and JSON schema. A
-// new action is an enumerator and a row here, and a kernel in engine/simulation/tool_step.cpp for the tick.
+// new action needs an enumerator and a row here, and a kernel in engine/simulation/tool_step.cpp for the
+// tick.
 #pragma once
 
 #include <array>
@@ -26,22 +27,22 @@ namespace spoonbill {
 enum class ToolKind { point, sphere, solid };
 enum class ToolAction { push, pull, smooth };
 
-// Names in files and labels.
+// Names of the tool kinds, in files and as labels.
 inline constexpr const char* tool_kind_names[] = {"point", "sphere", "solid"};
 
 inline constexpr Range<double> tool_radius_range_m{0.0, 0.5};
 inline constexpr Range<int> tool_substeps_range{1, 8};
 
-// A field of Tool that an action uses, by its name in files, and the range that the action accepts, in SI
-// units.
+// A field of Tool that an action uses, identified by its name in files, and the range that the action
+// accepts, in SI units.
 struct ToolParameter {
   const char* field = nullptr;
   Range<double> range{0.0, 0.0};
 };
 
-// Key of the window, a digit or a capital letter, that selects a kind of tool with the action.
+// Key of the window that selects a kind of tool together with the action: a digit or a capital letter.
 struct ToolKey {
-  const char* key = nullptr;  // null: no key
+  const char* key = nullptr;  // null if there is no key
   ToolKind kind = ToolKind::sphere;
   const char* help = nullptr;
 };
@@ -51,11 +52,11 @@ struct ToolActionRow {
   const char* name;   // name in files
   const char* label;  // label in the panel
   const char* help;   // one sentence without a full stop
-  // True if the tool holds what it first touches until the button is released. With other actions the tool
-  // lets go as it leaves.
+  // True if the tool holds on to what it touches first until the button is released. With other actions the
+  // tool lets go when it moves away.
   bool grips;
   bool allows_soft_tool;
-  ToolAction inverse;  // the action while Ctrl is down; the action itself if it has no inverse
+  ToolAction inverse;  // action while Ctrl is down; equal to `action` if there is no inverse
   std::array<ToolParameter, 4> parameters;
   std::array<ToolKey, 2> keys;
 };
@@ -63,7 +64,7 @@ struct ToolActionRow {
 inline constexpr ToolParameter radius_parameter{"radius_mm", tool_radius_range_m};
 inline constexpr ToolParameter substeps_parameter{"substeps", {1.0, 8.0}};
 
-// Rows in the order of the enumeration.
+// The actions, in the order of the enumeration ToolAction.
 inline constexpr auto tool_actions = std::to_array<ToolActionRow>({
     {.action = ToolAction::push,
      .name = "push",
@@ -151,22 +152,23 @@ inline constexpr const char* kind_name<SurfaceSolid> = "surface";
 
 using ToolSolid = std::variant<ImplicitShape, MeshSolid, SurfaceSolid>;
 
-// Most triangles of a mesh in a document.
+// Largest number of triangles of a tool's mesh in a document.
 inline constexpr int tool_triangle_limit = 200000;
-// Most triangles of a soft mesh, which every tick of a millisecond moves and searches.
+// Largest number of triangles of a soft tool's mesh, which is moved and searched in every tick of one
+// millisecond.
 inline constexpr int soft_mesh_triangle_limit = 20000;
 
-// A deformable tool with its own lattice. The hand holds the nodes behind the plane `grip`.
+// A deformable tool with its own lattice. The nodes behind the plane `grip` move with the hand.
 struct SoftTool {
   Material material;
   LatticeRequest lattice;
-  FixingPlane grip;  // in the tool's frame
+  FixingPlane grip;  // plane in the tool's frame; the hand holds the nodes behind it
 };
 
 // Body of a tool that is neither a point nor a sphere, in the tool's frame. Immutable once made.
 struct ToolBody {
   ToolSolid solid;
-  std::optional<SoftTool> soft;  // empty: the tool is rigid
+  std::optional<SoftTool> soft;  // properties of a soft tool; empty if the tool is rigid
 };
 
 struct Tool {
@@ -174,7 +176,8 @@ struct Tool {
   ToolAction action = ToolAction::push;
   double radius_m = 0.008;  // radius of a sphere; 0 for a point; smoothing reach of a solid
   int substeps = 6;         // steps of the springs per tick, 1 to 8: with more, bodies respond faster
-  std::shared_ptr<const ToolBody> body = {};  // required for a solid; may stay while another kind is in use
+  // Required for the kind `solid`; may be kept while another kind is in use.
+  std::shared_ptr<const ToolBody> body = {};
 };
 
 // Returns the range that the tool's action accepts for a field, by the field's name in files; `any` if the

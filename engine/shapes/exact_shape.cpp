@@ -13,10 +13,12 @@ namespace spoonbill {
 
 namespace {
 
-// Step of finite differences as a fraction of the domain: far above rounding, far below a knot span.
+// Step of finite differences, as a fraction of the domain. It is far above rounding and far below a knot
+// span.
 constexpr double difference_step = 1e-6;
 constexpr int newton_steps = 4;
-// Largest cosine of the angle between the normal at a pole and a direction in its tangent plane.
+// Largest cosine of the angle between the normal at a pole and a tangent there; above it, the shape has no
+// tangent plane.
 constexpr double flat_tolerance = 1e-4;
 
 double into_domain(const ShapeDirection& direction, double parameter) {
@@ -94,7 +96,8 @@ std::optional<Vector3> pole_normal(const ExactShape& shape, bool at_start) {
 
 namespace {
 
-// Relative tolerance for sizes converted from millimetres to metres, whose last digit may differ.
+// Relative tolerance of size checks, because a size converted from millimetres to metres may differ in its
+// last digit.
 constexpr double slack = 1e-9;
 
 }  // namespace

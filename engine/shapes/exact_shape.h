@@ -23,11 +23,12 @@ struct ShapeDirection {
   double end() const { return breaks.back(); }
 };
 
-// A shape in metres whose du x dv points outwards. `at` is called with parameters within the domain and must
-// be continuous there. Fits are best if equal parameter steps cover about equal distances everywhere.
+// A shape whose points are in metres and whose du x dv points outwards. `at` is called with parameters within
+// the domain and must be continuous there. Fits are best if equal parameter steps cover about equal distances
+// everywhere.
 struct ExactShape {
   ShapeDirection u, v;
-  // whether the shape has a pole (one point for all u) at that end of v
+  // True if the shape has a pole (one point for all u) at the start or the end of v.
   bool pole_at_start = false, pole_at_end = false;
   // Flat ends of a shape with poles: v from the start of the domain to `flat_to` and from `flat_from` to its
   // end. Each is one of `breaks`; empty if that end is not flat.
@@ -45,8 +46,8 @@ struct ShapeTangents {
 };
 ShapeTangents tangents(const ExactShape& shape, double u, double v);
 
-// Returns a bound of the distance from a point to the shape: the distance to the shape's point at u, v,
-// reduced by Gauss-Newton steps.
+// Returns an upper bound of the distance from a point to the shape: the distance to the shape's point at u,
+// v, reduced by Gauss-Newton steps.
 double distance_near(const ExactShape& shape, const Vector3& point_m, double u, double v);
 
 // Returns the unit normal at the pole at the start or end of v, if the shape has a tangent plane there.
@@ -54,10 +55,10 @@ std::optional<Vector3> pole_normal(const ExactShape& shape, bool at_start);
 
 // Range of the sizes of stock shapes.
 inline constexpr Range<double> shape_size_range_m{1e-4, 10.0};
-// Smallest rounding, as a fraction of the shortest side that it rounds. Sharper edges need more control
+// Smallest rounding, as a fraction of the shortest side that is rounded. Sharper edges need more control
 // points than a stock shape has.
 inline constexpr double min_rounding_fraction = 0.01;
-// Default rounding, as a fraction of the shortest side that it rounds.
+// Default rounding, as a fraction of the shortest side that is rounded.
 inline constexpr double default_rounding_fraction = 0.1;
 
 // Returns an out_of_range error unless the length is within the range. The message is in millimetres, such as

@@ -18,14 +18,14 @@ namespace spoonbill {
 
 namespace {
 
-// Largest ratio of the lengths of neighbouring spans; keeps the control net even and least squares well
+// Largest ratio of the lengths of neighbouring spans. It keeps the control net even and least squares well
 // conditioned.
 constexpr double largest_step = 3.0;
-// Fraction of the largest error that may be only ringing from neighbouring cells. Cells whose errors are no
-// larger are refined in a later round, if their own error shows.
+// Fraction of the largest error up to which a cell's error may be mere ringing of neighbouring cells. Cells
+// with such errors are refined in a later round, if their error remains.
 constexpr double ringing_fraction = 0.1;
-// Largest refinement factor of one step, because an error far from its asymptote would lead to far too many
-// spans.
+// Largest factor by which one step refines a cell. An error that is far from its asymptotic order would
+// otherwise give far too many spans.
 constexpr int max_subdivision = 3;
 
 }  // namespace
@@ -93,14 +93,15 @@ Result<ShapeKnots> ShapeKnots::with_control_count(const ShapeDirection& directio
   ShapeKnots knots(direction, degree);
   const int cells = static_cast<int>(knots.spans_.size());
   const int spare = control_count - knots.control_count();
-  // Breaks are ignored if they leave fewer spare control points than half the number of cells.
+  // The breaks are ignored if they leave fewer spare control points than half the number of cells.
   if (cells > 1 && spare < cells / 2) {
     knots.ends_ = {direction.start(), direction.end()};
     knots.jumps_ = {false, false};
     knots.spans_ = {direction.periodic ? control_count : control_count - degree};
     return knots;
   }
-  // A third of the spare control points goes where the error is largest, the rest to the longest spans.
+  // At first, only the longest spans are divided; a third of the spare control points is left for
+  // refine_worst().
   for (int left = spare - (cells > 1 ? spare / 3 : 0); left > 0; --left) {
     std::size_t longest = 0;
     for (std::size_t k = 1; k < knots.spans_.size(); ++k) {
@@ -161,7 +162,7 @@ std::vector<double> ShapeKnots::largest_in_cells(const std::vector<double>& at,
                                                  const std::vector<double>& error_m) const {
   std::vector<double> largest(spans_.size(), 0.0);
   for (std::size_t p = 0; p < at.size(); ++p) {
-    // A parameter on the border of two cells counts for both.
+    // A parameter on the border of two cells counts for both cells.
     for (std::size_t k = 0; k < spans_.size(); ++k) {
       if (at[p] >= ends_[k] && at[p] <= ends_[k + 1]) largest[k] = std::max(largest[k], error_m[p]);
     }
@@ -212,11 +213,11 @@ void ShapeKnots::even_out() {
 namespace {
 
 constexpr int max_control_points = 200;
-// Samples in each span, more than twice its unknowns, so that no error hides between samples.
+// Number of samples in each span: more than twice its unknowns, so that no error hides between samples.
 constexpr int samples_in_span = 6;
 constexpr int lines_in_cell = 3;
 constexpr int checks_in_span = 5;
-// Fraction of the tolerance that either direction may use by itself.
+// Fraction of the tolerance that the error in each direction may use.
 constexpr double direction_fraction = 0.5;
 constexpr int max_rounds = 12;
 
@@ -239,8 +240,8 @@ struct DirectionError {
   std::vector<double> at, error_m;
 };
 
-// Evaluates the least-squares fit of lines of samples. Sums are ordered, so that the knots are the same on
-// every machine.
+// Returns the values, at the samples, of the least-squares fit of lines of samples. Sums are ordered, so that
+// the knots are the same on every machine.
 Lines evaluate_fit(const Eigen::MatrixXd& inverse, const BlendingMatrix& blending, const Lines& samples) {
   Lines control = Lines::Zero(inverse.rows(), samples.cols());
   for (Eigen::Index i = 0; i < inverse.rows(); ++i) {
@@ -265,8 +266,8 @@ std::vector<double> midpoints(const std::vector<double>& parameters, const Shape
   return result;
 }
 
-// Returns the error of a fit in u alone or v alone. Only the component along the normal counts, unless the
-// fit keeps the parameters.
+// Returns the error of a fit in u alone or v alone. Only the component of the error along the normal counts,
+// unless `keeps_parameters` is true.
 Result<DirectionError> error_along(const ExactShape& shape, bool along_u, const ShapeKnots& knots,
                                    const std::vector<double>& lines, bool keeps_parameters,
                                    FitRounds& rounds) {
@@ -309,9 +310,9 @@ Result<DirectionError> error_along(const ExactShape& shape, bool along_u, const 
   return result;
 }
 
-// Returns the number of rings of control points next to a pole that must be in its plane: those that
-// affect the flat part, except the ring that bends the surface beyond the knot at the part's border; 1 if
-// no part is flat.
+// Returns the number of rings of control points around a pole that must be in the pole's tangent plane. These
+// are all rings that affect the flat part, except the outermost one, which bends the surface beyond the flat
+// part. Returns 1 if no part is flat.
 int flat_rings(const ExactShape& shape, bool at_start, const KnotVector& v) {
   const std::vector<double>& knots = v.knots();
   const std::optional<double> border = at_start ? shape.flat_to : shape.flat_from;
@@ -324,7 +325,7 @@ int flat_rings(const ExactShape& shape, bool at_start, const KnotVector& v) {
   return std::max(1, rings - 1);
 }
 
-// Moves the control points of the edge to the pole and the next rings into its tangent plane.
+// Moves the control points at the edge to the pole, and the next rings into the pole's tangent plane.
 void flatten_pole(const ExactShape& shape, bool at_start, const KnotVector& knots, ControlNet& net) {
   const double v = at_start ? shape.v.start() : shape.v.end();
   const Vector3 pole = shape.at(shape.u.start(), v);
@@ -384,7 +385,7 @@ Result<Measure> measure(const ExactShape& shape, const Surface& surface, const S
   return result;
 }
 
-// Measures the deviation at equal parameters, more densely than measure(): also on the edges and near the
+// Measures the deviation at equal parameters, like measure() but more densely: also on the edges and near the
 // worst sample.
 Result<Measure> measure_closely(const ExactShape& shape, const Surface& surface, const ShapeKnots& u,
                                 const ShapeKnots& v, FitRounds& rounds) {
@@ -455,7 +456,7 @@ Result<FittedShape> fit_counted(const ExactShape& shape, const ShapeFit& fit) {
   if (found->folds) {
     return Error{ErrorCode::self_intersecting, "with " + std::to_string(u_count) + " x " +
                                                    std::to_string(v_count) +
-                                                   " control points the surface folds over; give it more"};
+                                                   " control points the surface folds over; allow more"};
   }
   return FittedShape{std::move(surface).value(), found->deviation_m};
 }
@@ -464,7 +465,7 @@ Error too_fine(const ShapeFit& fit, const std::string& direction) {
   return Error{ErrorCode::not_converged,
                "a tolerance of " + length_text(fit.tolerance_m) + " needs more than " +
                    std::to_string(max_control_points) + " control points along " + direction +
-                   "; make it larger, or the roundings and bends of the shape wider",
+                   "; choose a larger one, or make the roundings and bends of the shape wider",
                "tolerance"};
 }
 

@@ -15,7 +15,7 @@ namespace spoonbill {
 
 namespace {
 
-// Smallest length of a piece, as a fraction of the whole profile; shorter ones are rounding error.
+// Smallest length of a piece, as a fraction of the whole profile. A shorter piece is a rounding error.
 constexpr double min_piece = 1e-9;
 
 double cross(const MeridianPoint& a, const MeridianPoint& b) {
@@ -30,8 +30,8 @@ double direction_angle(const MeridianPoint& direction) {
   return std::atan2(direction.y(), direction.x());
 }
 
-// A corner between two directions, its turn to the left, and the length that a rounding removes from each
-// side.
+// A corner of a profile: the directions before and after it, its turn to the left, and the length that its
+// rounding removes from each of the two sides.
 struct Corner {
   MeridianPoint before, after;
   double turn = 0.0;
@@ -48,7 +48,7 @@ struct Corner {
   double from() const { return direction_angle(-to_centre(1.0)); }
 };
 
-// Returns the direction of the profile's mirror image beyond the axis.
+// Returns a direction of the profile, mirrored in the axis.
 MeridianPoint mirrored(const MeridianPoint& direction) {
   return {direction.x(), -direction.y()};
 }
@@ -166,7 +166,7 @@ double cross_xy(const Vector3& a, const Vector3& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-// Returns whether two segments that are not neighbours cross.
+// Returns whether the segments a b and c d cross.
 bool crosses(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
   return cross_xy(b - a, c - a) * cross_xy(b - a, d - a) < 0.0 &&
          cross_xy(d - c, a - c) * cross_xy(d - c, b - c) < 0.0;
@@ -191,7 +191,7 @@ Status check_profile(const std::vector<Vector3>& points, bool pole_first, bool p
   return {};
 }
 
-// Returns a multiple of the enclosed volume, positive if the outer part of the profile runs up.
+// Returns a multiple of the enclosed volume. It is positive if the outer part of the profile runs upwards.
 double signed_volume(const std::vector<Vector3>& points) {
   double sum = 0.0;
   for (std::size_t k = 0; k + 1 < points.size(); ++k) {

@@ -74,7 +74,7 @@ std::vector<double> compute_second_derivatives(const SplineLine& line, bool clos
   std::vector<TridiagonalRow> rows(count);
   for (std::size_t k = closed ? 0 : 1; k + (closed ? 0 : 1) < count; ++k) rows[k] = line.inner_row(k);
   if (closed) return solve_cyclic(std::move(rows));
-  const std::size_t last = count - 2;  // last piece
+  const std::size_t last = count - 2;  // index of the last piece
   if (level_first) rows[0] = {0.0, 2.0 * line.lengths[0], line.lengths[0], 6.0 * line.slope(0)};
   if (level_last) {
     rows[count - 1] = {line.lengths[last], 2.0 * line.lengths[last], 0.0, -6.0 * line.slope(last)};

@@ -10,8 +10,8 @@
 
 namespace spoonbill {
 
-// End conditions of an open curve for each coordinate: level (first derivative zero) or straight (second
-// derivative zero, the default).
+// End conditions of an open curve, for each coordinate: level (first derivative zero) or, by default,
+// straight (second derivative zero).
 struct CurveEnds {
   bool level_x = false, level_y = false, level_z = false;
 };
@@ -27,14 +27,14 @@ class SmoothCurve {
   // from 1.
   static Result<SmoothCurve> through(std::vector<Vector3> points_m, bool closed, const CurveEnds& first = {},
                                      const CurveEnds& last = {});
-  // Makes a curve with given increasing parameters, one for each point and one more for the end of a closed
-  // curve. Points may coincide.
+  // Makes a curve with given increasing parameters: one for each point and, for a closed curve, one more for
+  // its end. Points may coincide.
   static SmoothCurve at_parameters(std::vector<Vector3> points_m, std::vector<double> parameters, bool closed,
                                    const CurveEnds& first = {}, const CurveEnds& last = {});
 
   bool closed() const { return closed_; }
-  // Returns the end of the parameters, which run from 0. For a curve made by through() it is the sum of the
-  // chords.
+  // Returns the largest parameter; the smallest is 0. For a curve made by through(), it is the sum of the
+  // chord lengths.
   double end() const {
     SPOONBILL_ASSERT(!parameters_.empty());
     return parameters_.back();
@@ -44,7 +44,8 @@ class SmoothCurve {
   Vector3 first_derivative(double t) const;
   Vector3 second_derivative(double t) const;
 
-  // Returns the second derivatives at the points. They are linear in the points and can thus be blended.
+  // Returns the second derivatives at the points. They depend linearly on the points, so blending the points
+  // of two curves blends the derivatives too.
   const std::vector<Vector3>& second_derivatives() const { return second_derivatives_; }
 
  private:

@@ -20,8 +20,8 @@ namespace spoonbill {
 
 namespace {
 
-// A rectangle with rounded corners around the origin, parametrised by arc length from the midpoint of its
-// side at +x through +y.
+// A rectangle with rounded corners around the origin. It is parametrised by arc length and runs from the
+// midpoint of its side at +x through +y.
 class RoundedRectangle {
  public:
   RoundedRectangle(double half_x, double half_y, double rounding)
@@ -36,8 +36,8 @@ class RoundedRectangle {
   double length() const { return ends_.back(); }
   double rounding() const { return rounding_; }
 
-  // Returns the fractions of the length, from 0 to 1, at which a side meets a corner, or at which the slowed
-  // part of a side ends.
+  // Returns fractions of the length, from 0 to 1: where a side meets a corner, and where the slowed part of a
+  // side ends.
   std::vector<double> breaks() const {
     std::vector<double> fractions = {0.0};
     const auto add = [&](double distance) {
@@ -60,9 +60,10 @@ class RoundedRectangle {
     Vector2 position, normal;
   };
 
-  // Returns the point at a fraction of the length. The corners of a shrunk outline have shorter arcs and thus
-  // a lower speed than its sides. The sides reach the corners at that speed, so that a curve through both
-  // needs no extra knots to stay smooth.
+  // Returns the point at a fraction of the length. On a shrunk outline, the corners have shorter arcs, so
+  // that a point moves along them only at `speed_at_corners` times its speed on the sides. Near the corners
+  // the sides slow down to that speed. A curve through a side and a corner then needs no extra knots to stay
+  // smooth.
   Point at(double fraction, double speed_at_corners) const {
     const double distance = fraction * length();
     const auto after = std::upper_bound(ends_.begin() + 1, ends_.end() - 1, distance);
@@ -89,11 +90,12 @@ class RoundedRectangle {
   }
 
  private:
-  // Returns the length of the slowed part on either side of a corner, chosen to keep the lines across the
-  // outline nearly straight.
+  // Returns the length of the part of a side, next to a corner, in which the point slows down. It is chosen
+  // to keep the lines across the outline nearly straight.
   double slowed() const { return 4.0 * rounding_; }
 
-  // Returns the position on a side: cubic over the whole side, or over the slowed parts at its ends.
+  // Returns the position on a side, measured from its centre. It is a cubic over the whole side or, on a long
+  // side, over the slowed parts at its ends.
   double position_on_side(double half_side, double off_centre, double slower) const {
     if (!(half_side > 0.0)) return 0.0;
     if (half_side <= slowed()) {
@@ -117,8 +119,8 @@ class RoundedRectangle {
   std::array<double, 10> ends_{};
 };
 
-// A box along its third axis. Its rings are outlines of its section, rolled over the end edges by an angle
-// and then contracted toward the centre of the end face.
+// A box with its end faces across its third axis. Its rings are outlines of its section. Towards an end, the
+// outlines first follow the rounded edge and then shrink to the centre of the end face.
 class BoxAlong {
  public:
   BoxAlong(const Vector3& half_m, double edge_rounding_m, double end_rounding_m)
@@ -150,16 +152,16 @@ class BoxAlong {
   }
 
  private:
-  // Returns the mean distance from the pole to the edge, limited so that no line starts backwards from the
-  // pole.
+  // Returns the length along v of an end face: the mean distance from the pole to the edge, limited so that
+  // every line leaves the pole towards the edge.
   static double face_length(double half_x, double half_y) {
     return std::min(0.5 * (half_x + half_y), 1.6 * std::min(half_x, half_y));
   }
 
   double whole() const { return 2.0 * (face_ + roll_) + side_; }
 
-  // Returns the fraction of the distance from the pole to the edge of the end face. The edge is reached at
-  // the speed at which the roll over it begins.
+  // Returns the fraction of the distance from the pole to the edge of the end face. At the edge, the speed is
+  // that at which the rounded edge begins.
   double fraction_from_pole(double half, double from_pole) const {
     const double speed = face_ / (half - rounding_), fraction = from_pole / face_;
     return fraction * (2.0 - speed - (1.0 - speed) * fraction);
@@ -181,11 +183,13 @@ class BoxAlong {
   Vector3 half_;
   double rounding_;
   RoundedRectangle outline_;
-  double face_, roll_, side_;  // lengths along v
+  // Lengths along v of an end face, of the rounding at its edge, and of the sides.
+  double face_, roll_, side_;
 };
 
-// Returns the axis through the end faces. The squarer faces become the ends, so that cells around the
-// poles are not slender; if there is little difference, the longest side decides.
+// Returns the axis through the end faces. It is the longest axis, unless the faces at its ends are slender
+// and those at the ends of the shortest axis are squarer. Slender end faces would have slender cells around
+// their poles.
 int box_axis(const Vector3& size_m) {
   std::array<int, 3> order = {2, 1, 0};
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return size_m[a] < size_m[b]; });
@@ -343,7 +347,8 @@ Result<ExactShape> torus_shape(const TorusSize& size) {
   const Status status = first_problem(
       {check_size("ring radius", size.ring_radius_m), check_size("tube radius", size.tube_radius_m)});
   if (!status) return status.error();
-  // The hole must be at least a thousandth of the tube wide; otherwise the surface almost touches itself.
+  // The hole of the ring must be at least a thousandth as wide as the tube; otherwise the surface almost
+  // touches itself.
   if (!(size.ring_radius_m > 1.001 * size.tube_radius_m)) {
     return Error{ErrorCode::out_of_range,
                  "a tube of radius " + length_text(size.tube_radius_m) +
@@ -389,7 +394,7 @@ Result<ExactShape> make_shape(const TorusSize& size) {
 double shape_reach(const SphereSize& size) {
   return size.radius_m;
 }
-// The reach of a convex shape is the radius of its roundings.
+// The reach of a convex shape is the radius of its roundings (see reach_m()).
 double shape_reach(const BoxSize& size) {
   return size.rounding_m;
 }

@@ -8,13 +8,14 @@
 
 namespace spoonbill {
 
-// A box along x, y and z with rounded edges. The poles are the centres of its two ends: the faces at the
-// ends of the longest side, or squarer faces if those are slender. `rounding_m` applies to the edges
-// around the ends. The four edges between the ends have twice that rounding, at most half the shortest
-// side, and the corners are parts of tori.
+// A box along x, y and z with rounded edges. The poles are the centres of its two end faces: the faces at the
+// ends of the longest side or, if these are slender, squarer faces. `rounding_m` applies to the edges around
+// the end faces. The four edges between them have twice that rounding, at most half the shortest side, and
+// the corners are parts of tori.
 struct BoxSize {
   Vector3 size_m{0.06, 0.04, 0.02};
-  double rounding_m = 0.002;  // at most max_box_rounding_fraction of the shortest side
+  // Radius of the rounding, at most max_box_rounding_fraction of the shortest side.
+  double rounding_m = 0.002;
 };
 inline constexpr double max_box_rounding_fraction = 0.4;
 
@@ -26,7 +27,7 @@ double default_rounding_m(const BoxSize& size);
 // A closed horizontal slab with poles at the centres of its faces and a half-round rim.
 struct PlateSize {
   double x_size_m = 0.1, z_size_m = 0.06, thickness_m = 0.003;
-  double corner_m = 0.006;  // radius of its four corners seen from above, at least the thickness
+  double corner_m = 0.006;  // radius of the plate's four corners seen from above, at least the thickness
 };
 // Makes a plate. Refuses a thickness of more than half the width.
 Result<ExactShape> plate_shape(const PlateSize& size);
@@ -57,11 +58,11 @@ struct ConeSize {
 // Makes a cone along y.
 Result<ExactShape> cone_shape(const ConeSize& size);
 
-// A horizontal torus, closed both ways: u around the tube, v around the ring.
+// A horizontal torus, which is closed in both directions: u runs around the tube, v around the ring.
 struct TorusSize {
   double ring_radius_m = 0.04, tube_radius_m = 0.01;
 };
-// Makes a torus. Refuses a tube that closes the hole of the ring.
+// Makes a torus. Refuses a tube so wide that it closes the hole of the ring.
 Result<ExactShape> torus_shape(const TorusSize& size);
 
 // Returns the default rounding of a cylinder or a cone.
@@ -86,17 +87,18 @@ using StockShapeSize =
 Result<ExactShape> stock_shape(const StockShapeSize& size);
 
 // Returns the reach of the shape (Federer 1959): every point nearer to the shape than this distance has
-// exactly one nearest point on it. A fitted surface within the reach that does not fold cannot meet itself.
-// Infinite for a sheet.
+// exactly one nearest point on it. A fitted surface that stays within the reach and does not fold cannot
+// touch itself. The reach is infinite for a sheet.
 double reach_m(const StockShapeSize& size);
 
-// Returns the degree of the shape's fit. Shapes that are round as a whole have degree 5, whose twelve spans
-// around a circle keep its curvature within 0.01 %; those of degree 3 would miss it by 2 %. Other shapes have
-// degree 3, whose control points act nearer by.
+// Returns the degree of the shape's fit. Shapes that are round as a whole have degree 5: with twelve spans
+// around a circle, the curvature is then within 0.01 %, compared with 2 % for degree 3. Other shapes have
+// degree 3, so that a control point affects a smaller part of the surface.
 int stock_shape_degree(const StockShapeSize& size);
 
-// Returns the default tolerance of a stock shape's fit: 0.01 mm; a thousandth of the longest side if that
-// is shorter than 10 mm; a hundred-thousandth of the shortest side if that is longer than 1 m.
+// Returns the default tolerance of a stock shape's fit. It is 0.01 mm in general, a thousandth of the longest
+// side if that side is shorter than 10 mm, and a hundred-thousandth of the shortest side if that side is
+// longer than 1 m.
 double default_tolerance_m(const ExactShape& shape);
 
 }  // namespace spoonbill

@@ -17,12 +17,12 @@ namespace spoonbill {
 namespace {
 
 constexpr int frames = 2048;
-// Largest extent of the section toward the centre of a bend, as a fraction of the bend's radius. Closer to
-// 1, the inside of the tube almost folds.
+// Largest extent of the section toward the centre of a bend, as a fraction of the bend's radius. At a value
+// closer to 1, the inside of the tube would almost fold.
 constexpr double max_bend_fraction = 0.98;
 
 struct SweepFrame {
-  Vector3 position, along, across;  // directions are unit vectors
+  Vector3 position, along, across;  // `along` and `across` are unit vectors
 
   Vector3 up() const { return along.cross(across); }
 };
@@ -32,7 +32,7 @@ Vector3 reflect(const Vector3& vector, const Vector3& by) {
   return squared > 0.0 ? Vector3(vector - 2.0 / squared * by.dot(vector) * by) : vector;
 }
 
-// Returns the frame at a nearby position with the least rotation.
+// Returns the frame at a nearby position, rotated as little as possible about the curve.
 SweepFrame transport(const SweepFrame& from, const Vector3& position, const Vector3& along) {
   const Vector3 step = position - from.position;
   const Vector3 across = reflect(from.across, step), tangent = reflect(from.along, step);
@@ -129,10 +129,11 @@ Result<ExactShape> tube_shape(const TubeSize& size) {
 
 namespace {
 
-// Number of points at which each section is sampled, evenly along it.
+// Number of evenly spaced points at which each section is sampled.
 constexpr int around = 256;
 constexpr int length_steps = 4096;
-// Handle length of a cubic that approximates a quarter circle (Goldapp 1991).
+// Distance of the inner control points from the ends, relative to the radius, of a cubic that approximates a
+// quarter circle (Goldapp 1991).
 constexpr double arc_handle = 0.5522847498;
 constexpr double default_bulge = 0.5;
 
@@ -187,8 +188,9 @@ double squared_distance(const Section& a, const Section& b, std::size_t start, b
   return sum;
 }
 
-// Reverses a section, and restarts a closed one, so that its points are near the points of `before` with
-// the same index after both centroids are moved together.
+// Changes the order of a section's points: possibly reverses it and, if the section is closed, starts at
+// another point. The points are then as near as possible to the points of `before` with the same index, after
+// both sections are centred at the origin.
 void align_to(const Section& before, Section& section, bool closed) {
   std::size_t best_start = 0;
   bool best_backwards = false;
@@ -237,8 +239,8 @@ Result<std::vector<Section>> even_sections(const LoftSections& loft) {
   return sections;
 }
 
-// The sides of a loft: splines across the sections through their points with the same index, blended along
-// the sections by further splines.
+// The sides of a loft. Splines across the sections run through the points with the same index; along the
+// sections, further splines interpolate between them.
 class LoftSides {
  public:
   LoftSides(const std::vector<Section>& sections, bool closed) {
@@ -279,7 +281,7 @@ class LoftSides {
            scale * ((a * a * a - a) * second_[s].at(u) + (b * b * b - b) * second_[s + 1].at(u));
   }
 
-  // Returns the derivative with respect to the distance across the sections.
+  // Returns the derivative with respect to t, the distance across the sections.
   Vector3 across(double u, double t) const {
     const auto [s, length, b] = find_piece(t);
     const double a = 1.0 - b;
@@ -304,8 +306,8 @@ class LoftSides {
   std::vector<SmoothCurve> points_, second_;
 };
 
-// A cap over an end of the sides, from the ring to a pole. Each line is a cubic that continues the sides'
-// tangent and meets the pole perpendicular to its normal.
+// A cap over an end of the sides, from the end ring to a pole. Each line of constant u is a cubic that
+// continues the tangent of the sides and meets the pole perpendicular to the pole's normal.
 class LoftCap {
  public:
   LoftCap(std::shared_ptr<const LoftSides> sides, bool at_end, std::optional<double> height_m)
@@ -321,13 +323,13 @@ class LoftCap {
     const double radius = mean_radius(ring);
     height_m_ = height_m.value_or(default_bulge * radius);
     pole_ = compute_centroid(ring) + height_m_ * outward_;
-    // The length of a quarter of an ellipse, to a few percent.
+    // Length of a quarter of an ellipse, accurate to a few percent.
     length_m_ = 0.25 * std::numbers::pi * (radius + height_m_);
   }
 
   double length_m() const { return length_m_; }
 
-  // Returns the point at a fraction of the cap, 0 at the ring and 1 at the pole.
+  // Returns the point on line u at a fraction of the cap: 0 at the ring, 1 at the pole.
   Vector3 at(double u, double fraction) const {
     const Vector3 start = sides_->at(u, rim()), tangent = leaving(u);
     const double slope = std::max(tangent.dot(outward_), 0.2);
@@ -350,7 +352,7 @@ class LoftCap {
 struct Loft {
   std::shared_ptr<const LoftSides> sides;
   std::optional<LoftCap> first, last;
-  bool backwards = false;  // u reversed
+  bool backwards = false;  // true if u is reversed
 
   double first_m() const { return first ? first->length_m() : 0.0; }
   double last_m() const { return last ? last->length_m() : 0.0; }

@@ -10,9 +10,9 @@ namespace spoonbill {
 
 namespace {
 
-// Number of groups of slabs in the cache, which is cleared once it is full.
+// Number of groups of slabs in the cache, which is cleared when it is full.
 constexpr int group_capacity = 8192;
-// Factor that allows for rounding: the cells of one element differ slightly in their parameter steps.
+// Factor on bulges that allows for rounding: the parameter steps of an element's cells differ slightly.
 constexpr double size_tolerance = 1.0 + 1e-9;
 
 }  // namespace
@@ -48,13 +48,13 @@ void CellSlabs::gather_samples(const LevelCell& cell, int stride) {
 
 void CellSlabs::compute_children(const LevelCell& cell, SlabGroup& group) {
   gather_samples(cell, levels_->step(cell.level + 1));
-  // The bulge grows with the square of the cell's sides, which are halved.
+  // The bulge grows with the square of a cell's sides, and a child's sides are half as long.
   const double bulge = 0.25 * size_tolerance * levels_->bulge(cell);
   levels_->kernels().compute_slabs({samples_[0], samples_[1], samples_[2]}, bulge, group);
 }
 
 void CellSlabs::compute_single(const LevelCell& cell, SlabGroup& group) {
-  // Every lane gets the same four corners, mirrored in some lanes.
+  // All lanes get the same four corners; in some lanes the cell is mirrored.
   const PatchCorners corners = levels_->corners(cell);
   constexpr int corner_index[9] = {0, 1, 0, 2, 3, 2, 0, 1, 0};
   for (int axis = 0; axis < 3; ++axis) {
@@ -133,7 +133,8 @@ int ElementTree::find_leaf_near(const Vector3& point) const {
   return nearest;
 }
 
-// Intersects the corner box with the control point box where the bulge is large compared to the corner box.
+// Updates the boxes of the elements (element_u, .). A corner box is intersected with the box of the control
+// points if the bulge is large compared to the corner box.
 void ElementTree::update_strip(SurfaceLevels& levels, int element_u) {
   levels.element_boxes(element_u, strip_.data(), bulges_.data());
   for (int element_v = 0; element_v < v_.elements(); ++element_v) {
@@ -141,7 +142,7 @@ void ElementTree::update_strip(SurfaceLevels& levels, int element_u) {
     Box& box = boxes_[index];
     box = strip_[element_v];
     sizes_[index] = (box.high - box.low).sum();
-    // A box's size is the sum of its sides, each of which includes the bulge twice.
+    // A box's size is the sum of its three side lengths, and each of them includes the bulge twice.
     if (bulges_[element_v] <= 0.1 * sizes_[index]) continue;
     const Box hull = control_box(levels.surface().net, element_u, element_v);
     box = {box.low.cwiseMax(hull.low), box.high.cwiseMin(hull.high)};
@@ -161,7 +162,8 @@ Box ElementTree::control_box(const ControlNet& net, int element_u, int element_v
 
 namespace {
 
-// Largest number of pairs at any level but the coarsest; with more pairs, a coarser level is precise enough.
+// Largest number of pairs at any level except the coarsest. If there are more, the surfaces meet over so
+// large an area that a coarser level is precise enough.
 constexpr std::size_t fine_pair_capacity = 1 << 16;
 
 }  // namespace
@@ -172,7 +174,7 @@ CellPairs::CellPairs(SurfaceLevels& first, SurfaceLevels& second)
       second_slabs_(second),
       first_tree_(first.nested().grid.u.knots, first.nested().grid.v.knots),
       second_tree_(second.nested().grid.u.knots, second.nested().grid.v.knots) {
-  // Each step of a descent leaves up to three node pairs on the stack, or fifteen cell pairs.
+  // Each step of a descent leaves at most three node pairs on one stack, or fifteen cell pairs on the other.
   node_pairs_.reserve(256);
   pending_.reserve(
       static_cast<std::size_t>(16 * (2 + std::max(first.nested().levels, second.nested().levels))));
@@ -212,8 +214,8 @@ const std::vector<CellPair>& CellPairs::find_within_at_level(double reach_m, int
   return pairs_;
 }
 
-// Pairs the larger surface's element nearest to the centre of the smaller surface's box with the smaller
-// surface's element nearest to that element.
+// Pairs two elements. One is the larger surface's element nearest to the centre of the smaller surface's box;
+// the other is the smaller surface's element nearest to the first element.
 CellPair CellPairs::find_likely_near_elements() const {
   const auto centre = [](const Box& box) -> Vector3 { return 0.5 * (box.low + box.high); };
   const bool first_is_smaller = first_tree_.size(first_tree_.root()) < second_tree_.size(second_tree_.root());
@@ -281,7 +283,8 @@ void CellPairs::refine(const CellPair& elements, double reach, int level) {
   }
 }
 
-// Children of the same two parents are neighbours, so the later pairs continue the region of the first pair.
+// Pairs of children of the same two cells are neighbours, so all of them except the first are marked as such
+// (-1).
 void CellPairs::add_pair(const NodePair& nodes, bool is_first) {
   overflow_ = overflow_ || pairs_.size() == limit_;
   if (!overflow_) pairs_.push_back({nodes.first.cell, nodes.second.cell, is_first ? 0 : -1});

@@ -13,15 +13,15 @@
 
 namespace spoonbill {
 
-// Slab cache of one surface. One owner, one thread; allocates only on construction.
+// Cache of the slabs around one surface's cells. One owner, one thread; allocates only on construction.
 class CellSlabs {
  public:
   explicit CellSlabs(SurfaceLevels& levels);
 
-  // Clears the cache. Call after SurfaceLevels::begin().
+  // Clears the cache. Must be called after SurfaceLevels::begin().
   void begin();
 
-  // A cell and its index in the quadtree of the element's cells.
+  // A cell, the number of its element and its index in the quadtree of the element's cells.
   struct QuadtreeCell {
     LevelCell cell;
     int element_key, index_in_element;
@@ -41,8 +41,8 @@ class CellSlabs {
             4 * node.index_in_element + 1 + lane};
   }
 
-  // Returns the slabs of the four children of a cell that is not at the finest level. Lane 2 a + b holds the
-  // child in half a along u and half b along v. The result is valid until the next call.
+  // Returns the slabs of the four children of a cell that is not at the finest level. Lane 2 a + b contains
+  // the child in half a along u and half b along v. The result is valid until the next call.
   const SlabGroup& children(const QuadtreeCell& node) {
     SlabGroup* group = nullptr;
     if (claim_slot(node.key(), group)) compute_children(node.cell, *group);
@@ -56,7 +56,8 @@ class CellSlabs {
   }
 
  private:
-  // Finds the cached group of a key, or claims a new one. Returns true if the slabs must still be computed.
+  // Finds the cached group of slabs of a key, or claims a free group. Returns true if its slabs must still be
+  // computed.
   bool claim_slot(int key, SlabGroup*& group) {
     Slot& slot = slots_[key];
     const bool is_current = slot.generation == generation_;
@@ -74,14 +75,14 @@ class CellSlabs {
   SurfaceLevels* levels_;
   AlignedVector<SlabGroup> groups_;
   struct Slot {
-    std::uint32_t generation = 0;  // value of generation_ at which the slot was claimed
+    std::uint32_t generation = 0;  // value of generation_ when the slot was claimed
     int group = 0;
   };
   int elements_v_, keys_per_element_, keys_;
-  std::vector<Slot> slots_;  // by key: the children of each cell, followed by the single cells
+  std::vector<Slot> slots_;  // by key: first the children of each cell, then the cells themselves
   std::uint32_t generation_ = 0;
   int used_ = 0;
-  double samples_[3][9];  // working memory
+  double samples_[3][9];  // working memory: 3 x 3 samples of each coordinate
 };
 
 // Binary tree of boxes over the elements of one surface. It limits the parameter ranges that can meet another
@@ -92,7 +93,7 @@ class ElementTree {
   ElementTree(const KnotVector& u, const KnotVector& v);
 
   struct Node {
-    int first_u, end_u, first_v, end_v;  // ranges of elements
+    int first_u, end_u, first_v, end_v;  // the elements that the node contains, as ranges
     int left = -1, right = -1;           // child nodes; -1 in a leaf, which is one element
     bool is_leaf() const { return left < 0; }
   };
@@ -112,8 +113,8 @@ class ElementTree {
  private:
   struct Direction {
     int degree;
-    std::vector<int> first_control;  // per element, index into `control`
-    std::vector<int> control;        // control indices of each element in turn
+    std::vector<int> first_control;  // for each element, index into `control` of its first control point
+    std::vector<int> control;        // control point indices of all elements, one element after the other
     int elements() const { return static_cast<int>(first_control.size()); }
   };
   static Direction unroll(const KnotVector& knots);
@@ -123,20 +124,20 @@ class ElementTree {
   void join_boxes();
 
   Direction u_, v_;
-  std::vector<Node> nodes_;  // parents precede their children
+  std::vector<Node> nodes_;  // a parent precedes its children
   std::vector<Box> boxes_;
   std::vector<double> sizes_;
   std::vector<Box> strip_;      // working memory: boxes of the elements of one span of u
-  std::vector<double> bulges_;  // working memory: bulges of the same elements
+  std::vector<double> bulges_;  // working memory: bulges of the elements of one span of u
   std::vector<int> leaf_;       // node index of each element's leaf
 };
 
 inline constexpr std::size_t cell_pair_capacity = 1 << 19;
 
-// One cell of each surface.
+// A pair of cells, one of each surface.
 struct CellPair {
   LevelCell first, second;
-  // Index of the region, set by ContactRegions. Before that, -1 if both cells are equal to or neighbours of
+  // Index of the region, which ContactRegions sets. Before that, -1 if both cells are equal or adjacent to
   // the cells of the preceding pair, otherwise 0.
   int region = 0;
 };
@@ -147,12 +148,13 @@ class CellPairs {
  public:
   CellPairs(SurfaceLevels& first, SurfaceLevels& second);
 
-  // Must be called when the control points of the first (second) surface have moved, after
-  // SurfaceLevels::begin() of that surface.
+  // invalidate_first() and invalidate_second() must be called when the control points of that surface have
+  // moved, after its SurfaceLevels::begin().
   void invalidate_first();
   void invalidate_second();
 
-  // Updates the trees to the current shapes. find_within() and find_within_at_level() call it themselves.
+  // Updates the trees to the surfaces' current shapes. find_within() and find_within_at_level() call update()
+  // themselves.
   void update();
 
   // Returns two elements, as coarsest cells, that are likely to be near each other.
@@ -164,11 +166,11 @@ class CellPairs {
   // Returns the pairs of cells at one level, 0 being the coarsest, that may be within `reach_m` of each
   // other.
   const std::vector<CellPair>& find_within_at_level(double reach_m, int level);
-  // Returns the pairs of the last search, in the order to which ContactRegions may have sorted them.
+  // Returns the pairs that the last search found. ContactRegions may have changed their order.
   const std::vector<CellPair>& pairs() const { return pairs_; }
 
-  // Calls visit(pair) for the elements, as coarsest cells, whose boxes are within reach() of each other,
-  // roughly nearest first. reach() may decrease during the search.
+  // Calls visit(pair) for each pair of elements, as coarsest cells, whose boxes are within reach() of each
+  // other, roughly nearest first. reach() may decrease during the search.
   template <class Reach, class Visit>
   void visit_elements(const Reach& reach, const Visit& visit) {
     node_pairs_.clear();
@@ -188,8 +190,8 @@ class CellPairs {
     }
   }
 
-  // Calls visit(pair) for all elements whose boxes are within `reach` of each other, in metres, until it
-  // returns false.
+  // Calls visit(pair) for each pair of elements, as coarsest cells, whose boxes are within `reach` of each
+  // other, in metres. Stops when visit() returns false.
   template <class Visit>
   void visit_near_elements(double reach, const Visit& visit) {
     node_pairs_.clear();
@@ -214,7 +216,7 @@ class CellPairs {
     }
   }
 
-  // True if the last search exceeded a capacity, so that pairs may be missing.
+  // Returns true if the last search exceeded a capacity, so that pairs may be missing.
   bool overflow() const { return overflow_; }
 
   const ElementTree& first_tree() const { return first_tree_; }
@@ -225,7 +227,8 @@ class CellPairs {
     return first_tree_.box(nodes[0]).gap(second_tree_.box(nodes[1]));
   }
   CellPair elements(const std::array<int, 2>& nodes) const;
-  // Splits the node with the larger box and pairs both halves with the other node.
+  // Splits the node with the larger box into its two halves. Returns the pair of each half with the other
+  // node.
   std::array<std::array<int, 2>, 2> split(const std::array<int, 2>& nodes) const {
     const auto [a, b] = nodes;
     const ElementTree::Node& node_a = first_tree_.node(a);

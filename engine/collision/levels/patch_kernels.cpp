@@ -4,8 +4,8 @@ namespace spoonbill::SPOONBILL_KERNELS {
 
 namespace {
 
-// Bounds of the rounding error of a slab's extent in single precision, as fractions of its size and of its
-// position.
+// Bounds of the rounding error of a slab's extent in single precision: as a fraction of the slab's size, and
+// as a fraction of its coordinates.
 constexpr double size_rounding = 1e-6;
 constexpr double position_rounding = 2.5e-7;
 // Bound of the relative rounding error of the offset between two centres.
@@ -13,10 +13,10 @@ constexpr float offset_rounding = 1e-6F;
 constexpr float rounded_down = 1.0F - 1e-5F;
 constexpr float rounded_up = 1.0F + 1e-5F;
 
-// A vector with one sum per lane. Its address needs only the alignment of a single number.
+// Vector of one double per lane. It may be at any address that is aligned for a double.
 typedef double Lanes __attribute__((vector_size(slab_lanes * sizeof(double)), aligned(sizeof(double))));
 
-// Adds weights[k] * values[k][j] over k for four neighbouring j.
+// Computes, for four consecutive j, the sum of weights[k] * values[k][j] over k.
 template <int bandwidth>
 inline __attribute__((always_inline)) void sum_lanes(const double* weights, long weight_stride,
                                                      const double* values, long value_stride, double* sums) {
@@ -122,7 +122,7 @@ void compute_slabs(const PlanarPoints& samples, double bulge, SlabGroup& group) 
       group.along_v[axis][k] = static_cast<float>(v[axis][k]);
     }
   }
-  // If GCC unrolled this loop early, it would not vectorise the lanes.
+  // Without this pragma, GCC unrolls the loop early and does not vectorise the lanes.
 #pragma GCC unroll 1
   for (int k = 0; k < slab_lanes; ++k) {
     const double x = u[1][k] * v[2][k] - u[2][k] * v[1][k];
@@ -141,7 +141,7 @@ void compute_slabs(const PlanarPoints& samples, double bulge, SlabGroup& group) 
                         magnitude(v[1][k]) + magnitude(v[2][k]) + twisted + bulge;
     const double position = magnitude(centre[0][k]) + magnitude(centre[1][k]) + magnitude(centre[2][k]);
     const double margin = bulge + size_rounding * size + position_rounding * position;
-    // The normal of a long, narrow cell is not exactly perpendicular to its sides.
+    // Includes the sides' offsets along the normal, because rounding tilts the normal of a long, narrow cell.
     group.thickness[k] =
         static_cast<float>(magnitude(nx * u[0][k] + ny * u[1][k] + nz * u[2][k]) +
                            magnitude(nx * v[0][k] + ny * v[1][k] + nz * v[2][k]) +
@@ -150,7 +150,7 @@ void compute_slabs(const PlanarPoints& samples, double bulge, SlabGroup& group) 
   }
 }
 
-// Number of slabs of the first surface that are tested at once against the four of the second.
+// Number of slabs of the first surface that are tested at once against four slabs of the second surface.
 #ifdef __AVX__
 constexpr int slabs_at_once = 2;
 #else
@@ -165,8 +165,8 @@ struct ManyVectors {
   Many x, y, z;
 };
 
-// Repeats the four lanes once per tested slab. `Out` is a template parameter so that only the branch for its
-// size has to compile.
+// Repeats the four lanes once for each slab that is tested at once. `Out` is a template parameter so that
+// only the branch for its size is compiled.
 template <int a = 0>
 struct RepeatAll {
   template <class Out>
@@ -179,7 +179,7 @@ struct RepeatAll {
     }
   }
 };
-// Repeats lane `first`, and the next lane if two slabs are tested at once, four times each.
+// Repeats lane `first` four times. If two slabs are tested at once, also repeats the next lane four times.
 template <int first>
 struct RepeatEach {
   template <class Out>
@@ -227,7 +227,8 @@ inline __attribute__((always_inline)) void spread_slabs(const Spread& spreader, 
   spreader(group.slack, slabs.slack);
 }
 
-// Sets the lanes in which a plane separates the slabs by more than `reach` to -1, all others to 0.
+// Sets the lanes in which a plane separates the two slabs by more than `reach` to -1, and all other lanes to
+// 0.
 inline __attribute__((always_inline)) void find_separated(const ManySlabs& a, const ManySlabs& b, float reach,
                                                           ManyBits& separated) {
   const ManyVectors offset = {b.centre.x - a.centre.x, b.centre.y - a.centre.y, b.centre.z - a.centre.z};
@@ -245,7 +246,8 @@ inline __attribute__((always_inline)) void find_separated(const ManySlabs& a, co
   store_product_magnitude(b.normal, a.v, v_b);
   separated = across_a > a.thickness + b.slack + u_a + v_a + further;
   separated |= across_b > b.thickness + a.slack + u_b + v_b + further;
-  // The slabs are apart if squared > along + slack * length; the inequality is squared to avoid the root.
+  // A plane across the line between the centres separates the slabs if squared > along + slack * length. Both
+  // sides are squared, so that no root is needed.
   Many au, av, bu, bv;
   store_product_magnitude(a.u, offset, au);
   store_product_magnitude(a.v, offset, av);
@@ -257,7 +259,7 @@ inline __attribute__((always_inline)) void find_separated(const ManySlabs& a, co
   separated |= (beyond > 0.0F) & (beyond * beyond > slack * slack * squared);
 }
 
-// Returns one bit per lane.
+// Returns a bit mask with one bit for each lane.
 inline __attribute__((always_inline)) unsigned lane_bits(const ManyBits& lanes) {
 #ifdef __AVX__
   return static_cast<unsigned>(__builtin_ia32_movmskps256(reinterpret_cast<Many>(lanes)));
@@ -268,7 +270,7 @@ inline __attribute__((always_inline)) unsigned lane_bits(const ManyBits& lanes) 
 #endif
 }
 
-// Tests the slabs of `a` starting at slab `first`; returns the bits of the lanes that are not separated.
+// Tests the slabs of `a` from slab `first` on. Returns the bits of the lanes that are not separated.
 template <int first>
 inline __attribute__((always_inline)) unsigned find_meeting_from(const SlabGroup& a, const ManySlabs& b,
                                                                  float reach) {

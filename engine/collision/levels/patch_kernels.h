@@ -8,8 +8,8 @@ namespace spoonbill {
 inline constexpr int slab_lanes = 4;
 
 // Values of an element's basis functions in one direction, at the element's samples of the finest level.
-// `values` has `bandwidth` rows of `padded` numbers, zero beyond `samples`; `controls` holds the index of
-// each row's control point.
+// `values` has `bandwidth` rows of `padded` numbers, which are zero beyond `samples`. `controls` contains the
+// index of each row's control point.
 struct TileBand {
   const int* controls;
   const double* values;
@@ -28,31 +28,31 @@ struct PlanarOutput {
   double* z;
 };
 
-// Slabs around four cells, or around one cell repeated in all lanes.
+// Slabs around four cells, or around one cell that is repeated in all lanes.
 //
 // The bilinear patch of a cell's corners is p(s, t) = centre + s along_u + t along_v + s t w, with s and t
-// from -1 to 1. The surface is within the bulge of that patch. Along the unit normal, it is at most
-// `thickness` from the centre; along any unit vector d, at most |d . along_u| + |d . along_v| + slack. The
-// values are single precision; thickness and slack include the rounding.
+// from -1 to 1. The surface deviates from this patch by at most the bulge. Along the unit normal, it is at
+// most `thickness` from the centre; along any unit vector d, at most |d . along_u| + |d . along_v| + slack.
+// The values are in single precision; thickness and slack include the rounding.
 struct SlabGroup {
   float centre[3][slab_lanes];
   float along_u[3][slab_lanes];
   float along_v[3][slab_lanes];
-  float normal[3][slab_lanes];  // zero if the corners are collinear
+  float normal[3][slab_lanes];  // unit normal; zero if the corners are collinear
   float thickness[slab_lanes];
   float slack[slab_lanes];
 };
 
 // The kernels of one instruction set. Pure; any thread.
 struct PatchKernels {
-  // Samples one element, first along v for each control row into `lines` (working memory of 3 * u.bandwidth *
-  // v.padded numbers), then along u. Rows of `samples` are `columns` apart. Each sum starts at zero and adds
-  // its terms in the order of SurfaceLevels::sample(), so that the results are bitwise equal.
+  // Samples one element: first along v, for each row of control points, into `lines` (working memory of 3 *
+  // u.bandwidth * v.padded numbers), then along u. Rows of `samples` are `columns` apart. Each sum starts at
+  // zero and adds its terms in the order of SurfaceLevels::sample(), so that the results are bitwise equal.
   void (*sample_tile)(const TileBand& u, const TileBand& v, const PlanarPoints& net, long net_columns,
                       double* lines, const PlanarOutput& samples, long columns);
 
   // Computes the slabs of the four cells between 3 x 3 samples (9 numbers per coordinate, row by row). The
-  // surface deviates from each bilinear patch by at most `bulge`.
+  // surface deviates from the bilinear patch of each cell by at most `bulge`.
   void (*compute_slabs)(const PlanarPoints& samples, double bulge, SlabGroup& group);
 
   // Returns bit 4 i + j set if slab i of the first group may be within `reach` of slab j of the second. The

@@ -87,8 +87,8 @@ void SurfaceBounds::unroll_row(const ControlNet& net, int i) {
   }
 }
 
-// Computes the squared norms of the second derivatives' control points in one row of the unrolled net, for
-// all columns. Rows i and i + 1 must be unrolled already.
+// Computes, for row i of the unrolled control net and all its columns, the squared norms of the control
+// points of the second derivatives. Rows i and i + 1 must be unrolled already.
 void SurfaceBounds::update_row_norms(const ControlNet& net, int i) {
   if (i + 2 < rows_) unroll_row(net, i + 2);
   const std::vector<double>*const here = row_[i % 3], *const next = row_[(i + 1) % 3],
@@ -117,8 +117,8 @@ void SurfaceBounds::update_row_norms(const ControlNet& net, int i) {
   }
 }
 
-// Computes the bounds of the elements (eu, .). Takes the maximum over their rows first, for all columns at
-// once.
+// Computes the bounds of the elements (eu, .). For all columns at once, first takes the maximum over the rows
+// of these elements.
 void SurfaceBounds::update_elements(int eu) {
   double* const uu = row_[0][0].data();
   double* const vv = row_[0][1].data();
@@ -257,8 +257,8 @@ const PatchKernels& kernels_for(InstructionSet set) {
 
 constexpr int tile_padding = 4;
 
-// Returns the number of knots at the end of an element. The sample there belongs to the next element, whose
-// basis functions begin that many control points later.
+// Returns the multiplicity of the knot at the end of an element, or 0 at the end of an open direction. The
+// sample there belongs to the next element, whose basis functions begin that many control points later.
 int knots_at_end(const GridDirection& direction, int levels, int element) {
   const KnotVector& knots = direction.knots;
   const int elements = (static_cast<int>(direction.parameters.size()) - 1) >> levels;
@@ -289,7 +289,7 @@ SurfaceLevels::Bands SurfaceLevels::make_bands(const GridDirection& direction, i
     for (int sample = 0; sample < bands.samples; ++sample) {
       const int row = first_row + sample;
       const int shift = sample + 1 < bands.samples ? 0 : knots_at_end(direction, levels, element);
-      // The remaining basis functions belong only to the next element and vanish at this sample.
+      // Basis functions with larger k belong only to the next element and vanish at this sample.
       for (int k = 0; k + shift < bands.bandwidth; ++k) {
         bands.values[(element * bands.bandwidth + k + shift) * bands.padded + sample] =
             matrix.values[row * bands.bandwidth + k];
@@ -346,7 +346,7 @@ bool SurfaceLevels::begin(const Surface& surface, const PlanarPoints& samples) {
   return true;
 }
 
-// Stores the control points. Returns false if they equal those of the last call.
+// Stores the control points. Returns false if they equal the stored control points.
 bool SurfaceLevels::store_net(const ControlNet& net) {
   const bool known = generation_ > 0 && net.x == net_.x && net.y == net_.y && net.z == net_.z;
   if (!known) net_ = net;
@@ -387,7 +387,7 @@ TileBand SurfaceLevels::Bands::tile_band(int element) const {
           samples, padded};
 }
 
-// A sample between two elements belongs to the later one.
+// A sample between two elements belongs to the element after it.
 SurfaceLevels::BandEntry SurfaceLevels::Bands::at(int row) const {
   const int cells = samples - 1, elements = static_cast<int>(controls.size()) / bandwidth;
   const int element = std::min(row / cells, elements - 1);
@@ -506,8 +506,8 @@ const CoverSphere& SurfaceLevels::cover(const LevelCell& cell) {
 
 namespace {
 
-// Returns the gap from the corners of a to the corners of b along `direction`, multiplied by the length of
-// `direction`; negative if they overlap.
+// Returns the gap between the corners of a and those of b along `direction`, multiplied by the length of
+// `direction`. It is positive if all of b is beyond a, negative if they overlap.
 double gap_along(const Vector3& direction, const PatchCorners& a, const PatchCorners& b) {
   double last_a = -std::numeric_limits<double>::infinity(), first_b = -last_a;
   for (const Vector3& corner : a) last_a = std::max(last_a, direction.dot(corner));
@@ -519,7 +519,7 @@ Vector3 patch_normal(const PatchCorners& corners) {
   return (corners[3] - corners[0]).cross(corners[2] - corners[1]);
 }
 
-// Index pairs of the corners at the ends of each side.
+// Indices of the two corners at the ends of each side.
 constexpr std::array<std::array<std::size_t, 2>, 4> sides = {{{0, 1}, {1, 3}, {3, 2}, {2, 0}}};
 
 }  // namespace

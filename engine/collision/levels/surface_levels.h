@@ -1,6 +1,6 @@
-// Levels of detail of one surface (section 4.1 of Pungotra et al. 2013): samples at nested strides of its
-// blending matrices, evaluated on demand, bounds of the surface between them, and lower bounds of the
-// distance between patches.
+// Levels of detail of one surface (section 4.1 of Pungotra et al. 2013). They comprise samples at nested
+// strides of its blending matrices, evaluated on demand, bounds of the surface between these samples, and
+// lower bounds of the distance between patches.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@
 
 namespace spoonbill {
 
-// A rectangle in a surface's parameter domain that encloses some cells of a grid. In a periodic direction it
-// covers the whole domain if there are cells on both sides of the seam.
+// Rectangle in a surface's parameter domain that encloses some cells of a grid. If these cells are on both
+// sides of a periodic direction's seam, it covers the whole domain in that direction.
 struct ParameterRange {
   double u0, u1, v0, v1;
   bool contains(double u, double v) const { return u0 <= u && u <= u1 && v0 <= v && v <= v1; }
@@ -42,13 +42,13 @@ class SurfaceBounds {
   SurfaceBounds(const KnotVector& u, const KnotVector& v);
 
   // Updates the bounds of all elements from the control points. The overload with `element_v` updates only
-  // the elements (., element_v) and skips those already updated since begin().
+  // the elements (., element_v), and skips those that were updated since begin().
   void update(const ControlNet& net);
   void begin() { ++stamp_; }
   void update(const ControlNet& net, int element_v);
 
-  // Updates the boxes that box() and row_box() return. They enclose the control points of the elements (.,
-  // element_v) and (element_u, .).
+  // Updates the boxes that box() and row_box() return. box() encloses the control points of the elements (.,
+  // element_v), row_box() those of the elements (element_u, .).
   void update_boxes(const ControlNet& net);
   Box box(int element_v) const;
   Box row_box(int element_u) const;
@@ -64,7 +64,7 @@ class SurfaceBounds {
   }
 
  private:
-  int rows_ = 0, columns_ = 0;  // size of the unrolled net
+  int rows_ = 0, columns_ = 0;  // numbers of rows and columns of the unrolled control net
   int degree_u_ = 0, degree_v_ = 0;
   void update_column_norms(const ControlNet& net, int column);
   void unroll_row(const ControlNet& net, int i);
@@ -72,29 +72,30 @@ class SurfaceBounds {
   void update_elements(int element_u);
 
   std::vector<int> span_u_, span_v_;        // knot span of each element
-  std::vector<int> control_u_, control_v_;  // unrolled index to control index
+  std::vector<int> control_u_, control_v_;  // control point index of each unrolled index
   std::vector<double> first_scale_u_, second_scale_u_, first_scale_v_, second_scale_v_;
-  std::vector<double> norm_uu_, norm_vv_;  // squared norms by unrolled control point
+  // Squared norms of the second derivatives' control points, by unrolled index.
+  std::vector<double> norm_uu_, norm_vv_;
   std::vector<double> second_uu_, second_vv_;
   std::uint64_t stamp_ = 1;
-  std::vector<std::uint64_t> column_at_,
-      element_at_;                        // stamp of the last update, by unrolled column and by element_v
+  // Stamp of the last update: of each unrolled column, and of the elements of each span of v.
+  std::vector<std::uint64_t> column_at_, element_at_;
   std::vector<double> row_[3][3];         // working memory: row i of the unrolled net is at index i mod 3
-  std::vector<double> low_[3], high_[3];  // per control column
-  std::vector<Box> row_boxes_;            // per control row
+  std::vector<double> low_[3], high_[3];  // working memory: one value for each column of control points
+  std::vector<Box> row_boxes_;            // one box for each row of control points
 };
 
 // Distance in metres up to which surfaces count as touching.
 inline constexpr double touch_tolerance_m = 1e-6;
 
-// A sampling grid whose strides are nested.
+// A sampling grid with nested strides, one for each level of detail.
 struct NestedGrid {
   Grid grid;
-  int levels = 0;  // the stride halves level by level down to 1
+  int levels = 0;  // number of times that the stride is halved until it is 1
 };
 
-// Makes a grid with 2^levels cells per element and direction, so that no cell has a knot in its interior.
-// `levels` must not be negative.
+// Makes a grid in which each element has 2^levels cells in each direction, so that no cell has a knot in its
+// interior. `levels` must not be negative.
 Result<NestedGrid> make_nested_grid(const KnotVector& u, const KnotVector& v, int levels);
 
 // The patch between the samples (i, j) and (i + step, j + step) of the finest grid, with step 2^(levels -
@@ -122,11 +123,11 @@ class SurfaceLevels {
  public:
   explicit SurfaceLevels(const NestedGrid& nested, InstructionSet set = best_instruction_set());
 
-  // Starts a query. Must be called whenever the control points may have moved. Returns false if none moved
-  // since the last call; all evaluated values then stay valid. The surface must have the grid's knots and
-  // outlive the calls below. The optional `samples` are all samples of the finest grid in the order of
-  // GridEvaluator<double>; no sample is then evaluated. These samples must belong to the surface and outlive
-  // the calls below.
+  // Starts a query. Must be called whenever the control points may have moved. Returns false if none has
+  // moved since the last call; all evaluated values then remain valid. The surface must have the grid's knots
+  // and outlive the calls below. The optional `samples` contain all samples of the finest grid in the order
+  // of GridEvaluator<double>; no sample is then evaluated. They must belong to the surface and outlive the
+  // calls below.
   bool begin(const Surface& surface, const PlanarPoints& samples = {});
 
   const Surface& surface() const { return *surface_; }
@@ -135,13 +136,14 @@ class SurfaceLevels {
   SurfaceBounds& bounds() { return bounds_; }
   int samples_evaluated() const { return samples_evaluated_; }
 
-  // Returns one sample; index is row * columns + column of the finest grid.
+  // Returns one sample of the finest grid. Its index is row * columns + column.
   Vector3 sample(int index);
-  // Evaluates the samples of the coarsest level in one column; they share their sums along v.
+  // Evaluates the samples of the coarsest level that are in one column. This is cheaper than single samples,
+  // because they share their sums along v.
   void sample_column(int column);
   // Evaluates all samples of one element. Cheaper than single samples, with bitwise equal results.
   void sample_element(int element_u, int element_v);
-  // Returns the samples of the finest grid; only entries that were evaluated are valid.
+  // Returns all samples of the finest grid. Only entries that have been evaluated are valid.
   PlanarPoints samples() const { return external_samples_.x != nullptr ? external_samples_ : own_samples(); }
   const PatchKernels& kernels() const { return *kernels_; }
 
@@ -168,12 +170,12 @@ class SurfaceLevels {
   int total_cell_count() const { return static_cast<int>(covers_.size()); }
 
  private:
-  // Basis functions at one sample; values are `padded` apart.
+  // Basis functions at one sample. Their values are `padded` elements apart.
   struct BandEntry {
     const int* controls;
     const double* values;
   };
-  // Basis functions of each element in one direction at its finest samples.
+  // Basis functions of each element in one direction, evaluated at the element's samples of the finest level.
   struct Bands {
     int bandwidth = 0, samples = 0, padded = 0;
     std::vector<int> controls;
@@ -190,32 +192,34 @@ class SurfaceLevels {
   const PatchKernels* kernels_;
   const Surface* surface_ = nullptr;
   PlanarPoints external_samples_;
-  ControlNet net_;  // control points of the last begin()
+  ControlNet net_;  // control points at the last begin()
   SurfaceBounds bounds_;
   PieceBasis u_pieces_, v_pieces_;
   Bands u_bands_, v_bands_;
   std::vector<double> x_, y_, z_;
   AlignedVector<double> tile_lines_;       // working memory of sample_element()
-  std::vector<std::uint32_t> element_at_;  // generation in which all samples of an element were evaluated
-  std::vector<Vector3> lines_;             // working memory: sums of one column along v, one per control row
-  std::vector<std::uint32_t> sampled_at_;  // generation in which a sample was evaluated
+  std::vector<std::uint32_t> element_at_;  // generation in which each element was sampled completely
+  // Working memory: one column's sums along v, one for each row of control points.
+  std::vector<Vector3> lines_;
+  std::vector<std::uint32_t> sampled_at_;  // generation in which each sample was evaluated
   // Generation in which the coarsest samples of each column were evaluated.
   std::vector<std::uint32_t> column_at_;
-  std::vector<CoverSphere> covers_;  // by cell_index()
+  std::vector<CoverSphere> covers_;  // indexed by cell_index()
   std::vector<std::uint32_t> covered_at_;
   std::vector<int> first_cell_;  // index of the first cell of each level
   std::uint32_t generation_ = 0;
   int samples_evaluated_ = 0;
 };
 
-// Returns a lower bound of the distance between two patches, in metres: the largest gap along the line
-// between their centres and along both normals, minus both bulges. A surface leaves the hull of its patch's
-// corners by at most its bulge, so a plane that separates the hulls bounds the distance.
+// Returns a lower bound of the distance between two patches, in metres. It is the largest gap between their
+// corners along three directions, the line between the centres and both normals, minus both bulges. A surface
+// leaves the hull of its patch's corners by at most its bulge, so a plane that separates the hulls bounds the
+// distance.
 double patch_distance(const PatchCorners& a, double bulge_a, const PatchCorners& b, double bulge_b);
 
-// Returns a lower bound of the distance between two patches, in metres: the largest gap along the in-plane
-// directions across the sides of each patch, minus both bulges. This bound separates slivers that are side by
-// side.
+// Returns a lower bound of the distance between two patches, in metres. It is the largest gap between their
+// corners along the in-plane directions that are perpendicular to the sides of each patch, minus both bulges.
+// This bound separates slivers that are side by side.
 double patch_distance_in_plane(const PatchCorners& a, double bulge_a, const PatchCorners& b, double bulge_b);
 
 }  // namespace spoonbill

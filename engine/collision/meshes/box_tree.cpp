@@ -19,7 +19,8 @@ struct Item {
   std::uint32_t index;
 };
 
-// A range of items that still needs a node. `right_of` is the parent if the node is a right child, else none.
+// A range of items for which a node must still be made. `right_of` is the parent's index if the node is a
+// right child, otherwise none.
 struct PendingNode {
   std::uint32_t begin, end;
   std::uint32_t right_of;
@@ -90,11 +91,11 @@ BoxTree::BoxTree(const std::vector<Box>& boxes, std::uint32_t leaf_size) {
 
 namespace {
 
-// Cosine of 50 degrees. The common edge angles of 45 and 60 degrees are far enough from it that rounding does
-// not decide.
+// Cosine of 50 degrees. The common edge angles of 45 and 60 degrees are far enough from it that rounding
+// cannot change the result.
 constexpr double wall_cosine = 0.6428;
 
-// Tests a ray against a box by its slabs (Kay and Kajiya 1986).
+// Returns true if a ray hits a box, by the slab method (Kay and Kajiya 1986).
 bool ray_hits_box(const Box& box, const Vector3& from, const Vector3& direction, double farthest) {
   double near = 0.0, far = farthest;
   for (int axis = 0; axis < 3; ++axis) {
@@ -129,7 +130,7 @@ std::optional<LineExit> LineExits::first(const Vector3& from, const Vector3& dir
   };
   const auto test_triangle = [&](std::uint32_t position) {
     const Triangle& triangle = triangles_[position];
-    // Tolerance by which a line along an edge still hits one of its triangles.
+    // Tolerance with which a line along an edge hits at least one of the edge's triangles.
     constexpr double tolerance = 1e-6;
     const auto hit =
         intersect_line_triangle(from, direction, triangle[0], triangle[1], triangle[2], tolerance);

@@ -18,16 +18,16 @@ namespace spoonbill {
 // Number of triangles in a leaf of a tree over a mesh.
 inline constexpr std::uint32_t triangle_leaf_size = 4;
 
-// Tree of boxes over items such as triangles, in one flat array. Its depth is bounded, so a search needs
-// neither recursion nor the heap. The grouping of the items never changes; any thread may read the tree while
-// none calls refit().
+// Tree of boxes over items such as triangles, stored in one array. Its depth is bounded, so a search needs
+// neither recursion nor the heap. The grouping of the items never changes. Any thread may read the tree while
+// no thread calls refit().
 class BoxTree {
  public:
   struct Node {
     Box box;
-    // in a leaf, its first position in order(); otherwise the right child; the left child
+    // Start of a leaf's items in order(). In an inner node, index of the right child; the left child directly
+    // follows its parent.
     std::uint32_t first;
-    // directly follows its parent
     std::uint32_t count;  // number of items in a leaf; 0 in an inner node
     bool is_leaf() const { return count > 0; }
   };
@@ -36,11 +36,11 @@ class BoxTree {
   // must not be empty, `leaf_size` at least 1.
   BoxTree(const std::vector<Box>& boxes, std::uint32_t leaf_size);
 
-  // Updates all boxes: bounding_box(position) returns the current box of the item at a position of order().
+  // Updates all boxes: bounding_box(position) returns the current box of the item at a position in order().
   // Allocates nothing.
   template <class BoxOf>
   void refit(const BoxOf& bounding_box) {
-    // Children come after their parents.
+    // Children come after their parents in nodes_, so the boxes are updated from the last node to the first.
     for (auto index = static_cast<std::uint32_t>(nodes_.size()); index-- > 0;) {
       Node& node = nodes_[index];
       node.box =
@@ -53,11 +53,11 @@ class BoxTree {
   const std::vector<Node>& nodes() const { return nodes_; }           // the root is first
   const std::vector<std::uint32_t>& order() const { return order_; }  // item indices, leaf by leaf
 
-  // Traverses the tree depth first. descend(node) returns false to skip a node, leaf(first, count) gets a
-  // range of order(), and first_right(left, right) returns true to visit the right child first.
+  // Traverses the tree depth first. descend(node) returns false to skip a node. leaf(first, count) receives a
+  // range of order(). first_right(left, right) returns true to visit the right child first.
   template <class Descend, class FirstRight, class Leaf>
   void search(const Descend& descend, const FirstRight& first_right, const Leaf& leaf) const {
-    // Each halving of at most 2^32 items needs two entries.
+    // At most 2^32 items are halved at most 32 times, and each halving adds at most two entries.
     std::array<std::uint32_t, 66> pending;
     std::uint32_t count = 1;
     pending[0] = 0;
@@ -80,8 +80,8 @@ class BoxTree {
   std::vector<std::uint32_t> order_;
 };
 
-// Returns a lower bound of the signed distance of the box's contents: the signed distance of the box itself,
-// positive outside and negative inside.
+// Returns a lower bound of the signed distance from a point to whatever the box contains. It is the signed
+// distance to the box itself, positive outside and negative inside.
 inline double signed_distance(const Box& box, const Vector3& point) {
   const Vector3 beyond = (box.low - point).cwiseMax(point - box.high);
   return beyond.maxCoeff() > 0.0 ? beyond.cwiseMax(0.0).norm() : beyond.maxCoeff();
@@ -100,8 +100,8 @@ class LineExits {
   // `triangles` must not be empty and must be counter-clockwise seen from outside.
   explicit LineExits(std::vector<Triangle> triangles);
 
-  // Returns the nearest exit: the first triangle along the unit direction through which the line leaves the
-  // body. Triangles through which the line enters the body are ignored.
+  // Returns the nearest exit: the first triangle along the unit direction at which the line leaves the body.
+  // Triangles at which the line enters the body are ignored.
   std::optional<LineExit> first(const Vector3& from, const Vector3& direction) const;
 
   const std::vector<Triangle>& triangles() const { return triangles_; }
@@ -112,34 +112,35 @@ class LineExits {
   std::unique_ptr<BoxTree> tree_;
 };
 
-// Returns true if a line in the unit direction leaves through a wall, that is, if the direction is within 50
-// degrees of the triangle's normal. A more oblique exit is beside an edge, where the distance between the
-// sides does not measure a wall's thickness.
+// Returns true if a line that leaves through the triangle passes through a wall, that is, if its unit
+// direction is within 50 degrees of the triangle's normal. A more oblique exit is beside an edge, where the
+// distance between the sides does not measure the thickness of a wall.
 bool exits_through_wall(const Triangle& triangle, const Vector3& direction);
 
 struct MeshIntersection {
-  std::uint32_t first = 0, second = 0;  // triangle indices
-  // The smaller of the two depths, in metres, to which each triangle penetrates the plane of the other. The
-  // size of the triangles limits it.
+  std::uint32_t first = 0, second = 0;  // indices of the two triangles
+  // The smaller of the two depths, in metres, by which each triangle penetrates the plane of the other. It is
+  // at most the size of the triangles.
   double depth_m = 0.0;
 };
 
 struct MeshIntersections {
   std::vector<MeshIntersection> found;
-  bool complete = true;  // false if more exist, if the pair limit was exceeded or if the search was stopped
+  // False if there are more pairs, if the pair limit was exceeded or if the search was stopped.
+  bool complete = true;
 };
 
 // Finds up to `limit` pairs of intersecting triangles. Triangles with a common corner are first shrunk by a
-// millionth. `triangles` must be in the order of the tree's leaves.
+// millionth, so that they do not intersect there. `triangles` must be in the order of the tree's leaves.
 //
 // The search takes about a microsecond per triangle without intersections. It ends early if it needs more
-// than 200 pair tests per triangle, as with long needles. `progress` can stop it, but receives no
-// fraction done.
+// than 200 pair tests per triangle, for example with long needles. `progress` can stop it, but is not told
+// the fraction done.
 MeshIntersections self_intersections(const std::vector<Vector3>& vertices_m,
                                      const std::vector<TriangleCorners>& triangles, const BoxTree& tree,
                                      std::size_t limit, const Progress& progress = {});
 
-// Returns true if the mesh intersects itself, or if the search ended before that was decided.
+// Returns true if the mesh intersects itself, or if the search ended before it could decide.
 bool is_self_intersecting(const std::vector<Vector3>& vertices_m,
                           const std::vector<TriangleCorners>& triangles, const BoxTree& tree);
 

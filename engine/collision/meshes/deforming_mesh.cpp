@@ -11,7 +11,7 @@
 namespace spoonbill {
 namespace {
 
-// Distance in metres below which the offset to the surface has no reliable direction.
+// Smallest distance from the surface, in metres, at which the direction of the offset is reliable.
 constexpr double on_surface_m = 1e-12;
 
 Box box_of_corners(const std::vector<Vector3>& vertices, const TriangleCorners& corners) {

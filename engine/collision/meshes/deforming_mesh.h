@@ -11,7 +11,7 @@
 
 namespace spoonbill {
 
-// A point on a mesh, as weights of a triangle's corners. The weights have the sum 1.
+// A point on a mesh: the corners of a triangle and their weights, whose sum is 1.
 struct PointOnMesh {
   TriangleCorners vertex{};
   std::array<double, 3> weight{};
@@ -20,7 +20,7 @@ struct PointOnMesh {
 // Result of DeformingMesh::nearest().
 struct NearestOnMesh {
   PointOnMesh on;
-  Vector3 normal = Vector3::UnitY();  // unit, outward, along the line between the two points
+  Vector3 normal = Vector3::UnitY();  // unit outward normal, parallel to the line between the two points
   double gap_m = 0.0;                 // signed distance along the normal; negative inside
 };
 
@@ -28,21 +28,24 @@ struct NearestOnMesh {
 // copy.
 class DeformingMesh {
  public:
-  // The mesh must be manifold: two triangles at each edge and one fan of triangles around each vertex.
+  // The mesh must be manifold: two triangles share each edge, and the triangles around each vertex form one
+  // fan.
   explicit DeformingMesh(const TriangleMesh& mesh);
 
   const std::vector<Vector3>& vertices_m() const { return vertices_m_; }
-  // Returns the vertices for modification. Call refit() afterwards, before any query.
+  // Returns the vertices so that the caller can move them. The caller must call refit() before the next
+  // query.
   std::vector<Vector3>& mutable_vertices_m() { return vertices_m_; }
   void refit();
 
-  // Triangles in the order of the tree's leaves.
+  // Returns the triangles in the order of the tree's leaves.
   const std::vector<TriangleCorners>& triangles() const { return triangles_; }
   const BoxTree& tree() const { return tree_; }
   const Box& bounds() const { return tree_.nodes()[0].box; }
 
-  // Returns the nearest point, or nothing beyond `reach_m`. The sign of the gap comes from the normals of
-  // faces, edges and vertices; the normals of vertices are weighted by angle (Baerentzen and Aanaes 2005).
+  // Returns the nearest point of the mesh, or nothing if it is farther than `reach_m`. The sign of the gap
+  // comes from the normals of faces, edges and vertices; the normals of vertices are weighted by angle
+  // (Baerentzen and Aanaes 2005).
   std::optional<NearestOnMesh> nearest(const Vector3& point_m, double reach_m) const;
 
  private:
@@ -54,9 +57,10 @@ class DeformingMesh {
   std::vector<Vector3> vertices_m_;
   std::vector<TriangleCorners> triangles_;
   BoxTree tree_;
-  std::vector<std::uint32_t> across_;        // adjacent triangle of each side 3 t + k
-  std::vector<std::uint32_t> first_corner_;  // per vertex, start in corners_; one more entry at the end
-  std::vector<std::uint32_t> corners_;       // 3 t + k for corner k of triangle t, grouped by vertex
+  std::vector<std::uint32_t> across_;  // for each side, numbered 3 t + k, the adjacent triangle
+  // For each vertex, start of its corners in corners_; one more entry at the end.
+  std::vector<std::uint32_t> first_corner_;
+  std::vector<std::uint32_t> corners_;  // numbers 3 t + k of the corners k of triangles t, grouped by vertex
 };
 
 }  // namespace spoonbill

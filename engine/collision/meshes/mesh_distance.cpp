@@ -15,8 +15,8 @@ namespace spoonbill {
 
 namespace {
 
-// Ratio of distance to radius beyond which a node counts as a dipole. Barill et al. use 2 with second-order
-// moments; without such moments, 3 gives the same accuracy.
+// Distance beyond which a node counts as a dipole, in radii of the node. Barill et al. use 2 with
+// second-order moments; without such moments, 3 gives the same accuracy.
 constexpr double far_radii = 3.0;
 
 struct Moments {
@@ -80,10 +80,12 @@ double WindingNumber::at(const Vector3& point_m) const {
 
 namespace {
 
-// Fraction of the mesh's size below which the offset to the surface has no reliable direction.
+// Smallest distance from the surface at which the direction of the offset is reliable, as a fraction of the
+// mesh's size.
 constexpr double on_surface_fraction = 1e-12;
 constexpr double convex_fraction = 1e-7;
-// Limit for the convexity test, which compares every face with every vertex.
+// Largest number of triangles for which convexity is tested, because the test compares every face with every
+// vertex.
 constexpr std::size_t convex_triangles = 20'000;
 
 std::vector<Box> make_boxes(const std::vector<Vector3>& vertices,
@@ -105,7 +107,7 @@ std::vector<std::uint32_t> corners_at_vertices(const std::vector<TriangleCorners
   return corners;
 }
 
-// Returns true if every edge has two triangles and every vertex one fan of triangles.
+// Returns true if every edge has exactly two triangles and the triangles at every vertex form one fan.
 bool is_manifold(const std::vector<TriangleCorners>& triangles, const MeshEdges& edges,
                  std::size_t vertices) {
   if (edges.open_count() > 0 || edges.branching_count() > 0) return false;

@@ -13,10 +13,10 @@
 
 namespace spoonbill {
 
-// Winding number of a mesh around a point (Jacobson et al. 2013): 1 inside an outward mesh, 0 outside, and an
-// integer for closed meshes even if they intersect themselves. Distant nodes of the tree count as dipoles
-// (Barill et al. 2018); the error is below 0.1, enough to round to an integer. Immutable; any thread. at()
-// allocates nothing.
+// Winding number of a mesh around a point (Jacobson et al. 2013). It is 1 inside a mesh with outward normals
+// and 0 outside, and an integer for every closed mesh, even if it intersects itself. Distant nodes of the
+// tree count as dipoles (Barill et al. 2018); the error is below 0.1, so that rounding gives the integer.
+// Immutable; any thread. at() allocates nothing.
 class WindingNumber {
  public:
   // `triangles` must be in the order of the tree's leaves. Mesh and tree must outlive the object.
@@ -33,21 +33,22 @@ class WindingNumber {
   const std::vector<Vector3>* vertices_m_;
   const std::vector<TriangleCorners>* triangles_;
   const BoxTree* tree_;
-  std::vector<Dipole> dipoles_;  // per node of the tree
+  std::vector<Dipole> dipoles_;  // one for each node of the tree
 };
 
-// Distance to the triangles of one closed part, or of sheets. Immutable; any thread. Queries allocate
+// Distance to the triangles of one closed part or of some sheets. Immutable; any thread. Queries allocate
 // nothing.
 class ShellDistance {
  public:
-  // `triangles` must not be empty. A solid is oriented outward, a cavity inward.
+  // `triangles` must not be empty. The normals of a solid must point outward, those of a cavity into the
+  // cavity.
   enum class Kind : std::uint8_t { solid, cavity, sheets };
   ShellDistance(std::vector<Vector3> vertices_m, std::vector<TriangleCorners> triangles, Kind kind);
 
   ShellDistance(ShellDistance&& other) noexcept = delete;
 
-  // Returns the distance to the nearest point of the triangles. Solids: negative inside. Cavities: negative
-  // outside, where the material is. Sheets: never negative.
+  // Returns the distance to the nearest point of the triangles. It is negative inside a solid, and negative
+  // outside a cavity, where the material is. For sheets it is never negative.
   DistanceSample at(const Vector3& point_m) const;
 
   // Returns the index of the nearest triangle, in the order given to the constructor.
@@ -55,14 +56,14 @@ class ShellDistance {
 
   const Box& bounds() const { return tree_.nodes()[0].box; }
 
-  // True if the sign comes from the normals of faces, edges and vertices; the normals of vertices are
-  // weighted by angle (Baerentzen and Aanaes 2005). This requires a manifold of at most `checked_triangles`
-  // without self-intersections. Otherwise the winding number gives the sign, which takes at least twice as
-  // long.
+  // Returns true if the sign of the distance comes from the normals of faces, edges and vertices; the normals
+  // of vertices are weighted by angle (Baerentzen and Aanaes 2005). This requires a manifold of at most
+  // `checked_triangles` without self-intersections. Otherwise the sign comes from the winding number, which
+  // takes at least twice as long.
   bool uses_normals() const { return !corner_normals_.empty(); }
 
-  // True if all vertices are behind all faces, within 1e-7 of the size. False as well if convexity was not
-  // tested.
+  // Returns true if all vertices are behind all faces, within 1e-7 of the size. Also returns false if
+  // convexity was not tested.
   bool is_convex() const;
 
   static constexpr std::size_t checked_triangles = 1'000'000;
@@ -77,23 +78,23 @@ class ShellDistance {
 
   std::vector<Vector3> vertices_m_;
   BoxTree tree_;
-  std::vector<TriangleCorners> triangles_;  // in the order of the tree's leaves
+  std::vector<TriangleCorners> triangles_;  // triangles in the order of the tree's leaves
   Kind kind_;
   double size_m_;
-  std::vector<std::uint32_t> across_;    // adjacent triangle of each side
-  std::vector<Vector3> corner_normals_;  // per vertex, not normalised
+  std::vector<std::uint32_t> across_;    // for each side of a triangle, the adjacent triangle
+  std::vector<Vector3> corner_normals_;  // one for each vertex, not normalised
   std::optional<WindingNumber> winding_;
 };
 
-// Default thickness of a sheet in metres. Between two ticks, a slowly moved surface does not pass through a
-// sheet of this thickness.
+// Default thickness of a sheet in metres. A slowly moved surface cannot pass through such a sheet between two
+// ticks.
 inline constexpr double sheet_thickness_m = 1e-3;
 
-// Signed distance to the union of the mesh's closed parts, without their cavities, and of its sheets. A sheet
-// is a plate of the given thickness with rounded edges, centred on the sheet.
+// Signed distance to the union of the mesh's closed parts (without their cavities) and its sheets. A sheet
+// counts as a plate of the given thickness with rounded edges, centred on the sheet.
 //
-// Outside, and inside a single solid, the distance is exact to rounding. Where parts overlap, it is the depth
-// in the part in which the point is deepest, a lower bound of the true depth. When a point moves, its
+// Outside, and inside a single solid, the distance is exact up to rounding. Where parts overlap, it is the
+// largest of the depths in the single parts, a lower bound of the true depth. When a point moves, its
 // distance changes continuously and by at most the distance that the point moved. Immutable; any thread.
 class MeshDistance final : public SignedDistance {
  public:
@@ -107,14 +108,14 @@ class MeshDistance final : public SignedDistance {
   struct Solid {
     std::unique_ptr<ShellDistance> outside;
     std::vector<std::unique_ptr<ShellDistance>> cavities;
-    double half_thickness_m = 0.0;  // half the thickness of sheets, 0 for solids
+    double half_thickness_m = 0.0;  // half the thickness of a sheet; 0 for a solid
     DistanceSample at(const Vector3& point_m) const;
   };
   static std::vector<Solid> make_solids(const CleanMesh& mesh, double thickness_m);
   static std::vector<Box> make_boxes(const std::vector<Solid>& solids);
 
   std::vector<Solid> solids_;
-  BoxTree tree_;  // over the solids' boxes
+  BoxTree tree_;  // tree over the boxes of the solids
   bool convex_;
 };
 

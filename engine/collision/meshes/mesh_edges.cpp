@@ -14,14 +14,15 @@ namespace spoonbill {
 namespace {
 
 struct SideAtVertex {
-  std::uint32_t other;  // vertex with the higher index
+  std::uint32_t other;  // the side's other vertex, which has the higher index
   MeshSide side;
   friend bool operator<(const SideAtVertex& a, const SideAtVertex& b) {
     return a.other != b.other ? a.other < b.other : a.side < b.side;
   }
 };
 
-// Groups the sides by their lower vertex. `first` receives the start of each vertex's group.
+// Groups the sides of all triangles by their vertex with the lower index. `first` receives the start of each
+// vertex's group.
 std::vector<SideAtVertex> sides_by_vertex(const std::vector<TriangleCorners>& triangles,
                                           std::vector<std::uint32_t>& first) {
   const auto count = static_cast<MeshSide>(3 * triangles.size());
@@ -84,8 +85,8 @@ namespace {
 
 constexpr std::uint32_t uncut = 0xffffffffU;
 
-// Adds a midpoint vertex to each edge longer than `longest`. Returns the midpoint of each side, or `uncut`
-// for a side without one.
+// Adds a midpoint vertex to each edge longer than `longest`. Returns the vertex index of each side's
+// midpoint, or `uncut` for a side without a midpoint.
 std::vector<std::uint32_t> cut_edges(TriangleMesh& mesh, double longest) {
   const MeshEdges edges(mesh.triangles, mesh.vertices_m.size());
   std::vector<std::uint32_t> midpoint(3 * mesh.triangles.size(), uncut);
@@ -104,8 +105,8 @@ std::vector<std::uint32_t> cut_edges(TriangleMesh& mesh, double longest) {
   return midpoint;
 }
 
-// Appends the pieces into which the midpoints divide a triangle. Rotates `corner` so that a single cut side
-// comes first, or a single uncut side last.
+// Appends the triangles into which the midpoints divide a triangle. First rotates `corner` so that a single
+// cut side comes first, or a single uncut side last.
 void add_pieces(const TriangleMesh& mesh, TriangleCorners corner, std::array<std::uint32_t, 3> midpoint,
                 std::vector<TriangleCorners>& out) {
   int cuts = 0;
@@ -158,7 +159,8 @@ Result<TriangleMesh> refine_edges(TriangleMesh mesh, double longest_m, std::size
 
 namespace {
 
-// Cosine of 30 degrees.
+// Smallest cosine of the angle between the normals of two triangles that are smoothed together: that of 30
+// degrees.
 constexpr double least_cosine = 0.866;
 
 }  // namespace

@@ -9,7 +9,8 @@
 
 namespace spoonbill {
 
-// A directed side of a triangle: side 3 t + k goes from corner k of triangle t to the next corner.
+// A directed side of a triangle. Side 3 t + k leads from corner k of triangle t to the triangle's next
+// corner.
 using MeshSide = std::uint32_t;
 
 inline MeshSide next_side(MeshSide side) {
@@ -25,21 +26,22 @@ inline std::uint32_t side_end(const std::vector<TriangleCorners>& triangles, Mes
 // The edges of a triangle mesh, with the sides that share them. Immutable.
 class MeshEdges {
  public:
-  static constexpr MeshSide open = 0xffffffffU;       // no other triangle has the edge
-  static constexpr MeshSide branching = 0xfffffffeU;  // two or more other triangles have the edge
+  static constexpr MeshSide open = 0xffffffffU;       // marks a side on an edge of one triangle
+  static constexpr MeshSide branching = 0xfffffffeU;  // marks a side on an edge of three or more triangles
 
   // The two ends of each side must differ, and all corners must be below `vertices`.
   MeshEdges(const std::vector<TriangleCorners>& triangles, std::size_t vertices);
 
-  // Returns the other side on the same edge if there is exactly one, otherwise `open` or `branching`.
+  // Returns the other side on the same edge. Returns `open` if there is none, `branching` if there are
+  // several.
   MeshSide across(MeshSide side) const { return across_[side]; }
 
   std::size_t open_count() const { return open_count_; }
-  std::size_t branching_count() const { return branching_count_; }  // counts edges, not sides
+  std::size_t branching_count() const { return branching_count_; }  // number of edges, not of sides
 
-  // Returns the sides on the boundary. An open edge contributes its side; a branching edge contributes the
-  // sides by which its prevailing direction outnumbers the other. In a consistently oriented mesh the
-  // boundary consists of closed loops.
+  // Returns the sides on the boundary. An open edge contributes its only side. A branching edge contributes
+  // as many of its sides as there are more in one direction than in the other. In a consistently oriented
+  // mesh the boundary consists of closed loops.
   const std::vector<MeshSide>& boundary() const { return boundary_; }
 
  private:
@@ -48,9 +50,9 @@ class MeshEdges {
   std::size_t open_count_ = 0, branching_count_ = 0;
 };
 
-// Halves edges until none is longer than `longest_m`, each in both of its triangles, so that a closed mesh
-// stays closed. Existing vertices are unchanged; new ones are appended. Each edge must have two triangles.
-// Fails with too_many beyond `triangle_limit` triangles.
+// Halves edges until none is longer than `longest_m`. An edge is halved in both of its triangles, so that a
+// closed mesh stays closed. Existing vertices are unchanged; new ones are appended. Each edge must have two
+// triangles. Fails with too_many if the result has more than `triangle_limit` triangles.
 Result<TriangleMesh> refine_edges(TriangleMesh mesh, double longest_m, std::size_t triangle_limit);
 
 // Smoothed normals, insensitive to slivers. The mesh must outlive the object; any thread.
@@ -67,7 +69,7 @@ class SmoothNormals {
   Vector3 twice_area(std::uint32_t triangle) const;
 
   const TriangleMesh* mesh_;
-  // Triangles at a vertex: adjacent_[starts_[vertex]] to adjacent_[starts_[vertex + 1] - 1].
+  // The triangles at vertex v are adjacent_[starts_[v]] to adjacent_[starts_[v + 1] - 1].
   std::vector<std::uint32_t> starts_, adjacent_;
 };
 

@@ -17,14 +17,14 @@ namespace spoonbill {
 namespace {
 
 constexpr std::uint32_t no_part = 0xffffffffU;
-// Limit on the number of box tests and visited triangles in the search for cavities. It bounds the time for
-// files with countless specks.
+// Largest number of box tests and visited triangles in the search for cavities. It bounds the time for files
+// with very many specks.
 constexpr std::size_t cavity_work = 50'000'000;
 
 struct Flood {
   std::vector<std::uint32_t> part_index;  // part of each triangle
   std::vector<bool> flipped;
-  std::vector<bool> orientable;  // per part
+  std::vector<bool> orientable;  // true for each part that can be oriented consistently
 };
 
 void flood_from(std::uint32_t seed, const std::vector<TriangleCorners>& triangles, const MeshEdges& edges,
@@ -98,8 +98,8 @@ bool encloses(const TriangleMesh& mesh, const MeshPart& part, const Vector3& poi
   return std::abs(angle) > 0.5 * full_solid_angle;
 }
 
-// Marks the cavities. It proceeds from the largest closed part to the smallest, so that a container precedes
-// its contents.
+// Marks the cavities. Visits the closed parts from the largest to the smallest, so that a part is visited
+// after the part that contains it.
 void find_cavities(const TriangleMesh& mesh, std::vector<MeshPart>& parts,
                    const std::vector<double>& volumes) {
   std::vector<int> closed;
@@ -108,7 +108,8 @@ void find_cavities(const TriangleMesh& mesh, std::vector<MeshPart>& parts,
   }
   std::stable_sort(closed.begin(), closed.end(),
                    [&](int a, int b) { return std::abs(volumes[a]) > std::abs(volumes[b]); });
-  std::vector<std::pair<int, Box>> containers[2];  // inside-out solids, then outward solids
+  // Containers that are inside out, then containers with outward normals.
+  std::vector<std::pair<int, Box>> containers[2];
   std::size_t work = 0;
   for (const int p : closed) {
     const bool outward = volumes[p] > 0.0;
@@ -140,7 +141,8 @@ MeshParts split_into_parts(const TriangleMesh& mesh) {
       TriangleCorners corners = mesh.triangles[order[t]];
       for (std::uint32_t& corner : corners) {
         std::uint32_t& own = copy[corner];
-        // An index below the part's first vertex belongs to a copy made for an earlier part.
+        // If the index is below the part's first vertex, the vertex was copied for an earlier part and needs
+        // another copy.
         if (own == no_part || own < part.first_vertex) {
           own = static_cast<std::uint32_t>(result.mesh.vertices_m.size());
           result.mesh.vertices_m.push_back(mesh.vertices_m[corner]);
@@ -213,8 +215,8 @@ MeshPart append_part(const TriangleMesh& from, const MeshPart& part, TriangleMes
 
 double signed_volume(const TriangleMesh& mesh, const MeshPart& part) {
   SPOONBILL_ASSERT(part.first_triangle <= part.end_triangle && part.end_triangle <= mesh.triangles.size());
-  // The origin is one of the part's own vertices, so that small parts far from the origin keep their
-  // precision.
+  // Coordinates are relative to one of the part's own vertices, so that small parts far from the origin lose
+  // no precision.
   const Vector3 origin = mesh.vertices_m[part.first_vertex];
   double six_volumes = 0.0;
   for (std::uint32_t t = part.first_triangle; t < part.end_triangle; ++t) {
@@ -245,12 +247,12 @@ void orient_outward(TriangleMesh& mesh, std::vector<MeshPart>& parts, MeshReport
 
 namespace {
 
-// Vertices of a boundary loop in the winding order of the adjacent triangles; the filling triangles have the
-// opposite order.
+// Vertices of a boundary loop, in the order in which the adjacent triangles pass through them. The triangles
+// that fill the hole pass through them in the opposite order.
 using VertexLoop = std::vector<std::uint32_t>;
 
-// Cuts the boundary sides into simple loops that visit no vertex twice. Parts have no vertex in common, so
-// each loop belongs to one part.
+// Divides the boundary sides into simple loops, which visit no vertex twice. Parts have no vertex in common,
+// so each loop belongs to one part.
 class BoundaryWalk {
  public:
   BoundaryWalk(const TriangleMesh& mesh, const std::vector<MeshSide>& boundary)
@@ -293,9 +295,9 @@ class BoundaryWalk {
   }
 
   const TriangleMesh& mesh_;
-  std::vector<std::uint32_t> first_,
-      next_;  // linked lists of the unused sides that leave each vertex, as indices into boundary_
-  std::vector<std::uint32_t> position_;  // position of each vertex in path_
+  // For each vertex, a linked list of the unused sides that leave it, as indices into boundary_.
+  std::vector<std::uint32_t> first_, next_;
+  std::vector<std::uint32_t> position_;  // position of each vertex in path_, if it is there
   const std::vector<MeshSide>& boundary_;
   std::vector<std::uint32_t> path_;
 };
@@ -326,7 +328,7 @@ struct Openings {
   double area_m2 = 0.0;
 };
 
-// Returns true for a hole whose filling triangles would have no normal.
+// Returns true for a crack: a hole so narrow that the triangles filling it would have no normal.
 bool is_crack(const TriangleMesh& mesh, const VertexLoop& loop) {
   double longest = 0.0;
   for (std::size_t k = 0; k < loop.size(); ++k) {
@@ -356,8 +358,8 @@ std::size_t find_part_of_vertex(const std::vector<MeshPart>& parts, std::uint32_
 std::vector<Openings> find_openings(MeshParts& parts) {
   const TriangleMesh& mesh = parts.mesh;
   const MeshEdges edges(mesh.triangles, mesh.vertices_m.size());
-  // A branching edge of the mesh may become an ordinary edge of one part, whose two triangles then need not
-  // be oriented consistently.
+  // An edge that branches in the whole mesh may have only two triangles in one part. These triangles then
+  // need not be oriented consistently.
   for (MeshSide side = 0; side < 3 * mesh.triangles.size(); ++side) {
     const MeshSide other = edges.across(side);
     if (other == MeshEdges::open || other == MeshEdges::branching) continue;

@@ -9,36 +9,38 @@ namespace spoonbill {
 
 // A mesh split into connected parts.
 struct MeshParts {
-  TriangleMesh mesh;  // sorted by part; parts have no vertex in common
+  TriangleMesh mesh;  // triangles sorted by part; parts have no vertex in common
   std::vector<MeshPart> parts;
   // For each part, true if its triangles can be oriented consistently, unlike those of a Moebius strip.
   std::vector<bool> orientable;
   std::size_t triangles_flipped = 0;
 };
 
-// Splits a mesh into parts by flooding over edges that exactly two triangles share, and orients each part
+// Splits a mesh into parts that are connected over edges of exactly two triangles, and orients each part
 // consistently. The corners of each triangle must differ. No part is marked as closed.
 MeshParts split_into_parts(const TriangleMesh& mesh);
 
-// Removes open parts with less than speck_area_fraction of the closed parts' area. Returns their number.
+// Removes open parts whose area is below speck_area_fraction of the closed parts' area. Returns the number of
+// removed parts.
 std::size_t drop_specks(MeshParts& parts);
 
-// Orients closed parts outward and cavities inward. Counts closed parts, cavities, sheets and flipped parts
-// in the report.
+// Orients closed parts outward and cavities inward. Adds the numbers of closed parts, cavities, sheets and
+// flipped parts to the report.
 void orient_outward(TriangleMesh& mesh, std::vector<MeshPart>& parts, MeshReport& report);
 
-// Volume of a closed part in cubic metres, by the divergence theorem; negative if the part is inside out.
+// Returns the volume of a closed part in cubic metres, by the divergence theorem; negative if the part is
+// inside out.
 double signed_volume(const TriangleMesh& mesh, const MeshPart& part);
 
 double triangle_area(const Vector3& a, const Vector3& b, const Vector3& c);
 double part_area(const TriangleMesh& mesh, const MeshPart& part);
 
-// Appends the part's vertices and triangles to `to`. Returns the part with its indices there.
+// Appends the part's vertices and triangles to `to`. Returns the part as it is described in `to`.
 MeshPart append_part(const TriangleMesh& from, const MeshPart& part, TriangleMesh& to);
 
-// Marks as closed the orientable parts that have no holes, or only small holes (hole_area_fraction). Fills
-// each of these holes with a fan around the length-weighted mean of its boundary loop. Returns the number of
-// holes filled. Cracks, whose loops have no area, are counted but get no triangles.
+// Marks the orientable parts that have no holes, or only small holes (hole_area_fraction), as closed. Fills
+// each small hole with a fan of triangles around the length-weighted mean of its boundary loop. Returns the
+// number of holes filled. A crack, whose loop has no area, counts as filled but gets no triangles.
 std::size_t fill_small_holes(MeshParts& parts);
 
 }  // namespace spoonbill

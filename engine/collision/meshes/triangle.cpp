@@ -70,7 +70,8 @@ NearestOnTriangle nearest_on_triangle(const Vector3& a, const Vector3& b, const 
   if (along_bc <= 0.0 && before_ab <= 0.0) return {b, On::corner, 1};
   if (along_ca <= 0.0 && before_bc <= 0.0) return {c, On::corner, 2};
 
-  // The barycentric weights use the normal. Formulas of dot products alone lose all digits in slivers.
+  // The barycentric weights are computed from the normal. Formulas with dot products alone lose all digits in
+  // slivers.
   const Vector3 normal = ab.cross(-ca);
   const double past_ab = normal.dot(ab.cross(ap)), past_bc = normal.dot(bc.cross(bp)),
                past_ca = normal.dot(ca.cross(cp));
@@ -83,7 +84,7 @@ NearestOnTriangle nearest_on_triangle(const Vector3& a, const Vector3& b, const 
   if (past_ca <= 0.0 && along_ca >= 0.0 && before_ca >= 0.0) {
     return {c + along_ca / (along_ca + before_ca) * ca, On::side, 2};
   }
-  // The weights are clamped so that rounding cannot leave the triangle.
+  // Negative weights are set to zero, so that rounding cannot move the point out of the triangle.
   const double weight_a = std::max(past_bc, 0.0), weight_b = std::max(past_ca, 0.0),
                weight_c = std::max(past_ab, 0.0);
   const double sum = weight_a + weight_b + weight_c;

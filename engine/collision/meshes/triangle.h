@@ -17,20 +17,20 @@ inline Box bounding_box(const Triangle& t) {
 }
 
 // Returns true if the triangles intersect or touch, or if no plane separates them by more than `slack_m`. The
-// result is true for every pair nearer than the slack, and for some pairs slightly farther apart whose
-// corners face each other. The separating axes are both normals, the cross products of the edges and, for
-// coplanar triangles, the in-plane directions across the edges.
+// result is true for every pair nearer than the slack. It is also true for some pairs slightly farther apart
+// whose corners face each other. The separating axes are both normals, the cross products of the edges and,
+// for coplanar triangles, the in-plane directions across the edges.
 bool triangles_meet(const Triangle& a, const Triangle& b, double slack_m = 0.0);
 
 // Result of intersect_line_triangle().
 struct LineTriangleHit {
-  double along = 0.0;             // position on the line, in lengths of its direction; may be negative
+  double along = 0.0;             // position on the line, as a multiple of its direction; may be negative
   double to_b = 0.0, to_c = 0.0;  // barycentric weights of the corners b and c
-  double facing = 0.0;            // negative if the line crosses the triangle in the direction of its normal
+  double facing = 0.0;  // negative if the line passes through the triangle from its back to its front
 };
 
-// Intersects an infinite line with a triangle. Returns nothing if the line is parallel to the triangle or
-// misses it by more than `loose`, a fraction of its sides (Moeller and Trumbore 1997).
+// Intersects an infinite line with a triangle (Moeller and Trumbore 1997). Returns nothing if the line is
+// parallel to the triangle, or misses it by more than `loose`, which is a fraction of the triangle's sides.
 inline std::optional<LineTriangleHit> intersect_line_triangle(const Vector3& from, const Vector3& direction,
                                                               const Vector3& a, const Vector3& b,
                                                               const Vector3& c, double loose) {
@@ -46,19 +46,20 @@ inline std::optional<LineTriangleHit> intersect_line_triangle(const Vector3& fro
 struct NearestOnTriangle {
   Vector3 point = Vector3::Zero();
   enum class On : std::uint8_t { face, side, corner } on = On::face;
-  std::uint32_t which = 0;  // index of the side or corner; side k goes from corner k to the next
+  std::uint32_t which = 0;  // index of the side or corner; side k leads from corner k to the next corner
 };
 
-// Finds the nearest point by the Voronoi regions of the features (Ericson 2005, 5.1.5). The triangle must
-// have an area.
+// Returns the nearest point of a triangle, found by the Voronoi regions of its corners, sides and face
+// (Ericson 2005, 5.1.5). The area of the triangle must not be zero.
 NearestOnTriangle nearest_on_triangle(const Vector3& a, const Vector3& b, const Vector3& c,
                                       const Vector3& point);
 
 inline constexpr double full_solid_angle = 4.0 * 3.14159265358979323846;
 
 // Returns the solid angle of the triangle a, b, c seen from the origin, in steradians (van Oosterom and
-// Strackee 1983). The angle is positive if the triangle's back is visible, so the angles of a closed outward
-// mesh sum to 4 pi at a point inside. It is zero if the origin is in the triangle's plane.
+// Strackee 1983). The angle is positive if the triangle's back is visible. For a point inside a closed mesh
+// with outward normals, the angles therefore sum to 4 pi. The angle is zero if the origin is in the
+// triangle's plane.
 inline double solid_angle(const Vector3& a, const Vector3& b, const Vector3& c) {
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
   const double numerator = a.dot(b.cross(c));

@@ -17,11 +17,13 @@ namespace spoonbill {
 namespace {
 
 constexpr std::uint32_t no_vertex = 0xffffffffU;
-// Width of a grid cell in tolerances. At this width, few vertices are within the tolerance of a neighbouring
-// cell, and a cell still has few kept vertices, because kept vertices are farther apart than the tolerance.
+// Width of a grid cell, as a multiple of the tolerance. At this width, few vertices are within the tolerance
+// of a neighbouring cell. A cell also has few kept vertices, because these are farther apart than the
+// tolerance.
 constexpr double cell_tolerances = 4.0;
 
-// Finaliser of MurmurHash3 (Appleby 2011), which spreads regularly spaced positions.
+// Mixes the bits of a hash by the finaliser of MurmurHash3 (Appleby 2011), because regularly spaced positions
+// would otherwise collide.
 std::uint64_t mix_bits(std::uint64_t bits) {
   bits ^= bits >> 33;
   bits *= 0xff51afd7ed558ccdULL;
@@ -57,7 +59,8 @@ JoinedVertices join_equal(const std::vector<Vector3>& vertices) {
   return result;
 }
 
-// Hash grid of the kept vertices, one chain per slot. Cells with the same slot share a chain.
+// Hash grid of the kept vertices. Each slot has one chain of vertices; cells with the same slot share its
+// chain.
 class VertexGrid {
  public:
   VertexGrid(std::size_t count, double tolerance)
@@ -79,7 +82,7 @@ class VertexGrid {
     return no_vertex;
   }
 
-  // Adds a vertex and gives it the next index of the kept vertices.
+  // Adds a vertex. Its index is the next index of the kept vertices.
   void add(const Vector3& vertex) {
     std::uint32_t& first = first_[slot(cell(vertex))];
     next_.push_back(first);
@@ -161,7 +164,8 @@ Status check_input(const TriangleMesh& mesh, const std::string& source, std::siz
   return {};
 }
 
-// Returns the box of the vertices that triangles use; a file may contain vertices that no triangle uses.
+// Returns the box of the vertices that belong to a triangle. A file may contain vertices that no triangle
+// uses.
 Box box_of_used_vertices(const TriangleMesh& mesh) {
   Box box;
   for (const TriangleCorners& corners : mesh.triangles) {
@@ -178,7 +182,8 @@ bool is_degenerate(const TriangleMesh& mesh, const TriangleCorners& corners, dou
   return ab.cross(ac).norm() <= least_height * longest;
 }
 
-// Removes triangles with the same corners as an earlier one, in any order. Returns their number.
+// Removes each triangle that has the same three corners as an earlier triangle, in any order. Returns the
+// number of removed triangles.
 std::size_t drop_duplicates(std::vector<TriangleCorners>& triangles) {
   std::vector<std::uint32_t> table(std::bit_ceil(2 * triangles.size() + 2), no_vertex);
   const std::uint64_t mask = table.size() - 1;
@@ -218,8 +223,8 @@ void join_and_drop(TriangleMesh& mesh, double size, MeshReport& report) {
   report.duplicates_dropped = drop_duplicates(mesh.triangles);
 }
 
-// Renumbers vertices in the order of their first use, because flipping triangles has changed that order. As a
-// result, cleaning leaves a clean mesh unchanged, and a document is written as it was read.
+// Renumbers vertices in the order in which the triangles use them, because flipping triangles has changed
+// that order. As a result, cleaning leaves a clean mesh unchanged, and a document is written as it was read.
 void number_by_first_use(TriangleMesh& mesh) {
   std::vector<std::uint32_t> new_index(mesh.vertices_m.size(), no_vertex);
   std::vector<Vector3> vertices_m;

@@ -23,18 +23,18 @@ struct SampleNearMesh {
 // A vertex of the mesh and the nearest point of the surface.
 struct VertexNearSurface {
   std::uint32_t vertex;
-  double u, v;         // parameters of the point of the surface nearest to the vertex
+  double u, v;         // parameters of the nearest point of the surface
   Vector3 normal;      // unit outward normal of the surface at that point
-  double gap_m = 0.0;  // distance along the normal; negative if the vertex is inside the body
+  double gap_m = 0.0;  // distance along that normal; negative if the vertex is inside the body
 };
 
 // Proximity search of a surface and a mesh. One owner, one thread; allocates only on construction. The grid
 // must outlive it.
 class MeshProximity {
  public:
-  // `patches` assigns each vertex of the mesh to a patch, counted from 0. Vertices may be much denser than
-  // the lattice nodes that move them. Each patch therefore reports only one vertex, the deepest or nearest;
-  // to find it, the surface is assumed to be flat near the patch.
+  // `patches` assigns each vertex of the mesh to a patch, numbered from 0. Vertices may be much denser than
+  // the lattice nodes that move them. Each patch therefore reports only one vertex, its nearest or deepest.
+  // To select this vertex, the surface is treated as flat near the patch.
   MeshProximity(const NestedGrid& surface, std::vector<int> patches);
   MeshProximity(const MeshProximity&) = delete;
   MeshProximity& operator=(const MeshProximity&) = delete;
@@ -43,7 +43,8 @@ class MeshProximity {
   // pointing outward. The mesh must have the vertices of the patches and be up to date (refit()).
   void find(const Surface& surface, const DeformingMesh& mesh, double margin_m);
 
-  // Removes the points for which `keep_sample` or `keep_vertex` returns false. Both may modify the point.
+  // Removes the samples for which `keep_sample` returns false, and the vertices for which `keep_vertex`
+  // returns false. Both functions may modify the point.
   template <class KeepSample, class KeepVertex>
   void keep_if(const KeepSample& keep_sample, const KeepVertex& keep_vertex) {
     std::erase_if(samples_, [&](SampleNearMesh& near) { return !keep_sample(near); });
@@ -57,15 +58,15 @@ class MeshProximity {
   const std::vector<SampleNearMesh>& surface_samples() const { return samples_; }
   // Returns the vertices of the mesh near the surface that the last find() found.
   const std::vector<VertexNearSurface>& mesh_vertices() const { return vertices_; }
-  double least_gap_m() const { return least_gap_m_; }  // infinite if nothing is near
-  // Returns true if a capacity was exceeded, so that points may be missing. Remedy: fewer control points or a
-  // smaller margin.
+  double least_gap_m() const { return least_gap_m_; }  // infinite if the last find() found nothing near
+  // Returns true if a capacity was exceeded, so that points may be missing. Fewer control points or a smaller
+  // margin help.
   bool overflow() const { return overflow_ || budget_.is_spent(); }
-  // Number of surface points that the last find() evaluated for vertices.
+  // Returns the number of surface points that the last find() evaluated for vertices.
   int evaluations() const { return proximity_evaluation_limit - budget_.evaluations_left; }
 
  private:
-  // One near vertex of a patch and the point nearest to it on the surface's sample triangles.
+  // A near vertex of a patch, and the point nearest to it on the triangles between the surface's samples.
   struct Candidate {
     int patch;
     std::uint32_t vertex;
@@ -85,21 +86,22 @@ class MeshProximity {
   SurfaceLevels levels_;
   ElementTree tree_;
   std::vector<int> patches_;
-  std::vector<std::uint32_t> first_vertex_;  // per patch, start in patch_vertices_; one more entry at the end
-  std::vector<std::uint32_t> patch_vertices_;  // grouped by patch
-  std::vector<std::uint32_t> sampled_at_;      // find() in which a sample was visited
-  // Number of the find() call that last added a patch to candidates_, at candidate_index_.
+  // For each patch, start of its vertices in patch_vertices_; one more entry at the end.
+  std::vector<std::uint32_t> first_vertex_;
+  std::vector<std::uint32_t> patch_vertices_;  // vertices grouped by patch
+  std::vector<std::uint32_t> sampled_at_;      // number of the find() call that last visited each sample
+  // Number of the find() call that last added each patch to candidates_, at the index candidate_index_.
   std::vector<std::uint32_t> patch_at_;
-  // Element to which a patch was last offered, counted through all searches.
+  // Element to which each patch was last offered. Elements are counted through all searches.
   std::vector<std::uint32_t> offered_at_;
   std::vector<int> candidate_index_;
   std::vector<Candidate> candidates_;
   std::vector<SampleNearMesh> samples_;
   std::vector<VertexNearSurface> vertices_;
-  std::vector<int> pending_;  // working memory: nodes of the tree
+  std::vector<int> pending_;  // working memory: stack of tree nodes
   std::uint32_t search_ = 0, elements_ = 0;
   double least_gap_m_ = 0.0;
-  PolishBudget budget_{0};  // evaluations left in the last search
+  PolishBudget budget_{0};  // surface points that the last search may still evaluate
   bool overflow_ = false;
 };
 

@@ -14,12 +14,13 @@ namespace spoonbill {
 
 namespace {
 
-// Cosine of the largest angle to the inward normal at which a direction counts as leading into the body.
+// Smallest cosine of the angle between a direction and the inward normal at which the direction leads into
+// the body.
 constexpr double inward_cosine = 0.3;
-// Least thickness of a body, in lattice cells. Facing points that are closer belong to a rest shape that is
-// pressed onto itself.
+// Least thickness of a body, in lattice cells. Facing points that are nearer to each other are on two parts
+// that already touch in the rest shape.
 constexpr double least_thickness_cells = 0.25;
-// Largest numbers of blocks of the surface in each direction. Neighbours are found by blocks.
+// Largest numbers of blocks into which the surface is divided along u and v to find neighbours.
 constexpr int most_blocks_u = 32, most_blocks_v = 64;
 
 std::vector<double> block_starts(const KnotVector& knots, int most) {
@@ -53,7 +54,8 @@ RestPairs::RestPairs(const Grid& grid, Surface rest, double cell_m)
   find_neighbours();
 }
 
-// Returns twice the volume divided by the area, from the triangles between the samples.
+// Returns the body's thickness, twice the volume divided by the area. Both are computed from the triangles
+// between the samples.
 double RestPairs::thickness(int columns) const {
   double volume = 0.0, area = 0.0;
   const auto add = [&](const Vector3& a, const Vector3& b, const Vector3& c) {
@@ -91,8 +93,8 @@ void RestPairs::find_neighbours() {
   }
 }
 
-// Measures the shortest paths from one block to the others by Dijkstra's algorithm, up to the neighbour
-// distance.
+// Computes the lengths of the shortest paths from one block to the others (Dijkstra's algorithm), up to the
+// neighbour distance.
 void RestPairs::measure_from(int block, std::vector<double>& distances) const {
   using Path = std::pair<double, int>;
   std::priority_queue<Path, std::vector<Path>, std::greater<>> queue;
@@ -117,7 +119,7 @@ void RestPairs::measure_from(int block, std::vector<double>& distances) const {
         offer(to, distance + step_between(at, to));
       }
     }
-    // Adds steps across a pole.
+    // Adds steps across a pole, where all blocks of the column are neighbours.
     if (rest_.v.is_periodic() || (j != 0 && j != columns - 1)) continue;
     for (int row = 0; row < rows; ++row) {
       offer(row * columns + j, distance + step_between(at, row * columns + j));
@@ -188,7 +190,8 @@ void RingSeparation::compute_centres(const ControlNet& net) {
   }
 }
 
-// Computes the intervals of all columns along the line from a ring's first control column to its last.
+// Computes the interval of each control column along an axis of the ring, from the ring's first control
+// column to its last.
 void RingSeparation::compute_intervals(const ControlNet& net, int ring) {
   is_current_[ring] = 1;
   const int* const column = column_.data() + ring * width_;
@@ -226,17 +229,16 @@ bool RingSeparation::are_apart_along(const ControlNet& net, int axis_ring, int o
 
 namespace {
 
-// Number of positions sampled around a ring to test whether it can meet another ring.
+// Number of positions around a ring at which it is tested whether the ring can meet another ring.
 constexpr int positions_around = 24;
-// Extra distance beyond the margin, in lattice cells. If no two elements are within the margin plus this
-// distance of each other, none can come within the margin until a control point has moved by half the extra
-// distance.
+// Extra search distance beyond the margin, in lattice cells. If no two elements are within the margin plus
+// this distance of each other, none can come within the margin until a control point has moved by half of it.
 constexpr double lead_cells = 1.0;
 constexpr std::size_t element_pair_capacity = 1 << 14;
-// Limit on the number of element pairs compared in one search, which take about 50 ms. In a body crumpled to
-// a point, all elements are near each other.
+// Largest number of pairs of elements that one search compares, which takes about 50 ms. It limits the time
+// for a body that is crumpled so that all elements are near each other.
 constexpr int element_test_capacity = 1 << 23;
-// Number of elements whose cells are cached; beyond it the cache is cleared.
+// Number of elements whose cells are cached. The cache is cleared when it is full.
 constexpr int slot_capacity = 1024;
 
 bool are_near(SurfaceLevels& levels, const LevelCell& a, const LevelCell& b, double reach) {
@@ -273,7 +275,7 @@ std::vector<std::array<int, 2>> SelfProximity::find_rings_that_can_meet() const 
   return pairs;
 }
 
-// Tests positions sampled around both ends of each ring.
+// Returns true if two rings can meet. Tests positions sampled around both ends of each ring.
 bool SelfProximity::can_meet(int ring, int other) const {
   const Grid& grid = near_.levels().nested().grid;
   const int step = near_.levels().step(0), stride = std::max(1, (grid.rows() - 1) / positions_around);
@@ -289,8 +291,8 @@ bool SelfProximity::can_meet(int ring, int other) const {
   return false;
 }
 
-// A surface moves no farther than its control points, so two parts approach each other by at most twice that
-// distance.
+// Returns true if no two parts can have come within the margin since nothing was near. A surface moves no
+// farther than its control points, so two parts approach each other by at most twice the farthest move.
 bool SelfProximity::is_still_clear(const ControlNet& net) const {
   if (!clear_) return false;
   const double most = 0.5 * lead_cells * cell_m_;
@@ -313,7 +315,7 @@ void SelfProximity::find(const Surface& surface, double margin_m) {
     const bool missing = missing_elements_;
     find_near_elements(margin_m + lead_cells * cell_m_);
     clear_ = nearby_.empty() && !missing_elements_;
-    // Elements missing only from the wider search are too far away to matter.
+    // If only the wider search was incomplete, the missing elements are too far away to matter.
     missing_elements_ = missing || (nearby_.empty() && missing_elements_);
     if (clear_) clear_net_ = surface.net;
     return;
@@ -331,7 +333,8 @@ void SelfProximity::find(const Surface& surface, double margin_m) {
   near_.keep_if(keep);
 }
 
-// Skips elements whose centres can never meet, by their rest positions.
+// Finds pairs of elements within reach of each other. Skips pairs whose centres can never meet, according to
+// their rest positions.
 void SelfProximity::find_near_elements(double reach) {
   nearby_.clear();
   SurfaceLevels& levels = near_.levels();
@@ -374,7 +377,7 @@ void SelfProximity::clear_cells() {
   slots_used_ = 0;
 }
 
-// Returns the finest cells of an element, valid until clear_cells().
+// Returns the finest cells of an element. The result is valid until clear_cells().
 std::span<const SelfProximity::NearCell> SelfProximity::element_cells(const LevelCell& element) {
   SurfaceLevels& levels = near_.levels();
   const int side = levels.step(0), finest = levels.nested().levels, cells = side * side;
@@ -401,8 +404,8 @@ void SelfProximity::offer_elements(const LevelCell& one, const LevelCell& other,
   offer_samples(other, bounding_box(one), cells, reach);
 }
 
-// Offers the samples of an element to the cells of another element, which is within `box`. Omits a cell if
-// one offered before is nearer.
+// Offers the samples of an element to the cells of another element, which is inside `box`. Skips a cell if a
+// cell that was offered before is nearer to the sample.
 void SelfProximity::offer_samples(const LevelCell& element, const Box& box, std::span<const NearCell> cells,
                                   double reach) {
   SurfaceLevels& levels = near_.levels();
@@ -410,7 +413,8 @@ void SelfProximity::offer_samples(const LevelCell& element, const Box& box, std:
   const bool ring = levels.surface().v.is_periodic();
   for (int i = element.i; i < element.i + side; ++i) {
     for (int j = element.j; j <= element.j + side; ++j) {
-      // The samples at the end belong to the next element; all samples of a pole are one point.
+      // The samples at the end of an element belong to the next element. All samples of a pole are one point,
+      // so only one is offered.
       const bool pole = !ring && (j == 0 || j == columns - 1);
       if (pole ? i > 0 : j == element.j + side) continue;
       const int sample = i * columns + j;
@@ -433,7 +437,7 @@ void SelfProximity::offer_samples(const LevelCell& element, const Box& box, std:
   }
 }
 
-// Rejects points from which Newton's method led to a neighbour or to another wall.
+// Rejects points at which Newton's method arrived at a neighbour or at another wall.
 bool SelfProximity::is_contact(const NearPoint& near) const {
   if (near.gap_m < -deepest_self_cells * cell_m_) return false;
   if (!(near.normal.dot(unit_normal(near_.levels().surface(), near.u, near.v)) < 0.0)) return false;

@@ -1,5 +1,5 @@
-// Close pairs of one body's surface with itself, from outside: samples with the nearest points of other
-// parts, and the locally nearest or deepest points between samples.
+// Search for parts of one body's surface that are near each other from outside. It finds samples with the
+// nearest points of other parts, and the locally nearest or deepest points between samples.
 #pragma once
 
 #include <array>
@@ -14,26 +14,27 @@
 
 namespace spoonbill {
 
-// Distance along the surface at rest below which points are neighbours: the larger of a number of lattice
-// cells and a number of thicknesses of the body (twice its volume divided by its area). A bar bent into a
-// loop whose inner side touches itself is longer than 4.4 times its bending radius. With three thicknesses,
-// only loops with a bending radius below two thirds of the thickness are missed.
+// Distance along the surface at rest below which points are neighbours. It is the larger of two lengths: a
+// number of lattice cells, and a number of thicknesses of the body (twice its volume divided by its area). A
+// bar bent into a loop whose inner side touches itself is longer than 4.4 times its bending radius. With
+// three thicknesses, only loops with a bending radius below two thirds of the thickness are missed.
 inline constexpr double neighbour_cells = 4.0;
 inline constexpr double neighbour_thicknesses = 3.0;
 
-// Multiple of the neighbour distance up to which two points that face each other through the body count as
-// its two sides, which never meet. Points farther apart, such as those at the ends of a bar, may meet.
+// Factor on the neighbour distance. Two points that face each other through the body and are not farther
+// apart count as its two sides, which never meet. Points farther apart, such as those at the ends of a bar,
+// may meet.
 inline constexpr double through_body = 2.0;
 
 // Decides by their rest positions which pairs of points of one body's surface can ever touch from outside.
 // All other pairs are neighbours or face each other through the body. Immutable; any thread.
 class RestPairs {
  public:
-  // `rest` is the surface at rest with the knots of the grid and du x dv pointing outward. `cell_m` is the
-  // size of the lattice's cells.
+  // `rest` is the surface at rest, with the knots of the grid and with du x dv pointing outward. `cell_m` is
+  // the size of the lattice's cells.
   RestPairs(const Grid& grid, Surface rest, double cell_m);
 
-  // Returns true if the points can touch. The points are samples of the grid, or given by parameters.
+  // Returns true if two points can touch. They are samples of the grid, or points given by their parameters.
   bool can_meet(int sample, int other) const { return can_meet(points_[sample], points_[other]); }
   bool can_meet(double u, double v, double other_u, double other_v) const;
 
@@ -52,21 +53,22 @@ class RestPairs {
   Surface rest_;
   std::vector<double> u_, v_;  // starts of the parameter blocks, and the end of the last block
   double cell_m_, neighbour_distance_m_ = 0.0;
-  std::vector<RestPoint> points_;       // per sample
-  std::vector<Vector3> block_centres_;  // per block
-  std::vector<bool> neighbours_;        // by block and block: true if they are near along the surface
+  std::vector<RestPoint> points_;       // one for each sample
+  std::vector<Vector3> block_centres_;  // one for each block
+  // For each pair of blocks, true if they are near each other along the surface.
+  std::vector<bool> neighbours_;
 };
 
-// Finds rings of a surface (its elements between two knots of v) that may be near each other, by boxes and
-// then by intervals along each ring's axis. For a long body that is not folded, all pairs are ruled out in a
-// few microseconds. One owner, one thread; allocates only on construction.
+// Finds rings of a surface (its elements between two knots of v) that may be near each other. Tests their
+// boxes, then intervals along each ring's axis. For a long body that is not folded, all pairs are ruled out
+// in a few microseconds. One owner, one thread; allocates only on construction.
 class RingSeparation {
  public:
-  // `pairs` lists the pairs of rings to be tested, as elements of v.
+  // `pairs` lists the pairs of rings to be tested. A ring is given by its element of v.
   RingSeparation(const KnotVector& v, std::vector<std::array<int, 2>> pairs);
 
-  // Returns the pairs for which no separating plane with a gap above `reach_m` was found. Updates the boxes
-  // of `bounds`, which must have the net's knots.
+  // Returns the pairs of rings for which no separating plane with a gap above `reach_m` was found. Updates
+  // the boxes of `bounds`, which must have the net's knots.
   const std::vector<std::array<int, 2>>& find_near(const ControlNet& net, SurfaceBounds& bounds,
                                                    double reach_m);
 
@@ -79,16 +81,17 @@ class RingSeparation {
   Interval interval(int ring, int along) const;
   bool are_apart_along(const ControlNet& net, int axis_ring, int other, double reach_m);
 
-  int columns_, width_;      // numbers of control columns of the net and of a ring
-  std::vector<int> column_;  // `width_` control columns of each ring
+  int columns_, width_;      // number of columns of control points: in the net, and in a ring
+  std::vector<int> column_;  // the control columns of each ring, width_ for each
   std::vector<std::array<int, 2>> pairs_, near_;
-  std::vector<Vector3> centres_;    // per control column
-  std::vector<double> low_, high_;  // interval of each control column along the axis of each ring
-  std::vector<Box> boxes_;          // per ring
-  std::vector<char> is_current_;    // true if a ring's intervals are up to date
+  std::vector<Vector3> centres_;    // one for each control column
+  std::vector<double> low_, high_;  // for each control column, its interval along the axis of each ring
+  std::vector<Box> boxes_;          // one for each ring
+  std::vector<char> is_current_;    // for each ring, true if its intervals are up to date
 };
 
-// Depth in lattice cells beyond which a point is ignored, because the nearest point may be on another wall.
+// Depth in lattice cells beyond which a point is ignored, because the point nearest to it may be on another
+// wall.
 inline constexpr double deepest_self_cells = 1.0;
 
 // Self-proximity search of one surface. One owner, one thread; allocates only on construction. The grid must
@@ -102,7 +105,7 @@ class SelfProximity {
   SelfProximity& operator=(const SelfProximity&) = delete;
 
   // Finds all points that face another part within `margin_m` and can touch it (see RestPairs). The margin
-  // must be the same in each call. Takes almost no time while the body is not folded.
+  // must be the same in each call. A call takes almost no time while the body is not folded.
   void find(const Surface& surface, double margin_m);
 
   // Removes the points for which `keep` returns false.
@@ -111,14 +114,14 @@ class SelfProximity {
     near_.keep_if(keep);
   }
 
-  // Points of the last find().
+  // Returns the points that the last find() found.
   const std::vector<NearPoint>& points() const { return near_.points(); }
-  // Number of surface points that the last find() evaluated.
+  // Returns the number of surface points that the last find() evaluated.
   int evaluations() const { return near_.evaluations(); }
-  // True if nothing was near in the last find(), so that the next one takes almost no time.
+  // Returns true if the last find() found nothing near, so that the next call takes almost no time.
   bool is_clear() const { return clear_; }
-  // Returns true if a capacity was exceeded, so that points may be missing. Remedy: fewer control points or a
-  // smaller margin.
+  // Returns true if a capacity was exceeded, so that points may be missing. Fewer control points or a smaller
+  // margin help.
   bool overflow() const { return missing_elements_ || near_.overflow(); }
 
  private:
@@ -126,7 +129,7 @@ class SelfProximity {
   std::vector<std::array<int, 2>> find_rings_that_can_meet() const;
   bool can_meet(int ring, int other) const;
   void find_near_elements(double reach);
-  // A finest cell and a box around its patch.
+  // A cell of the finest level and a box around its patch.
   struct NearCell {
     LevelCell cell;
     PatchCorners corners;
@@ -143,19 +146,19 @@ class SelfProximity {
   RestPairs rest_;
   RingSeparation rings_;
   double cell_m_;
-  std::vector<Box> boxes_;                        // per element, by u and v
-  std::vector<double> bulges_;                    // per element
+  std::vector<Box> boxes_;                        // one for each element, indexed by u and v
+  std::vector<double> bulges_;                    // one for each element
   std::vector<std::array<LevelCell, 2>> nearby_;  // pairs of elements that may meet
   struct Slot {
-    std::uint32_t generation = 0;  // generation in which the element was stored
+    std::uint32_t generation = 0;  // generation in which the element's cells were stored
     int first = 0;
   };
-  std::vector<Slot> slots_;      // per element
+  std::vector<Slot> slots_;      // one for each element
   std::vector<NearCell> cells_;  // cells of the elements in the slots
   std::uint32_t generation_ = 0;
   int slots_used_ = 0;
-  // Control points for which no two elements were within the margin plus the lead (lead_cells) of each other;
-  // valid while clear_ is true.
+  // Control points at which no two elements were within the margin plus lead_cells of each other. Valid while
+  // clear_ is true.
   ControlNet clear_net_;
   bool clear_ = false;
   bool missing_elements_ = false;

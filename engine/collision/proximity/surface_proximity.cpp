@@ -12,8 +12,8 @@ namespace spoonbill {
 
 namespace {
 
-// Returns the point of a triangle nearest to `point`, as weights of the two edges from the first corner.
-// Unlike nearest_on_triangle(), it accepts triangles without area, which cells have at poles.
+// Returns the weights of the two edges from the first corner that give the triangle's point nearest to
+// `point`. Unlike nearest_on_triangle(), accepts triangles without area, which cells have at poles.
 std::array<double, 2> nearest_edge_weights(const Vector3& point, const Vector3& corner, const Vector3& edge_a,
                                            const Vector3& edge_b) {
   const Vector3 offset = point - corner;
@@ -49,7 +49,8 @@ NearestOnCell nearest_on_cell(const Vector3& point, const PatchCorners& at) {
 
 namespace {
 
-// Returns a lower bound of the distance to a patch, that to the box of its corners.
+// Returns a lower bound of the distance from a point to a patch: the distance to the box of the patch's
+// corners.
 double distance_bound(const Vector3& point, const PatchCorners& at) {
   Box box;
   for (const Vector3& corner : at) box.include(corner);
@@ -102,7 +103,8 @@ void NearPoints::offer(int i, int j, const SurfaceLevels& other, const LevelCell
     near_.push_back(
         {sample, grid.u.parameters[i], grid.v.parameters[j], 0.0, 0.0, point, Vector3::UnitY(), infinity});
   }
-  // Until compute_nearest() is called, the gap is the distance to the other surface's triangles.
+  // Until compute_nearest() is called, the gap is the distance from the sample to the other surface's
+  // triangles.
   NearPoint& near = near_[index_[sample]];
   if (on.distance >= near.gap_m) return;
   const auto between = [](const std::vector<double>& parameters, int at, int to, double fraction) {
@@ -149,8 +151,8 @@ bool NearPoints::is_local_deepest(const NearPoint& near) const {
   return true;
 }
 
-// Searches from the locally deepest samples, on the exact surfaces. deepest_pair() also works from points in
-// front of the other surface, where the depth is negative.
+// Searches from the samples that are deeper than their neighbours, on the exact surfaces. deepest_pair() can
+// also start at points in front of the other surface, where the depth is negative.
 void NearPoints::add_between_samples(const SurfaceLevels& other, double outside) {
   SPOONBILL_ASSERT(std::abs(outside) == 1.0);
   const std::size_t samples = near_.size();

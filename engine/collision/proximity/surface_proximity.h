@@ -1,5 +1,5 @@
-// Close pairs between two surfaces: samples with the other surface's nearest points, and the locally nearest
-// or deepest points between samples.
+// Search for parts of two surfaces that are near each other. It finds samples with the other surface's
+// nearest points, and the locally nearest or deepest points between samples.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace spoonbill {
 
-// The nearest point of a cell, which is treated as two triangles between its samples: local coordinates along
-// u and v, 0 to 1, and the distance in metres.
+// The point of a cell nearest to a given point. The cell is treated as two triangles between its samples. `u`
+// and `v` are local coordinates in the cell, from 0 to 1; `distance` is in metres.
 struct NearestOnCell {
   double u, v, distance;
 };
@@ -21,8 +21,8 @@ NearestOnCell nearest_on_cell(const Vector3& point, const PatchCorners& at);
 
 // A point of one surface and the nearest point of the other.
 struct NearPoint {
-  int sample = -1;          // index into the grid of its surface; -1 for a point between samples
-  double u = 0.0, v = 0.0;  // parameters on its own surface
+  int sample = -1;          // index in the grid of its own surface; -1 for a point between samples
+  double u = 0.0, v = 0.0;  // parameters of the point on its own surface
   double other_u = 0.0, other_v = 0.0;
   Vector3 point_m = Vector3::Zero();
   Vector3 normal = Vector3::UnitY();  // unit outward normal of the other surface
@@ -38,14 +38,15 @@ class NearPoints {
   // Removes all points. Returns false if the surface has not moved since the last call.
   bool begin(const Surface& surface);
 
-  // Offers the corners of a cell to a cell of the other surface, which may be the same surface.
+  // Offers the corners of a cell to a cell of the other surface, which may be the same surface: computes
+  // their distances and remembers the nearest.
   void offer_corners(const LevelCell& cell, SurfaceLevels& other, const LevelCell& patch);
-  // Offers the sample (i, j) of the finest grid to a cell with the given corners.
+  // Offers the sample (i, j) of the finest grid to a cell of the other surface with the given corners.
   void offer(int i, int j, const SurfaceLevels& other, const LevelCell& patch, const PatchCorners& corners);
-  // Returns the least distance of a sample to the triangles of the cells offered so far; infinite if there
-  // are none.
+  // Returns the distance of a sample to the nearest triangle of the cells to which it has been offered;
+  // infinite if there are none.
   double offered_distance_m(int sample) const;
-  // Computes the nearest point of the exact other surface for each sample, and removes samples beyond the
+  // Replaces each sample's nearest point by that on the exact other surface, and removes samples beyond the
   // margin. `outside` is -1 if the other surface's du x dv points inward, else 1.
   void compute_nearest(const SurfaceLevels& other, double outside, double margin_m);
   // Adds the locally nearest points between samples, where a surface may be nearer than at any sample.
@@ -71,21 +72,21 @@ class NearPoints {
   SurfaceLevels& levels() { return levels_; }
   const SurfaceLevels& levels() const { return levels_; }
   const std::vector<NearPoint>& points() const { return near_; }
-  double least_gap_m() const { return least_gap_m_; }  // infinite if nothing is near
-  // Returns true if a capacity was exceeded, so that points may be missing or not yet the nearest.
+  double least_gap_m() const { return least_gap_m_; }  // infinite if no point is near the other surface
+  // Returns true if a capacity was exceeded, so that points may be missing or may not be the nearest.
   bool overflow() const { return overflow_ || budget_.is_spent(); }
-  // Number of surface points evaluated since begin().
+  // Returns the number of surface points evaluated since begin().
   int evaluations() const { return proximity_evaluation_limit - budget_.evaluations_left; }
 
  private:
   bool is_local_deepest(const NearPoint& near) const;
 
   SurfaceLevels levels_;
-  std::vector<int> index_;                 // index of each sample in near_
-  std::vector<std::uint32_t> indexed_at_;  // generation in which that index was set
+  std::vector<int> index_;                 // for each sample, its index in near_
+  std::vector<std::uint32_t> indexed_at_;  // for each sample, the generation in which index_ was set
   std::vector<NearPoint> near_;
   std::uint32_t generation_ = 0;
-  PolishBudget budget_{0};  // evaluations left since begin()
+  PolishBudget budget_{0};  // surface points that may still be evaluated until the next begin()
   double least_gap_m_ = 0.0;
   bool overflow_ = false;
 };
@@ -98,25 +99,28 @@ class SurfaceProximity {
   SurfaceProximity(const SurfaceProximity&) = delete;
   SurfaceProximity& operator=(const SurfaceProximity&) = delete;
 
-  // Finds all points within `margin_m`. The surfaces must have the grids' knots and bound bodies with du x dv
-  // outward. `second_outside` is -1 if du x dv points inward on the second, as on a mirrored surface.
+  // Finds all points within `margin_m` of the other surface. The surfaces must have the grids' knots and
+  // bound bodies, with du x dv outward. `second_outside` is -1 if du x dv points inward on the second
+  // surface, as on a mirrored one.
   void find(const Surface& first, const Surface& second, double margin_m, double second_outside = 1.0);
 
-  // Removes the points of either surface for which its predicate returns false. Both may modify the point.
+  // Removes the first surface's points for which `keep_first` returns false, and the second's for which
+  // `keep_second` does. Both functions may modify the point.
   template <class KeepFirst, class KeepSecond>
   void keep_if(const KeepFirst& keep_first, const KeepSecond& keep_second) {
     first_.keep_if(keep_first);
     second_.keep_if(keep_second);
   }
 
-  // Returns the points of each surface near the other that the last find() found.
+  // first_points() and second_points() return the points of each surface near the other that the last find()
+  // found.
   const std::vector<NearPoint>& first_points() const { return first_.points(); }
   const std::vector<NearPoint>& second_points() const { return second_.points(); }
-  double least_gap_m() const;  // infinite if nothing is near
-  // Returns true if a capacity was exceeded, so that points may be missing. Remedy: fewer control points or a
-  // smaller margin.
+  double least_gap_m() const;  // infinite if no points are near each other
+  // Returns true if a capacity was exceeded, so that points may be missing. Fewer control points or a smaller
+  // margin help.
   bool overflow() const { return missing_cells_ || first_.overflow() || second_.overflow(); }
-  // Numbers of surface points that the last find() evaluated for the points of each surface.
+  // Return the numbers of surface points that the last find() evaluated for the points of each surface.
   int first_evaluations() const { return first_.evaluations(); }
   int second_evaluations() const { return second_.evaluations(); }
 

@@ -14,8 +14,8 @@ namespace {
 
 using Object = fcl::CollisionObject<double>;
 
-// Slack of the boxes, as a fraction of the largest coordinate, because FCL computes with a rounded centre and
-// rounded sides.
+// Enlargement of the boxes, as a fraction of the largest coordinate. It is needed because FCL computes with a
+// rounded centre and rounded sides.
 constexpr double box_rounding = 4.0 * std::numeric_limits<double>::epsilon();
 
 std::size_t body_index(const Object* object) {
@@ -34,7 +34,7 @@ Object make_object(const Box& box, std::size_t index) {
 
 bool add_pair(Object* first, Object* second, void* pairs) {
   static_cast<std::vector<BodyPair>*>(pairs)->emplace_back(body_index(first), body_index(second));
-  return false;  // continue the search
+  return false;  // do not stop the search
 }
 
 struct NearestSearch {

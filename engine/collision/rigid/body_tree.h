@@ -1,5 +1,5 @@
-// Broad phase over many bodies by FCL's dynamic tree of boxes. For loading, checks and reports, not for the
-// tick, because it allocates.
+// Search over many bodies for pairs with near boxes, by FCL's dynamic tree. It allocates, and is therefore
+// for loading, checks and reports, not for the tick.
 #pragma once
 
 #include <cstddef>
@@ -12,10 +12,10 @@
 
 namespace spoonbill {
 
-// Indices of two bodies among the boxes of the first and the second tree, or of the same tree.
+// Indices of two bodies: the first in this tree, the second in the other tree or in the same tree.
 using BodyPair = std::pair<std::size_t, std::size_t>;
 
-// Tree of the boxes of bodies. Immutable, but queries are not concurrent: one owner, one thread.
+// Tree of the boxes of bodies. Immutable, but queries must not run concurrently: one owner, one thread.
 class BodyTree {
  public:
   // The `boxes`, in metres, must be finite and may have no volume. Boxes that touch count as near: to find
@@ -25,14 +25,14 @@ class BodyTree {
   BodyTree(const BodyTree&) = delete;
   BodyTree& operator=(const BodyTree&) = delete;
 
-  // Returns the pairs whose boxes overlap or touch, in ascending order. Within one tree the first index is
-  // below the second; with another tree the first index belongs to this tree.
+  // Returns the pairs whose boxes overlap or touch, in ascending order. With another tree, the first index
+  // belongs to this tree. Without one, the first index is less than the second.
   std::vector<BodyPair> near_pairs() const;
   std::vector<BodyPair> near_pairs(const BodyTree& other) const;
 
-  // Returns the least value of `distance_m` over the pairs of a body of this tree and one of the other;
-  // infinite if a tree is empty. Pairs whose boxes are no nearer than the least value found are skipped, so
-  // the value of a pair must not be below the distance of its boxes.
+  // Returns the smallest value of `distance_m` over the pairs of a body of this tree and a body of the other;
+  // infinite if a tree is empty. Skips pairs whose boxes are no nearer than the smallest value found so far,
+  // so the value of a pair must not be less than the distance of its boxes.
   double find_nearest(const BodyTree& other,
                       const std::function<double(std::size_t, std::size_t)>& distance_m) const;
 

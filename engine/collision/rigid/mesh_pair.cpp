@@ -26,30 +26,32 @@ namespace {
 
 // A point of a triangle of one mesh, and its depth in the other mesh.
 struct DeepPoint {
-  double depth_m = -std::numeric_limits<double>::infinity();  // depth of the mesh's surface; negative outside
+  // Depth of the mesh's surface in the other mesh; negative outside.
+  double depth_m = -std::numeric_limits<double>::infinity();
   Vector3 point_m = Vector3::Zero();
-  DistanceSample other;  // signed distance of the other mesh at the point
+  DistanceSample other;  // signed distance from the point to the other mesh
 };
 
-// Lazily evaluated depths of one mesh in another. One owner. The meshes must outlive it.
+// Depths of one mesh in another, evaluated on demand. One owner. The meshes must outlive it.
 class MeshDepths {
  public:
   MeshDepths(const PosedMesh& mesh, const PosedMesh& other, double thickness_m);
 
-  // Returns the triangles whose boxes are near the other mesh, a superset of those inside it.
+  // Returns the triangles whose boxes are near the other mesh. They include all triangles that reach into the
+  // other mesh.
   const std::vector<std::uint32_t>& near() const { return near_; }
 
   const DeepPoint& at_vertex(std::uint32_t v);
   bool is_inside(std::uint32_t v);
 
-  // Calls `visit` with the deepest point of each stretch of the edge that is inside the other mesh, if that
-  // point is deeper than `least_m` (not negative). Exact to rounding if the other mesh is convex; otherwise
-  // stretches shorter than 1/32 of its size may be missed.
+  // Divides the edge into the stretches that are inside the other mesh, and calls `visit` with the deepest
+  // point of each stretch if it is deeper than `least_m` (not negative). Exact up to rounding if the other
+  // mesh is convex; otherwise stretches shorter than 1/32 of its size may be missed.
   void visit_edge(std::uint32_t from, std::uint32_t to, double least_m,
                   const std::function<void(const DeepPoint&)>& visit);
 
-  // Returns the other mesh's triangle nearest to the point if a plate of either mesh fills the space up to
-  // that triangle.
+  // Returns the triangle of the other mesh nearest to the point if the thickness of a plate, of either mesh,
+  // fills the space between them.
   std::optional<std::uint32_t> find_plate_neighbour(const DeepPoint& deep) const;
 
   // Returns the outward direction of the other mesh at a point of its surface.
@@ -61,11 +63,11 @@ class MeshDepths {
 
   const PosedMesh& mesh_;
   const PosedMesh& other_;
-  MeshDistance distance_;  // distance of the other mesh
+  MeshDistance distance_;  // signed distance of the other mesh
   Box other_box_;          // box of the other mesh
   std::vector<std::uint32_t> near_;
-  std::vector<std::optional<DeepPoint>> vertices_;  // evaluated on demand
-  // triangles of the other mesh; null unless a mesh has plates
+  std::vector<std::optional<DeepPoint>> vertices_;  // one for each vertex, evaluated on demand
+  // Triangles of the other mesh; null unless one of the meshes has plates.
   std::unique_ptr<ShellDistance> surface_;
 };
 
@@ -112,7 +114,7 @@ void MeshDepths::visit_edge(std::uint32_t from, std::uint32_t to, double least_m
   const DeepPoint start = at_vertex(from), end = at_vertex(to);
   const Vector3 edge = end.point_m - start.point_m;
   const double length_m = edge.norm(), half_thickness_m = mesh_.half_thickness_at_m(from);
-  // Along an edge, the depth changes by at most the distance moved.
+  // Along an edge, the depth changes by at most the distance moved, which bounds the depth in between.
   if (!(0.5 * (start.depth_m + end.depth_m + length_m) > least_m)) return;
   const int steps = static_cast<int>(
       std::clamp(std::ceil(length_m / (step_fraction * other_box_.size())), 1.0, steps_limit));
@@ -168,9 +170,9 @@ namespace {
 
 constexpr std::size_t crossings_limit = 4'000'000;
 
-// Nearest points of two parts, one of each mesh.
+// Nearest points of two parts, one part of each mesh.
 struct Gap {
-  double gap_m = std::numeric_limits<double>::infinity();  // negative if plates overlap
+  double gap_m = std::numeric_limits<double>::infinity();  // distance; negative if plates overlap
   std::size_t first_part = 0, second_part = 0;
   Vector3 first_m = Vector3::Zero(), second_m = Vector3::Zero();
 };
@@ -204,10 +206,10 @@ bool may_contain(const PosedMesh& mesh, const PosedMesh& other) {
                      [&](const Box& part) { return around.holds(part); });
 }
 
-// Search for the regions in which two meshes overlap. The vertices of a triangle that are inside the other
+// Search for the regions in which two meshes overlap. All vertices of a triangle that are inside the other
 // mesh are in the same region. A pair of crossing triangles is in the same region as the inside vertices of
-// both triangles, and as the pairs with the same triangle of one mesh and a neighbouring triangle of the
-// other.
+// both triangles. It is also in the same region as a pair in which one of the triangles is the same and the
+// other is a neighbour.
 class ContactSearch {
  public:
   ContactSearch(const PosedMesh& first, const PosedMesh& second, double thickness_m)
@@ -237,8 +239,8 @@ class ContactSearch {
     int side = 0;
   };
 
-  // Returns the union-find item of a vertex. Items are the vertices of the first mesh, the vertices of the
-  // second, then the pairs.
+  // Returns the number of a vertex in regions_. Its items are the vertices of the first mesh, then those of
+  // the second, then the pairs of triangles.
   std::size_t vertex_item(int s, std::uint32_t v) const {
     return s == 0 ? v : meshes_[0]->vertex_count() + v;
   }
@@ -298,13 +300,15 @@ class ContactSearch {
     }
   }
 
-  // Joins pairs with the same triangle of the other mesh whose triangles of this mesh have a common vertex.
+  // Joins pairs that have the same triangle of the other mesh, and triangles of mesh `s` with a common
+  // vertex.
   void join_neighbours(int s) {
     std::vector<std::size_t> order(pairs_.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return pairs_[a][1 - s] < pairs_[b][1 - s]; });
-    std::unordered_map<std::uint32_t, std::size_t> pair_at;  // first pair at each vertex
+    // At each vertex, the first pair whose triangle of mesh `s` has this vertex.
+    std::unordered_map<std::uint32_t, std::size_t> pair_at;
     for (std::size_t k = 0; k < order.size(); ++k) {
       const Pair& pair = pairs_[order[k]];
       if (k > 0 && pairs_[order[k - 1]][1 - s] != pair[1 - s]) pair_at.clear();
@@ -339,14 +343,15 @@ class ContactSearch {
       }
     }
     for (std::size_t first = 0, end = 0; first < pairs_.size(); first = end) {
-      // The pairs are sorted by the first mesh's triangles.
+      // Pairs with the same triangle of the first mesh are consecutive. For the second mesh, each pair is
+      // treated by itself.
       for (end = first + 1; s == 0 && end < pairs_.size() && pairs_[end][0] == pairs_[first][0];) ++end;
       find_deepest_between(s, first, end);
     }
   }
 
-  // Offers the deepest points of those edges that have no end inside. The pairs from `first` to `end` all
-  // have the same triangle of mesh `s`.
+  // Offers the deepest points of those edges of a triangle that have no end inside the other mesh. The pairs
+  // from `first` to `end` all have this triangle of mesh `s`.
   void find_deepest_between(int s, std::size_t first, std::size_t end) {
     const TriangleCorners& corners = meshes_[s]->corners(pairs_[first][s]);
     for (int k = 0; k < 3; ++k) {
@@ -398,8 +403,8 @@ class ContactSearch {
     return contact;
   }
 
-  // Makes the contact of a region that consists of a whole part inside the other mesh; `item` is one of its
-  // vertices. Returns nothing if the region is not such a part.
+  // Makes the contact of a region that is a whole part of one mesh inside the other mesh. `item` is one of
+  // its vertices. Returns nothing if the region is not a whole part.
   std::optional<MeshPairContact> make_containment_contact(std::size_t item) {
     const int s = item < meshes_[0]->vertex_count() ? 0 : 1;
     const auto vertex = static_cast<std::uint32_t>(item - vertex_item(s, 0));
@@ -420,7 +425,7 @@ class ContactSearch {
     return MeshPairContact{gap.first_m, gap.second_m, direction, gap.gap_m + length_m};
   }
 
-  // Makes the contact of meshes that touch no deeper than the tolerance.
+  // Makes the contact of meshes that only touch, no deeper than the tolerance.
   MeshPairContact make_touch_contact(const Gap& gap) const {
     const Vector3 separation = gap.gap_m > 0.0 ? gap.first_m - gap.second_m : gap.second_m - gap.first_m;
     const bool has_direction = separation.norm() > 1e-3 * touch_tolerance_m;
@@ -431,9 +436,9 @@ class ContactSearch {
 
   std::array<const PosedMesh*, 2> meshes_;
   std::array<MeshDepths, 2> depths_;  // depths of each mesh in the other
-  std::vector<Pair> pairs_;           // meeting triangles, in ascending order
+  std::vector<Pair> pairs_;           // pairs of triangles that meet, in ascending order
   DisjointSets regions_{0};
-  std::vector<Deepest> deepest_;  // per region, at the lowest of its items
+  std::vector<Deepest> deepest_;  // deepest point of each region, at the region's lowest item
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
-// Contact of two rigid meshes: touching, distance, and position and depth of the contacts. FCL decides
-// touching and distance. Containment, positions and depths come from signed distances: FCL tests surfaces
-// only, reports no depth between meshes and can misplace their contacts at corners of triangles. For reports,
-// not for the tick.
+// Contact of two rigid meshes: whether they touch, their distance, and the position and depth of each
+// contact. FCL decides whether they touch, and computes the distance. Containment, positions and depths come
+// from signed distances, because FCL tests surfaces only, reports no depth between meshes and can misplace
+// contacts at corners of triangles. For reports, not for the tick.
 #pragma once
 
 #include <limits>
@@ -14,15 +14,16 @@ namespace spoonbill {
 
 // One region in which two meshes overlap or touch.
 struct MeshPairContact {
-  Vector3 first_m = Vector3::Zero(), second_m = Vector3::Zero();  // deepest points, one on each mesh
-  Vector3 normal = Vector3::UnitY();  // unit; direction in which the first mesh leaves the second
-  double depth_m = 0.0;               // along the normal; 0 if they only touch
+  Vector3 first_m = Vector3::Zero(), second_m = Vector3::Zero();  // deepest point of each mesh
+  // Unit vector in the direction in which the first mesh leaves the second.
+  Vector3 normal = Vector3::UnitY();
+  double depth_m = 0.0;  // along the normal; 0 if the meshes only touch
 };
 
 // Result of collide_meshes().
 struct MeshPairResult {
-  bool touching = false;   // to within touch_tolerance_m
-  bool contained = false;  // touching without crossing surfaces: a part of one mesh is inside the other
+  bool touching = false;   // within touch_tolerance_m
+  bool contained = false;  // the surfaces do not cross, but a part of one mesh is inside the other
   bool complete = true;    // false if more triangles cross than the limit, so that contacts may be missing
   // Nearest points of meshes that do not touch, and their distance.
   double distance_m = std::numeric_limits<double>::infinity();
@@ -31,14 +32,14 @@ struct MeshPairResult {
   std::vector<MeshPairContact> contacts;
 };
 
-// Finds the contacts or the distance of two meshes; `second_pose` is the pose of the second mesh in the frame
-// of the first. Closed parts are solid except for their cavities, open parts are plates of the given
+// Finds the contacts or the distance of two meshes. `second_pose` is the pose of the second mesh in the frame
+// of the first. Closed parts are solid except for their cavities; open parts are plates of the given
 // thickness, as in MeshDistance.
 //
 // A contact is the deepest of the vertices and edge points of both meshes in a region. On edges it is exact
-// to rounding if the other mesh is convex, otherwise found in steps of 1/32 of that mesh's size. A part
-// inside another leaves through the nearest wall: its depth is the distance to the wall plus the smaller
-// length of the two parts along that direction. Deterministic; any thread.
+// up to rounding if the other mesh is convex; otherwise edges are searched in steps of 1/32 of that mesh's
+// size. A part inside another leaves through the nearest wall: its depth is the distance to the wall plus the
+// length along that direction of the shorter part. Deterministic; any thread.
 MeshPairResult collide_meshes(const CleanMesh& first, const CleanMesh& second, const Pose& second_pose,
                               double thickness_m = sheet_thickness_m);
 

@@ -1,5 +1,6 @@
-// Rigid meshes in FCL's trees of boxes, with their distances and crossing triangles, and posed meshes that
-// consist of several such parts. For loading, checks and reports, not for the tick, because queries allocate.
+// Rigid meshes in FCL's trees of boxes, with their distances and crossing triangles; and posed meshes, which
+// consist of several rigid meshes. Queries allocate, so they are for loading, checks and reports, not for the
+// tick.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +16,8 @@
 
 namespace spoonbill {
 
-// Unit and origin in which FCL computes. FCL's triangle distance treats normals below an absolute size as
-// zero; the scale keeps the normals of all triangles above that size.
+// Unit and origin of the coordinates in which FCL computes. FCL's triangle distance treats normals below an
+// absolute length as zero; the scale keeps the normals of all triangles above that length.
 struct RigidScale {
   Vector3 origin_m = Vector3::Zero();
   double per_m = 1.0;
@@ -24,8 +25,8 @@ struct RigidScale {
 // Returns the scale for two meshes that are tested against each other.
 RigidScale scale_for(const TriangleMesh& first, const TriangleMesh& second);
 
-// Triangles in FCL's tree of boxes. FCL tests surfaces only, so a mesh that is entirely inside another counts
-// as apart. Immutable; any thread may query it.
+// Triangles in FCL's tree of boxes. FCL tests surfaces only, so a mesh that is entirely inside another does
+// not count as touching it. Immutable; any thread may query it.
 class RigidMesh {
  public:
   // `triangles` must not be empty. Their corners are vertex indices that start at `first_vertex`.
@@ -39,12 +40,12 @@ class RigidMesh {
     double distance_m = 0.0;  // 0 if triangles cross or touch
     Vector3 first_m = Vector3::Zero(), second_m = Vector3::Zero();
   };
-  // Returns the nearest points of both meshes if they are nearer than `below_m`. Both must have the same
-  // scale.
+  // Returns the nearest points of this mesh and another if they are nearer than `below_m`. Both meshes must
+  // have the same scale.
   std::optional<Nearest> nearest(const RigidMesh& other, double below_m) const;
 
-  // Returns at most about `limit` pairs of crossing or touching triangles, as sorted indices into this mesh
-  // and the other. Both must have the same scale.
+  // Returns at most about `limit` pairs of crossing or touching triangles, sorted. A pair has an index into
+  // this mesh and one into the other. Both meshes must have the same scale.
   using Crossing = std::pair<std::uint32_t, std::uint32_t>;
   std::vector<Crossing> find_crossings(const RigidMesh& other, std::size_t limit) const;
 
@@ -60,7 +61,7 @@ class PosedMesh {
   // `mesh` must have at least one part; `thickness_m` is positive.
   PosedMesh(CleanMesh mesh, const Pose& pose, double thickness_m);
 
-  // Builds the FCL tree of each part, which rigid() requires.
+  // Builds the FCL tree of each part. Must be called before rigid().
   void make_rigid(const RigidScale& scale);
 
   const CleanMesh& clean() const { return mesh_; }
@@ -72,14 +73,15 @@ class PosedMesh {
   std::size_t triangle_count() const { return mesh_.mesh.triangles.size(); }
   std::uint32_t part_of_vertex(std::uint32_t v) const { return part_of_vertex_[v]; }
 
-  // Returns the distance of a part's surface from its triangles: half the thickness of a plate, otherwise 0.
+  // Returns the distance between a part's surface and its triangles: half the thickness of a plate, otherwise
+  // 0.
   double half_thickness_m(std::size_t part) const {
     return mesh_.parts[part].closed ? 0.0 : half_thickness_m_;
   }
   double half_thickness_at_m(std::uint32_t v) const { return half_thickness_m(part_of_vertex_[v]); }
   bool has_plates() const { return has_plates_; }
 
-  const std::vector<Box>& boxes() const { return boxes_; }  // box around each part's surface
+  const std::vector<Box>& boxes() const { return boxes_; }  // one box around the surface of each part
   const RigidMesh& rigid(std::size_t part) const { return rigid_[part]; }
   // Returns the length of a part along a unit direction, in metres.
   double length_along(std::size_t part, const Vector3& direction) const;

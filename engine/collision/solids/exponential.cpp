@@ -10,10 +10,11 @@ namespace spoonbill {
 
 namespace {
 
-// log(2) as a sum; the high part ends in zeros, so that integer multiples of it are exact.
+// log(2) as the sum of two numbers. The high part ends in zero bits, so that small integer multiples of it
+// are exact.
 constexpr double log_2_high = 0x1.62e42feep-1, log_2_low = 0x1.a39ef35793c76p-33;
 
-constexpr int parts = 64;  // number of parts of an octave
+constexpr int parts = 64;  // number of parts into which an octave, a factor of 2, is divided
 
 // Returns 2^(k / parts) for each k, computed by the Taylor series.
 constexpr std::array<double, parts> make_roots_of_two() {
@@ -28,10 +29,10 @@ constexpr std::array<double, parts> make_roots_of_two() {
 }
 constexpr std::array<double, parts> roots_of_two = make_roots_of_two();
 
-// Adding and subtracting this rounds a number below 2^51 to an integer.
+// Adding and then subtracting this number rounds a number below 2^51 to an integer.
 constexpr double to_whole = 0x1.8p52;
 
-// Returns 1 / 3, 1 / 5 and so on.
+// Returns the inverses of the odd numbers from 3 on.
 constexpr std::array<double, 10> make_inverse_odds() {
   std::array<double, 10> values{};
   for (int k = 0; k < 10; ++k) values[k] = 1.0 / (2 * k + 3);
@@ -45,7 +46,8 @@ double power_of_two(int power) {
 
 }  // namespace
 
-// Evaluates the Taylor series within half a part of an octave, where the term of order six is below rounding.
+// Reduces x to within half a part of an octave and evaluates the Taylor series there. Its term of order six
+// is below rounding.
 double stable_exp(double x) {
   if (!(x > -700.0)) return 0.0;
   const double whole = (x * (parts * 1.4426950408889634) + to_whole) - to_whole;
@@ -55,7 +57,7 @@ double stable_exp(double x) {
       rest + square * (0.5 + rest * (1.0 / 6.0) + square * (1.0 / 24.0 + rest * (1.0 / 120.0)));
   const int number = static_cast<int>(whole), part = number & (parts - 1);
   const double root = roots_of_two[part];
-  // The power is split into two factors, each of which is in range if the product is.
+  // 2^power is split into two factors, because it may be out of range even if the result is not.
   const int power = (number - part) / parts, half = power / 2;
   return (root + root * beyond) * power_of_two(half) * power_of_two(power - half);
 }

@@ -1,4 +1,5 @@
-// exp and log with the same bits on every processor. The C library selects its instructions at run time.
+// exp and log with the same bits on every processor. Those of the C library may differ, because it selects
+// its instructions at run time.
 #pragma once
 
 namespace spoonbill {

@@ -72,8 +72,8 @@ class ConeDistance final : public SignedDistance {
 
  private:
   ConeShape shape_;
-  double slant_m_;                 // from the rim to the tip
-  double normal_out_, normal_up_;  // normal of the side, away from the axis and along y
+  double slant_m_;                 // length of the side, from the rim to the tip
+  double normal_out_, normal_up_;  // normal of the side: components away from the axis and along y
 };
 
 class TorusDistance final : public SignedDistance {
@@ -83,8 +83,8 @@ class TorusDistance final : public SignedDistance {
   bool is_convex() const override { return false; }
   Box bounds() const override;
 
-  // The distance is a convex function of the distance from the axis and the height. Around the axis it is
-  // concave only where the ring is farther from the axis, with a curvature of at most 1 / (distance from the
+  // In a half-plane through the axis, the distance is convex. In the direction around the axis, it is concave
+  // only at points nearer to the axis than the ring, with a curvature of at most 1 / (distance from the
   // axis).
   double concavity(const Vector3& centre_m, double radius_m) const override;
 
@@ -95,9 +95,9 @@ class TorusDistance final : public SignedDistance {
 // Signed distance of an ellipsoid with the semi-axes e_i, the shortest of which is e_m (Eberly 2013, whose s
 // is w - 1).
 //
-// The point of the surface nearest to y is x_i = r_i y_i / (w + r_i - 1), r_i = (e_i / e_m)^2. The scalar w
-// is the root of sum (x_i / e_i)^2 = 1 that is not negative. In terms of w nothing cancels inside, where w
-// goes to 0. Near the surface, y_i - x_i = y_i (w - 1) / (w + r_i - 1) does not cancel either.
+// The point of the surface nearest to y is x_i = r_i y_i / (w + r_i - 1), where r_i = (e_i / e_m)^2 and w >=
+// 0 is the root of sum (x_i / e_i)^2 = 1. In terms of w, no digits cancel inside, where w goes to 0. Near the
+// surface, y_i - x_i = y_i (w - 1) / (w + r_i - 1) does not cancel either.
 class EllipsoidDistance final : public SignedDistance {
  public:
   explicit EllipsoidDistance(const EllipsoidShape& shape);
@@ -111,7 +111,7 @@ class EllipsoidDistance final : public SignedDistance {
 
   Vector3 axes_;
   int shortest_ = 0;
-  Vector3 ratio_, excess_;  // r_i, r_i - 1
+  Vector3 ratio_, excess_;  // r_i and r_i - 1 for each axis i
 };
 
 // A direction in the meridian half-plane: away from the y axis and along it.
@@ -123,8 +123,8 @@ double from_axis(const Vector3& point) {
   return std::sqrt(point.x() * point.x() + point.z() * point.z());
 }
 
-// Rotates a direction from the meridian half-plane into that of the point. On the axis, where all half-planes
-// are equivalent, the half-plane of the x axis is used.
+// Rotates a direction from the meridian half-plane into the half-plane of the point. On the axis, where all
+// half-planes are equivalent, the half-plane of the x axis is used.
 Vector3 rotate_from_meridian(const MeridianDirection& direction, const Vector3& point) {
   const double out = from_axis(point);
   if (!(out > 0.0)) return {direction.out, direction.up, 0.0};
@@ -210,7 +210,8 @@ ConeDistance::ConeDistance(const ConeShape& shape)
 DistanceSample ConeDistance::at(const Vector3& point_m) const {
   const double from_rim = from_axis(point_m) - shape_.base_radius_m, up = point_m.y();
   const double side = normal_out_ * from_rim + normal_up_ * up;
-  const double along = normal_out_ * up - normal_up_ * from_rim;  // from the rim towards the tip
+  // Distance along the side, from the rim towards the tip.
+  const double along = normal_out_ * up - normal_up_ * from_rim;
   if (side <= 0.0 && up >= 0.0) {
     if (side > -up) return {side, rotate_from_meridian({normal_out_, normal_up_}, point_m)};
     return {-up, -Vector3::UnitY()};
@@ -249,8 +250,9 @@ EllipsoidDistance::EllipsoidDistance(const EllipsoidShape& shape) : axes_(shape.
   }
 }
 
-// The reciprocal norm of scaled_k / (w + excess_k) is concave and increases with w, so Newton's method from
-// below the root never passes it (More and Sorensen 1983).
+// Returns the root w. The reciprocal norm of the vector scaled_k / (w + excess_k) is a concave, increasing
+// function of w. Newton's method that starts below the root therefore never passes it (More and Sorensen
+// 1983).
 double EllipsoidDistance::solve(const Vector3& scaled, double low) const {
   double w = low;
   for (int step = 0; step < 60; ++step) {
@@ -270,8 +272,8 @@ double EllipsoidDistance::solve(const Vector3& scaled, double low) const {
   return w;
 }
 
-// Returns the distance of a point near the plane of the two longer axes whose nearest surface point is above
-// or below that plane.
+// Returns the distance of a point on the plane of the two longer axes, or close to it. The nearest surface
+// point must be above or below that plane.
 DistanceSample EllipsoidDistance::at_central_plane(const Vector3& point_m) const {
   Vector3 nearest = Vector3::Zero();
   double rest = 1.0;
@@ -326,7 +328,8 @@ Status check_axes(const std::string& shape, const Vector3& lengths) {
                "semi_axes_mm");
 }
 
-// Checks the relations between the fields of a shape. The ranges of the fields are checked elsewhere.
+// Checks the relations between the fields of a shape, such as the ratio of its axes. The ranges of the fields
+// are checked elsewhere.
 template <class Shape>
 Status check_proportions(const Shape&) {
   return {};

@@ -1,5 +1,5 @@
-// Analytic tool shapes as plain descriptions, and their signed distances. Lengths are in metres. Each shape
-// is described in its own frame and is centred on the origin unless noted.
+// Analytic tool shapes as plain structs, and their signed distances. Lengths are in metres. Each shape is
+// described in its own frame and is centred on the origin unless its comment says otherwise.
 #pragma once
 
 #include <array>
@@ -17,15 +17,15 @@ struct SphereShape {
 };
 
 struct EllipsoidShape {
-  Vector3 semi_axes_m = Vector3::Constant(0.01);  // ratio of any two at most greatest_axis_ratio
+  Vector3 semi_axes_m = Vector3::Constant(0.01);  // the ratio of any two must be at most greatest_axis_ratio
 };
 
-struct CylinderShape {  // along y
+struct CylinderShape {  // along the y axis
   double radius_m = 0.01, half_length_m = 0.01;
 };
 
-struct CapsuleShape {  // points within radius_m of the segment from -half_length_m to half_length_m on the y
-                       // axis
+// Points within radius_m of the segment from -half_length_m to half_length_m on the y axis.
+struct CapsuleShape {
   double radius_m = 0.01, half_length_m = 0.01;
 };
 
@@ -33,32 +33,32 @@ struct BoxShape {
   Vector3 half_extents_m = Vector3::Constant(0.01);
 };
 
-struct ConeShape {  // along y: base centred on the origin, tip at (0, height_m, 0)
+struct ConeShape {  // along the y axis: base centred on the origin, tip at (0, height_m, 0)
   double base_radius_m = 0.01, height_m = 0.02;
 };
 
-struct TorusShape {  // around y; tube_radius_m must be less than ring_radius_m
+struct TorusShape {  // around the y axis; tube_radius_m must be less than ring_radius_m
   double ring_radius_m = 0.02, tube_radius_m = 0.005;
 };
 
-struct HalfSpaceShape {};  // y < 0
+struct HalfSpaceShape {};  // the half-space y < 0
 
-// Superquadric with the semi-axes a, b, c and the exponents e1, e2 (Barr 1981, with y for his z):
+// Superquadric with the semi-axes a, b, c and the exponents e1, e2 (Barr 1981, with y in place of his z):
 //   (|x / a|^(2 / e2) + |z / c|^(2 / e2))^(e2 / e1) + |y / b|^(2 / e1) <= 1.
-// Convex over the range of the exponents: nearly a box at the low end, an ellipsoid at 1, nearly an
-// octahedron at the high end.
+// It is convex over the allowed range of the exponents: nearly a box at the low end, an ellipsoid at 1,
+// nearly an octahedron at the high end.
 struct SuperquadricShape {
-  Vector3 semi_axes_m = Vector3::Constant(0.01);  // ratio of any two at most greatest_axis_ratio
-  double exponent_along = 1.0;                    // e1
-  double exponent_around = 1.0;                   // e2
+  Vector3 semi_axes_m = Vector3::Constant(0.01);  // the ratio of any two must be at most greatest_axis_ratio
+  double exponent_along = 1.0;                    // exponent e1
+  double exponent_around = 1.0;                   // exponent e2
 };
 
 using ImplicitShape = std::variant<SphereShape, EllipsoidShape, CylinderShape, CapsuleShape, BoxShape,
                                    ConeShape, TorusShape, HalfSpaceShape, SuperquadricShape>;
 
-// Range of a sphere's radius and a capsule's half length, which may be 0.
+// Range of the lengths that may be 0: the radius of a sphere and the half length of a capsule.
 inline constexpr Range<double> shape_length_or_none_m{0.0, 0.5};
-// Range of all other lengths.
+// Range of all other lengths of the shapes.
 inline constexpr Range<double> shape_length_m{1e-5, 0.5};
 inline constexpr double greatest_axis_ratio = 1000.0;
 inline constexpr Range<double> superquadric_exponent{0.2, 1.8};
@@ -130,14 +130,15 @@ inline constexpr auto fields_of<SuperquadricShape> = std::to_array<Field<Superqu
     number_field("exponent_around", &SuperquadricShape::exponent_around, superquadric_exponent),
 });
 
-// Checks ranges and proportions. The error's field names the value: a length or exponent out of range,
-// semi-axes that differ too much, or a torus with a tube as wide as its ring.
+// Checks the ranges and proportions of a shape. The error's field names the value at fault: a length or
+// exponent out of range, semi-axes that differ too much, or a torus whose tube is as wide as its ring.
 Status check_implicit_shape(const ImplicitShape& shape);
 
-// Makes the signed distance of a shape that passed check_implicit_shape(). It is exact to 1e-12 of the size.
+// Makes the signed distance of a shape that passed check_implicit_shape(). The distance is exact to 1e-12 of
+// the size.
 //
 // Inside a superquadric, the distance is the best result of several searches, which can all miss the nearest
-// wall. The depth is then too large, in about one of 100,000 points and by up to some thousandths of the
+// wall. In about one of 100,000 points, the depth is therefore too large, by up to some thousandths of the
 // size. The gradient always belongs to a plane that bounds the solid. A query of a superquadric takes about
 // 20 us, a hundred times as long as for other shapes.
 std::shared_ptr<const SignedDistance> make_signed_distance(const ImplicitShape& shape);

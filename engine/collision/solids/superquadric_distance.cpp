@@ -11,10 +11,11 @@ namespace {
 
 constexpr double nothing = -1e300;     // logarithm of a zero coordinate
 constexpr double least_ratio = 1e-60;  // fraction of a semi-axis below which a coordinate counts as 0
-// Convergence tolerance of the logarithm of the Lagrange multiplier (`price`), and therefore of the distance.
+// Convergence tolerance of log(price), where `price` is the Lagrange multiplier. It also determines the
+// accuracy of the distance.
 constexpr double convergence_step = 1e-13;
-// Largest |log(gauge)| of a point that counts as on the surface, where the tangent plane gives the distance
-// to rounding.
+// Largest |log(gauge)| of a point that counts as on the surface. The distance to the tangent plane is there
+// exact up to rounding.
 constexpr double at_surface_gauge = 1e-14;
 
 double log_of_sum(double a, double b) {
@@ -22,15 +23,16 @@ double log_of_sum(double a, double b) {
   return low - high < -40.0 ? high : high + stable_log(1.0 + stable_exp(low - high));
 }
 
-// One coordinate of the nearest point: the root L = log(x / a) of e^L + price e^((q-1) L) = target.
+// One coordinate x of the nearest point, as L = log(x / a), the root of e^L + price e^((q-1) L) = target.
 struct Coordinate {
   double log_value = nothing;
-  double reach = 0.0;  // the second term: distance of the point beyond the surface, divided by the semi-axis
+  // The second term: offset of the point from the surface along this axis, divided by the semi-axis.
+  double reach = 0.0;
   double slope = 0.0;  // derivative of log_value with respect to log(price)
 };
 
-// Solves for the coordinate by Newton's method, starting where the larger term alone equals the target, which
-// is at or above the root. Both terms are convex in L, so the iteration descends monotonically.
+// Solves for the coordinate by Newton's method. It starts where the larger term alone equals the target, at
+// or above the root. Both terms are convex in L, so the iteration decreases monotonically.
 Coordinate solve_coordinate(double log_target, double log_price, double q) {
   if (log_target == nothing) return {};
   const double target = stable_exp(log_target);
@@ -121,7 +123,7 @@ DistanceSample SuperquadricDistance::outside(const Vector3& point) const {
     double move = std::clamp(-gauge / slope, -8.0, 8.0);
     if (!(std::abs(move) >= 0.0)) move = gauge > 0.0 ? 8.0 : -8.0;
     double next = log_price + move;
-    // Until both bounds are known, only rounding can make a step pass the known bound.
+    // As long as only one bound is known, a step can pass that bound only because of rounding.
     const bool bounded = low > -1e300 && high < 1e300, leads_back = next <= low || next >= high;
     if (leads_back) next = bounded ? 0.5 * (low + high) : log_price;
     const bool converged = std::abs(gauge) < 2e-16 || std::abs(next - log_price) < convergence_step;
@@ -137,7 +139,7 @@ DistanceSample SuperquadricDistance::outside(const Vector3& point) const {
 namespace {
 
 constexpr double farthest_logit = 600.0;
-// Smallest relative gain of the squared distance that is more than rounding.
+// Smallest relative decrease of the squared distance that is more than rounding.
 constexpr double least_distance_gain = 1e-15;
 
 double bounded(double logit) {
@@ -148,7 +150,7 @@ double log_ratio(double value) {
   return stable_log(std::max(value, least_ratio));
 }
 
-// A fraction, its complement and their logarithms.
+// A fraction and its complement, with their logarithms, computed from the logit of the fraction.
 struct Fractions {
   explicit Fractions(double logit) {
     const double less = stable_exp(-std::abs(logit)), larger = 1.0 / (1.0 + less);
@@ -163,12 +165,12 @@ struct Fractions {
 
 }  // namespace
 
-// Half the squared distance of a point of the surface from a point of the first octant, with derivatives with
-// respect to both logits.
+// Half the squared distance from a point of the first octant to a point of the surface, and its derivatives
+// with respect to both logits.
 struct SuperquadricDistance::Expansion {
   double half_square;  // half the squared distance
   double slope[2];
-  double curvature[3];  // second derivatives: twice by around, by both, twice by along
+  double curvature[3];  // second derivatives: twice by around; by around and along; twice by along
 };
 
 void SuperquadricDistance::expand(const Spot& spot, const Vector3& point, Expansion& out) const {
@@ -178,7 +180,8 @@ void SuperquadricDistance::expand(const Spot& spot, const Vector3& point, Expans
   const Vector3 at = axes_.cwiseProduct(Vector3(stable_exp(ring + around.log_fraction / around_),
                                                 stable_exp(along.log_other / along_),
                                                 stable_exp(ring + around.log_other / around_)));
-  // Each coordinate is the exponential of a sum, so its derivatives are the coordinate times these factors.
+  // Each coordinate of the surface point is the exponential of a sum. Its derivatives are therefore the
+  // coordinate times these factors.
   const Vector3 by_around(s_other / around_, 0.0, -s / around_);
   const Vector3 by_along(t_other / along_, -t / along_, t_other / along_);
   const double bend_around = s * s_other / around_, bend_along = t * t_other / along_;
@@ -193,7 +196,8 @@ void SuperquadricDistance::expand(const Spot& spot, const Vector3& point, Expans
   out.curvature[2] = square.dot(by_along.cwiseAbs2()) + pull.dot(along_twice);
 }
 
-// Moves the spot to a local minimum of the distance by Newton's method, damped until the distance decreases.
+// Moves the spot to a local minimum of the distance by Newton's method. Steps are damped so that the distance
+// decreases.
 SuperquadricDistance::Spot SuperquadricDistance::improve(Spot spot, const Vector3& point) const {
   Expansion here, there;
   expand(spot, point, here);
@@ -229,7 +233,8 @@ SuperquadricDistance::Spot SuperquadricDistance::improve(Spot spot, const Vector
   return spot;
 }
 
-// Returns the distance of the tangent plane at a spot. The tangent plane at any spot bounds the convex solid.
+// Returns the distance to the tangent plane at a spot. Any tangent plane bounds the solid, because it is
+// convex.
 DistanceSample SuperquadricDistance::tangent(const Spot& spot, const Vector3& point) const {
   const Fractions around(spot.around), along(spot.along);
   const double ring = along.log_fraction / along_, ring_normal = along.log_fraction - ring;
@@ -246,7 +251,7 @@ DistanceSample SuperquadricDistance::tangent(const Spot& spot, const Vector3& po
   return {normal.dot(point.cwiseAbs() - at), signed_normal};
 }
 
-// Returns where the ray from the centre leaves the solid.
+// Returns the spot where the ray from the solid's centre through the point leaves the solid.
 SuperquadricDistance::Spot SuperquadricDistance::radial_exit(const Vector3& point) const {
   const Vector3 ratio = point.cwiseAbs().cwiseQuotient(axes_);
   const double x = around_ * log_ratio(ratio.x()), z = around_ * log_ratio(ratio.z());
@@ -255,7 +260,7 @@ SuperquadricDistance::Spot SuperquadricDistance::radial_exit(const Vector3& poin
   return {bounded(x - z), bounded(along_ * (ring - log_ratio(ratio.y())))};
 }
 
-// Returns where the line along one axis leaves the solid.
+// Returns the spot where the line through the point along one axis leaves the solid.
 SuperquadricDistance::Spot SuperquadricDistance::axis_exit(const Vector3& point, int axis) const {
   const Vector3 ratio = point.cwiseAbs().cwiseQuotient(axes_);
   const auto power = [](double value, double q) { return stable_exp(q * log_ratio(value)); };

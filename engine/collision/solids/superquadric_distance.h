@@ -10,9 +10,9 @@ namespace spoonbill {
 //
 // Outside, the surface point x nearest to p satisfies p_i - x_i = mu_i |x_i / a_i|^(q-1) / a_i. The
 // multiplier mu_i is mu for x and z, and lambda for y. Each of these equations has one root. The multipliers
-// are related by lambda = mu rho^(q2-q1), rho = |(x/a, z/c)|_q2. Minimising the distance for a given price
-// lambda of the constraint is convex, so lambda and mu increase together. One monotone equation in mu
-// remains.
+// are related by lambda = mu rho^(q2-q1), where rho = |(x/a, z/c)|_q2. For a given lambda, which acts as a
+// price of violating the constraint, the minimisation is convex, so lambda and mu increase together. Only one
+// monotone equation in mu remains to be solved.
 //
 // Inside, the distance to the surface has several local minima. Newton's method searches for them from
 // several starting points, in logit coordinates of the surface (Spot). The nearest of the tangent planes at
@@ -21,18 +21,19 @@ class SuperquadricDistance final : public SignedDistance {
  public:
   explicit SuperquadricDistance(const SuperquadricShape& shape);
   DistanceSample at(const Vector3& point_m) const override;
-  // Returns the distance to the tangent plane at which the ray from the centre leaves the solid, if this
-  // distance is at least `enough_m`; otherwise the distance to the solid.
+  // Returns the distance to a tangent plane if that distance is at least `enough_m`; otherwise the distance
+  // to the solid. The plane touches the solid where the ray from its centre to the point leaves it.
   DistanceSample at_within(const Vector3& point_m, double enough_m) const override;
-  // Returns whether the distance exceeds `limit_m`. For points inside, the gauge alone decides, without
-  // computing a distance.
+  // Returns whether the distance exceeds `limit_m`. For points inside the solid, the gauge alone decides, and
+  // no distance is computed.
   bool is_beyond(const Vector3& point_m, double limit_m) const override;
   bool is_convex() const override { return true; }
   Box bounds() const override { return {-axes_, axes_}; }
 
  private:
-  // A point of the surface in the first octant. `around` is the logit of the fraction (x/a)^q2 against
-  // (z/c)^q2, `along` is the logit of rho^q1 against (y/b)^q1. Logits keep precision near an edge.
+  // A point of the surface in the first octant, in coordinates that keep their precision near an edge.
+  // `around` is the logit of the fraction that (x/a)^q2 has of (x/a)^q2 + (z/c)^q2. `along` is the logit of
+  // the fraction that rho^q1 has of rho^q1 + (y/b)^q1.
   struct Spot {
     double around, along;
   };
@@ -49,7 +50,7 @@ class SuperquadricDistance final : public SignedDistance {
   Spot improve(Spot spot, const Vector3& point) const;
 
   Vector3 axes_, log_axes_;
-  double along_, around_;  // q1, q2
+  double along_, around_;  // the exponents q1 and q2
 };
 
 }  // namespace spoonbill

@@ -48,15 +48,15 @@ constexpr std::size_t cell_capacity = 16384;
 constexpr std::size_t patch_capacity = 512;
 constexpr std::size_t near_capacity = 4096;
 constexpr int deepest_patch = 24;
-// Proven accuracy of the nearest point in metres, below the resolution of a haptic device (0.055 mm).
-// Newton's method itself is usually exact to the last digit. A tighter bound costs most where surface and
-// tool fit snugly and all points are equally near.
+// Proven accuracy of the nearest point in metres. It is below the resolution of a haptic device (0.055 mm).
+// Newton's method itself is usually exact to the last digit. A smaller value costs most time where surface
+// and tool fit snugly and all points are equally near.
 constexpr double nearest_tolerance_m = 2e-5;
-// Proven accuracy in metres for a solid of unknown concavity, against which patches must be cut down to the
-// size of the tolerance.
+// Proven accuracy in metres for a solid of unknown concavity. For such a solid, patches must be cut until
+// they are as small as the tolerance.
 constexpr double unbent_tolerance_m = 5e-5;
 constexpr double clearance_fraction = 0.75;
-// Smallest gain in metres of a Newton step that is more than rounding.
+// Smallest decrease of the distance, in metres, by a Newton step that is more than rounding.
 constexpr double least_gain_m = 1e-15;
 
 double search_tolerance(const ToolShape& tool) {
@@ -140,10 +140,10 @@ Clearance SurfaceCollider::clearance(const Surface& surface, const ToolShape& to
           result.overflow};
 }
 
-// Returns the depth of a tool inside a closed surface, along the nearest wall's normal; 0 if it is not
-// inside. A sphere is inside if its centre is inside. A convex solid that touches the wall is inside if the
-// centre of its bounds is inside. A tool that touches nothing is inside if its point nearest to the wall is
-// inside.
+// Returns the depth of a tool inside a closed surface along the normal of the nearest wall, or 0 if the tool
+// is not inside. A sphere is inside if its centre is inside. A convex solid that touches the wall is inside
+// if the centre of its bounds is inside. A solid that does not touch the wall is inside if its point nearest
+// to the wall is inside.
 double SurfaceCollider::depth_inside(const ToolShape& tool, const SurfaceContact& nearest) const {
   if (tool.kind == ToolShape::Kind::sphere) {
     const bool inside = (tool.centre_m - nearest.point_m).dot(nearest.normal) < 0.0;
@@ -161,8 +161,8 @@ double SurfaceCollider::depth_inside(const ToolShape& tool, const SurfaceContact
   return std::max(depth_behind(tool, nearest.point_m, nearest.normal), -best_.distance_m);
 }
 
-// Offers the coarsest samples, except those of elements that are too far away. The nearest box comes first,
-// because its samples tighten the bound beyond which elements are too far.
+// Offers the coarsest samples, except those of elements that are too far away. The nearest column comes
+// first, because its samples reduce the distance beyond which elements are too far.
 void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
   const Grid& grid = levels_.nested().grid;
   const int stride = levels_.step(0);
@@ -170,7 +170,7 @@ void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
   const auto offer_column = [&](int j) {
     levels_.sample_column(j);
     for (int i = 0; i < grid.rows(); i += stride) {
-      // A sample between two elements belongs to both.
+      // A sample between two elements belongs to both elements.
       const int after = std::min(i / stride, last), before = std::max(i / stride - 1, 0);
       if (std::min(row_bound_[before], row_bound_[after]) > reach(margin)) continue;
       offer(tool, grid.u.parameters[i], grid.v.parameters[j], levels_.sample(i * grid.columns() + j));
@@ -191,8 +191,8 @@ void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
   }
 }
 
-// Offers the nearest point of the last query. It is usually still almost the nearest, and then it prunes the
-// search.
+// Offers the nearest point of the last query. This point is usually still almost the nearest, so that the
+// search can skip most cells.
 void SurfaceCollider::offer_last(const Surface& surface, const ToolShape& tool) {
   best_ = {};
   best_.distance_m = std::numeric_limits<double>::infinity();
@@ -217,7 +217,8 @@ void SurfaceCollider::descend(const ToolShape& tool, double margin, CollisionRes
       }
     }
   }
-  // Visits cells breadth first, so that the best distance of a coarse level prunes the finer levels.
+  // Visits cells breadth first. The best distance found at a coarse level then allows more cells of the finer
+  // levels to be skipped.
   for (std::size_t at = 0; at < cells_.size(); ++at) visit_cell(tool, cells_[at], reach(margin), result);
 }
 
@@ -260,7 +261,7 @@ void SurfaceCollider::visit_cell(const ToolShape& tool, const LevelCell& cell, d
       cells_.push_back({i, j, cell.level + 1});
     }
   }
-  // The corners were offered when the cell was added.
+  // Only five of the 3 x 3 samples are new: the corners were offered when the cell was added.
   constexpr int between[5][2] = {{0, 1}, {1, 0}, {1, 1}, {1, 2}, {2, 1}};
   for (const auto& [in_u, in_v] : between) {
     const int i = cell.i + in_u * half, j = cell.j + in_v * half;
@@ -277,7 +278,7 @@ double SurfaceCollider::enough() const {
   return best >= 0.0 ? std::max(best - tolerance_, -touch_tolerance_m) : best - tolerance_;
 }
 
-// Searches by branch and bound below the finest samples, in a cell that may still contain a nearer point.
+// Searches a cell below the finest samples by branch and bound. The cell may still contain a nearer point.
 void SurfaceCollider::search_between_samples(const Surface& surface, const ToolShape& tool,
                                              const LevelCell& cell, bool& overflow) {
   if (is_cut(cell)) return search_trimmed_cell(surface, tool, cell);
@@ -339,12 +340,12 @@ void SurfaceCollider::polish(const Surface& surface, const ToolShape& tool) {
   } else {
     polish_analytic(surface, tool);
   }
-  // Newton's method may have ended in another region; then the previous point stays.
+  // If Newton's method ended in another region, the previous point is restored.
   if (region_ >= 0 && region_at(best_.u, best_.v) != region_) best_ = before;
 }
 
 // Improves the parameters of the best point by Newton's method. A step that does not decrease the distance is
-// halved. The gradient is used where the curvature has the wrong sign.
+// halved. Where the curvature has the wrong sign, the step follows the gradient.
 void SurfaceCollider::polish_analytic(const Surface& surface, const ToolShape& tool) {
   const bool sphere = tool.kind == ToolShape::Kind::sphere;
   SurfacePoint at = evaluate(surface, best_.u, best_.v);
@@ -363,7 +364,7 @@ void SurfaceCollider::polish_analytic(const Surface& surface, const ToolShape& t
     const double determinant = huu * hvv - huv * huv;
     double move_u = -(hvv * gu - huv * gv) / determinant, move_v = -(huu * gv - huv * gu) / determinant;
     if (!std::isfinite(move_u) || !std::isfinite(move_v)) return;
-    // A step whose gain is below rounding is not worth halving.
+    // If the expected gain of a step is below rounding, the step is not halved.
     const double gain = -(move_u * gu + move_v * gv) / towards.norm();
     const int tries = gain > least_gain_m ? 12 : 1;
     const double before = best_.distance_m;
@@ -378,7 +379,7 @@ void SurfaceCollider::polish_analytic(const Surface& surface, const ToolShape& t
 
 namespace {
 
-// Number of golden-section steps, which locate a minimum to 1e-4 of an edge's length.
+// Number of golden-section steps. They locate a minimum to 1e-4 of an edge's length.
 constexpr int golden_section_steps = 20;
 constexpr double golden_fraction = 0.6180339887498949;
 
@@ -415,7 +416,8 @@ void SurfaceCollider::offer_trim_edges(const Surface& surface, const ToolShape& 
   }
 }
 
-// Minimises the distance along the nearest edge, and along the edge that meets it at the nearest point.
+// Minimises the distance along the nearest trim loop edge, and along the edge that meets it at the nearest
+// point.
 void SurfaceCollider::minimise_on_edges(const Surface& surface, const ToolShape& tool,
                                         const TrimEdges& nearest) {
   for (const TrimmedArea::Edge* edge : {nearest.first, nearest.second}) {
@@ -447,8 +449,9 @@ void SurfaceCollider::minimise_on_edges(const Surface& surface, const ToolShape&
   }
 }
 
-// Searches a cell that trim loops cross; nothing is proven there. Newton's method starts from the cell's
-// centre, if the centre is not trimmed away and is nearer than the corners, samples and loops offered before.
+// Searches a cell that trim loops cross. The result is not proven to be the nearest. Newton's method starts
+// from the cell's centre if the centre is not trimmed away and is nearer than all corners, samples and loop
+// points offered before.
 void SurfaceCollider::search_trimmed_cell(const Surface& surface, const ToolShape& tool,
                                           const LevelCell& cell) {
   const Patch patch = whole_patch(cell);
@@ -480,12 +483,12 @@ bool SurfaceCollider::touches_trimmed_cell(const Surface& surface, const ToolSha
 
 namespace {
 
-// Limit of the patches cut in one query for regions.
+// Largest number of patches that are cut in one search for regions.
 constexpr int region_cut_capacity = 16000;
 
-// Range of cells of a region in one direction.
+// Range of a region's cells in one direction.
 struct CellRange {
-  int low, high;  // cell indices
+  int low, high;  // indices of the first and the last cell
 
   void widen(int cell) {
     low = std::min(low, cell);
@@ -517,7 +520,8 @@ int SurfaceCollider::region_at(double u, double v) const {
   return touched_at_[index] == query_ ? touched_[touched_index_[index]].region : -1;
 }
 
-// Cuts patches until a corner touches or no patch can touch the tool.
+// Returns true if the tool touches the surface in a cell. Cuts patches until a corner touches the tool or no
+// patch can touch it.
 bool SurfaceCollider::touches(const Surface& surface, const ToolShape& tool, const LevelCell& cell) {
   if (is_cut(cell)) return touches_trimmed_cell(surface, tool, cell);
   patches_.clear();
@@ -549,7 +553,7 @@ void SurfaceCollider::find_touched_cells(const Surface& surface, const ToolShape
   }
 }
 
-// Appends to grouped_ all cells that are connected with the first one, also across a seam.
+// Appends to grouped_ all touched cells that are connected with the cell `first`, also across a seam.
 void SurfaceCollider::join_neighbours(int first, int region) {
   const Grid& grid = levels_.nested().grid;
   std::size_t next = grouped_.size();

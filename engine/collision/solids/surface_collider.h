@@ -1,6 +1,6 @@
 // Contact of a tool with one B-spline surface, which may be trimmed, through levels of detail of its blending
-// matrices (section 4.1 of Pungotra et al. 2013). Coarse samples with spheres that cover their patches are
-// refined where a sphere meets the tool. The nearest point is then polished on the exact surface.
+// matrices (section 4.1 of Pungotra et al. 2013). A sphere around each coarse cell covers its patch; cells
+// whose sphere meets the tool are refined. The nearest point is then polished on the exact surface.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ class TrimmedLevels {
 
   // Returns true if the cell, of any level, is entirely trimmed away.
   bool is_trimmed_away(const LevelCell& cell) const;
-  // Returns true if trim loops cross the cell, which must be of the finest level.
+  // Returns true if trim loops cross the cell, which must be at the finest level.
   bool is_cut(const LevelCell& cell) const {
     return cells_.state(cell.i, cell.j) == TrimmedCells::State::cut;
   }
@@ -41,28 +41,30 @@ class TrimmedLevels {
   std::shared_ptr<const TrimmedArea> area_;
   TrimmedCells cells_;
   std::vector<std::uint8_t> present_samples_;
-  std::vector<int> present_;  // summed area table of the finest cells that are not trimmed away
+  std::vector<int> present_;  // number of finest cells that are not trimmed away, as a summed area table
 };
 
-// A sample of the finest level within the margin of the tool.
+// A sample of the finest grid that is within the margin of the tool.
 struct NearSample {
-  int index = 0;            // into the grid
-  double distance_m = 0.0;  // signed distance to the tool; negative inside it
+  int index = 0;            // index of the sample in the grid
+  double distance_m = 0.0;  // signed distance from the tool; negative inside it
 };
 
-// Largest number of patches that one search cuts between samples, which bounds the time of a tick. A crumpled
-// surface would otherwise be cut down everywhere to the size of the tolerance.
+// Largest number of patches that one search cuts between samples. It bounds the time of a tick: a crumpled
+// surface would otherwise be cut everywhere into patches as small as the tolerance.
 inline constexpr int surface_cut_limit = 20000;
 
 // Result of SurfaceCollider::collide().
 struct CollisionResult {
-  bool found = false;  // the surface is within the margin or encloses the tool, with a tolerance of 1e-6 m
-  // Deepest contact, valid if found. No point is deeper by more than 2e-5 m, or 5e-5 m for a non-convex solid
-  // of unknown concavity.
+  // True if the surface is within the margin or encloses the tool, with a tolerance of 1e-6 m.
+  bool found = false;
+  // Deepest contact, valid if `found` is true. No point is deeper by more than 2e-5 m, or 5e-5 m for a
+  // non-convex solid of unknown concavity.
   SurfaceContact nearest;
-  bool overflow = false;  // a capacity was exceeded; `nearest` is the best of the part that was searched
+  // A capacity was exceeded; `nearest` is the best contact in the part that was searched.
+  bool overflow = false;
   int samples_evaluated = 0;
-  int cuts = 0;  // patches cut between samples, at most surface_cut_limit
+  int cuts = 0;  // number of patches cut between samples, at most surface_cut_limit
 };
 
 // Guaranteed distance between a tool and the surface: three quarters of the nearest distance, or 0 if they
@@ -80,35 +82,35 @@ class SurfaceCollider {
  public:
   // The optional `trim` restricts the surface to the trimmed area. Nearest points on trim loops are points of
   // the polygons that replace the loops. In cells that loops cross, the nearest point is the best that
-  // Newton's method finds from samples and loops, without proof.
+  // Newton's method finds from samples and loops; it is not proven to be the nearest.
   explicit SurfaceCollider(const NestedGrid& nested, std::shared_ptr<const TrimmedArea> trim = nullptr);
 
   // Finds the deepest contact within `margin_m`. The surface must have the grid's knots. `closed` is true if
-  // the surface bounds a body, which may contain the tool; the depth is then the distance by which the tool
-  // leaves the body along the nearest wall's normal. Afterwards, near_samples() returns the samples within
-  // the margin. `samples` are optional, see SurfaceLevels::begin().
+  // the surface bounds a body, which may contain the tool. The depth is then the distance by which the tool
+  // leaves the body along the normal of the nearest wall. Afterwards, near_samples() returns the samples
+  // within the margin. `samples` are optional, see SurfaceLevels::begin().
   CollisionResult collide(const Surface& surface, const ToolShape& tool, double margin_m, bool closed,
                           const PlanarPoints& samples = {});
 
-  // Finds every region of the surface that the tool touches, deepest first. Call after collide() with the
-  // same surface and tool. The result is valid until the next call of a member function.
+  // Finds every region of the surface that the tool touches, deepest first. Must be called after collide()
+  // with the same surface and tool. The result is valid until the next call of a member function.
   const std::vector<ToolContactRegion>& find_contact_regions(const Surface& surface, const ToolShape& tool);
-  // True if the last find_contact_regions() exceeded a capacity, so that regions or parts of them may be
-  // missing.
+  // Returns true if the last find_contact_regions() exceeded a capacity, so that regions or parts of them may
+  // be missing.
   bool regions_overflow() const { return regions_overflow_; }
 
   // Returns a lower bound of the distance between the tool and the surface. A tool inside a closed surface
-  // counts as apart unless it touches the wall.
+  // counts as separate from it unless it touches the wall.
   Clearance clearance(const Surface& surface, const ToolShape& tool);
 
   const std::vector<NearSample>& near_samples() const { return near_; }
 
-  // Levels of the surface, for tests and overlays after collide().
+  // Returns the levels of the surface. For tests and overlays, after collide().
   SurfaceLevels& levels() { return levels_; }
-  // Cells visited by the last search, level by level. The children of a refined cell are contiguous, in the
-  // order of the refined cells.
+  // Returns the cells that the last search visited, level by level. The children of a refined cell are
+  // consecutive, in the order of the refined cells.
   const std::vector<LevelCell>& visited_cells() const { return cells_; }
-  // Refined cells of the finest level, in the order of visited_cells().
+  // Returns the finest cells that may be within reach of the tool, in the order of visited_cells().
   const std::vector<LevelCell>& finest_cells() const { return finest_; }
 
  private:
@@ -118,7 +120,7 @@ class SurfaceCollider {
     int element_u, element_v, depth;
   };
 
-  // Goal of a search: the deepest contact within the tolerance, or a clearance.
+  // Goal of a search: the deepest contact within the tolerance, or a guaranteed clearance.
   enum class Proof { deepest, clearance };
 
   // The private functions below must be called after SurfaceLevels::begin().
@@ -140,7 +142,7 @@ class SurfaceCollider {
   void update_best(const ToolShape& tool, double u, double v, const Vector3& point);
   bool is_trimmed_away(const LevelCell& cell) const { return trimmed_ && trimmed_->is_trimmed_away(cell); }
   bool is_cut(const LevelCell& cell) const { return trimmed_ && trimmed_->is_cut(cell); }
-  // The nearest edge of a trim loop, and the edge that meets it at the nearest point.
+  // The edge of a trim loop nearest to the tool, and the edge that meets it at the nearest point.
   struct TrimEdges {
     const TrimmedArea::Edge* first = nullptr;
     const TrimmedArea::Edge* second = nullptr;
@@ -166,32 +168,33 @@ class SurfaceCollider {
 
   SurfaceLevels levels_;
   std::shared_ptr<const TrimmedLevels> trimmed_;  // null if the surface is not trimmed
-  // Lower bounds of the tool's distance to the elements of each span of v and of u.
+  // Lower bounds of the tool's distance: one for the elements of each span of v, and one for those of each
+  // span of u.
   std::vector<double> column_bound_, row_bound_;
   std::vector<LevelCell> cells_, finest_;
   std::vector<Patch> patches_;
   std::vector<NearSample> near_;
-  std::vector<std::uint32_t> near_at_;  // query in which a sample was visited
+  std::vector<std::uint32_t> near_at_;  // number of the query that last visited each sample
   std::uint32_t query_ = 0;
   SurfaceSpot best_;
-  SurfaceSpot last_;       // best of the previous query
+  SurfaceSpot last_;       // best point of the previous query
   bool has_last_ = false;  // true after the first query
   bool moved_ = true;      // true if the surface moved since the boxes were updated
   Proof proof_ = Proof::deepest;
   double tolerance_ = 0.0;
   int cuts_left_ = 0;
 
-  // A finest cell that the tool touches. The cells of one region are contiguous in grouped_.
+  // A finest cell that the tool touches. The cells of one region are consecutive in grouped_.
   struct TouchedCell {
     LevelCell cell;
     int region;  // -1 until it is assigned
   };
   std::vector<TouchedCell> touched_;
-  std::vector<int> grouped_;               // indices into touched_
-  std::vector<int> touched_index_;         // indices into touched_, by finest_index()
-  std::vector<std::uint32_t> touched_at_;  // query in which the tool touched the cell
+  std::vector<int> grouped_;               // indices into touched_, grouped by region
+  std::vector<int> touched_index_;         // index into touched_ of each cell, by finest_index()
+  std::vector<std::uint32_t> touched_at_;  // number of the query in which the tool last touched each cell
   std::vector<ToolContactRegion> regions_;
-  int region_ = -1;  // region that the search must not leave; -1 for none
+  int region_ = -1;  // region that polishing must not leave; -1 for none
   bool regions_overflow_ = false;
 };
 

@@ -17,18 +17,19 @@ namespace {
 inline constexpr int max_faces = 6;
 
 struct FacePlane {
-  double value;  // value at the origin
+  double value;  // value of the plane at the origin
   Eigen::Vector2d slope;
 };
 
 struct MinimaxStep {
   Eigen::Vector2d step = Eigen::Vector2d::Zero();
   double value = 0.0;                       // value of the model at the step
-  std::array<double, max_faces> weights{};  // multipliers of the active planes, whose sum is 1
+  std::array<double, max_faces> weights{};  // Lagrange multipliers of the active planes; their sum is 1
 };
 
-// Computes min over s of max_i (value_i + slope_i . s) + s . quadratic s / 2 by trying which one, two or
-// three planes are active. The quadratic must be positive definite and `count` from 1 to max_faces.
+// Minimises max_i (value_i + slope_i . s) + s . quadratic s / 2 over s. Tries all sets of one, two or three
+// planes that may be active at the minimum. The quadratic must be positive definite and `count` from 1 to
+// max_faces.
 MinimaxStep minimise_largest(const std::array<FacePlane, max_faces>& planes, int count,
                              const Eigen::Matrix2d& quadratic);
 
@@ -42,8 +43,8 @@ double model(const Planes& planes, int count, const Matrix2d& quadratic, const V
   return largest + 0.5 * step.dot(quadratic * step);
 }
 
-// Search over candidates for the minimum. The whole model is evaluated at each candidate, so the least value
-// is the minimum.
+// Search for the minimum among candidates. The whole model is evaluated at each candidate, so the candidate
+// with the least value is the minimum.
 struct Search {
   const Planes& planes;
   int count;
@@ -107,7 +108,7 @@ MinimaxStep minimise_largest(const Planes& planes, int count, const Matrix2d& qu
 
 namespace {
 
-// Fraction of the other derivative's length below which a derivative has no direction.
+// Fraction of the other derivative's length. A derivative shorter than this has no reliable direction.
 constexpr double vanishing_fraction = 1e-9;
 
 }  // namespace
@@ -147,20 +148,22 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
 constexpr int max_contact_steps = 60, max_restarts = 2;
-// Smallest worthwhile gain of a step, as a fraction of the solid's size.
+// Smallest decrease of the distance by a step that is worthwhile, as a fraction of the solid's size.
 constexpr double least_depth_gain = 1e-12;
-// Half the interval of the gradient's central differences: a fraction of the solid's size, and its limit in
-// metres.
+// Distance of the two points of a central difference of the gradient from the point between them: a fraction
+// of the solid's size, and its largest value in metres.
 constexpr double difference_fraction = 1e-5, longest_difference_m = 1e-5;
-// Change of the gradient above which the interval counts as crossing an edge of the solid, where there is no
-// curvature.
+// Largest change of the gradient at which the difference is a curvature. At a larger change, an edge of the
+// solid is in between.
 constexpr double edge_change = 0.2;
-// Cosine above which two gradients belong to the same face, of which only one expansion is stored.
+// Smallest cosine between two gradients at which they belong to the same face. Only one expansion of a face
+// is stored.
 constexpr double same_face = 0.9995;
-// Least curvature times the solid's size, which bounds the step in flat directions.
+// Least curvature, multiplied by the solid's size. It limits the step in flat directions.
 constexpr double least_curvature = 1e-6;
 
-// Second order expansion of one face of the solid along the surface, around the parameters `at`.
+// Second-order expansion of the distance to one face of the solid, as a function of the surface parameters,
+// around `at`.
 struct ShapeFace {
   Vector2d at;
   double distance;
@@ -174,7 +177,8 @@ struct ShapeFace {
   }
 };
 
-// State of a descent. Parameters continue beyond a periodic seam, so that their differences stay small.
+// State of a descent. Its parameters may continue beyond a periodic seam, so that their differences stay
+// small.
 class Descent {
  public:
   Descent(const Surface& surface, const ToolShape& tool, const SurfaceSpot& from)
@@ -190,7 +194,8 @@ class Descent {
     for (int step = 0, restarts = 0; step < max_contact_steps; ++step) {
       const Step next = find_step();
       if (next.gain < least_depth_gain * size_ || !try_step(next.offset)) {
-        // Expansions made far away may block the step; without them, the descent may continue smoothly.
+        // Expansions from far away may block the step. They are dropped, and the descent may then continue
+        // smoothly.
         if (restarts++ == max_restarts || count_ == 1) break;
         drop_other_faces();
       }
@@ -201,11 +206,11 @@ class Descent {
 
  private:
   struct Step {
-    Vector2d offset;  // in parameters
+    Vector2d offset;  // change of the parameters
     double gain;
   };
 
-  // Evaluates the face at the parameters and stores it.
+  // Evaluates the expansion of the face at the parameters and stores it.
   void evaluate_face(const Vector2d& at) {
     const SurfacePoint point =
         evaluate(surface_, surface_.u.into_domain(at.x()), surface_.v.into_domain(at.y()));
@@ -222,7 +227,8 @@ class Descent {
     store_face(face, point.position_m);
   }
 
-  // Returns the change of the gradient per unit of a derivative, by central differences; zero across an edge.
+  // Returns the change of the gradient per unit of the parameter along a derivative, by central differences.
+  // Returns zero across an edge of the solid.
   Vector3 gradient_change(const Vector3& from, const Vector3& along) const {
     const double length = along.norm();
     if (!(length > 0.0)) return Vector3::Zero();
@@ -272,7 +278,7 @@ class Descent {
     count_ = 1;
   }
 
-  // Returns the weighted curvature of the faces, with lengths along du and dv as variables. Negative
+  // Returns the weighted mean curvature of the faces, with lengths along du and dv as variables. Negative
   // eigenvalues are replaced by their absolute values.
   Matrix2d quadratic() const {
     Matrix2d sum = Matrix2d::Zero();
@@ -286,7 +292,7 @@ class Descent {
     return eigen.eigenvectors() * curvatures.asDiagonal() * eigen.eigenvectors().transpose();
   }
 
-  // Returns true if a parameter is at an open end of its domain and the step would leave it.
+  // Returns true if a parameter is at an open end of its domain and the step would leave the domain.
   bool is_barred(int axis, double offset) const {
     const KnotVector& knots = axis == 0 ? surface_.u : surface_.v;
     if (knots.is_periodic()) return false;
@@ -300,8 +306,8 @@ class Descent {
     for (int k = 0; k < count_; ++k) {
       const ShapeFace& face = faces_[k];
       const Vector2d slope = face.slope + face.curvature * (at_ - face.at);
-      // The value of a face is limited to the distance, because the distance is the maximum over the faces
-      // wherever a minimum can be on an edge.
+      // The value of a face is at most the distance itself, because the distance is the maximum over the
+      // faces wherever a minimum can be on an edge.
       planes[k] = {k == current_ ? 0.0 : std::min(face.value(at_) - here, 0.0), scale.cwiseProduct(slope)};
     }
     Matrix2d curvature = quadratic();
@@ -319,8 +325,8 @@ class Descent {
     return {fraction * scale.cwiseProduct(found.step), -found.value};
   }
 
-  // Moves by the step, limited to the domain. Returns false if neither the distance decreased nor a new face
-  // was found.
+  // Moves by the step, but stays within the domain. Returns false if the distance did not decrease and no new
+  // face was found.
   bool try_step(const Vector2d& offset) {
     Vector2d there = at_ + offset;
     const KnotVector* knots[2] = {&surface_.u, &surface_.v};

@@ -1,4 +1,4 @@
-// A contact of a tool with a surface (position, frame and depth), and the local search for the surface's
+// Contact of a tool with a surface: its position, frame and depth. Also the local search for the surface's
 // deepest point in a solid.
 #pragma once
 
@@ -8,21 +8,22 @@
 
 namespace spoonbill {
 
-// A point of a surface and the tool's signed distance there.
+// A point of a surface, and the signed distance of the tool there.
 struct SurfaceSpot {
   double u = 0.0, v = 0.0;
   Vector3 point_m = Vector3::Zero();
   double distance_m = 0.0;
 };
 
-// Descends from `from` to a local minimum of the distance over the surface; the result is never farther than
-// `from`. If several faces of the solid are equally near (an edge, an inner ridge), it keeps each face's
-// second order expansion. Each step minimises the maximum of these expansions: a bundle-Newton method (Luksan
-// and Vlcek 1998) in two unknowns. The tool must be a solid. Allocates nothing.
+// Descends from `from` to a local minimum of the distance over the surface. The result is never farther from
+// the solid than `from`. If several faces of the solid are equally near (at an edge, or on an inner ridge),
+// the second-order expansion of each face is kept. Each step minimises the maximum of these expansions: a
+// bundle-Newton method (Luksan and Vlcek 1998) in two unknowns. The tool must be a solid. Allocates nothing.
 SurfaceSpot polish_on_solid(const Surface& surface, const ToolShape& tool, const SurfaceSpot& from);
 
-// Unit tangents spanning the plane across a unit normal: the projection of du and normal x u. Where du
-// vanishes, as at a pole, dv is used instead, or the normal alone if dv vanishes too.
+// Unit tangents that span the plane perpendicular to a unit normal: the direction of du projected onto this
+// plane, and normal x u. Where du vanishes, as at a pole, dv replaces it. If dv vanishes too, u is any
+// direction in the plane.
 struct Tangents {
   Vector3 u = Vector3::UnitX(), v = Vector3::UnitZ();
 };
@@ -31,10 +32,10 @@ Tangents tangents_across(const Vector3& normal, const SurfacePoint& at);
 // Position, frame and depth of a contact on a surface.
 struct SurfaceContact {
   double u = 0.0, v = 0.0;
-  Vector3 point_m = Vector3::Zero();  // on the surface
-  Vector3 normal = Vector3::UnitY();  // unit, along du x dv
-  double depth_m = 0.0;               // depth of the tool inside the surface; negative if they are apart
-  Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();  // tangents_across() the normal
+  Vector3 point_m = Vector3::Zero();  // point on the surface
+  Vector3 normal = Vector3::UnitY();  // unit normal along du x dv
+  double depth_m = 0.0;               // depth of the tool inside the surface; negative if the tool is outside
+  Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();  // tangents_across() of the normal
 };
 
 // A connected part of the surface that a tool touches.
@@ -45,7 +46,7 @@ struct ToolContactRegion {
 
 inline constexpr int tool_region_capacity = 64;
 
-// Makes the contact at a spot; the depth is the negative of its distance.
+// Makes the contact at a spot. Its depth is the negative of the spot's distance.
 SurfaceContact contact_at(const Surface& surface, const SurfaceSpot& spot);
 
 }  // namespace spoonbill

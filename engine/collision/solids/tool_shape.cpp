@@ -24,8 +24,9 @@ CornerValues tangent_at_corners(const DistanceSample& sample, const Vector3& fro
   return values;
 }
 
-// Returns the largest minimum over the corners that a mixture of two tangents reaches; this minimum is a
-// concave function of the mixing fraction.
+// Returns a lower bound from two linear bounds, given by their values at the corners. A mixture of both is a
+// bound, too; its least value at the corners is a concave function of the mixing fraction. Returns the
+// largest such value.
 double best_mix(const CornerValues& a, const CornerValues& b) {
   double low = 0.0, high = 1.0;
   const auto mixed = [&](double fraction) {
@@ -33,7 +34,7 @@ double best_mix(const CornerValues& a, const CornerValues& b) {
     for (int k = 0; k < 4; ++k) values[k] = a[k] + fraction * (b[k] - a[k]);
     return least(values);
   };
-  // The best fraction is 0, 1 or one at which two corners have equal values.
+  // The best fraction is 0, 1 or a fraction at which two corners have equal values.
   double best = std::max(mixed(low), mixed(high));
   for (int i = 0; i < 4; ++i) {
     for (int k = i + 1; k < 4; ++k) {
@@ -45,10 +46,10 @@ double best_mix(const CornerValues& a, const CornerValues& b) {
   return best;
 }
 
-// Returns a lower bound of the distance of a solid. A convex solid is no nearer than any of its tangents or a
-// mixture of two, which matters at its edges. The minimum of a tangent over the corners' hull is at a corner.
-// For other solids a tangent may be too large by half the concavity times the squared distance; the bound by
-// the distance moved always holds.
+// Returns a lower bound of the distance from a patch's corners to a solid. The distance of a convex solid is
+// nowhere below a tangent or a mixture of two tangents; mixtures matter at the solid's edges. Over the hull
+// of the corners, a tangent is lowest at a corner. For other solids, a tangent is lowered by half the
+// concavity times the squared distance. The distance at the centre minus the radius is always a bound.
 double solid_bound(const ToolShape& tool, const PatchCorners& corners, double enough) {
   const Vector3 centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
   double radius = 0.0;
@@ -61,7 +62,7 @@ double solid_bound(const ToolShape& tool, const PatchCorners& corners, double en
     at_centre = tangent_at_corners(sample, centre, corners);
     return std::max(ball, least(at_centre) - 0.5 * concavity * radius * radius);
   };
-  // A cheap bounding plane is often enough.
+  // The distance to any bounding plane is cheap and often enough.
   double bound = bound_by(tool.at_within(centre, -infinity));
   if (bound >= enough || concavity > 0.0) return bound;
   bound = std::max(bound, bound_by(tool.at(centre)));
@@ -97,9 +98,9 @@ double lower_bound(const ToolShape& tool, const Box& box) {
   return tool.distance(foremost);
 }
 
-// A bilinear patch is in the hull of its corners, and the surface within `bulge` of it. Along a direction no
-// point of a hull is nearer than its foremost corner. Unlike the bound by a ball, the error is quadratic in
-// the patch's size, so few patches are cut again.
+// A bilinear patch is inside the hull of its corners, and the surface within `bulge` of the patch. Along any
+// direction, no point of the hull is nearer than the nearest corner. The error of this bound is quadratic in
+// the patch's size, unlike that of a ball around the patch, so few patches must be cut further.
 double lower_bound(const ToolShape& tool, const PatchCorners& corners, double bulge, double enough) {
   SPOONBILL_ASSERT_DEBUG(bulge >= 0.0);
   if (tool.is_solid()) return solid_bound(tool, corners, enough + bulge) - bulge;
@@ -112,13 +113,14 @@ double lower_bound(const ToolShape& tool, const PatchCorners& corners, double bu
   }
   double foremost = infinity;
   for (const Vector3& corner : corners) foremost = std::min(foremost, direction.dot(corner - tool.centre_m));
-  // The direction gives no useful bound for corners behind the centre, but the distance to the centre is
-  // never negative.
+  // If the corners are behind the tool's centre along the direction, the bound is negative. The distance from
+  // the centre is never negative, so the bound is raised to 0.
   if (tool.kind == ToolShape::Kind::sphere) foremost = std::max(foremost, 0.0);
   return foremost - tool.radius_m - bulge;
 }
 
-// From a point far away in a direction, the nearest point of a solid is its extreme point in that direction.
+// Seen from a point far away in a direction, the nearest point of a solid is its extreme point in that
+// direction.
 double depth_behind(const ToolShape& tool, const Vector3& point, const Vector3& normal) {
   SPOONBILL_ASSERT_DEBUG(std::abs(normal.squaredNorm() - 1.0) < 1e-6);
   if (tool.kind == ToolShape::Kind::half_space) return infinity;

@@ -1,5 +1,5 @@
-// Tool shapes as signed distances, negative inside the tool, and lower bounds of the distance over boxes and
-// patches.
+// Tool shapes with their signed distances, which are negative inside the tool, and lower bounds of the
+// distance over boxes and patches.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,9 +12,9 @@
 
 namespace spoonbill {
 
-// A tool of one of three kinds. A sphere is centred on `centre_m`, and is a point if its radius is 0. A
-// half-space is behind the plane through `centre_m` with the unit normal `normal`. A solid has its frame at
-// `centre_m`, rotated by `turn`.
+// A tool of one of three kinds. A sphere is centred at `centre_m`; with a radius of 0 it is a point. A
+// half-space is behind the plane through `centre_m` with the unit normal `normal`. A solid has its own frame,
+// whose origin is at `centre_m` and which is rotated by `turn`.
 struct ToolShape {
   enum class Kind { sphere, half_space, solid };
   Kind kind = Kind::sphere;
@@ -39,11 +39,12 @@ struct ToolShape {
     tool.normal = normal;
     return tool;
   }
-  // The solid must outlive the tool.
+  // Makes a tool from a solid, which must outlive the tool.
   static ToolShape solid(const SignedDistance& distance_field, const Pose& pose) {
     return solid(distance_field, pose.position_m, pose.orientation.normalized().toRotationMatrix());
   }
-  // `turn` must be orthogonal and may mirror the frame. The solid must outlive the tool.
+  // Makes a tool from a solid, which must outlive the tool. `turn` must be orthogonal and may mirror the
+  // frame.
   static ToolShape solid(const SignedDistance& distance_field, const Vector3& centre_m,
                          const Eigen::Matrix3d& turn) {
     ToolShape tool;
@@ -56,8 +57,8 @@ struct ToolShape {
 
   bool is_solid() const { return kind == Kind::solid; }
 
-  // Returns the signed distance. It changes by at most the distance moved, so its value at the centre of a
-  // ball, minus the radius, is a lower bound within the ball.
+  // Returns the signed distance from a point. When the point moves, it changes by at most the distance moved.
+  // The value at the centre of a ball, minus the radius, is therefore a lower bound within the ball.
   double distance(const Vector3& point) const {
     if (is_solid()) return distance_field->at(into_frame(point)).distance_m;
     return kind == Kind::sphere ? (point - centre_m).norm() - radius_m : normal.dot(point - centre_m);
@@ -69,13 +70,14 @@ struct ToolShape {
     return is_solid() ? distance_field->at_within(into_frame(point), enough).distance_m : distance(point);
   }
 
-  // Returns true if no point of a ball is within `reach`, which must not be negative.
+  // Returns true if no point of a ball is within `reach` of the tool; `reach` must not be negative.
   bool is_beyond(const Vector3& centre, double radius, double reach) const {
     return is_solid() ? distance_field->is_beyond(into_frame(centre), reach + radius)
                       : distance(centre) - radius > reach;
   }
 
-  // Returns distance and gradient in the world frame. Only for a solid. See SignedDistance::at_within().
+  // Returns the distance and its gradient in the world frame, as SignedDistance::at_within() does. The tool
+  // must be a solid.
   DistanceSample at_within(const Vector3& point, double enough) const {
     const DistanceSample sample = distance_field->at_within(into_frame(point), enough);
     return {sample.distance_m, turn * sample.gradient};
@@ -90,12 +92,13 @@ struct ToolShape {
 // Returns a lower bound of the tool's distance over a box, in metres.
 double lower_bound(const ToolShape& tool, const Box& box);
 
-// Returns a lower bound of the tool's distance over a patch that deviates from the bilinear patch of its
-// corners by at most `bulge`, in metres. The bound is not improved once it is at least `enough`.
+// Returns a lower bound, in metres, of the tool's distance over a patch of a surface. The surface deviates
+// from the bilinear patch of the corners by at most `bulge`. A bound of at least `enough` is not improved
+// further.
 double lower_bound(const ToolShape& tool, const PatchCorners& corners, double bulge, double enough);
 
-// Returns the distance by which the tool must move along the unit normal to be in front of the plane through
-// `point`, in metres. Infinite if the tool is unbounded. Exact to 1e-5 of the tool's size.
+// Returns the distance, in metres, by which the tool must move along the unit normal until it is in front of
+// the plane through `point`. Infinite if the tool is unbounded. Exact to 1e-5 of the tool's size.
 double depth_behind(const ToolShape& tool, const Vector3& point, const Vector3& normal);
 
 }  // namespace spoonbill

@@ -13,11 +13,12 @@ namespace spoonbill {
 
 namespace {
 
-// Number of grid steps along the longest side of the box of the points. With this number a volume, which is a
-// sum of six products of three differences, stays below 2^63.
+// Number of grid steps along the longest side of the points' box. With this number, six times the volume of a
+// tetrahedron, a sum of six products of three differences, stays below 2^63.
 constexpr double steps_a_side = 1 << 20;
 
-// Bend below which an edge is omitted, because the triangulation of nearly flat sides depends on rounding.
+// Smallest bend at which an edge of the hull is drawn. Edges within nearly flat sides are omitted, because
+// they depend on rounding.
 constexpr double least_bend_rad = 0.5 * std::numbers::pi / 180.0;
 
 using Steps = Eigen::Matrix<std::int64_t, 3, 1>;
@@ -41,8 +42,8 @@ std::vector<Steps> round_points(const std::vector<Vector3>& points_m) {
   return steps;
 }
 
-// Incremental convex hull. A point in the plane of a triangle counts as not seeing the triangle, as if the
-// point were slightly inside. The border of the visible triangles is therefore one closed loop.
+// Incremental convex hull. A point in the plane of a triangle does not see the triangle, as if it were
+// slightly inside. The border of the visible triangles is therefore one closed loop.
 class HullBuilder {
  public:
   explicit HullBuilder(const std::vector<Steps>& points) : points_(points) {}
@@ -55,15 +56,15 @@ class HullBuilder {
  private:
   struct Plane {
     HullFace face;
-    Steps normal;  // outward normal
+    Steps normal;  // outward normal, not normalised
   };
 
   Steps face_normal(const HullFace& face) const {
     const Steps& a = points_[face[0]];
     return (points_[face[1]] - a).cross(points_[face[2]] - a);
   }
-  // Six times the volume of the tetrahedron of the triangle and the point, positive if the point sees the
-  // triangle.
+  // Returns six times the volume of the tetrahedron of the triangle and the point. It is positive if the
+  // point sees the triangle.
   std::int64_t volume(const Plane& plane, int point) const {
     return plane.normal.dot(points_[point] - points_[plane.face[0]]);
   }
@@ -84,7 +85,7 @@ int HullBuilder::farthest(const Measure& measure) const {
   return best;
 }
 
-// Makes a tetrahedron of distant points. Returns false if all points are in one plane.
+// Makes the first tetrahedron, from points far apart. Returns false if all points are in one plane.
 bool HullBuilder::start() {
   const auto offset = [&](int a, int b) -> Eigen::Vector3d {
     return (points_[b] - points_[a]).cast<double>();
@@ -158,8 +159,8 @@ void add_hull(const ControlNet& net, ContactStages& stages) {
   }
 }
 
-// A bilinear patch deviates most from its triangles at its centre: by a quarter of the corners' deviation
-// from a parallelogram.
+// A bilinear patch deviates most from its two triangles at its centre. This deviation is a quarter of the
+// corners' deviation from a parallelogram.
 double triangle_slack(SurfaceLevels& levels, const LevelCell& cell) {
   const PatchCorners at = levels.corners(cell);
   return levels.bulge(cell) + 0.25 * (at[0] + at[3] - at[1] - at[2]).norm();

@@ -1,6 +1,6 @@
-// Stages in which a contact is found (section 4.1 of Pungotra et al. 2013), as data for drawing: hulls of
-// control points, parameter ranges, spheres by level, triangles and contact points. They are computed on the
-// drawing thread, not in the tick, and may allocate.
+// Stages of a contact search (section 4.1 of Pungotra et al. 2013) as data for drawing: hulls of control
+// points, parameter ranges, spheres by level, triangles and contact points. They are computed on the drawing
+// thread, not in the tick, and may allocate.
 #pragma once
 
 #include <array>
@@ -22,19 +22,20 @@ struct HullFacets {
   std::vector<std::array<int, 2>> edges;      // edges where the hull bends by more than half a degree
 };
 
-// Builds the hull of points rounded to a grid of 2^20 steps along their box's longest side, so that the signs
-// of volumes are exact. The points are outside it by less than one step. Empty if they are in one plane,
-// fewer than four or not finite.
+// Builds the convex hull of points that are rounded to a grid, so that the signs of volumes are exact. The
+// grid has 2^20 steps along the longest side of the points' box. The points are less than one step outside
+// the hull. The hull is empty if there are fewer than four points, if all are in one plane or if one is not
+// finite.
 //
 // The time is proportional to points times triangles, up to half a second for the largest control nets. Any
 // thread.
 HullFacets hull_facets(const std::vector<Vector3>& points_m);
 
-// Finest level of the displayed spheres. Beyond the finest level of its own grid, the contact search cuts
-// patches into four, as these levels do.
+// Finest level of the spheres that are drawn. Beyond the finest level of its own grid, the contact search
+// cuts patches into four, as the levels drawn do.
 inline constexpr int finest_stage_level = 3;
 
-// Largest number of stored items of each kind; ContactStages::overflow is set beyond it.
+// Largest number of stored items of each kind. If there are more, ContactStages::overflow is set.
 inline constexpr std::size_t stage_capacity = 1 << 14;
 
 // A line segment.
@@ -46,13 +47,14 @@ struct StageLine {
 struct StageSphere {
   CoverSphere cover;
   LevelCell cell;
-  int surface = 0;         // index over all surfaces of the stages
-  bool is_second = false;  // on the second of two surfaces
-  bool kept = false;       // true: refined, or triangulated at the last level; false: dropped
+  int surface = 0;         // index over all surfaces in the stages
+  bool is_second = false;  // true for the second of two surfaces
+  // True if the cell was refined or, at the last level, triangulated; false if it was dropped.
+  bool kept = false;
 };
 
-// One of the two triangles of a cell of the last level. It is stored if it may meet the other body, allowing
-// for the surface's deviation from the triangle.
+// One of the two triangles of a cell of the last level. A triangle is stored if the surface near it may meet
+// the other body.
 struct StageTriangle {
   Triangle corners;
   LevelCell cell;
@@ -62,15 +64,15 @@ struct StageTriangle {
 // A contact point.
 struct StageContact {
   SurfaceContact at;
-  bool is_deepest = false;  // deepest point of its region
+  bool is_deepest = false;  // true for the deepest point of a region
 };
 
 // All stages of one or more contact searches.
 struct ContactStages {
-  std::vector<StageLine> hulls;   // edges of the hulls
-  std::vector<StageLine> ranges;  // borders of the elements within the parameter ranges
+  std::vector<StageLine> hulls;   // edges of the convex hulls
+  std::vector<StageLine> ranges;  // borders of the elements within the parameter ranges that may meet
   int elements = 0, elements_within = 0;
-  std::vector<StageSphere> spheres;  // level by level for each surface
+  std::vector<StageSphere> spheres;  // for each surface, level by level
   std::vector<StageTriangle> triangles;
   int triangles_tested = 0;
   std::vector<StageContact> contacts;
@@ -81,8 +83,8 @@ struct ContactStages {
 // Adds the edges of the convex hull of the control points, which contains the surface.
 void add_hull(const ControlNet& net, ContactStages& stages);
 
-// Returns an upper bound of the distance between the surface over a finest cell and the cell's two triangles,
-// in metres.
+// Returns an upper bound, in metres, of the distance between the surface over a finest cell and the two
+// triangles of that cell.
 double triangle_slack(SurfaceLevels& levels, const LevelCell& cell);
 // Returns the two triangles of a cell with the given corners.
 std::array<Triangle, 2> cell_triangles(const PatchCorners& corners);
@@ -97,7 +99,8 @@ void append(Item item, std::vector<Item>& items, ContactStages& stages) {
   items.push_back(std::move(item));
 }
 
-// Set of elements of one surface. One owner, one thread. The levels must outlive it and have begun a query.
+// A set of elements of one surface, for drawing their borders. One owner, one thread. The levels must outlive
+// it and have begun a query.
 class ElementMarks {
  public:
   explicit ElementMarks(SurfaceLevels& levels)
@@ -118,7 +121,7 @@ class ElementMarks {
       }
     }
   }
-  // Adds the borders of the marked elements and the numbers of elements.
+  // Adds the borders and the number of the marked elements to the stages.
   void add_to(ContactStages& stages) const;
 
  private:
@@ -129,8 +132,8 @@ class ElementMarks {
     if (row < 0 || row >= rows_ || column < 0 || column >= columns_) return false;
     return within_[static_cast<std::size_t>(row * columns_ + column)] != 0;
   }
-  // Adds one side of an element as a line through its samples from (i, j), with the given step in rows and
-  // columns.
+  // Adds one side of an element as a line. The line connects the element's samples from (i, j) on, with the
+  // given step in rows or columns.
   void add_border(int i, int j, int row_step, int column_step, ContactStages& stages) const;
 
   SurfaceLevels& levels_;

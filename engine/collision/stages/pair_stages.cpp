@@ -28,7 +28,7 @@ void PairStages::add(const Surface& first, const Surface& second, double margin_
   query.first_closed = first_closed;
   query.second_closed = second_closed;
   query.reach_m = margin_m;
-  // A new collider starts without the contacts of an earlier call, so the stages are complete.
+  // A new collider does not start from the contacts of an earlier call, so that all stages are passed.
   collider_ = std::make_unique<SurfacePairCollider>(*first_, *second_);
   const PairResult result = collider_->collide(first, second, query);
   stages.overflow |= result.overflow;
@@ -78,8 +78,8 @@ std::vector<LevelCell> PairStages::add_level(SurfaceLevels& levels, const std::v
   return finer;
 }
 
-// Adds the parameter ranges, and the spheres level by level. Returns the last level whose pairs fit the
-// capacity.
+// Adds the parameter ranges and, level by level, the spheres. Returns the last level whose number of pairs is
+// within the capacity.
 int PairStages::add_spheres(double margin_m, int first_surface, ContactStages& stages) {
   SurfaceLevels* const levels[2] = {&collider_->first_levels(), &collider_->second_levels()};
   CellPairs& pairs = collider_->cell_pairs();
@@ -117,7 +117,7 @@ int PairStages::add_spheres(double margin_m, int first_surface, ContactStages& s
 void PairStages::add_triangles(const std::vector<CellPair>& pairs, double margin_m, int first_surface,
                                ContactStages& stages) {
   SurfaceLevels* const levels[2] = {&collider_->first_levels(), &collider_->second_levels()};
-  // Marks of each triangle of each cell: 1 if it was tested, 2 if it was kept.
+  // One mark for each triangle of each cell: 1 if it was tested, 2 if it was kept.
   Marks marks[2];
   for (int side = 0; side < 2; ++side) {
     marks[side].assign(static_cast<std::size_t>(2 * levels[side]->total_cell_count()), 0);

@@ -12,20 +12,21 @@
 
 namespace spoonbill {
 
-// Records the stages of a SurfacePairCollider. It shows the sphere of each visited cell, but the collider
-// drops cells by their slabs, which are tighter, so spheres of dropped cells may still meet. One owner, one
-// thread. Surfaces given to add() must have the knots of those given to make().
+// Records the stages of a SurfacePairCollider. The sphere of each visited cell is recorded, but the collider
+// drops cells by their slabs, which are tighter. The spheres of dropped cells may therefore still meet. One
+// owner, one thread. Surfaces given to add() must have the knots of those given to make().
 class PairStages {
  public:
   static Result<PairStages> make(const Surface& first, const Surface& second);
 
-  // Adds the stages of a contact search up to `margin_m`; `first_closed` and `second_closed` as in PairQuery.
+  // Adds the stages of a contact search up to `margin_m`. `first_closed` and `second_closed` have the meaning
+  // of those in PairQuery.
   void add(const Surface& first, const Surface& second, double margin_m, bool first_closed,
            bool second_closed, ContactStages& stages);
 
  private:
   PairStages(NestedGrid first, NestedGrid second);
-  // Flags by SurfaceLevels::cell_index().
+  // Flags of cells, indexed by SurfaceLevels::cell_index().
   using Marks = std::vector<std::uint8_t>;
   static std::vector<LevelCell> add_level(SurfaceLevels& levels, const std::vector<LevelCell>& visited,
                                           const Marks& kept, int surface, bool is_second,
@@ -36,7 +37,7 @@ class PairStages {
   void add_triangles(const std::vector<CellPair>& pairs, double margin_m, int first_surface,
                      ContactStages& stages);
 
-  std::unique_ptr<NestedGrid> first_, second_;     // on the heap, because the collider stores the addresses
+  std::unique_ptr<NestedGrid> first_, second_;     // on the heap, because the collider stores their addresses
   std::unique_ptr<SurfacePairCollider> collider_;  // collider of the last add()
   std::unique_ptr<SurfaceProximity> proximity_;
 };

@@ -10,11 +10,11 @@
 namespace spoonbill {
 namespace {
 
-// Number of times a triangle is cut into four before it counts as near.
+// Number of times that a triangle is cut into four parts before it counts as within reach.
 constexpr int triangle_cuts = 6;
 
-// Tests balls around the triangle and its parts. Returns false only if no point of the triangle is within
-// reach.
+// Returns false only if no point of the triangle is within reach. Tests balls around the triangle and around
+// its parts.
 bool is_within(const ToolShape& tool, const Triangle& triangle, double reach_m, int cuts) {
   const auto& [a, b, c] = triangle;
   const Vector3 centre = (a + b + c) / 3.0;
@@ -41,7 +41,7 @@ ToolStages::ToolStages(NestedGrid nested) : nested_(std::make_unique<NestedGrid>
 void ToolStages::add(const Surface& surface, const ToolShape& tool, double margin_m, bool closed,
                      ContactStages& stages, std::shared_ptr<const TrimmedArea> trim) {
   SPOONBILL_ASSERT(margin_m >= 0.0);
-  // A new collider starts without the contact of an earlier call, so the stages are complete.
+  // A new collider does not start from the contact of an earlier call, so that all stages are passed.
   collider_ = std::make_unique<SurfaceCollider>(*nested_, std::move(trim));
   const CollisionResult result = collider_->collide(surface, tool, margin_m, closed);
   stages.overflow |= result.overflow;

@@ -13,8 +13,8 @@
 namespace spoonbill {
 namespace {
 
-// Fraction of the radius below which the outward component of a ring's points counts as rounding, so that the
-// ring counts as flat.
+// Fraction of the radius. If the outward component of a ring's points is smaller, it counts as rounding and
+// the ring as flat.
 constexpr double flat_fraction = 1e-9;
 
 Status check_poles(const Surface& surface) {
@@ -46,8 +46,8 @@ Status check_thickness(const Surface& surface) {
                "surface: encloses no volume halfway along v; a body must be thick everywhere");
 }
 
-// Checks the sign of the enclosed volume. The normals of a single ring do not suffice, because a ring of a
-// hollow body may be on its inner wall, where the normals point toward the axis.
+// Checks the sign of the enclosed volume. The normals of a single ring would not suffice: a ring of a hollow
+// body may be on its inner wall, where the normals point toward the axis.
 Status check_outward(const Surface& surface) {
   const double volume = enclosed_volume_m3(make_skin(surface));
   if (volume > 0.0) return {};
@@ -58,7 +58,7 @@ Status check_outward(const Surface& surface) {
   return Error(ErrorCode::degenerate, "surface: encloses no volume; a body must be thick everywhere");
 }
 
-// Skips triangles without area, which occur beside a pole.
+// Adds a triangle to the skin, unless it has no area, as beside a pole.
 void add_triangle(ClosedSkin& skin, const TriangleCorners& corners, const std::array<double, 2>& centre) {
   const std::vector<Vector3>& at = skin.mesh.vertices_m;
   const Vector3& first = at[corners[0]];

@@ -18,8 +18,8 @@ Status check_closed_tube(const Surface& surface);
 // normals.
 Status check_closed(const Surface& surface);
 
-// Triangles between samples of a surface that closes as check_closed() requires, with normals in either
-// direction. Points that coincide over a seam or at a pole are one vertex.
+// Triangles between samples of a surface that closes as check_closed() requires; its normals may point in
+// either direction. Points that coincide across a seam or at a pole are one vertex.
 struct ClosedSkin {
   TriangleMesh mesh;
   std::vector<double> u, v;                             // parameters of each vertex; u is arbitrary at a pole
@@ -28,12 +28,12 @@ struct ClosedSkin {
 // Samples a closed surface at its skin_parameters().
 ClosedSkin make_skin(const Surface& surface);
 
-// Approximate number of samples in each direction of skin_parameters(). Each element gets two to eight
-// samples, so a surface of many elements has more samples than this, and a surface of few elements fewer.
+// Approximate number of parameters that skin_parameters() returns. Each element gets two to eight samples, so
+// a surface of many elements has more than this number, and a surface of few elements fewer.
 inline constexpr int skin_samples = 200;
 std::vector<double> skin_parameters(const KnotVector& knots);
 
-// Samples a closed surface at given parameters, ascending from the start of each domain to its end.
+// Samples a closed surface at the given parameters, which ascend from the start of each domain to its end.
 ClosedSkin sample_skin(const Surface& surface, const std::vector<double>& u, const std::vector<double>& v);
 
 // Returns the volume that the skin encloses, in cubic metres; negative if its normals point inward.

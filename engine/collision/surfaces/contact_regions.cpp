@@ -37,7 +37,8 @@ int ContactRegions::root(int pair) {
   return pair;
 }
 
-// Joins the pairs of two cells of the first surface that are equal or neighbours.
+// Joins pairs of two cells of the first surface that are equal or neighbours. Two pairs are joined if their
+// cells of the second surface are equal or neighbours, too.
 void ContactRegions::join(const std::vector<CellPair>& pairs, const Paired& cell, const Paired& other) {
   const int step = second_->step(pairs[cell.last_pair].second.level);
   const bool same = &cell == &other, whole = !same && !cell.split && !other.split;
@@ -52,7 +53,8 @@ void ContactRegions::join(const std::vector<CellPair>& pairs, const Paired& cell
   }
 }
 
-// Joins the pair to half of the cell's neighbours. The other neighbours join the pair when they are visited.
+// Joins the pair with the pairs of half of its cell's neighbours. The other neighbours are joined when they
+// are visited.
 void ContactRegions::join_neighbours(const std::vector<CellPair>& pairs, int pair) {
   const LevelCell& cell = pairs[pair].first;
   const Grid& grid = first_->nested().grid;
@@ -88,7 +90,7 @@ void ContactRegions::collect_cells(const std::vector<CellPair>& pairs) {
 const std::vector<ContactRegions::Region>& ContactRegions::group(std::vector<CellPair>& pairs) {
   const int count = static_cast<int>(pairs.size());
   collect_cells(pairs);
-  // Each cell is visited once, at its first pair.
+  // Each cell of the first surface is visited only once, at its first pair.
   for (int k = 0; k < count; ++k) {
     if (previous_[k] >= 0) continue;
     Paired& cell = paired_[cell_[k]];
@@ -126,7 +128,7 @@ namespace {
 
 constexpr std::size_t depth_seeds = 8;
 
-// Range of the finest samples that cells cover.
+// Range of the finest samples that some cells cover.
 struct SampleRange {
   int i0 = std::numeric_limits<int>::max(), i1 = 0, j0 = std::numeric_limits<int>::max(), j1 = 0;
   void widen(const LevelCell& cell, int step) {

@@ -1,4 +1,4 @@
-// Connected regions of cell pairs, and starting parameters within a region.
+// Groups pairs of cells into connected regions, and selects starting parameters within a region.
 #pragma once
 
 #include <cmath>
@@ -21,11 +21,12 @@ class ContactRegions {
   ContactRegions(const SurfaceLevels& first, const SurfaceLevels& second);
 
   struct Region {
-    std::size_t begin, end;  // range of the grouped pairs
+    std::size_t begin, end;  // range of the region's pairs, which are consecutive
   };
 
   // Sorts the pairs by region and returns the regions. Two pairs are connected if their cells are equal or
-  // neighbours on both surfaces, across a seam too. Regions beyond the capacity are merged into the last one.
+  // neighbours on both surfaces, also across a seam. Regions beyond the capacity are merged into the last
+  // region.
   const std::vector<Region>& group(std::vector<CellPair>& pairs);
 
  private:
@@ -34,9 +35,9 @@ class ContactRegions {
     const int in_u = std::abs(a.i - b.i), in_v = std::abs(a.j - b.j);
     return (in_u <= step || around_u_ - in_u <= step) && (in_v <= step || around_v_ - in_v <= step);
   }
-  // A cell of the first surface that is in a pair.
+  // A cell of the first surface that belongs to at least one pair.
   struct Paired {
-    std::uint32_t at = 0;  // group() call in which the cell was last in a pair
+    std::uint32_t at = 0;  // number of the last group() call in which the cell was in a pair
     int last_pair = 0;
     bool split = false;  // true if the cell's pairs are not all connected
   };
@@ -49,21 +50,21 @@ class ContactRegions {
 
   const SurfaceLevels* first_;
   const SurfaceLevels* second_;
-  // Number of cells of the second surface around each periodic direction; unlimited for open directions.
+  // Number of the second surface's cells around each periodic direction; unlimited for an open direction.
   int around_u_ = 0, around_v_ = 0;
-  std::vector<int> parent_;     // union-find parent of each pair: an earlier pair or itself
-  std::vector<int> previous_;   // previous pair of the same cell of the first surface; -1 for the first
-  std::vector<int> cell_;       // cell_index() of the first surface's cell, by pair
-  std::vector<Paired> paired_;  // by cell_index()
+  std::vector<int> parent_;    // union-find parent of each pair, which is an earlier pair or itself
+  std::vector<int> previous_;  // for each pair, the previous pair of the same first cell; -1 if there is none
+  std::vector<int> cell_;      // for each pair, the cell_index() of its first cell
+  std::vector<Paired> paired_;  // indexed by cell_index()
   std::uint32_t group_ = 0;
   std::vector<Region> regions_;
-  // working memory: position at which the next pair of each region is stored
+  // Working memory: for each region, the position at which its next pair is stored.
   std::vector<int> end_;
-  std::vector<CellPair> unordered_;  // working memory
+  std::vector<CellPair> unordered_;  // working memory: copy of the pairs before they are sorted
 };
 
-// Mean of parameters. In a periodic direction each parameter is taken relative to the first one along the
-// shorter path.
+// Mean of parameters of one direction. In a periodic direction, each parameter is first moved by whole
+// periods to be as near as possible to the first one.
 class ParameterMean {
  public:
   explicit ParameterMean(const KnotVector& knots) : knots_(&knots) {}
@@ -80,8 +81,8 @@ class ParameterMean {
     SPOONBILL_ASSERT(count_ > 0);
     return knots_->into_domain(first_ + sum_ / count_);
   }
-  // Returns the point at a fraction of the path from the mean to another parameter; fractions above 1
-  // extrapolate.
+  // Returns the parameter at a fraction of the path from the mean to another parameter. A fraction above 1
+  // extrapolates.
   double towards(double parameter, double fraction) const {
     const double from = first_ + sum_ / count_, length = knots_->domain_length();
     double difference = parameter - from;
@@ -95,7 +96,7 @@ class ParameterMean {
   int count_ = 0;
 };
 
-// Mean of the parameters of pairs, as the centre of a contact region on both surfaces.
+// Mean of the parameters of pairs, which serves as the centre of a contact region on both surfaces.
 class RegionCentre {
  public:
   RegionCentre(const Surface& first, const Surface& second)
@@ -116,16 +117,16 @@ class RegionCentre {
   ParameterMean u_, v_, s_, t_;
 };
 
-// The pairs of one region and the levels of both surfaces, which may be the same. A view that is valid as
-// long as the pairs are. Allocates nothing.
+// The pairs of one region, and the levels of both surfaces, which may be the same surface. A view that is
+// valid as long as the pairs are. Allocates nothing.
 struct RegionCells {
   const SurfaceLevels* first;
   const SurfaceLevels* second;
   std::span<const CellPair> pairs;
 
   PairParameters pair_centre(const CellPair& pair) const;
-  // Returns the centre of one of `count` pairs spread evenly over the region; `which` is below `count`, and
-  // `count` at most the number of pairs.
+  // Returns the centre of pair `which` of `count` pairs that are spread evenly over the region. `which` must
+  // be below `count`, and `count` at most the number of pairs.
   PairParameters pair_centre(std::size_t which, std::size_t count) const {
     return pair_centre(pairs[which * pairs.size() / count]);
   }
@@ -135,18 +136,19 @@ struct RegionCells {
 RegionCells region_cells(const SurfaceLevels& first, const SurfaceLevels& second,
                          const std::vector<CellPair>& pairs, const ContactRegions::Region& region);
 
-// Parameter rectangles of a region on both surfaces.
+// Parameter rectangles that contain a region, one on each surface.
 struct RegionRanges {
   ParameterRange first, second;
 };
 RegionRanges region_ranges(const RegionCells& cells);
 
-// Returns the deepest of a few pairs of the region, that is, the pair at which the first surface is farthest
-// behind the second, or `touch` if none is behind. See deepest_pair() for `outside`.
+// Returns the deepest of a few pairs of the region, at which the first surface is farthest behind the second.
+// Returns `touch` if none of them is behind. `outside` has the meaning that it has for deepest_pair().
 PairParameters find_deepest_seed(const RegionCells& cells, const PairParameters& touch, double outside);
 
-// Returns the side of a surface on which another surface is: 1 if the two face each other, -1 if they face
-// the same way. `normal` is the other surface's outward normal, `own` the du x dv of this one.
+// Returns the side of this surface that faces the other surface, as the sign of du x dv: 1 if the two normals
+// oppose each other, -1 if they agree. `normal` is the other surface's outward normal, `own` the du x dv of
+// this surface.
 double facing_side(const Vector3& normal, const Vector3& own);
 
 }  // namespace spoonbill

@@ -16,12 +16,12 @@ using Matrix2 = Eigen::Matrix2d;
 constexpr int max_polish_steps = 40;
 constexpr int max_tries = 12;
 constexpr double least_damping = 1e-9;
-// Smallest gain in metres of a step that is more than rounding.
+// Smallest decrease of the distance, in metres, that is more than rounding.
 constexpr double least_polish_gain_m = 1e-15;
-// Smallest gain in metres that the quadratic model must predict.
+// Smallest decrease of the distance, in metres, that the quadratic model must predict.
 constexpr double least_promise_m = 1e-17;
 
-// Returns true if the step leaves an open domain at whose end the parameter already is.
+// Returns true if the parameter is at an end of an open domain and the step would leave the domain.
 bool leaves_domain(const KnotVector& knots, double parameter, double step) {
   if (knots.is_periodic()) return false;
   return (step < 0.0 && parameter <= knots.domain_start()) || (step > 0.0 && parameter >= knots.domain_end());
@@ -50,18 +50,19 @@ bool solve_positive(Eigen::Matrix<double, size, size>& h, Eigen::Matrix<double, 
   return true;
 }
 
-// Quadratic model of a minimisation over parameters of different speeds. Steps are scaled to metres.
+// Quadratic model of a minimisation over parameters. Steps are scaled to metres, because the parameters may
+// have very different speeds.
 template <int size>
 struct Problem {
-  Eigen::Matrix<double, size, 1> gradient;  // with respect to the parameters
+  Eigen::Matrix<double, size, 1> gradient;  // gradient with respect to the parameters
   Eigen::Matrix<double, size, size> curvature;
-  Eigen::Matrix<double, size, 1> speed;  // metres per unit of each parameter
+  Eigen::Matrix<double, size, 1> speed;  // metres on the surface per unit of each parameter
   std::array<const KnotVector*, size> knots;
   Eigen::Matrix<double, size, 1> parameters;
-  double least_promise = 0.0;  // smallest gain that the model must predict, in the objective's unit
+  double least_promise = 0.0;  // smallest decrease that the model must predict, in the unit of the objective
 
-  // Returns the step to the minimum of the quadratic model; NaN if it is not convex. `damping` has the unit
-  // of the curvature.
+  // Returns the step to the minimum of the quadratic model; NaN if the model is not convex. `damping` has the
+  // unit of the curvature.
   Eigen::Matrix<double, size, 1> step(double damping) const {
     auto g = gradient;
     auto h = curvature;
@@ -87,7 +88,7 @@ bool is_spent(const PolishBudget* budget) {
 }
 
 // Makes one Levenberg-Marquardt step that decreases the value. offer(parameters) returns true if the value
-// decreased. Returns false if no such step is found.
+// decreases there. Returns false if no such step is found.
 template <int size, class Offer>
 bool descend(const Problem<size>& problem, double& damping, const Offer& offer,
              const PolishBudget* budget = nullptr) {
@@ -198,7 +199,8 @@ NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point
 
 namespace {
 
-// A point of the first surface, the point of the second surface nearest to it, and the depth.
+// A point of the first surface, the point of the second surface nearest to it, and the depth of the first
+// point behind the second surface.
 struct DepthPoint {
   PairParameters at;
   SurfacePoint a, b;
@@ -206,8 +208,8 @@ struct DepthPoint {
   double depth;
 };
 
-// Returns true if the difference is not along the normal, within a tolerance above the error of Newton's
-// method.
+// Returns true if the difference is not parallel to the normal, within a tolerance above the error of
+// Newton's method.
 bool is_oblique(const Vector3& difference, const Vector3& normal) {
   return difference.cross(normal).norm() > 1e-6 * difference.norm();
 }
@@ -221,7 +223,7 @@ DepthPoint evaluate_depth(const PiecewiseSurface& first, const PiecewiseSurface&
   result.b = nearest.at;
   result.normal = outside * unit_normal(second, nearest.at, nearest.u, nearest.v);
   const Vector3 difference = result.a.position_m - nearest.at.position_m;
-  // smallest gain that the model must predict, in the unit of the objective
+  // Beyond an edge of the second surface the difference is oblique, and the point is not behind the surface.
   const bool is_behind = difference.dot(result.normal) < 0.0 &&
                          !(is_on_edge(second, nearest.u, nearest.v) && is_oblique(difference, result.normal));
   result.depth = is_behind ? difference.norm() : -difference.norm();
@@ -231,7 +233,7 @@ DepthPoint evaluate_depth(const PiecewiseSurface& first, const PiecewiseSurface&
 // Returns the Hessian of the signed distance, see deepest_pair().
 Matrix2 distance_curvature(const DepthPoint& at) {
   const Matrix2 first = first_form(at.b), second = along(at.b, at.normal);
-  Matrix2 motion;  // one column each for A_u and A_v
+  Matrix2 motion;  // one column for A_u and one for A_v
   motion << at.a.du.dot(at.b.du), at.a.dv.dot(at.b.du), at.a.du.dot(at.b.dv), at.a.dv.dot(at.b.dv);
   const double distance = -at.depth;
   const Matrix2 follows = (first - distance * second).inverse() * motion;

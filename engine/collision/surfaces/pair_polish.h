@@ -1,5 +1,5 @@
-// Nearest and deepest points of two surfaces, found by Newton's method on the surfaces themselves, and the
-// contact that they describe. The search is local: the result depends on the starting parameters. Allocates
+// Nearest and deepest points of two surfaces, found by Newton's method on the exact surfaces, and the
+// contacts that they describe. The search is local: its result depends on the starting parameters. Allocates
 // nothing.
 #pragma once
 
@@ -28,19 +28,19 @@ struct SurfacePair {
 // stay within the domains.
 SurfacePair nearest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from);
 
-// Number of surface points that the searches of one owner may still evaluate, which bounds the time of a
-// tick. A search that uses it up returns its best point so far.
+// Number of surface points that the searches of one owner may still evaluate. It bounds the time of a tick. A
+// search that uses it up returns the best point found so far.
 struct PolishBudget {
   int evaluations_left;
 
   bool is_spent() const { return evaluations_left <= 0; }
 };
 
-// Limit of that number for one side of a proximity search, which takes about 50 ms. Samples near a smooth
-// body need about five each; those near a crumpled one would need thousands. Once it is used up, each point
-// that is left costs one evaluation.
+// Largest number of surface points evaluated for one side of a proximity search, which takes about 50 ms.
+// Samples near a smooth body need about five each; those near a crumpled one would need thousands. When the
+// number is used up, each remaining point costs one evaluation.
 inline constexpr int proximity_evaluation_limit = 1 << 17;
-// Largest number of points on one side that a proximity search finds.
+// Largest number of points that a proximity search finds on one side.
 inline constexpr std::size_t near_point_limit = 4096;
 
 // A point on a surface with its parameters.
@@ -48,8 +48,8 @@ struct NearestPoint {
   double u, v;
   SurfacePoint at;
 };
-// Finds the locally nearest point of a surface, starting from the parameters u, v. Without a budget, the
-// number of steps alone limits it.
+// Finds the locally nearest point of a surface, starting from the parameters u, v. Without a budget, only the
+// number of steps is limited.
 NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point, double u, double v,
                            PolishBudget* budget = nullptr);
 
@@ -60,8 +60,9 @@ struct DeepestPair {
   double depth_m = 0.0;  // depth of the first surface's point behind the second; negative in front of it
 };
 
-// Returns the depth in metres of a point of the first surface behind the second, measured at the nearest
-// point found from `from`. It is negative in front. See deepest_pair() for `outside`.
+// Returns the depth, in metres, of a point of the first surface behind the second; negative in front of it.
+// The depth is measured at the second surface's nearest point, which is searched from `from`. `outside` has
+// the meaning that it has for deepest_pair().
 double depth_behind(const PiecewiseSurface& first, const PiecewiseSurface& second, const PairParameters& from,
                     double outside);
 
@@ -69,21 +70,21 @@ double depth_behind(const PiecewiseSurface& first, const PiecewiseSurface& secon
 // second's nearest point. Stops early once the depth exceeds `enough_m`. `outside` is 1 if that normal is du
 // x dv, -1 if it is opposite to du x dv.
 //
-// The depth is f = -d(A(u, v)) for the signed distance d to the second surface, with the gradient -A_u . n.
-// With I and II the fundamental forms of the second surface at the nearest point, the parameters of that
-// point follow a displacement c = (A_u . B_s, A_u . B_t) by (I - d II)^-1 c, and n rotates by -II times that.
-// Therefore
+// The depth is f = -d(A(u, v)), where A is the first surface and d the signed distance from the second
+// surface B(s, t). Its gradient is -(A_u . n, A_v . n). Let I and II be the fundamental forms of B at the
+// nearest point. When u changes, the parameters of the nearest point change by (I - d II)^-1 c per unit of u,
+// with c = (A_u . B_s, A_u . B_t), and n rotates by -II times that. Therefore
 //   Hess d = -c^T I^-1 II (I - d II)^-1 c,   f_uu = -(A_uu . n) - Hess d.
 DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from,
                          double outside, double enough_m, PolishBudget* budget = nullptr);
 
-// One region in which the surfaces cross or touch.
+// One region in which two surfaces cross or touch.
 struct PairContact {
-  SurfacePair pair;              // deepest points, one on each surface
-  Vector3 normal;                // unit; direction in which the first surface leaves the second
-  double depth_m = 0.0;          // along the normal; 0 if they only touch
+  SurfacePair pair;              // deepest point of each surface
+  Vector3 normal;                // unit vector in the direction in which the first surface leaves the second
+  double depth_m = 0.0;          // depth along the normal; 0 if the surfaces only touch
   ParameterRange first, second;  // parameter rectangles that contain the region
-  Vector3 tangent_u, tangent_v;  // tangents_across() the normal, from the first surface
+  Vector3 tangent_u, tangent_v;  // tangents_across() of the normal, on the first surface
 };
 
 // Sets the contact's tangents from its normal and the first surface.

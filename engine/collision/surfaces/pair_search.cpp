@@ -13,7 +13,7 @@ namespace spoonbill {
 namespace {
 
 constexpr int max_separation_steps = 32;
-// Largest rounding error of a gap, as a fraction of the coordinates.
+// Largest rounding error of a gap between hulls, as a fraction of the coordinates.
 constexpr double rounding = 1e-12;
 
 Vector3 farthest(const ControlNet& net, const Vector3& direction) {
@@ -28,15 +28,15 @@ Vector3 farthest(const ControlNet& net, const Vector3& direction) {
   return {net.x[at], net.y[at], net.z[at]};
 }
 
-// Up to four points of the Minkowski difference of the hulls; reduced to the points that span the face
-// nearest to the origin.
+// Up to four points of the Minkowski difference of the two hulls. They are reduced to the points that span
+// the face nearest to the origin.
 struct Simplex {
   std::array<Vector3, 4> points;
   int count = 0;
 };
 
-// Finds the point nearest to the origin on the affine hull of the subset `set`. Returns false if it is
-// outside the subset's simplex.
+// Finds the point nearest to the origin on the affine hull of some points of the simplex, given as the bits
+// of `set`. Returns false if that point is not between these points.
 bool nearest_within(const Simplex& simplex, unsigned set, Vector3& nearest) {
   Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 3> edges(3, 0);
   int first = -1;
@@ -61,8 +61,8 @@ bool nearest_within(const Simplex& simplex, unsigned set, Vector3& nearest) {
   return weights.allFinite() && weights.minCoeff() >= 0.0 && weights.sum() <= 1.0;
 }
 
-// Returns the point of the simplex nearest to the origin and reduces the simplex to the face that contains
-// it.
+// Returns the point of the simplex nearest to the origin, and reduces the simplex to the face that contains
+// this point.
 Vector3 shrink_to_nearest(Simplex& simplex) {
   Vector3 best = simplex.points[0];
   unsigned best_set = 1;
@@ -91,7 +91,8 @@ bool hulls_are_apart(const ControlNet& first, const ControlNet& second) {
   double before = std::numeric_limits<double>::infinity();
   for (int step = 0; step < max_separation_steps; ++step) {
     const Vector3 a = farthest(first, -nearest), b = farthest(second, nearest);
-    // The first hull is beyond a plane perpendicular to `nearest`, and the second in front of that plane.
+    // The first hull is beyond a plane perpendicular to `nearest`, and the second hull is in front of that
+    // plane.
     const double noise = rounding * nearest.norm() * (a.norm() + b.norm());
     if (nearest.dot(a - b) > noise) return true;
     simplex.points[simplex.count++] = a - b;
@@ -106,8 +107,8 @@ namespace {
 
 constexpr std::size_t pair_capacity = 1024;
 constexpr int max_depth = 40;
-// Limit on the number of patches split in one query, which takes a few seconds. Surfaces that fit snugly or
-// are crumpled would otherwise be cut down everywhere to the size of the tolerance.
+// Largest number of patches that are split in one query, which takes a few seconds. Surfaces that fit snugly
+// or are crumpled would otherwise be cut everywhere into patches as small as the tolerance.
 constexpr int split_capacity = 1 << 20;
 
 }  // namespace
@@ -163,7 +164,7 @@ void PairSearch::search(const LevelCell& a, const LevelCell& b, double tolerance
     const auto are_apart = [&](const auto& distance) {
       return distance(pair.a.corners, pair.a.bulge, pair.b.corners, pair.b.bulge) >= near_enough;
     };
-    // The additional test pays off for one surface against itself, where most cells are side by side.
+    // The second test is worthwhile only for one surface against itself, where most cells are side by side.
     if (are_apart(patch_distance) || (judge_ != nullptr && are_apart(patch_distance_in_plane))) continue;
     const Vector3 offset = patch_centre(pair.b.corners) - patch_centre(pair.a.corners);
     if (offset.norm() < best_distance_m_) {
@@ -184,7 +185,7 @@ std::array<PairSearch::Patch, 4> PairSearch::cut(const PiecewiseSurface& surface
                 high_u = position(surface, patch.u1, v), low_v = position(surface, u, patch.v0),
                 high_v = position(surface, u, patch.v1);
   const auto& [p00, p01, p10, p11] = patch.corners;
-  // The bulge grows with the square of the sides, which are halved.
+  // The bulge grows with the square of a patch's sides, and the sides of each quarter are half as long.
   const double bulge = 0.25 * patch.bulge;
   return {Patch{patch.u0, u, patch.v0, v, {p00, low_u, low_v, centre}, bulge},
           Patch{patch.u0, u, v, patch.v1, {low_u, p01, centre, high_v}, bulge},

@@ -1,5 +1,5 @@
-// Searches that decide whether two surfaces touch: separation of their control points' hulls, and branch and
-// bound over two patches.
+// Searches that decide whether two surfaces touch: separation of the convex hulls of their control points,
+// and branch and bound over two patches.
 #pragma once
 
 #include <vector>
@@ -16,8 +16,8 @@ namespace spoonbill {
 // Keerthi 1988). Allocates nothing.
 bool hulls_are_apart(const ControlNet& first, const ControlNet& second);
 
-// Decides which pairs of points count. For one surface against itself, Newton's method may converge to the
-// same point for both surfaces; their distance of zero then means nothing.
+// Decides which pairs of points count. Needed for one surface against itself: Newton's method may converge to
+// the same point for both, whose distance of zero means nothing.
 class PairJudge {
  public:
   virtual bool counts(const PairParameters& at) const = 0;
@@ -29,15 +29,16 @@ class PairJudge {
 // Branch and bound over two patches. One owner, one thread; allocates only on construction.
 class PairSearch {
  public:
-  // The two surfaces may be the same one if there is a judge. Surfaces and judge must outlive the search.
+  // Both arguments may be the same surface if there is a judge. The surfaces and the judge must outlive the
+  // search.
   PairSearch(SurfaceLevels& first, SurfaceLevels& second, const PairJudge* judge = nullptr);
 
-  // Starts a new query: forgets the best pair and clears overflow().
+  // Starts a new query: clears the best pair and overflow().
   void begin();
   void forget_best();
 
-  // Polishes the pair `from` and keeps the result if it is nearer than the best. If the polished pair does
-  // not count, `from` itself is considered.
+  // Polishes the pair `from` by Newton's method and keeps the result if it is nearer than the best pair. If
+  // the judge rejects the polished pair, `from` itself is considered.
   void offer(const PairParameters& from);
   const SurfacePair& best() const { return best_; }
   double best_distance_m() const { return best_distance_m_; }
@@ -46,7 +47,7 @@ class PairSearch {
   // the best pair is within `enough_m`. Both values are in metres; the tolerance must be positive.
   void search(const LevelCell& a, const LevelCell& b, double tolerance_m, double enough_m);
 
-  // True if the searches since begin() exceeded a capacity and skipped some patches.
+  // Returns true if the searches since begin() exceeded a capacity and skipped some patches.
   bool overflow() const { return overflow_; }
 
  private:

@@ -10,17 +10,18 @@ namespace spoonbill {
 namespace {
 
 constexpr std::size_t pair_contact_capacity = 64;
-// Tolerance of the nearest distance, as a fraction of the smaller surface's size or of the distance.
+// Tolerance of the nearest distance, as a fraction of the smaller surface's size or of the distance,
+// whichever is larger.
 constexpr double nearest_tolerance = 1e-4;
 // Number of candidates from which Newton's method looks for a touch before the whole region is searched.
 constexpr std::size_t region_seeds = 8;
 constexpr std::size_t wall_seeds = 8;
 // Number of candidates that determine the centre of a region.
 constexpr std::size_t centre_pairs = 64;
-// Number of directions from the centre in which seeds are placed.
+// Number of directions from the region's centre in which starting points are placed.
 constexpr std::size_t seed_directions = 2;
 
-// Length of the control net along a unit direction, in metres.
+// Returns the length of the control net along a unit direction, in metres.
 double length_along(const ControlNet& net, const Vector3& direction) {
   double least = infinity, most = -infinity;
   for (int i = 0; i < net.rows; ++i) {
@@ -56,7 +57,7 @@ PairResult SurfacePairCollider::collide(const Surface& first, const Surface& sec
   if (first_.begin(first, query.first_samples)) cells_.invalidate_first();
   if (second_.begin(second, query.second_samples)) cells_.invalidate_second();
   search_.begin();
-  // Surfaces that touched in the last call mostly still touch, so the hull test is skipped for them.
+  // Surfaces that touched in the last call usually still touch, so the hull test is skipped.
   if (touched_last_ || !hulls_are_apart(first.net, second.net)) {
     find_contacts(query);
     result.overflow = cells_.overflow();
@@ -85,8 +86,8 @@ void SurfacePairCollider::find_contacts(const PairQuery& query) {
   }
 }
 
-// Returns the seed of the last collide() within the region, or null. Looks first at the seed with the
-// region's number, because regions mostly keep their order and their ranges may overlap.
+// Returns the seed of the last collide() that is within the region, or null. Begins with the seed that has
+// the region's number, because regions usually keep their order, and the ranges of several may overlap.
 const SurfacePairCollider::Seed* SurfacePairCollider::last_seed(const PairContact& contact) const {
   for (std::size_t k = 0; k < last_seeds_.size(); ++k) {
     const Seed& seed = last_seeds_[(contacts_.size() + k) % last_seeds_.size()];
@@ -96,15 +97,15 @@ const SurfacePairCollider::Seed* SurfacePairCollider::last_seed(const PairContac
   return nullptr;
 }
 
-// Returns true if the surfaces touch in the region. Tries the last touch and a few candidates first, which
-// mostly succeed at once, and then searches all pairs.
+// Returns true if the surfaces touch in the region. First tries the last touch and a few candidates, which
+// usually suffice, and then searches all pairs.
 bool SurfacePairCollider::touches(const RegionCells& cells, const Seed* last) {
   search_.forget_best();
   if (last != nullptr) search_.offer(last->touch);
   if (search_.best_distance_m() <= touch_tolerance_m) return true;
   const std::size_t count = cells.pairs.size(), seeds = cells.at_most(region_seeds);
   for (std::size_t k = 0; k < seeds; ++k) {
-    // Starts halfway through the list of pairs, where a region is likely to be deepest.
+    // Starts halfway through the list of pairs, where the surfaces are likely to be deepest.
     search_.offer(cells.pair_centre(cells.pairs[(count / 2 + k * count / seeds) % count]));
     if (search_.best_distance_m() <= touch_tolerance_m) return true;
   }
@@ -115,8 +116,8 @@ bool SurfacePairCollider::touches(const RegionCells& cells, const Seed* last) {
   return false;
 }
 
-// Computes the depth of a region; `contact` holds the point where the surfaces touch. Returns the seed for
-// the next collide().
+// Computes the depth of a region; `contact` contains the point where the surfaces touch. Returns the seed
+// from which the next collide() starts in this region.
 SurfacePairCollider::Seed SurfacePairCollider::resolve_contact(const RegionCells& cells,
                                                                const PairQuery& query, const Seed* last,
                                                                PairContact& contact) const {
@@ -160,9 +161,10 @@ RegionCentre SurfacePairCollider::find_centre(const RegionCells& cells) const {
   return centre;
 }
 
-// Offers the centre of the region and, in the directions of a few pairs at which the surfaces cross, the
-// points at half and at twice the distance of the pair. Keeps the deepest point and the point farthest in
-// front. With a seed from the last call, only one of the points in these directions is offered per call.
+// Offers points of a region and keeps the deepest one and the one farthest in front. The points are the
+// centre of the region and others in the directions of a few pairs at which the surfaces cross: at half and
+// at twice the distance of the pair. With a seed from the last call, only one of these other points is
+// offered per call.
 SurfacePairCollider::Seeds SurfacePairCollider::find_seeds(const RegionCells& cells, const Seed* last) const {
   const RegionCentre centre = find_centre(cells);
   Seeds seeds;
@@ -190,8 +192,8 @@ SurfacePairCollider::Seeds SurfacePairCollider::find_seeds(const RegionCells& ce
   return seeds;
 }
 
-// Computes the depth where the surfaces touch with both interiors on the same side, that is, where one body
-// is inside the other. Uses the point with the shortest exit among a few candidates.
+// Computes the depth where the surfaces touch while their outward normals agree, so that one body is inside
+// the other. Uses the candidate with the shortest exit among a few.
 void SurfacePairCollider::find_inner_touch(const RegionCells& cells, PairContact& contact) const {
   const Surface& first = first_.surface();
   const Surface& second = second_.surface();
@@ -213,7 +215,7 @@ void SurfacePairCollider::find_inner_touch(const RegionCells& cells, PairContact
   }
 }
 
-// Updates the contact if each surface is deeper behind the other than contact.depth_m; a displacement by the
+// Updates the contact if each surface is deeper behind the other than contact.depth_m. A displacement by the
 // smaller of both depths separates them. Depths beyond `shortest` need not be exact. `from` receives the
 // parameters of the first surface's deepest point.
 void SurfacePairCollider::deepen_contact(PairContact& contact, PairParameters& from, double outside,
@@ -222,7 +224,7 @@ void SurfacePairCollider::deepen_contact(PairContact& contact, PairParameters& f
   const DeepestPair first_deepest = deepest_pair(first, second, from, outside, shortest);
   from = first_deepest.pair.at;
   if (!(first_deepest.depth_m > contact.depth_m)) return;
-  // The surfaces face each other where they are deep.
+  // The outer sides of the surfaces face each other where the surfaces penetrate each other.
   const PairParameters& deep = first_deepest.pair.at;
   const double outside_first =
       facing_side(first_deepest.normal, unit_normal(first_.surface(), deep.u, deep.v));
@@ -242,8 +244,8 @@ void SurfacePairCollider::deepen_contact(PairContact& contact, PairParameters& f
   }
 }
 
-// Returns true if the box of one surface is inside the box of the other, and the other is closed. Both are
-// necessary for one body to be inside the other.
+// Returns true if one surface is closed and its box contains the box of the other. Otherwise no body can be
+// inside the other.
 bool SurfacePairCollider::may_contain(const PairQuery& query) const {
   const Box& first = cells_.first_tree().box(cells_.first_tree().root());
   const Box& second = cells_.second_tree().box(cells_.second_tree().root());
@@ -258,7 +260,8 @@ double SurfacePairCollider::tolerance() const {
   return nearest_tolerance * (std::isfinite(best) ? std::max(size, best) : size);
 }
 
-// Searches all elements within reach for the nearest pair. Returns the largest tolerance that was used.
+// Searches all pairs of elements within reach for the nearest pair of points. Returns the largest tolerance
+// that was used.
 double SurfacePairCollider::search_all(double reach) {
   double largest = 0.0;
   cells_.visit_elements([&] { return std::min(reach, search_.best_distance_m() - tolerance()); },
@@ -295,8 +298,8 @@ void SurfacePairCollider::find_nearest(const PairQuery& query, PairResult& resul
   }
 }
 
-// If the surfaces of two bodies do not meet, the nearest points decide: the inner body's point is behind the
-// outer surface.
+// Returns true if one of two bodies whose surfaces do not meet is inside the other. The inner body's nearest
+// point is then behind the outer surface.
 bool SurfacePairCollider::is_contained(const PairQuery& query) const {
   const SurfacePair& best = search_.best();
   const Vector3 apart = best.first_m - best.second_m;
@@ -307,8 +310,8 @@ bool SurfacePairCollider::is_contained(const PairQuery& query) const {
   return first_inside || second_inside;
 }
 
-// The exit leads through the nearest wall. The depth is the distance to it plus the length of the inner body
-// along the normal.
+// Makes the contact of a body inside another. It exits through the nearest wall, so its depth is the distance
+// to the wall plus the length of the inner body along the normal.
 PairContact SurfacePairCollider::make_containment_contact() const {
   const Surface& first = first_.surface();
   const Surface& second = second_.surface();

@@ -18,7 +18,7 @@ struct PairQuery {
   // True if the surface bounds a body: du x dv then points outward, and one body may be inside the other. For
   // an open surface, the depth is measured towards the side with the shorter exit.
   bool first_closed = false, second_closed = false;
-  // Distance up to which the nearest points of surfaces that do not touch are searched, in metres.
+  // Largest distance, in metres, at which the nearest points of surfaces that do not touch are searched.
   double reach_m = 0.0;
   // Optional samples of the whole grid, see SurfaceLevels::begin(). If they are given, no sample is
   // evaluated.
@@ -29,12 +29,12 @@ struct PairQuery {
 struct PairResult {
   bool touching = false;   // true if the surfaces touch, to within touch_tolerance_m
   bool contained = false;  // one body is inside the other; the only contact describes its exit
-  // Distance of surfaces that do not touch; infinite beyond the reach. It exceeds the true distance by at
-  // most 1e-4 of this distance or of the smaller surface's size, whichever is larger.
+  // Distance of surfaces that do not touch; infinite if it is greater than the reach. It exceeds the true
+  // distance by at most 1e-4 of itself or of the smaller surface's size, whichever is larger.
   double distance_m = std::numeric_limits<double>::infinity();
   SurfacePair nearest;
-  // True if a capacity was exceeded, so that a contact may be missing. Remedy: surfaces of fewer elements or
-  // a smaller reach.
+  // True if a capacity was exceeded, so that a contact may be missing. Surfaces of fewer elements or a
+  // smaller reach help.
   bool overflow = false;
   int samples_evaluated = 0;
 };
@@ -50,18 +50,19 @@ class SurfacePairCollider {
   // Finds the contacts, or the nearest points within the query's reach if there are none.
   PairResult collide(const Surface& first, const Surface& second, const PairQuery& query);
 
-  // Contacts of the last collide(), one per region.
+  // Returns the contacts of the last collide(), one for each region.
   const std::vector<PairContact>& contacts() const { return contacts_; }
-  // Cell pairs of the last search in which the surfaces may meet, including regions without contact.
+  // Returns the cell pairs of the last search at which the surfaces may meet, including regions without
+  // contact.
   const std::vector<CellPair>& cells() const { return cells_.pairs(); }
 
-  // Cell search for overlays, after collide() of the same surfaces. Its searches change cells().
+  // Returns the cell search, for overlays after collide() of the same surfaces. Its searches change cells().
   CellPairs& cell_pairs() { return cells_; }
   SurfaceLevels& first_levels() { return first_; }
   SurfaceLevels& second_levels() { return second_; }
 
  private:
-  // Starting parameters by side of the second surface: 0 behind it, 1 in front of it.
+  // Starting parameters on each side of the second surface: index 0 behind it, index 1 in front of it.
   struct Seeds {
     double centre_depth = 0.0;
     double depth[2] = {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
@@ -71,7 +72,7 @@ class SurfacePairCollider {
   using Region = ContactRegions::Region;
 
   // Points of a region from which the next collide() starts: the point where the surfaces touched, and the
-  // points where the first surface was deepest, by side as in Seeds.
+  // points where the first surface was deepest, one for each side as in Seeds.
   struct Seed {
     PairParameters touch, deepest[2];
     bool deep[2] = {false, false};
@@ -99,11 +100,13 @@ class SurfacePairCollider {
   ContactRegions regions_;
   PairSearch search_;
   std::vector<PairContact> contacts_;
-  std::vector<Seed> seeds_, last_seeds_;  // seeds of the contacts, and of the previous collide()
+  // Seeds of the present contacts, and of those of the previous collide().
+  std::vector<Seed> seeds_, last_seeds_;
   std::size_t query_ = 0;
-  PairParameters nearest_;  // nearest points of the last surfaces that did not touch
+  PairParameters nearest_;  // nearest points of the last two surfaces that did not touch
   bool nearest_known_ = false;
-  bool touched_last_ = false;  // in the last collide(); affects the order of the search, not its result
+  // Result of the last collide(); affects the order of the search, not its result.
+  bool touched_last_ = false;
 };
 
 }  // namespace spoonbill

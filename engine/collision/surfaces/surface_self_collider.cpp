@@ -15,7 +15,8 @@ namespace {
 constexpr double all_directions = std::numbers::pi;
 constexpr double right_angle = 0.5 * std::numbers::pi;
 
-// Returns the half angle of the cone that contains all vectors within `radius` of a vector of this length.
+// Returns the half angle of the cone, about a vector of the given length, that contains all vectors within
+// `radius` of this vector.
 double half_angle(double length, double radius) {
   return radius < length ? std::asin(radius / length) : all_directions;
 }
@@ -57,7 +58,7 @@ void PatchFolds::begin() {
   update_mixed_bounds();
 }
 
-// S_uv is a B-spline surface of one degree less in both directions, and its own control points bound it.
+// S_uv is a B-spline surface of one degree less in both directions. Its control points bound its norm.
 void PatchFolds::update_mixed_bounds() {
   const ControlNet& net = levels_->surface().net;
   const int rows = static_cast<int>(u_.control.size()), columns = static_cast<int>(v_.control.size());
@@ -82,8 +83,9 @@ void PatchFolds::update_mixed_bounds() {
   }
 }
 
-// Computes cones around the tangents at the cell's centre. Their angles follow from the second derivatives,
-// which bound how far the tangents change.
+// Computes cones that contain the cell's tangents along u and along v. Their axes are the tangents at the
+// cell's centre. Their angles follow from bounds of the second derivatives, which limit how far the tangents
+// change.
 PatchFolds::Cones PatchFolds::compute_cones(const LevelCell& cell) {
   const Grid& grid = levels_->nested().grid;
   const int step = levels_->step(cell.level), shift = levels_->nested().levels;
@@ -94,7 +96,8 @@ PatchFolds::Cones PatchFolds::compute_cones(const LevelCell& cell) {
   const SurfacePoint centre = evaluate(levels_->pieces(), u0 + half_u, v0 + half_v);
   const SurfaceBounds& bounds = levels_->bounds();
   const double mixed = mixed_[static_cast<std::size_t>(eu) * v_.span.size() + static_cast<std::size_t>(ev)];
-  // A bulge is an eighth of the second derivative times the square of the side.
+  // A bulge is one eighth of the second derivative times the square of the side, so eight times a bulge for
+  // sides of 1 is the second derivative.
   const double radius_u = 8.0 * bounds.bulge(eu, ev, 1.0, 0.0) * half_u + mixed * half_v;
   const double radius_v = 8.0 * bounds.bulge(eu, ev, 0.0, 1.0) * half_v + mixed * half_u;
   const double length_u = centre.du.norm(), length_v = centre.dv.norm();
@@ -136,7 +139,7 @@ bool PatchFolds::never_meets_itself(std::span<const LevelCell> cells) {
 namespace {
 
 constexpr std::size_t self_contact_capacity = 64;
-// Largest number of pairs at any level but the coarsest; with more pairs, a coarser level is used.
+// Largest number of pairs at any level except the coarsest. If there are more, a coarser level is used.
 constexpr std::size_t self_pair_capacity = 1 << 17;
 // Number of candidates from which Newton's method looks for a touch before the whole region is searched.
 constexpr std::size_t self_region_seeds = 8;
@@ -155,7 +158,7 @@ SurfaceSelfCollider::SurfaceSelfCollider(const NestedGrid& nested)
       search_(levels_, levels_, &not_joined_),
       regions_(levels_, levels_) {
   pairs_.reserve(cell_pair_capacity);
-  // Each step of a descent leaves up to two node pairs on the stack, or fifteen cell pairs.
+  // Each step of a descent leaves at most two node pairs on one stack, or fifteen cell pairs on the other.
   nodes_.reserve(256);
   pending_.reserve(static_cast<std::size_t>(16 * (2 + nested.levels)));
   contacts_.reserve(self_contact_capacity);
@@ -173,7 +176,7 @@ SelfResult SurfaceSelfCollider::collide(const Surface& surface, const SelfQuery&
   search_.begin();
   int level = levels_.nested().levels;
   collect_pairs(level);
-  // At a coarser level the joined cells are larger, and contacts between them are missed.
+  // At a coarser level, joined cells are larger, and contacts between parts of joined cells are missed.
   const bool coarser = overflow_;
   while (overflow_ && level > 0 && !stopped_) collect_pairs(--level);
   const std::vector<Region>& regions = regions_.group(pairs_);
@@ -187,14 +190,14 @@ SelfResult SurfaceSelfCollider::collide(const Surface& surface, const SelfQuery&
   return {!contacts_.empty(), coarser || search_.overflow(), stopped_};
 }
 
-// Reports progress only every 64 calls, because the callback may make a system call.
+// Reports progress only in every 64th call, because the callback may make a system call.
 bool SurfaceSelfCollider::should_continue(double fraction) {
   constexpr std::uint64_t calls_between_reports = 64;
   if (!stopped_ && calls_++ % calls_between_reports == 0) stopped_ = !query_->progress.report(fraction);
   return !stopped_;
 }
 
-// Compares the samples of the two edges of a direction.
+// Compares the samples at both ends of a direction to find out how they are joined.
 SurfaceSelfCollider::Joints SurfaceSelfCollider::find_joints(bool in_u) {
   const Grid& grid = levels_.nested().grid;
   const GridDirection& direction = in_u ? grid.u : grid.v;
@@ -238,7 +241,7 @@ bool SurfaceSelfCollider::NotJoinedJudge::counts(const PairParameters& at) const
   return !collider_->are_joined(collider_->cell_at(at.u, at.v), collider_->cell_at(at.s, at.t));
 }
 
-// Collects all pairs of cells of the level that may meet, each in both orders.
+// Collects all pairs of cells of the level that may meet. Each pair is stored in both orders.
 void SurfaceSelfCollider::collect_pairs(int level) {
   pairs_.clear();
   overflow_ = false;
@@ -290,7 +293,7 @@ bool SurfaceSelfCollider::can_meet(const CellPair& pair, int level) {
          patch_distance_in_plane(corners_a, bulge_a, corners_b, bulge_b) <= touch_tolerance_m;
 }
 
-// Returns true if two adjacent cells may meet elsewhere than where they are joined.
+// Returns true if two joined cells may meet anywhere except where they are joined.
 bool SurfaceSelfCollider::joined_can_meet(const CellPair& pair) {
   const auto& [a, b, region] = pair;
   const Grid& grid = levels_.nested().grid;
@@ -324,7 +327,7 @@ void SurfaceSelfCollider::split(const CellPair& pair) {
   }
 }
 
-// Returns true if an earlier region has the same pairs with the two cells swapped.
+// Returns true if the region repeats an earlier one with the two cells of each pair exchanged.
 bool SurfaceSelfCollider::is_mirror_of_earlier(const Region& region) const {
   const CellPair& sought = pairs_[region.begin];
   const auto end = pairs_.begin() + static_cast<std::ptrdiff_t>(region.begin);
@@ -333,8 +336,8 @@ bool SurfaceSelfCollider::is_mirror_of_earlier(const Region& region) const {
   });
 }
 
-// Returns true if the surfaces touch in the region. Tries a few candidates first, which mostly succeed at
-// once, and then searches all pairs.
+// Returns true if the surface touches itself in the region. First tries a few candidates, which usually
+// suffice, and then searches all pairs.
 bool SurfaceSelfCollider::touches(const RegionCells& cells) {
   search_.forget_best();
   const std::size_t seeds = cells.at_most(self_region_seeds);
@@ -367,15 +370,15 @@ PairContact SurfaceSelfCollider::make_contact(const RegionCells& cells, const Se
   return contact;
 }
 
-// Updates the contact if the two parts are behind each other and the smaller of their depths is less than
-// `shortest`.
+// Updates the contact if the two parts of the surface are behind each other and the smaller of their depths
+// is less than `shortest`.
 void SurfaceSelfCollider::deepen_contact(PairContact& contact, const PairParameters& from, double outside,
                                          const SelfQuery& query, double& shortest) const {
   const PiecewiseSurface pieces = levels_.pieces();
   const DeepestPair first_deepest = deepest_pair(pieces, pieces, from, outside, infinity);
   const PairParameters& deep = first_deepest.pair.at;
   if (!(first_deepest.depth_m > 0.0) || !not_joined_.counts(deep)) return;
-  // The parts face each other where they are deep.
+  // The outer sides of the two parts face each other where the parts penetrate each other.
   const double outside_first =
       facing_side(first_deepest.normal, unit_normal(levels_.surface(), deep.u, deep.v));
   if (query.closed && outside_first < 0.0) return;

@@ -1,7 +1,7 @@
-// Contact of a B-spline surface, open, periodic or closed, with itself, by the descent of SurfacePairCollider
-// with the same surface on both sides. Cells that are joined (at an edge or a corner, across a seam or at a
-// pole) always meet there. They are skipped as soon as PatchFolds proves that they meet nowhere else, and
-// split until then.
+// Contact of a B-spline surface, open, periodic or closed, with itself. The search is that of
+// SurfacePairCollider with the same surface on both sides. Cells that are joined (at an edge or a corner,
+// across a seam or at a pole) always meet there. They are split until PatchFolds proves that they meet
+// nowhere else.
 #pragma once
 
 #include <array>
@@ -21,13 +21,13 @@ namespace spoonbill {
 // Tangent cones of one surface's cells, which prove that patches do not intersect themselves. One owner, one
 // thread; allocates only on construction. The levels must outlive it.
 //
-// Over a parameter rectangle S(p) - S(q) = (u_p - u_q) a + (v_p - v_q) b. Here a and b are the means of S_u
-// and S_v over the path from q to p, and each mean is in the convex cone of its tangents. Let the cones
-// around the axes A and B have the half angles alpha and beta. If the lines of A and B are more than alpha +
-// beta apart, a and b are never parallel and the difference never vanishes.
+// Over a parameter rectangle, S(p) - S(q) = (u_p - u_q) a + (v_p - v_q) b. Here a and b are the means of S_u
+// and S_v over the path from q to p, so each is in the convex cone that contains its tangents. Let these
+// cones have the axes A and B and the half angles alpha and beta. If the angle between the lines of A and B
+// is more than alpha + beta, a and b are never parallel and the difference never vanishes.
 //
-// This is stronger than a cone of normals (Volino and Magnenat-Thalmann 1994), which needs a test of the
-// boundary too: a flat spiral has one normal and still overlaps itself.
+// This is stronger than a cone of normals (Volino and Magnenat-Thalmann 1994), which also needs a test of the
+// boundary: a flat spiral has only one normal and may still overlap itself.
 class PatchFolds {
  public:
   explicit PatchFolds(SurfaceLevels& levels);
@@ -41,8 +41,8 @@ class PatchFolds {
 
  private:
   struct Cone {
-    Vector3 axis = Vector3::Zero();  // unit
-    double angle = 0.0;              // half angle; above a right angle the cone contains all directions
+    Vector3 axis = Vector3::Zero();  // unit axis of the cone
+    double angle = 0.0;  // half angle; if it is above a right angle, the cone contains all directions
   };
   struct Cones {
     Cone along_u, along_v;
@@ -52,17 +52,19 @@ class PatchFolds {
   void update_mixed_bounds();
 
   SurfaceLevels* levels_;
-  // Largest norm of S_uv over each element, by u and v. SurfaceBounds holds the norms of S_uu and S_vv.
+  // Largest norm of S_uv over each element, indexed by u and v. SurfaceBounds contains the norms of S_uu and
+  // S_vv.
   std::vector<double> mixed_;
   struct Direction {
-    std::vector<int> span, control;  // knot span of each element; unrolled index to control index
+    std::vector<int> span, control;  // knot span of each element; control point index of each unrolled index
     std::vector<double> scale;       // degree / (u_{i+p+1} - u_{i+1}) of the unrolled index i
     int degree = 0;
   };
   static Direction unroll(const KnotVector& knots);
   Direction u_, v_;
-  std::vector<double> steps_;  // working memory: norms of the mixed differences, by unrolled control point
-  std::vector<Cones> cones_;   // by SurfaceLevels::cell_index()
+  // Working memory: norms of the mixed differences of the control points, by unrolled index.
+  std::vector<double> steps_;
+  std::vector<Cones> cones_;  // indexed by SurfaceLevels::cell_index()
   std::vector<std::uint32_t> computed_at_;
   std::uint32_t generation_ = 0;
 };
@@ -78,17 +80,17 @@ struct SelfQuery {
 // Result of SurfaceSelfCollider::collide().
 struct SelfResult {
   bool touching = false;  // true if the surface touches itself, to within touch_tolerance_m
-  // True if a capacity was exceeded, so that a contact may be missing. Remedy: a surface of fewer elements or
-  // fewer levels.
+  // True if a capacity was exceeded, so that a contact may be missing. A surface of fewer elements or fewer
+  // levels helps.
   bool overflow = false;
   bool stopped = false;  // true if the progress callback stopped the search; contacts found so far are valid
 };
 
-// Self-contact search of one surface. One owner, one thread; allocates only on construction. The grid must
-// outlive it.
+// Search for contacts of one surface with itself. One owner, one thread; allocates only on construction. The
+// grid must outlive it.
 //
-// Joined cells of the finest level are not tested against each other. A loop within two of them, or the sharp
-// edge of a fold, is therefore not a contact. More levels find smaller loops.
+// Joined cells of the finest level are not tested against each other. A loop within two such cells, or the
+// sharp edge of a fold, is therefore not reported as a contact. With more levels, smaller loops are found.
 class SurfaceSelfCollider {
  public:
   explicit SurfaceSelfCollider(const NestedGrid& nested);
@@ -97,17 +99,17 @@ class SurfaceSelfCollider {
 
   SelfResult collide(const Surface& surface, const SelfQuery& query);
 
-  // Contacts of the last collide(), one per region, with the two parts of the surface in arbitrary order.
+  // Returns the contacts of the last collide(), one for each region. The order of the two parts of the
+  // surface is arbitrary.
   const std::vector<PairContact>& contacts() const { return contacts_; }
 
  private:
-  // Description of how cells at the ends of a direction are joined, apart from the corners that they share in
-  // the grid.
+  // How cells at the two ends of a direction are joined, apart from the corners that they share in the grid.
   struct Joints {
-    bool seam = false;                         // both ends of the direction are the same edge
-    bool low_pole = false, high_pole = false;  // an end is a single point
+    bool seam = false;                         // both ends of the direction are the same curve in space
+    bool low_pole = false, high_pole = false;  // true if that end is a single point
   };
-  // Rejects pairs of points in joined cells.
+  // Rejects pairs of points that are in joined cells.
   class NotJoinedJudge final : public PairJudge {
    public:
     explicit NotJoinedJudge(const SurfaceSelfCollider& of) : collider_(&of) {}
@@ -147,7 +149,7 @@ class SurfaceSelfCollider {
   std::vector<std::array<int, 2>> nodes_;  // working memory: stack of node pairs
   std::vector<PairContact> contacts_;
   bool overflow_ = false, stopped_ = false;
-  const SelfQuery* query_ = nullptr;  // the current query
+  const SelfQuery* query_ = nullptr;  // query of the current collide()
   std::uint64_t calls_ = 0;
 };
 
