@@ -212,37 +212,58 @@ struct Substep {
   float h;
 };
 
-bool touches_springs(const Relaxation& relaxation, const TouchingTool& tool) {
-  if (tool.motion.carried.body >= 0) return true;
+// Returns whether a tool has constraints on lattices that are stepped by springs, or on the others.
+bool touches(const Relaxation& relaxation, const TouchingTool& tool, bool springs) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
-    if (relaxation.has_springs(at) && tool.contacts->has_constraint_on(static_cast<int>(at))) return true;
+    if (relaxation.has_springs(at) == springs && tool.contacts->has_constraint_on(static_cast<int>(at))) {
+      return true;
+    }
   }
   return false;
 }
 
-// Solves the contacts of a tool with implicitly stepped lattices in a few passes. If the lattices respond
-// more than the contacts assumed, the impulses of a pass are scaled down to the fraction with the least
-// energy.
+// Passes over the contacts with implicitly stepped lattices in a tick.
+constexpr int solver_passes = 2;
+
+// Lets the implicitly stepped lattices respond to the impulses of a pass over contacts. If they respond more
+// than the contacts assumed, the impulses of the pass are scaled down to the fraction with the least energy.
+// `tool_work_j` is the work of those impulses on a tool. Returns the fraction.
+double respond_to_pass(const Relaxation& relaxation, double tool_work_j) {
+  double assumed = tool_work_j, work = tool_work_j;
+  std::array<bool, lattice_capacity> responds{};
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    if (relaxation.has_springs(at)) continue;
+    const auto response = relaxation.lattices[at].implicit_solver->find_response(relaxation.lattice(at));
+    responds[at] = response.work_j > 0.0;
+    assumed += response.assumed_work_j;
+    work += response.work_j;
+  }
+  const double fraction = work > assumed ? assumed / work : 1.0;
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    if (responds[at]) relaxation.lattices[at].implicit_solver->respond(fraction, relaxation.lattice(at));
+  }
+  return fraction;
+}
+
+// Solves the contacts of a tool with implicitly stepped lattices.
 void solve_with_solvers(const Relaxation& relaxation, const TouchingTool& tool, std::span<const float> caps) {
-  constexpr int passes = 2;
+  if (!touches(relaxation, tool, false)) return;
   const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
-  for (int p = 0; p < passes; ++p) {
+  for (int p = 0; p < solver_passes; ++p) {
     tool.contacts->pass(views, *tool.state,
                         {relaxation.time_s, ContactConstraints::Moved::by_solver, p % 2 == 1, caps});
-    std::array<bool, lattice_capacity> responds{};
-    double assumed = tool.contacts->pass_work_j(*tool.state), work = assumed;
-    for (std::size_t at = 0; at < relaxation.count(); ++at) {
-      if (relaxation.has_springs(at) || !tool.contacts->has_constraint_on(static_cast<int>(at))) continue;
-      const auto response = relaxation.lattices[at].implicit_solver->find_response(relaxation.lattice(at));
-      responds[at] = response.work_j > 0.0;
-      assumed += response.assumed_work_j;
-      work += response.work_j;
-    }
-    const double fraction = work > assumed ? assumed / work : 1.0;
+    const double fraction = respond_to_pass(relaxation, tool.contacts->pass_work_j(*tool.state));
     tool.contacts->shorten_pass(*tool.state, fraction);
-    for (std::size_t at = 0; at < relaxation.count(); ++at) {
-      if (responds[at]) relaxation.lattices[at].implicit_solver->respond(fraction, relaxation.lattice(at));
-    }
+  }
+}
+
+// Solves the contacts between implicitly stepped lattices.
+void solve_with_solvers(const Relaxation& relaxation, BodyContacts& between, std::span<const float> caps) {
+  if (!between.has_constraint_between_solvers()) return;
+  const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
+  for (int p = 0; p < solver_passes; ++p) {
+    between.pass(views, {relaxation.time_s, BodyContacts::Moved::by_solvers, p % 2 == 1, caps});
+    respond_to_pass(relaxation, 0.0);
   }
 }
 
@@ -250,7 +271,7 @@ void solve_with_solvers(const Relaxation& relaxation, const TouchingTool& tool, 
 void solve_tool(const Relaxation& relaxation, const TouchingTool& tool, const Substep& substep,
                 std::span<const float> caps) {
   const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
-  const bool with_springs = touches_springs(relaxation, tool);
+  const bool with_springs = tool.motion.carried.body >= 0 || touches(relaxation, tool, true);
   if (!with_springs && substep.index > 0) return;
   const double h = with_springs ? static_cast<double>(substep.h) : relaxation.time_s;
   tool.contacts->start(views, *tool.state, h, static_cast<double>(substep.index) / substep.count);
@@ -267,7 +288,10 @@ void solve_contacts(const Relaxation& relaxation, const Substep& substep, std::s
   std::array<float, lattice_capacity> push_caps{};
   for (std::size_t at = 0; at < relaxation.count(); ++at) push_caps[at] = 0.5f * relaxation.cap[at];
   for (const TouchingTool& tool : tools) solve_tool(relaxation, tool, substep, push_caps);
-  if (between) between->solve(views, substep.h, push_caps);
+  if (between) {
+    if (substep.index == 0) solve_with_solvers(relaxation, *between, push_caps);
+    between->pass(views, {static_cast<double>(substep.h), BodyContacts::Moved::by_springs, false, push_caps});
+  }
   if (!ground) return;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) continue;

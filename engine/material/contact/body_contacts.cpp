@@ -64,11 +64,17 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
   SPOONBILL_ASSERT_DEBUG(first.lattice != nullptr && second.lattice != nullptr);
   SPOONBILL_ASSERT_DEBUG(std::abs(normal.squaredNorm() - 1.0) < 1e-5);
   if (count_ == static_cast<int>(constraints_.size())) return false;
+  const bool by_solvers = first.lattice->moved_by_solver() && second.lattice->moved_by_solver();
   const double moved = normal.dot(current_displacement(first) - current_displacement(second));
-  constraints_[count_++] = {first.body,    second.body,
-                            first.point,   second.point,
-                            normal,        mutual_compliance(first, second),
-                            gap_m - moved, mutual_friction(first, second),
+  constraints_[count_++] = {first.body,
+                            second.body,
+                            first.point,
+                            second.point,
+                            normal,
+                            mutual_compliance(first, second),
+                            gap_m - moved,
+                            mutual_friction(first, second),
+                            by_solvers ? Moved::by_solvers : Moved::by_springs,
                             false};
   return true;
 }
@@ -77,11 +83,18 @@ void BodyContacts::begin() {
   for (int c = 0; c < count_; ++c) constraints_[c].acted = false;
 }
 
-void BodyContacts::solve(std::span<const LatticeView> lattices, float h, std::span<const float> caps) {
+bool BodyContacts::has_constraint_between_solvers() const {
+  return std::any_of(constraints_.begin(), constraints_.begin() + count_,
+                     [](const Constraint& constraint) { return constraint.moved == Moved::by_solvers; });
+}
+
+void BodyContacts::pass(std::span<const LatticeView> lattices, const Pass& pass) {
+  const std::span<const float> caps = pass.push_speed_caps_m_per_s;
   for (int c = 0; c < count_; ++c) {
-    Constraint& constraint = constraints_[c];
-    if (constraint.compliance == 0.0) continue;
-    solve(lattices, constraint, h, std::min(caps[constraint.first_body], caps[constraint.second_body]));
+    Constraint& constraint = constraints_[pass.is_reversed ? count_ - 1 - c : c];
+    if (constraint.moved != pass.moved || constraint.compliance == 0.0) continue;
+    const auto cap = static_cast<double>(std::min(caps[constraint.first_body], caps[constraint.second_body]));
+    solve(lattices, constraint, pass.h_s, cap);
   }
 }
 

@@ -34,9 +34,19 @@ class BodyContacts {
   // Starts a tick: marks all constraints as not having acted.
   void begin();
 
-  // Solves the constraints. Call after the kick and before the drift of a substep of h_s.
-  void solve(std::span<const LatticeView> lattices, float h_s,
-             std::span<const float> push_speed_caps_m_per_s);
+  // Solves once the constraints between two lattices that the implicit solver moves, or all others. Call
+  // after the kick and before the drift of a substep of h_s. A reversed pass solves the last constraint
+  // first.
+  enum class Moved { by_springs, by_solvers };
+  struct Pass {
+    double h_s;
+    Moved moved;
+    bool is_reversed;
+    std::span<const float> push_speed_caps_m_per_s;  // by body
+  };
+  void pass(std::span<const LatticeView> lattices, const Pass& pass);
+  // Returns whether a constraint acts between two lattices that the implicit solver moves.
+  bool has_constraint_between_solvers() const;
 
   int count() const { return count_; }
   // Returns whether any constraint of a body, or between two bodies, has acted since begin().
@@ -53,6 +63,7 @@ class BodyContacts {
     double compliance = 0.0;  // velocity change per impulse between the points, 1/kg
     double base_m = 0.0;      // gap minus the part due to displacements since rest
     double friction = 0.0;    // the smaller coefficient of the two surfaces
+    Moved moved = Moved::by_springs;
     bool acted = false;
   };
   void solve(std::span<const LatticeView> lattices, Constraint& constraint, double h, double cap);
