@@ -72,7 +72,7 @@ std::string make_notice(const RealTimeGrant& grant) {
   }
   if (refused.empty()) return {};
   return "the system does not permit " + refused + " (" + checked_with +
-         "); the rate shown is the one achieved; to permit it add " + lines +
+         "); the loop runs without it, at the rate shown; to permit it, add " + lines +
          " to /etc/security/limits.conf and log in again";
 }
 

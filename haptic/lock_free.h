@@ -103,7 +103,8 @@ class BoundedQueue {
   }
 
  private:
-  // The counters never wrap: at a million values a second they last more than half a million years.
+  // Swaps the value with the contents of a slot. The counters never wrap: at a million values a second they
+  // last more than half a million years.
   void swap_with_slot(std::size_t count, T& value) noexcept {
     using std::swap;
     swap(slots_[count % slots_.size()], value);

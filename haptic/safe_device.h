@@ -64,7 +64,7 @@ inline constexpr std::uint64_t stall_ticks = 10;
 // Tick rate below which the force is cut, counted over the last 100 ms.
 inline constexpr double lowest_tick_rate_hz = 200.0;
 
-// Multiple of the device's maximum speed above which a change of position is a fault of the sensor.
+// Multiple of the device's maximum speed above which a change of position counts as a fault of the sensor.
 inline constexpr double jump_speed_factor = 5.0;
 
 // Returns true if a hand on the device cannot have moved by `offset_m` in dropped_ticks + 1 ticks.

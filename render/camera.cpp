@@ -25,7 +25,8 @@ Eigen::Vector2d free_centre(const Viewport& viewport) {
   return {r.x + 0.5 * r.width, r.y + 0.5 * r.height};
 }
 
-// Returns the smallest distance at which every corner is within the filled fraction of the free rectangle.
+// Returns the smallest distance at which every corner is within a rectangle at the centre of the free
+// rectangle. The sides of this rectangle are filled_fraction of those of the free rectangle.
 double fitting_distance(const Camera& camera, const Box& box, const Viewport& viewport) {
   const Eigen::Matrix3d axes = eye_axes(camera);
   const double focal = focal_px(camera, viewport);

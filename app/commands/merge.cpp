@@ -195,7 +195,7 @@ void add_unused_blends(const std::vector<MergedJoint>& joints, std::vector<std::
     if (merged.joint.cut_back_m > 0.0) continue;
     notes.push_back("the blend was not applied to " + edges_text(merged.a, merged.b) +
                     (merged.closes          ? ": their seam is closed within the tolerance"
-                     : merged.joint.bridged ? ": the gap between them is longer"
+                     : merged.joint.bridged ? ": the gap between them is longer than the blend"
                                             : ": they already meet with the requested continuity"));
   }
 }

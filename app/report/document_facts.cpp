@@ -61,7 +61,7 @@ Json direction_json(const KnotVector& knots) {
           {"domain", {knots.domain_start(), knots.domain_end()}}};
 }
 
-// Six digits are enough for people; the JSON has all of them.
+// Returns the parameter with six digits, which are enough for people; the JSON has all of them.
 std::string parameter_text(double parameter) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.6g", parameter + 0.0);

@@ -29,7 +29,7 @@ std::string percent_text(double fraction);          // "12 %", "0.081 %"
 // Returns how much slower than the real body one with this inertia scale responds: "real time", "1.4 times
 // slower", "31 times slower".
 std::string slowness_text(double inertia_scale);
-// "1 body", "3 bodies"
+// Returns the count with its noun, such as "1 body" or "3 bodies".
 std::string count_text(std::size_t count, const char* one, const char* many);
 // Returns "at most 0.0123 mm", or "none" for a deviation of up to a picometre, which is rounding error.
 std::string deviation_text(double deviation_m);

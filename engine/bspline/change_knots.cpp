@@ -325,7 +325,7 @@ Result<Approximation> approximated(const Surface& surface, Direction direction, 
       const std::string counted = std::to_string(knots.control_point_count());
       return Error{ErrorCode::not_converged,
                    counted + " control points leave a deviation of " + short_length_text(deviation_m) +
-                       "; allow a larger one than " + short_length_text(tolerance_m)}
+                       "; allow a larger deviation than " + short_length_text(tolerance_m)}
           .in(direction_name(direction));
     }
     knots = std::move(finer).value();

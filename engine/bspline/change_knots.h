@@ -34,8 +34,8 @@ Result<Approximation> fit_coarser_knots(const Surface& surface, Direction direct
                                         const KnotVector& coarser);
 
 // Fits a surface, first over the knots `first`, then with pieces halved wherever the deviation exceeds
-// `tolerance_m`, until it does so nowhere. Fails if `largest_count` control points do not suffice; the
-// message states the deviation reached. `progress` can cancel the fit.
+// `tolerance_m`, until the deviation is within the tolerance everywhere. Fails if `largest_count` control
+// points do not suffice; the message states the deviation reached. `progress` can cancel the fit.
 Result<Approximation> approximated(const Surface& surface, Direction direction, const KnotVector& first,
                                    double tolerance_m, int largest_count, const Progress& progress = {});
 

@@ -19,9 +19,9 @@ struct EvaluateReach {
   int block;
 };
 
-// The matrix A_v as blocks: for each reach, evaluate_block values and derivatives of the control point's
-// basis function. Ordered by control point, so that consecutive sums go into different blocks and do not wait
-// for each other.
+// The matrix A_v in blocks. Each entry of `reaches` has evaluate_block values and as many derivatives: those
+// of the control point's basis function at the samples of the block. The entries are ordered by control
+// point, so that consecutive sums go into different blocks and do not wait for each other.
 template <class Real>
 struct EvaluateBand {
   const EvaluateReach* reaches;

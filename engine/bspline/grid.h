@@ -97,7 +97,7 @@ double largest_deviation_m(const Surface& surface, const PointGrid& points);
 
 // Returns the largest value of a function of two parameters near a sample, found by ever smaller steps
 // starting from half the sample distances; never less than the value at the sample. `value` must accept
-// parameters outside the sampled range by one step. Steps must not be negative.
+// parameters up to one step outside the sampled range. Steps must not be negative.
 template <class Value>
 double find_peak(const Value& value, double u, double v, double step_u, double step_v) {
   SPOONBILL_ASSERT(step_u >= 0.0 && step_v >= 0.0);

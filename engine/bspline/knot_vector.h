@@ -91,7 +91,7 @@ class KnotVector {
 };
 
 // Fraction of the domain below which the distance of two knots is ignored, so that they count as one.
-// Documents contain no distinct knots that are closer.
+// Documents contain no distinct knots that are closer than this.
 inline constexpr double same_knot_fraction = 1e-9;
 
 // A distinct knot and its multiplicity.

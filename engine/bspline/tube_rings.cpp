@@ -30,7 +30,7 @@ std::size_t near_rim(const Profile& profile, bool from_end) {
   return station(s);
 }
 
-// Largest distance from a pole, as a fraction of the body's length, at which the hollow around the pole and
+// Largest distance from a pole, as a fraction of the body's length, to which the hollow around the pole and
 // everything that protrudes around it may extend.
 constexpr double end_fraction = 0.4;
 

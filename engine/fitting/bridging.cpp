@@ -164,12 +164,13 @@ bool runs_counterclockwise(const FitPoints& points, const std::vector<std::uint3
   return votes != 0.0 ? votes > 0.0 : area.dot(towards) > 0.0;
 }
 
-// Cuts out the nodes within a path length of `node` and assigns their points to the nearest remaining nodes.
-// The loop is the shortest closed path found through the boundary nodes; steps count as longer where the
-// normals turn. The search starts from the order of the nodes in several planes: two views, and the plane
-// onto which the surface is unrolled along shortest paths (Schmidt, Grimm and Wyvill 2006). The unrolled
-// plane is needed where the boundary runs over the edge of a thin wall, because it is then folded onto itself
-// in every view. `towards` replaces the normal of a component without normals.
+// Cuts out the nodes whose path from `node` is shorter than opening_fraction of the component's size, and
+// assigns their points to the nearest remaining nodes. The loop is the shortest closed path found through the
+// boundary nodes; steps count as longer where the normals turn. The search starts from the order of the nodes
+// in several planes: two views, and the plane onto which the surface is unrolled along shortest paths
+// (Schmidt, Grimm and Wyvill 2006). Where the boundary runs over the edge of a thin wall, every view shows
+// the boundary folded onto itself, and only the unrolled surface shows its order. `towards` replaces the
+// normal of a component without normals.
 Opening cut_opening(const FitPoints& whole, std::uint32_t node, const Vector3& towards) {
   SPOONBILL_ASSERT(node < whole.graph.size());
   const double reach = opening_fraction * bounding_diagonal_m(whole.graph.points_m);

@@ -18,10 +18,10 @@ namespace {
 // Number of neighbours of a node. It is large enough to reach all around the node even if nodes coincide in
 // pairs with opposite normals.
 constexpr std::size_t normal_neighbours = 12;
-constexpr double longest_pair = 3.0;  // longest pair of neighbours, relative to the median length
+constexpr double longest_pair = 3.0;  // longer pairs are ignored; relative to the median length
 constexpr double opposite_cosine = -0.5;
-// Largest height of a neighbour above a node's tangent plane, relative to its distance, at which it is on the
-// same face. A greater height means that the neighbour is on the other face of a wall.
+// Largest height of a neighbour above a node's tangent plane, relative to its distance, at which it counts as
+// being on the same face. A greater height means that the neighbour is on the other face of a wall.
 constexpr double most_height_fraction = 0.25;
 // Normals count as inconsistent only if both fractions are exceeded: that of pairs with opposite normals
 // among all pairs, and that of the rarer side, above or below the face, among the opposite pairs. At a wall,
@@ -240,8 +240,8 @@ std::vector<Vector3> estimate_normals(const FitPoints& points, const Surface& su
 namespace {
 
 constexpr int orientation_samples = 32;
-// Fraction of a sheet's area below which its net outward area is too small to tell a hollow side. Such a
-// sheet counts as flat, for example a cap whose height is below a sixtieth of its width.
+// Fraction of a sheet's area below which its net outward area is too small to show which side is hollow. Such
+// a sheet counts as flat, for example a cap whose height is below a sixtieth of its width.
 constexpr double flat_cap_fraction = 0.05;
 // Fraction of the mean normal's length below which a component of the mean normal counts as zero.
 constexpr double upright_fraction = 0.1;

@@ -104,10 +104,10 @@ constexpr std::size_t neighbours_per_point = 8, plane_neighbours = 16;
 // Number of standard deviations beyond which a point is an outlier. Scanner noise stays within three.
 constexpr double outlier_deviations = 6.0;
 // Largest spacing of points on a surface, relative to the median. From voxel to voxel, the sampling density
-// of one surface does not drop faster.
+// of one surface does not drop faster than this.
 constexpr double sparse_spacings = 8.0;
-// Largest spread of points across a plane, relative to their spread along it, at which they are on the plane.
-// For points that fill space, this ratio is about twice as large.
+// Largest spread of points across a plane, relative to their spread along it, at which they count as being on
+// the plane. For points that fill space, this ratio is about twice as large.
 constexpr double flatness = 0.3;
 
 // Quantiles of values with weights: `counts` holds the number of given points for each value.

@@ -97,8 +97,9 @@ std::vector<int> NormalEquations::unknowns(const SurfaceStructure& structure, in
   return unknown;
 }
 
-// Around a pole with a tangent plane, the mean of the derivative with respect to v is zero. The pole is
-// therefore the mean of the next ring of control points, weighted by the integrals of their basis functions.
+// Adds the condition that makes a pole smooth. Around a pole with a tangent plane, the mean of the derivative
+// with respect to v is zero. The pole is therefore the mean of the next ring of control points, weighted by
+// the integrals of their basis functions.
 template <class Put>
 void NormalEquations::add_smooth_pole(const SurfaceStructure& structure, const std::vector<int>& unknown,
                                       int pole, int ring, const Put& put) const {

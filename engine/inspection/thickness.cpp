@@ -12,8 +12,8 @@ namespace {
 
 constexpr int lines_per_span = 3;
 constexpr int newton_steps = 12;
-// Largest distance from the line at which Newton's method has converged, as a fraction of the distance to the
-// exit.
+// Largest distance from the line at which Newton's method counts as converged, as a fraction of the distance
+// to the exit.
 constexpr double newton_tolerance = 1e-9;
 
 double clamp_to_domain(const KnotVector& knots, double parameter) {

@@ -166,10 +166,10 @@ Result<Surface> align_seam(const Surface& before, const Surface& patch, const Jo
   const EdgeCurve a = edge_curve(before, Side::v_end), b = edge_curve(patch, Side::v_start);
   const Vector3 seam_point = position(a, a.knots.domain_start());
   const double nearest = nearest_on_ring(b, seam_point);
-  // Fraction of the tolerance for touching rings; rings that do not touch have the whole tolerance. If the
-  // point of this ring nearest to the previous ring's seam is within it of that seam, the point becomes the
-  // seam instead of the best fit. The two differ if the parameters differ, or by rounding for identical rings
-  // with corners.
+  // If the point of this ring nearest to the previous ring's seam is close enough to that seam, it becomes
+  // the seam instead of the best fit. Close enough is the tolerance for rings that do not touch, and this
+  // fraction of the tolerance for rings that touch. The point and the best fit differ if the parameters
+  // differ or, by rounding, for identical rings with corners.
   constexpr double coincidence_fraction = 1e-6;
   const double near_m =
       request.tolerance_m * (match->gap_m > request.tolerance_m ? 1.0 : coincidence_fraction);

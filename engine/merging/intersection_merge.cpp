@@ -308,8 +308,8 @@ Error not_side_by_side() {
 Error not_around_centre() {
   return Error(ErrorCode::mismatch,
                "the curve along which the bodies intersect does not run once around its own centre, for "
-               "example because the first body enters the side of one that is no wider; make one body "
-               "wider, or give the bodies in the other order");
+               "example because the first body enters the side of a body that is no wider than itself; make "
+               "one body wider, or give the bodies in the other order");
 }
 
 std::vector<Eigen::Vector2d> crossing_loop(const std::vector<LineCrossing>& crossings) {
@@ -491,8 +491,8 @@ Error not_reached(bool with_fillet) {
                    ? "a line of constant u does not reach the other patch, or the fillet's ball does not fit "
                      "there; choose a smaller fillet"
                    : "a line of constant u does not cross the other patch, or only touches it, for example "
-                     "because one body enters the side of one that is no wider; make one body wider, or "
-                     "move it",
+                     "because one body enters the side of a body that is no wider than itself; make one "
+                     "body wider, or move it",
                with_fillet ? "fillet" : "");
 }
 
@@ -590,7 +590,7 @@ Error edges_apart(double apart_m, double tolerance_m) {
   return Error(ErrorCode::not_converged,
                "the remaining parts should meet but are up to " + short_length_text(apart_m) +
                    " apart, too far for the tolerance of " + short_length_text(tolerance_m) +
-                   "; choose a larger one",
+                   "; choose a larger tolerance",
                "tolerance");
 }
 

@@ -20,7 +20,7 @@ namespace {
 Result<Surface> cut_back(const Surface& patch, bool at_end, double parameter) {
   const double start = patch.v.domain_start(), end = patch.v.domain_end();
   if (!(parameter < 0.5 * (end - start))) {
-    return Error(ErrorCode::out_of_range, "the blend takes more than half of a patch; choose a shorter one",
+    return Error(ErrorCode::out_of_range, "the blend takes more than half of a patch; choose a shorter blend",
                  "blend");
   }
   return at_end ? part_of(patch, Direction::v, start, end - parameter)
@@ -72,8 +72,8 @@ JointState joint_state(const std::vector<PreparedRow>& rows, std::size_t joint, 
 }
 
 // Limits of blends at small gaps where the patches do not continue straight ahead, so that a bridge as long
-// as the gap would make a step or fold. A blend is as long as one polynomial piece, but at least and at most
-// these multiples of the gap. At most this fraction of each patch is cut off.
+// as the gap would make a step or fold. A blend is as long as one polynomial piece, limited to a length
+// between these multiples of the gap. At most this fraction of each patch is cut off.
 constexpr double least_gap_ratio = 10.0, most_gap_ratio = 40.0, most_cut_fraction = 0.25;
 // Largest overlap, relative to the gap, that is bridged without cutting if the patches are too short to be
 // cut.

@@ -29,7 +29,7 @@ Box box_around(const Vector3& a, const Vector3& b) {
   return box_about(std::array{a, b});
 }
 
-// Residual at which Newton's method has converged, relative to the surface's size. It is above rounding
+// Residual at which Newton's method counts as converged, relative to the surface's size. It is above rounding
 // errors, because grazing crossings leave a larger residual.
 constexpr double converged_fraction = 1e-10;
 

@@ -19,7 +19,7 @@ namespace {
 
 using Polygon = std::vector<Eigen::Vector2d>;
 
-// Smallest cosine of the angle between consecutive chords at which a loop is smooth.
+// Smallest cosine of the angle between consecutive chords at which a loop counts as smooth.
 constexpr double smooth_cosine = 0.98;
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -152,13 +152,13 @@ using Edge = TrimmedArea::Edge;
 // Loops over the parameters, with the kept part on their left.
 using Polygons = std::vector<std::vector<Eigen::Vector2d>>;
 
-// Smallest cosine of the angle between consecutive chords at which a trim is smooth.
+// Smallest cosine of the angle between consecutive chords at which a trim counts as smooth.
 constexpr double corner_cosine = 0.98;
 // Distance of the outermost lines from the part's edge, and largest width that is ignored as too narrow. Both
 // are fractions of the part's extent in u.
 constexpr double edge_margin = 1e-7;
 constexpr int trim_lines_checked = 64;
-// Fraction of the longest line's length. A line at an end of the part that is shorter counts as a point.
+// Fraction of the longest line's length. A shorter line at an end of the part counts as a point.
 constexpr double point_fraction = 1e-3;
 // Largest jump of a line's ends across a corner of the loops, relative to the part's extent in v.
 constexpr double jump_fraction = 1e-3;

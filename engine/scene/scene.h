@@ -128,8 +128,8 @@ struct ResetProxy {};
 struct LiftTool {};
 // Makes the current shape the rest shape.
 struct KeepShape {};
-// Inserts a knot in each direction where the body's surface follows its lattice least closely. The shape does
-// not change, but later strokes have more control points to move.
+// Inserts a knot along u and a knot along v at the point where the body's surface follows its lattice least
+// closely. The shape does not change, but later strokes have more control points to move.
 struct RefineKnots {
   int body = 0;  // index in the scene
 };

@@ -465,7 +465,7 @@ Error too_fine(const ShapeFit& fit, const std::string& direction) {
   return Error{ErrorCode::not_converged,
                "a tolerance of " + length_text(fit.tolerance_m) + " needs more than " +
                    std::to_string(max_control_points) + " control points along " + direction +
-                   "; choose a larger one, or make the roundings and bends of the shape wider",
+                   "; choose a larger tolerance, or make the roundings and bends of the shape wider",
                "tolerance"};
 }
 

@@ -160,8 +160,9 @@ class BoxAlong {
 
   double whole() const { return 2.0 * (face_ + roll_) + side_; }
 
-  // Returns the fraction of the distance from the pole to the edge of the end face. At the edge, the speed is
-  // that at which the rounded edge begins.
+  // Returns the position on a line from the pole to the edge of the end face, as a fraction of the line's
+  // length. The derivative with respect to `from_pole` is continuous at the edge, where the line continues
+  // over the rounding.
   double fraction_from_pole(double half, double from_pole) const {
     const double speed = face_ / (half - rounding_), fraction = from_pole / face_;
     return fraction * (2.0 - speed - (1.0 - speed) * fraction);

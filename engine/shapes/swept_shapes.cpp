@@ -323,7 +323,7 @@ class LoftCap {
     const double radius = mean_radius(ring);
     height_m_ = height_m.value_or(default_bulge * radius);
     pole_ = compute_centroid(ring) + height_m_ * outward_;
-    // Length of a quarter of an ellipse, accurate to a few percent.
+    // Approximate length of a quarter of an ellipse. The error is 3 % at the default height and at most 22 %.
     length_m_ = 0.25 * std::numbers::pi * (radius + height_m_);
   }
 

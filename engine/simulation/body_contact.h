@@ -103,7 +103,9 @@ class BodySelfContact {
   bool add_contacts(const IndexedBody& body, BodyContacts& contacts) const;
 
  private:
-  std::unique_ptr<SelfProximity> proximity_;  // cannot move; null for a mesh or a slender boxed body
+  // On the heap, because a SelfProximity cannot be moved. Null for a mesh or a slender body in a box of
+  // cells.
+  std::unique_ptr<SelfProximity> proximity_;
 };
 
 }  // namespace spoonbill

@@ -72,8 +72,8 @@ class ToolContact {
                const ToolHold& hold);
   // Prepares a tick with a soft tool, which touches the bodies as a body of the simulation.
   void prepare_soft();
-  // Updates whether the tool acts in this tick, and returns it. `inside` is true if the tool is inside a
-  // body, `near` if it is near one.
+  // Decides and stores whether the tool acts in this tick, and returns the decision. `inside` is true if the
+  // tool is inside a body, `near` if it is near one.
   bool acts(bool inside, bool near, const ToolHold& hold);
   void release();
 

@@ -36,7 +36,7 @@ struct OverlayMark {
   Eigen::Vector3f position_m = Eigen::Vector3f::Zero();
   Colour colour;
   float radius_m = 0.0f;    // half the width of the mark, in the world
-  float minimum_px = 2.0f;  // smallest radius on the screen, before the interface scale
+  float minimum_px = 2.0f;  // smallest radius on the screen, at an interface scale of 1
   float shape = 0.0f;       // a MarkShape
 };
 

@@ -63,7 +63,7 @@ class MarkPass {
  public:
   static Result<MarkPass> make(const GlFunctions& gl);
 
-  // Draws marks with a radius of at most seven pixels, before the interface scale. Moves them toward the eye
+  // Draws marks with a radius of at most seven pixels at an interface scale of 1. Moves them toward the eye
   // before the depth test: by lift_m, or by 2.5 times their radius if that is more.
   void draw(const FrameView& view, const std::vector<OverlayMark>& marks, float lift_m) const;
 

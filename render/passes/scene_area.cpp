@@ -12,7 +12,7 @@ namespace spoonbill {
 namespace {
 
 constexpr int strip_width_px = 64;
-constexpr double margin_px = 14.0;  // before the interface scale; space for marks and line widths
+constexpr double margin_px = 14.0;  // space for marks and line widths, at an interface scale of 1
 
 // Vertical strips that grow to enclose the projected shapes. If a point cannot be projected, they cover the
 // whole viewport.

@@ -32,7 +32,7 @@ SamplingLevel uniform_sampling_level(const SurfaceSnapshot& surface, int pieces)
 
 struct SamplingTarget {
   double longest_edge_px = 48.0;
-  double largest_sagitta_px = 0.3;  // distance of a chord from its arc; about what 4 samples per pixel show
+  double largest_sagitta_px = 0.3;  // distance of a chord from its arc; 4 samples per pixel show about this
 };
 
 // Maximum number of cells of one surface. Without a limit, all of a large surface seen from close up would be

@@ -387,7 +387,8 @@ TileBand SurfaceLevels::Bands::tile_band(int element) const {
           samples, padded};
 }
 
-// A sample between two elements belongs to the element after it.
+// Returns the basis functions at the sample of a row. A sample between two elements belongs to the element
+// after it.
 SurfaceLevels::BandEntry SurfaceLevels::Bands::at(int row) const {
   const int cells = samples - 1, elements = static_cast<int>(controls.size()) / bandwidth;
   const int element = std::min(row / cells, elements - 1);

@@ -126,7 +126,8 @@ struct MeshIntersection {
 
 struct MeshIntersections {
   std::vector<MeshIntersection> found;
-  // False if there are more pairs, if the pair limit was exceeded or if the search was stopped.
+  // False if there are more pairs than the limit, if the search needed too many pair tests, or if it was
+  // stopped.
   bool complete = true;
 };
 

@@ -39,9 +39,9 @@ class MeshEdges {
   std::size_t open_count() const { return open_count_; }
   std::size_t branching_count() const { return branching_count_; }  // number of edges, not of sides
 
-  // Returns the sides on the boundary. An open edge contributes its only side. A branching edge contributes
-  // as many of its sides as there are more in one direction than in the other. In a consistently oriented
-  // mesh the boundary consists of closed loops.
+  // Returns the sides on the boundary. An open edge contributes its only side. If a branching edge has more
+  // sides in one direction than in the other, it contributes the surplus. In a consistently oriented mesh the
+  // boundary consists of closed loops.
   const std::vector<MeshSide>& boundary() const { return boundary_; }
 
  private:

@@ -21,9 +21,9 @@ namespace spoonbill {
 inline constexpr double neighbour_cells = 4.0;
 inline constexpr double neighbour_thicknesses = 3.0;
 
-// Factor on the neighbour distance. Two points that face each other through the body and are not farther
-// apart count as its two sides, which never meet. Points farther apart, such as those at the ends of a bar,
-// may meet.
+// Factor on the neighbour distance. Two points that face each other through the body, at most this many
+// neighbour distances apart, count as its two sides, which never meet. Points farther apart, such as those at
+// the ends of a bar, may meet.
 inline constexpr double through_body = 2.0;
 
 // Decides by their rest positions which pairs of points of one body's surface can ever touch from outside.

@@ -39,7 +39,7 @@ struct MeshPairResult {
 // A contact is the deepest of the vertices and edge points of both meshes in a region. On edges it is exact
 // up to rounding if the other mesh is convex; otherwise edges are searched in steps of 1/32 of that mesh's
 // size. A part inside another leaves through the nearest wall: its depth is the distance to the wall plus the
-// length along that direction of the shorter part. Deterministic; any thread.
+// length of the shorter part along that direction. Deterministic; any thread.
 MeshPairResult collide_meshes(const CleanMesh& first, const CleanMesh& second, const Pose& second_pose,
                               double thickness_m = sheet_thickness_m);
 

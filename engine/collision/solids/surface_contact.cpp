@@ -153,11 +153,11 @@ constexpr double least_depth_gain = 1e-12;
 // Distance of the two points of a central difference of the gradient from the point between them: a fraction
 // of the solid's size, and its largest value in metres.
 constexpr double difference_fraction = 1e-5, longest_difference_m = 1e-5;
-// Largest change of the gradient at which the difference is a curvature. At a larger change, an edge of the
-// solid is in between.
+// Largest change of the gradient at which the difference counts as a curvature. At a larger change, an edge
+// of the solid is in between.
 constexpr double edge_change = 0.2;
-// Smallest cosine between two gradients at which they belong to the same face. Only one expansion of a face
-// is stored.
+// Smallest cosine of the angle between two gradients that count as gradients of the same face. Only one
+// expansion of a face is stored.
 constexpr double same_face = 0.9995;
 // Least curvature, multiplied by the solid's size. It limits the step in flat directions.
 constexpr double least_curvature = 1e-6;
@@ -306,8 +306,8 @@ class Descent {
     for (int k = 0; k < count_; ++k) {
       const ShapeFace& face = faces_[k];
       const Vector2d slope = face.slope + face.curvature * (at_ - face.at);
-      // The value of a face is at most the distance itself, because the distance is the maximum over the
-      // faces wherever a minimum can be on an edge.
+      // The expansion of another face is limited to the distance itself. Wherever a minimum can be on an
+      // edge, the distance is the maximum over the faces, so no face can exceed it.
       planes[k] = {k == current_ ? 0.0 : std::min(face.value(at_) - here, 0.0), scale.cwiseProduct(slope)};
     }
     Matrix2d curvature = quadratic();

@@ -98,9 +98,10 @@ double lower_bound(const ToolShape& tool, const Box& box) {
   return tool.distance(foremost);
 }
 
-// A bilinear patch is inside the hull of its corners, and the surface within `bulge` of the patch. Along any
-// direction, no point of the hull is nearer than the nearest corner. The error of this bound is quadratic in
-// the patch's size, unlike that of a ball around the patch, so few patches must be cut further.
+// Returns a lower bound of the tool's distance over a patch. The bilinear patch is inside the hull of its
+// corners, and the surface is within `bulge` of the patch. Along any direction, no point of the hull is
+// nearer than the nearest corner. The error of this bound is quadratic in the patch's size. A ball around the
+// patch would have a linear error, so more patches would have to be cut.
 double lower_bound(const ToolShape& tool, const PatchCorners& corners, double bulge, double enough) {
   SPOONBILL_ASSERT_DEBUG(bulge >= 0.0);
   if (tool.is_solid()) return solid_bound(tool, corners, enough + bulge) - bulge;
@@ -119,8 +120,8 @@ double lower_bound(const ToolShape& tool, const PatchCorners& corners, double bu
   return foremost - tool.radius_m - bulge;
 }
 
-// Seen from a point far away in a direction, the nearest point of a solid is its extreme point in that
-// direction.
+// Returns the depth of the tool's extreme point behind the plane. The nearest point of a solid to a point far
+// away in a direction is the solid's extreme point in that direction.
 double depth_behind(const ToolShape& tool, const Vector3& point, const Vector3& normal) {
   SPOONBILL_ASSERT_DEBUG(std::abs(normal.squaredNorm() - 1.0) < 1e-6);
   if (tool.kind == ToolShape::Kind::half_space) return infinity;

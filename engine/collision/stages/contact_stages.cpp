@@ -159,8 +159,8 @@ void add_hull(const ControlNet& net, ContactStages& stages) {
   }
 }
 
-// A bilinear patch deviates most from its two triangles at its centre. This deviation is a quarter of the
-// corners' deviation from a parallelogram.
+// Adds the deviation of the bilinear patch from its two triangles to the bulge. The patch deviates most at
+// its centre, by a quarter of the corners' deviation from a parallelogram.
 double triangle_slack(SurfaceLevels& levels, const LevelCell& cell) {
   const PatchCorners at = levels.corners(cell);
   return levels.bulge(cell) + 0.25 * (at[0] + at[3] - at[1] - at[2]).norm();

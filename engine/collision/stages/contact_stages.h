@@ -31,8 +31,8 @@ struct HullFacets {
 // thread.
 HullFacets hull_facets(const std::vector<Vector3>& points_m);
 
-// Finest level of the spheres that are drawn. Beyond the finest level of its own grid, the contact search
-// cuts patches into four, as the levels drawn do.
+// Finest level of the spheres that are drawn. The grid of a contact search may have fewer levels. Beyond them
+// the search cuts patches into four, as here from level to level.
 inline constexpr int finest_stage_level = 3;
 
 // Largest number of stored items of each kind. If there are more, ContactStages::overflow is set.

@@ -58,7 +58,8 @@ void PatchFolds::begin() {
   update_mixed_bounds();
 }
 
-// S_uv is a B-spline surface of one degree less in both directions. Its control points bound its norm.
+// Computes bounds of the norm of S_uv. S_uv is a B-spline surface of one degree less in both directions, and
+// its control points bound its norm.
 void PatchFolds::update_mixed_bounds() {
   const ControlNet& net = levels_->surface().net;
   const int rows = static_cast<int>(u_.control.size()), columns = static_cast<int>(v_.control.size());

@@ -224,7 +224,7 @@ Result<PatchFit> approximate(const Patch& patch, double tolerance_m) {
   return Error{ErrorCode::too_many,
                "a tolerance of " + number_text(1e3 * tolerance_m) + " mm needs more than the " +
                    std::to_string(control_point_count_range.high) +
-                   " control points that a surface may have in one direction; choose a larger one"};
+                   " control points that a surface may have in one direction; choose a larger tolerance"};
 }
 
 constexpr int lines_compared = 7;

@@ -168,8 +168,8 @@ Result<std::vector<TrimmedSurface>> divide(const TrimmedSurface& part, Direction
   return halves;
 }
 
-// Converts a loop to an OpenCASCADE curve over (u, v). The loop is made an edge of a strip, because to_occt()
-// clamps surfaces.
+// Converts a loop to an OpenCASCADE curve over (u, v) with clamped ends. The loop becomes an edge of a strip,
+// because to_occt(), which clamps the ends, converts surfaces only.
 Result<Curve> to_curve(const TrimLoop& loop) {
   ControlNet net(loop.knots.control_point_count(), 2);
   for (int i = 0; i < net.rows; ++i) {

@@ -91,7 +91,7 @@ bool is_trimmed(const TopoDS_Face& face, const ParameterBox& box, double toleran
 
 using Geometry = opencascade::handle<Geom_Surface>;
 
-// Distance below which coordinates are equal after rounding in a file.
+// Distance below which coordinates count as equal, because files round them.
 constexpr double coincidence_m = 1e-9;
 constexpr double parameter_limit = 1e9;
 

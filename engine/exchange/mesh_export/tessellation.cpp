@@ -188,7 +188,7 @@ void remove_slivers(TriangleMesh& mesh) {
   drop_unused_vertices(mesh);
 }
 
-// Distance below which coordinates are equal after rounding in a file.
+// Distance below which coordinates count as equal, because files round them.
 constexpr double coincidence_m = 1e-9;
 // Fraction of the chord error that the curvature along one direction may use; the rest is for the twist.
 constexpr double direction_fraction = 0.4;

@@ -32,9 +32,10 @@ inline constexpr std::size_t exported_triangle_limit = 10'000'000;
 // Tessellates the part of a surface that the trim loops keep, on a grid over its polynomial pieces that is
 // finer where the surface bends. A cell of sides h_u and h_v is within (h_u^2 |S_uu| + h_v^2 |S_vv|) / 8 of
 // the bilinear patch through its corners (surface_levels.h). The patch is within |P00 - P10 - P01 + P11| / 4
-// of its triangles, for corners P. Both bounds hold for cells that loops cut. A loop's polygon is within
-// polygon_error_fraction() of the domain of the loop, and the surface stretches this distance by at most its
-// first derivatives. Refused: more triangles than the limit, loops that bound no area, a request to stop.
+// of its triangles, for corners P. Both bounds hold for cells that loops cut. A loop's polygon deviates from
+// the loop by at most the fraction polygon_error_fraction() of the domain, and the surface stretches this
+// distance by at most its first derivatives. Refused: more triangles than the limit, loops that bound no
+// area, a request to stop.
 Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLoop>& trims, double chord_m,
                                 std::size_t triangle_limit = exported_triangle_limit,
                                 const Progress& progress = {});

@@ -16,7 +16,7 @@ namespace {
 // Largest number of iterations for the ground contacts in a tick. Each costs one solve with the Cholesky
 // factor, as much as an iteration of the conjugate gradients.
 constexpr int step_limit = 4;
-// Velocity error below which the ground contacts of a tick are solved: a nanometre per second.
+// Velocity error below which the ground contacts of a tick count as solved: a nanometre per second.
 constexpr double accepted_error_m_per_s = 1e-9;
 constexpr double min_diagonal_fraction = 0.1;
 // Bounds of the spectral mass (see ImplicitGroundContacts), relative to the body's mass.

@@ -153,8 +153,8 @@ class ImplicitSolver {
   // Replaces all node forces by those that the lattice has on `nodes`, N. Fixed nodes bear their forces
   // directly.
   void set_node_forces(const SpringLattice& lattice, std::span<const int> nodes);
-  // Sets the velocity in the coming step of those fixed nodes of the block that these lattice nodes fix.
-  // `nodes` are in ascending order.
+  // For the coming step, sets the velocity of the block's nodes that these lattice nodes fix. `nodes` are in
+  // ascending order.
   void move_fixed(std::span<const int> nodes, const Vector3& velocity_m_per_s);
   // Force of cells, loads and gravity on these fixed nodes of the lattice and on the block nodes that they
   // fix, at the start of the last step, N.

@@ -292,8 +292,9 @@ Outward find_outward(const Surface& surface, const RingParameters& ring, const L
   return {ring_parameter_at(surface, ring, ring_position(on_s, on_t, ni, nj)), radius};
 }
 
-// Influence of a slice's narrow sides, as a function of the fraction of its width. It is linear, or
-// concentrated near the side for bent sections, whose side centres are above the corners.
+// Returns the influence of a slice's narrow side at a fraction of the slice's width. The influence is linear.
+// In a bent section, the centre of a narrow side is at the rim of the bend, higher than the side's corners;
+// the influence is then concentrated near the side.
 double side_influence(double fraction, bool bent) {
   const double rest = 1.0 - fraction;
   return bent ? rest * rest * rest * rest : rest;

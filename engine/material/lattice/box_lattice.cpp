@@ -329,9 +329,9 @@ std::vector<Vector3> sample_skin(const ClosedSkin& skin, const Vector3& size,
   return points;
 }
 
-// Returns whether the body is thinner than two cells at a point of the skin. It is if the line straight
-// inwards leaves the body within two cells, through a side that faces the opposite direction to within 45
-// degrees. A face beyond a sharp edge may be closer, but is not an opposite side.
+// Returns whether the body is thinner than two cells at a point of the skin. It is thin there if the line
+// straight inwards leaves the body within two cells, through a side that faces the opposite direction to
+// within 45 degrees. A face beyond a sharp edge may be closer, but is not an opposite side.
 bool is_thin_at(const ShellDistance& inside, const Vector3& skin_m, const Vector3& normal, double cell_m) {
   constexpr double far_side = -std::numbers::sqrt2 / 2.0;
   constexpr int bisections = 20;

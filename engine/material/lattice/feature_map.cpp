@@ -16,7 +16,7 @@ constexpr int draws_per_report = 4096;
 // Radius of the neighbourhood that is updated, relative to its width. Nodes beyond it would move by less than
 // a ninetieth of the nearest node's move.
 constexpr double neighbourhood_reach = 3.0;
-// Halvings of a node's move before it is rejected, and number of passes over all nodes.
+// Number of halvings of a node's move before it is rejected, and number of passes over all nodes.
 constexpr int grid_halvings = 4, passes = 3;
 
 // Calls visit(node of the first corner, cell) for each cell.

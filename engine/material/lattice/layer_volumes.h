@@ -24,8 +24,8 @@ void scale_layers_to(std::span<const double> wanted_m3, LatticeMesh& mesh);
 std::vector<double> redistribute_layers(std::span<const double> volumes_m3, int layers);
 
 // Stations of a lattice in a tube: the parameters v between its layers, and the parameters u of its rings.
-// `v` starts and ends at the poles, so that the first and the last layer have the volume beyond the end
-// slices.
+// The first and the last value of `v` are the poles, because the volume between a pole and the nearest slice
+// belongs to the outermost layer.
 struct TubeStations {
   std::vector<double> v;
   RingParameters ring;

@@ -81,8 +81,8 @@ class Equilibrium {
     return !cancelled_;
   }
 
-  // Factorises the tangent. If stress makes the tangent indefinite, Newton's step may not descend; the plain
-  // tangent is then used instead.
+  // Factorises the tangent. If stress makes the tangent indefinite, Newton's step may not descend. The
+  // tangent without the contribution of stress (Tangent::plain) is then used instead.
   bool factor_tangent(const Coordinates& at) {
     if (!factor()) return false;
     if (factors_.has_pivots_above(0.0)) return true;

@@ -146,7 +146,8 @@ TEST(RoughScan, OutliersOfLargeCloudsAreLeftOut) {
   add_outliers(scan, 5, 0.05);
   const ScanFit fitted = fit(scan, 12);
   ASSERT_EQ(fitted.bodies.size(), 1U);
-  // About 8 % of the 30,000 outliers in a box of 0.06 m are within 0.5 mm (a voxel's side) of the sphere.
+  // About 5 % of the 30,000 outliers in a box of 0.06 m are within 0.5 mm, about a voxel's side, of the
+  // sphere.
   EXPECT_GT(fitted.outliers, 25'000U);
   EXPECT_LT(fitted.outliers, 30'000U);
   EXPECT_LT(farthest_off(fitted.bodies[0].surface, from_sphere(0.03)), 2e-4);

@@ -161,7 +161,7 @@ Body weighted() {
 TEST(MaterialMix, IsTheMeanOverTheBody) {
   const auto mix = compute_material_mix(weighted());
   ASSERT_TRUE(mix) << mix.error().message;
-  // Each cell is of one material, so half of one layer out of about 20 may count as either.
+  // Each cell has a single material, so half of one layer out of about 20 may have the wrong one.
   EXPECT_NEAR(mix->density_kg_per_m3, 2000.0, 100.0);
   EXPECT_EQ(mix->materials, (std::vector<std::string>{"heavy", "light"}));
   // Three quarters of the mass are 15 mm above the centre, a quarter 15 mm below.

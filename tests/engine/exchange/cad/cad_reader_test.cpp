@@ -254,7 +254,7 @@ TEST_F(CadReader, OtherFilesThatAFileNamesAreNotOpened) {
   EXPECT_NE(found.error().message.find("names other files"), std::string::npos) << found.error().message;
 }
 
-// OpenCASCADE uses a number as the name of an instance whose part has no name.
+// OpenCASCADE names an instance without a name by a number. The reader uses the name of the part instead.
 TEST_F(CadReader, AUseWithoutANameHasItsPartsName) {
   const auto file = folder_.path() / "trolley.step";
   write_trolley(file);

@@ -1,5 +1,5 @@
-// Tests faces whose edges, or only the control points of whose edges, are slightly outside the surface's
-// domain.
+// Tests faces with edges that are slightly outside the surface's domain, or that only have control points
+// outside it.
 #include <gtest/gtest.h>
 
 #include <BRepBuilderAPI_MakeEdge.hxx>

@@ -25,8 +25,8 @@ class NearestKeptPoint {
 
   double polished(const Sample& start, const Vector3& from) const;
 
-  // Returns true if the point is inside the kept part, or within a hundred-thousandth of the domain from it,
-  // so that points on a loop count as kept.
+  // Returns true if the point is inside the kept part, or outside by at most a hundred-thousandth of the
+  // domain, so that points on a loop count as kept.
   bool is_kept(double u, double v) const;
 
   Surface surface_;

@@ -43,7 +43,7 @@ double mean_share(const LatticeMesh& fine, const LatticeMesh& coarse, const std:
   return sum / static_cast<double>(fine.cell_count());
 }
 
-// The boxes are cubic with several node counts, and one box has a different count along each axis.
+// The node counts along the three axes are equal, except in one box.
 TEST(ImplicitSolver, HasOfEachCellWhatTheLatticeHasThere) {
   const Material stiff = elastic_material(2e9, 0.3, 1000.0);
   for (const auto& counts : {std::array<int, 3>{12, 12, 12}, {20, 20, 20}, {34, 34, 34}, {7, 13, 24}}) {
