@@ -192,25 +192,38 @@ struct Relaxation {
   SpringLattice& lattice(std::size_t at) const { return *lattices[at].lattice; }
 };
 
-void kick(Relaxation& relaxation, float h) {
+// One substep of a tick: its index, the number of substeps, and its duration h, s.
+struct Substep {
+  int index, count;
+  float h;
+};
+
+// Most substeps of a tick in which weights act. In a shorter substep, the rounding of a falling node's
+// velocity would swallow part of the velocity change.
+constexpr int most_weighted_substeps = 64;
+
+// Returns the number of substeps whose weight acts in this one: 1 for a moderate number of substeps. The
+// numbers of all substeps sum to the number of substeps.
+int count_weights(const Substep& substep) {
+  const int stride = (substep.count + most_weighted_substeps - 1) / most_weighted_substeps;
+  return substep.index % stride == 0 ? std::min(stride, substep.count - substep.index) : 0;
+}
+
+void kick(Relaxation& relaxation, const Substep& substep) {
+  const float h = substep.h;
+  const int weights = count_weights(substep);
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) continue;
     const SpringLattice& lattice = relaxation.lattice(at);
     const LatticeView& view = relaxation.view[at];
     const float decay = 1.0f / (1.0f + h * static_cast<float>(relaxation.drag_per_s[at]));
     compute_forces(lattice, view, relaxation.drifted[at].moved_square,
-                   relaxation.lattices[at].gravity_m_per_s2);
+                   weights * relaxation.lattices[at].gravity_m_per_s2);
     add_support_impulses(relaxation.lattices[at].supports, view, static_cast<double>(h));
     lattice.kernels().kick(view, h, decay);
     set_support_velocities(relaxation.lattices[at].supports, view, relaxation.time_s);
   }
 }
-
-// One substep of a tick: its index, the number of substeps, and its duration h, s.
-struct Substep {
-  int index, count;
-  float h;
-};
 
 // Returns whether a tool has constraints on lattices that are stepped by springs, or on the others.
 bool touches(const Relaxation& relaxation, const TouchingTool& tool, bool springs) {
@@ -225,24 +238,36 @@ bool touches(const Relaxation& relaxation, const TouchingTool& tool, bool spring
 // Passes over the contacts with implicitly stepped lattices in a tick.
 constexpr int solver_passes = 2;
 
-// Lets the implicitly stepped lattices respond to the impulses of a pass over contacts. If they respond more
-// than the contacts assumed, the impulses of the pass are scaled down to the fraction with the least energy.
-// `tool_work_j` is the work of those impulses on a tool. Returns the fraction.
-double respond_to_pass(const Relaxation& relaxation, double tool_work_j) {
-  double assumed = tool_work_j, work = tool_work_j;
+// Response of the implicitly stepped lattices to the impulses of contacts.
+struct Response {
+  double assumed_work_j = 0.0, work_j = 0.0;
   std::array<bool, lattice_capacity> responds{};
+
+  // Returns the fraction of the impulses that has the least energy. It is below 1 if the lattices respond
+  // more than the contacts assumed. `tool_work_j` is the work of the impulses on a tool.
+  double find_best_fraction(double tool_work_j) const {
+    const double assumed = assumed_work_j + tool_work_j, work = work_j + tool_work_j;
+    return work > assumed ? assumed / work : 1.0;
+  }
+};
+
+Response find_response(const Relaxation& relaxation) {
+  Response found;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (relaxation.has_springs(at)) continue;
     const auto response = relaxation.lattices[at].implicit_solver->find_response(relaxation.lattice(at));
-    responds[at] = response.work_j > 0.0;
-    assumed += response.assumed_work_j;
-    work += response.work_j;
+    found.responds[at] = response.work_j > 0.0;
+    found.assumed_work_j += response.assumed_work_j;
+    found.work_j += response.work_j;
   }
-  const double fraction = work > assumed ? assumed / work : 1.0;
+  return found;
+}
+
+void respond(const Relaxation& relaxation, const Response& response, double fraction) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
-    if (responds[at]) relaxation.lattices[at].implicit_solver->respond(fraction, relaxation.lattice(at));
+    if (!response.responds[at]) continue;
+    relaxation.lattices[at].implicit_solver->respond(fraction, relaxation.lattice(at));
   }
-  return fraction;
 }
 
 // Solves the contacts of a tool with implicitly stepped lattices.
@@ -252,18 +277,25 @@ void solve_with_solvers(const Relaxation& relaxation, const TouchingTool& tool, 
   for (int p = 0; p < solver_passes; ++p) {
     tool.contacts->pass(views, *tool.state,
                         {relaxation.time_s, ContactConstraints::Moved::by_solver, p % 2 == 1, caps});
-    const double fraction = respond_to_pass(relaxation, tool.contacts->pass_work_j(*tool.state));
+    const Response response = find_response(relaxation);
+    const double fraction = response.find_best_fraction(tool.contacts->pass_work_j(*tool.state));
+    respond(relaxation, response, fraction);
     tool.contacts->shorten_pass(*tool.state, fraction);
   }
 }
 
-// Solves the contacts between implicitly stepped lattices.
+// Solves the contacts between implicitly stepped lattices. The forces of the last tick act in full, so that
+// an error of the assumed contact mass does not amplify them.
 void solve_with_solvers(const Relaxation& relaxation, BodyContacts& between, std::span<const float> caps) {
+  constexpr auto moved = BodyContacts::Moved::by_solvers;
   if (!between.has_constraint_between_solvers()) return;
   const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
   for (int p = 0; p < solver_passes; ++p) {
-    between.pass(views, {relaxation.time_s, BodyContacts::Moved::by_solvers, p % 2 == 1, caps});
-    respond_to_pass(relaxation, 0.0);
+    between.pass(views, {relaxation.time_s, moved, p % 2 == 1, caps});
+    const Response response = find_response(relaxation);
+    const double fraction = response.find_best_fraction(0.0);
+    respond(relaxation, response, fraction);
+    between.shorten_solver_pass(fraction);
   }
 }
 
@@ -290,7 +322,9 @@ void solve_contacts(const Relaxation& relaxation, const Substep& substep, std::s
   for (const TouchingTool& tool : tools) solve_tool(relaxation, tool, substep, push_caps);
   if (between) {
     if (substep.index == 0) solve_with_solvers(relaxation, *between, push_caps);
-    between->pass(views, {static_cast<double>(substep.h), BodyContacts::Moved::by_springs, false, push_caps});
+    const auto h = static_cast<double>(substep.h);
+    between->start(views, h);
+    between->pass(views, {h, BodyContacts::Moved::by_springs, false, push_caps});
   }
   if (!ground) return;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
@@ -513,7 +547,7 @@ std::span<GroundContact> ground_contacts(GroundContacts* ground, std::size_t at)
   return ground ? ground->of_body(static_cast<int>(at)) : std::span<GroundContact>();
 }
 
-void begin_implicit_steps(const Relaxation& relaxation, GroundContacts* ground) {
+void begin_implicit_steps(const Relaxation& relaxation, const BodyContacts* between, GroundContacts* ground) {
   const double time_s = relaxation.time_s;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const RelaxedLattice& relaxed = relaxation.lattices[at];
@@ -522,6 +556,11 @@ void begin_implicit_steps(const Relaxation& relaxation, GroundContacts* ground) 
     for (const SupportedNodes& support : relaxed.supports) {
       if (support.moves)
         relaxed.implicit_solver->move_fixed(support.nodes, (support.end_m - support.start_m) / time_s);
+    }
+    if (between) {
+      between->visit_known_impulses(static_cast<int>(at), time_s, [&](int node, const Vector3& impulse) {
+        relaxed.implicit_solver->add_known_impulse(*relaxed.lattice, node, impulse);
+      });
     }
     relaxed.implicit_solver->begin_step(step, *relaxed.lattice, ground_contacts(ground, at));
     for (SupportedNodes& support : relaxed.supports) {
@@ -560,13 +599,14 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     relaxation.cap[at] = speed_cap(relaxation.lattice(at), h);
   }
   report.speed_capped = begin_supports(relaxation);
-  begin_implicit_steps(relaxation, ground);
+  begin_implicit_steps(relaxation, between, ground);
   for (const TouchingTool& tool : tools) tool.contacts->begin(tool.motion, settings.time_s);
   if (substeps.slowed) stabilise_strained_nodes(relaxation, h);
   for (int s = 0; s < substeps.count; ++s) {
-    kick(relaxation, h);
+    const Substep substep{s, substeps.count, h};
+    kick(relaxation, substep);
     collect_carried_forces(relaxation, tools);
-    solve_contacts(relaxation, {s, substeps.count, h}, tools, between, ground);
+    solve_contacts(relaxation, substep, tools, between, ground);
     report.speed_capped |= drift(relaxation, h, tools);
     move_carried_nodes(relaxation, tools);
     move_supported_nodes(relaxation, static_cast<double>(s + 1) / substeps.count);

@@ -55,7 +55,7 @@ bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::
     complete &=
         contacts.add({from.index, &from.state->lattice, find_embedding(from.state->mapping(), near)},
                      {to.index, &to.state->lattice, to.state->mapping().at(near.other_u, near.other_v)},
-                     near.normal, near.gap_m);
+                     near.normal, near.gap_m, near.sample);
   }
   return complete;
 }
@@ -77,12 +77,12 @@ bool add_contacts_of(const IndexedBody& first, const IndexedBody& second, const 
   for (const SampleNearMesh& near : proximity.surface_samples()) {
     complete &= contacts.add({first.index, &first.state->lattice, surface.sample(near.sample)},
                              {second.index, &second.state->lattice, mesh.at(near.mesh.on)}, near.mesh.normal,
-                             near.mesh.gap_m);
+                             near.mesh.gap_m, near.sample);
   }
   for (const VertexNearSurface& near : proximity.mesh_vertices()) {
     complete &= contacts.add({second.index, &second.state->lattice, mesh.vertex(near.vertex)},
                              {first.index, &first.state->lattice, surface.at(near.u, near.v)}, near.normal,
-                             near.gap_m);
+                             near.gap_m, near.vertex);
   }
   return complete;
 }

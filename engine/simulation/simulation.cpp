@@ -350,6 +350,7 @@ std::uint64_t Simulation::state_hash() const {
     s.ground_contact.contacts().visit_state(
         [&](const double* data, std::size_t count) { hash.add(data, count); });
   }
+  s.between.visit_state([&](const double* data, std::size_t count) { hash.add(data, count); });
   add_to_hash(s.tool, hash);
   if (s.scene.symmetry.on) add_to_hash(s.mirrored, hash);
   return hash.value();
@@ -382,6 +383,7 @@ Status Simulation::restore(const ShapeState& shape) {
     body.update_skin();
   }
   state_->ground_contact.contacts().forget();
+  state_->between.forget();
   state_->tool.contact.release();
   state_->mirrored.contact.release();
   return {};

@@ -349,7 +349,7 @@ namespace {
 
 // Distance in lattice cells, beyond the tool's movement, up to which the nearest point counts as the same
 // point as in the last tick.
-constexpr double same_point_cells = 0.5;
+constexpr double same_point_cells = 0.2;
 
 int key_of(std::size_t point) {
   return nearest_point_key - static_cast<int>(point);

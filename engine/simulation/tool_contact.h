@@ -125,7 +125,7 @@ class ToolContact {
     // The nearest point may jump between places where the tool is equally deep. Each place stays constrained
     // while it pushes; otherwise the force would ripple. The key of a point is nearest_point_key minus its
     // index.
-    std::array<ContactPoint, 4> points;
+    std::array<ContactPoint, 8> points;
   };
   // Point of a body's surface, and the tangent plane of the tool that the point must not cross.
   struct Pushed {

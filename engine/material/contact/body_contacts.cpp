@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "engine/base/assert.h"
 #include "engine/material/contact/contact_constraints.h"
@@ -11,10 +10,10 @@
 namespace spoonbill {
 namespace {
 
-// Pace of contacts between bodies. The surfaces follow their nodes through the refit and may move slightly
-// more or less than the constrained points. Closing at most half of a gap in a substep leaves a margin for
-// this difference.
-constexpr ContactPace body_pace{0.5, 700.0};
+// Pace of contacts between bodies. The surfaces follow their nodes through the refit and may move slightly more or less than the constrained
+// points. Closing at most half of a gap leaves a margin for this difference. A push starts from the force of
+// the last substep, so a slow correction suffices; a fast one would shake bodies at rest.
+constexpr ContactPace body_pace{0.5, 400.0};
 
 Vector3 current_displacement(const BodyPoint& side) {
   Vector3 sum = Vector3::Zero();
@@ -52,30 +51,44 @@ double mutual_friction(const BodyPoint& first, const BodyPoint& second) {
 
 }  // namespace
 
-BodyContacts::BodyContacts(int capacity) : constraints_(static_cast<std::size_t>(capacity)) {
+BodyContacts::BodyContacts(int capacity)
+    : constraints_(static_cast<std::size_t>(capacity)), kept_(constraints_.size()) {
   SPOONBILL_ASSERT(capacity >= 0);
 }
 
 void BodyContacts::clear() {
+  kept_.clear();
+  for (int c = 0; c < count_; ++c) {
+    if (constraints_[c].force_n > 0.0) kept_.add(constraints_[c].key(), constraints_[c].force_n);
+  }
+  kept_.sort();
   count_ = 0;
 }
 
-bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m) {
+void BodyContacts::forget() {
+  kept_.clear();
+  count_ = 0;
+}
+
+bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m,
+                       int sample) {
   SPOONBILL_ASSERT_DEBUG(first.lattice != nullptr && second.lattice != nullptr);
   SPOONBILL_ASSERT_DEBUG(std::abs(normal.squaredNorm() - 1.0) < 1e-5);
   if (count_ == static_cast<int>(constraints_.size())) return false;
   const bool by_solvers = first.lattice->moved_by_solver() && second.lattice->moved_by_solver();
   const double moved = normal.dot(current_displacement(first) - current_displacement(second));
-  constraints_[count_++] = {first.body,
-                            second.body,
-                            first.point,
-                            second.point,
-                            normal,
-                            mutual_compliance(first, second),
-                            gap_m - moved,
-                            mutual_friction(first, second),
-                            by_solvers ? Moved::by_solvers : Moved::by_springs,
-                            false};
+  Constraint& added = constraints_[count_++];
+  added = {.first_body = first.body,
+           .second_body = second.body,
+           .first = first.point,
+           .second = second.point,
+           .normal = normal,
+           .compliance = mutual_compliance(first, second),
+           .base_m = gap_m - moved,
+           .friction = mutual_friction(first, second),
+           .moved = by_solvers ? Moved::by_solvers : Moved::by_springs,
+           .sample = sample};
+  if (added.keeps_force() && added.compliance > 0.0) added.force_n = kept_.find(added.key());
   return true;
 }
 
@@ -88,6 +101,21 @@ bool BodyContacts::has_constraint_between_solvers() const {
                      [](const Constraint& constraint) { return constraint.moved == Moved::by_solvers; });
 }
 
+void BodyContacts::start(std::span<const LatticeView> lattices, double h_s) {
+  for (int c = 0; c < count_; ++c) {
+    Constraint& constraint = constraints_[c];
+    if (constraint.moved != Moved::by_springs || !(constraint.force_n > 0.0)) continue;
+    push(lattices, constraint, h_s * constraint.force_n * constraint.normal);
+  }
+}
+
+void BodyContacts::push(std::span<const LatticeView> lattices, Constraint& constraint,
+                        const Vector3& impulse) {
+  constraint.first.push(lattices[constraint.first_body], impulse);
+  constraint.second.push(lattices[constraint.second_body], -impulse);
+  constraint.acted = true;
+}
+
 void BodyContacts::pass(std::span<const LatticeView> lattices, const Pass& pass) {
   const std::span<const float> caps = pass.push_speed_caps_m_per_s;
   for (int c = 0; c < count_; ++c) {
@@ -98,6 +126,16 @@ void BodyContacts::pass(std::span<const LatticeView> lattices, const Pass& pass)
   }
 }
 
+void BodyContacts::shorten_solver_pass(double fraction) {
+  SPOONBILL_ASSERT_DEBUG(fraction >= 0.0 && fraction <= 1.0);
+  for (int c = 0; c < count_; ++c) {
+    Constraint& constraint = constraints_[c];
+    if (constraint.moved != Moved::by_solvers || !constraint.keeps_force()) continue;
+    const double before = constraint.passed_force_n;
+    constraint.force_n = before + fraction * (constraint.force_n - before);
+  }
+}
+
 void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& constraint, double h,
                          double cap) {
   const LatticeView& first = lattices[constraint.first_body];
@@ -105,13 +143,15 @@ void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& cons
   const Vector3 apart = constraint.first.displacement_m(first) - constraint.second.displacement_m(second);
   const Vector3 relative =
       constraint.first.velocity_m_per_s(first) - constraint.second.velocity_m_per_s(second);
-  const ContactPush push{constraint.base_m + constraint.normal.dot(apart), constraint.normal, relative,
-                         1.0 / constraint.compliance};
-  const auto impulse = push.impulse(h, body_pace, cap, constraint.friction);
-  if (!impulse) return;
-  constraint.first.push(first, *impulse);
-  constraint.second.push(second, -*impulse);
-  constraint.acted = true;
+  const ContactPush state{constraint.base_m + constraint.normal.dot(apart), constraint.normal, relative,
+                          1.0 / constraint.compliance};
+  const double target = state.target_m_per_s(h, body_pace, cap), started = h * constraint.force_n;
+  const double pushed = std::max(0.0, started + (target - relative.dot(constraint.normal)) * state.mass_kg);
+  constraint.passed_force_n = constraint.force_n;
+  if (constraint.keeps_force()) constraint.force_n = pushed / h;
+  if (pushed == 0.0 && started == 0.0) return;
+  push(lattices, constraint,
+       (pushed - started) * constraint.normal - state.drag(constraint.friction * pushed));
 }
 
 bool BodyContacts::acted(int body) const {

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/material/contact/kept_forces.h"
 #include "engine/material/lattice/embedded_point.h"
 #include "engine/material/springs/spring_lattice.h"
 
@@ -20,24 +21,48 @@ struct BodyPoint {
 // their surfaces. They are solved in each substep after the contacts of tools. Impulses are equal and
 // opposite, so momentum is conserved.
 //
-// Working memory for the contacts of one tick. One owner, one thread; allocates only in its constructor.
+// Contacts of one tick, and their forces in the last tick. One owner, one thread; allocates only in its
+// constructor.
 class BodyContacts {
  public:
   explicit BodyContacts(int capacity);
 
+  // Removes the constraints, and remembers their forces for those that are added next.
   void clear();
+  // Removes the constraints and their forces.
+  void forget();
   // Adds a constraint that keeps the first point on one side of the second: the side to which the unit vector
   // `normal` points. `gap_m` is the present distance of the first point beyond the second along `normal`,
   // negative for a penetration. Both points may be of the same body and share nodes. Returns false when full.
-  bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m);
+  // `sample` numbers the first point among the samples or vertices of its body, so that its push starts from
+  // the force of the last substep; -1 for a point that differs in every tick, whose push starts from zero.
+  bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m, int sample);
 
   // Starts a tick: marks all constraints as not having acted.
   void begin();
 
-  // Solves once the constraints between two lattices that the implicit solver moves, or all others. Call
-  // after the kick and before the drift of a substep of h_s. A reversed pass solves the last constraint
-  // first.
+  // The constraints between two lattices that the implicit solver moves are solved once a tick, all others in
+  // each substep.
   enum class Moved { by_springs, by_solvers };
+  // Calls visit(node, impulse) with the impulses, N s, of constraints that are solved once a tick on the
+  // nodes of a body: those that the forces of the last tick give in a tick of `time_s`. The solvers must know
+  // them when they start their steps.
+  template <class Visit>
+  void visit_known_impulses(int body, double time_s, const Visit& visit) const {
+    for (int c = 0; c < count_; ++c) {
+      const Constraint& constraint = constraints_[static_cast<std::size_t>(c)];
+      if (constraint.moved != Moved::by_solvers || !(constraint.force_n > 0.0)) continue;
+      const Vector3 impulse = time_s * constraint.force_n * constraint.normal;
+      if (constraint.first_body == body) constraint.first.visit_shares(impulse, visit);
+      if (constraint.second_body == body) constraint.second.visit_shares(-impulse, visit);
+    }
+  }
+
+  // Pushes with the forces of the last substep, other than those that solvers know. Call after the kick of a
+  // substep of h_s.
+  void start(std::span<const LatticeView> lattices, double h_s);
+  // Solves the constraints once. Call after start() and before the drift of a substep of h_s. A reversed pass
+  // solves the last constraint first.
   struct Pass {
     double h_s;
     Moved moved;
@@ -45,6 +70,9 @@ class BodyContacts {
     std::span<const float> push_speed_caps_m_per_s;  // by body
   };
   void pass(std::span<const LatticeView> lattices, const Pass& pass);
+  // Shortens the changes of the forces in the last pass() by_solvers to this fraction. The caller does so
+  // with the impulses on the nodes.
+  void shorten_solver_pass(double fraction);
   // Returns whether a constraint acts between two lattices that the implicit solver moves.
   bool has_constraint_between_solvers() const;
 
@@ -55,6 +83,12 @@ class BodyContacts {
   // Sets to 1 the bytes in `touched` of the nodes of a body on which a constraint has acted.
   void mark_touched(int body, std::uint8_t* touched) const;
 
+  // Visits what the next tick depends on.
+  template <class Visitor>
+  void visit_state(Visitor&& visit) const {
+    for (int c = 0; c < count_; ++c) visit(&constraints_[static_cast<std::size_t>(c)].force_n, 1);
+  }
+
  private:
   struct Constraint {
     int first_body = 0, second_body = 0;
@@ -64,11 +98,19 @@ class BodyContacts {
     double base_m = 0.0;      // gap minus the part due to displacements since rest
     double friction = 0.0;    // the smaller coefficient of the two surfaces
     Moved moved = Moved::by_springs;
+    int sample = -1;
+    double force_n = 0.0;         // push in the last substep; 0 for a push that starts from zero
+    double passed_force_n = 0.0;  // that force before the last pass()
     bool acted = false;
+
+    ContactKey key() const { return {first_body, second_body, sample}; }
+    bool keeps_force() const { return sample >= 0; }
   };
   void solve(std::span<const LatticeView> lattices, Constraint& constraint, double h, double cap);
+  void push(std::span<const LatticeView> lattices, Constraint& constraint, const Vector3& impulse);
 
   std::vector<Constraint> constraints_;
+  KeptForces kept_;  // of the last tick
   int count_ = 0;
 };
 

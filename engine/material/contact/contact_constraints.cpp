@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "engine/base/assert.h"
 
@@ -23,22 +22,19 @@ constexpr double coupling_frequency = 360.0;
 
 }  // namespace
 
-ContactConstraints::ContactConstraints(int capacity) : constraints_(static_cast<std::size_t>(capacity)) {
+ContactConstraints::ContactConstraints(int capacity)
+    : constraints_(static_cast<std::size_t>(capacity)), kept_(constraints_.size()) {
   SPOONBILL_ASSERT(capacity >= 0);
-  kept_.reserve(constraints_.size());
 }
 
 void ContactConstraints::clear() {
   kept_.clear();
   for (int c = 0; c < count_; ++c) {
     const Constraint& constraint = constraints_[c];
-    if (constraint.keeps_force && constraint.force_n > 0.0) {
-      kept_.push_back({constraint.body, constraint.key, constraint.force_n});
-    }
+    if (!constraint.keeps_force || !(constraint.force_n > 0.0)) continue;
+    kept_.add({.first = constraint.body, .point = constraint.key}, constraint.force_n);
   }
-  std::sort(kept_.begin(), kept_.end(), [](const KeptForce& a, const KeptForce& b) {
-    return std::tie(a.body, a.key) < std::tie(b.body, b.key);
-  });
+  kept_.sort();
   count_ = 0;
 }
 
@@ -48,12 +44,7 @@ void ContactConstraints::forget() {
 }
 
 double ContactConstraints::last_force_n(int body, int key) const {
-  const auto at =
-      std::lower_bound(kept_.begin(), kept_.end(), std::tie(body, key),
-                       [](const KeptForce& kept, const std::tuple<const int&, const int&>& wanted) {
-                         return std::tie(kept.body, kept.key) < wanted;
-                       });
-  return at != kept_.end() && at->body == body && at->key == key ? at->force_n : 0.0;
+  return kept_.find({.first = body, .point = key});
 }
 
 bool ContactConstraints::add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point,

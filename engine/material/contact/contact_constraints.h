@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/base/geometry.h"
+#include "engine/material/contact/kept_forces.h"
 #include "engine/material/lattice/embedded_point.h"
 #include "engine/material/springs/spring_lattice.h"
 
@@ -194,10 +195,6 @@ class ContactConstraints {
     double force_n = 0.0;  // push in the last substep
     bool acted = false;
   };
-  struct KeptForce {
-    int body, key;
-    double force_n;
-  };
   bool add(const Constraint& constraint, const SpringLattice& lattice);
   void follow_hand(ToolState& tool, double h, double fraction) const;
   void solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
@@ -209,7 +206,7 @@ class ContactConstraints {
   void exchange(const LatticeView& lattice, Constraint& constraint, ToolState& tool, const Vector3& impulse);
 
   std::vector<Constraint> constraints_;
-  std::vector<KeptForce> kept_;  // forces of the last tick, by body and key
+  KeptForces kept_;  // of the last tick
   int count_ = 0;
   ToolMotion motion_;
   Vector3 hand_velocity_ = Vector3::Zero();  // m/s

@@ -58,7 +58,6 @@ void ImplicitGroundContacts::restore_last_impulses(std::span<GroundContact> cont
                                                    std::span<const GridPoint> points, double time_s,
                                                    std::vector<double>& impulses_ns) {
   SPOONBILL_ASSERT(time_s > 0.0);
-  std::fill(impulses_ns.begin(), impulses_ns.end(), 0.0);
   for (GroundContact& contact : contacts) {
     contact.impulse_ns = time_s * contact.force_n;
     points[static_cast<std::size_t>(contact.node)].spread(contact.impulse_ns, impulses_ns);
@@ -266,6 +265,7 @@ Result<LatticeMesh> make_coarse_mesh(const LatticeMesh& mesh, const std::vector<
 ImplicitSolver::ImplicitSolver(ImplicitBody body, int nodes, double mass_kg)
     : body_(std::move(body)),
       velocity_(static_cast<std::size_t>(nodes)),
+      known_(3 * static_cast<std::size_t>(body_.node_count()), 0.0),
       impulse_(3 * static_cast<std::size_t>(body_.node_count()), 0.0),
       ground_contacts_(nodes, mass_kg),
       contact_inverse_mass_(initial_lightness / mass_kg),
@@ -379,16 +379,18 @@ Vector3 ImplicitSolver::force_on_fixed(const SpringLattice& lattice, std::span<c
   return sum;
 }
 
+void ImplicitSolver::add_known_impulse(const SpringLattice& lattice, int node, const Vector3& impulse_ns) {
+  if (lattice.is_fixed(node)) return;
+  followers_[static_cast<std::size_t>(node)].spread(impulse_ns, known_);
+}
+
 ImplicitReport ImplicitSolver::begin_step(const ImplicitStep& step, SpringLattice& lattice,
                                           std::span<GroundContact> on_ground) {
   SPOONBILL_ASSERT(step.step_s > 0.0);
   step_s_ = step.step_s;
-  std::span<const double> known_ns;
-  if (!on_ground.empty()) {
-    ground_contacts_.restore_last_impulses(on_ground, followers_, step_s_, impulse_);
-    known_ns = impulse_;
-  }
-  const ImplicitReport report = body_.solve_velocities(step, known_ns);
+  ground_contacts_.restore_last_impulses(on_ground, followers_, step_s_, known_);
+  const ImplicitReport report = body_.solve_velocities(step, known_);
+  std::fill(known_.begin(), known_.end(), 0.0);
   write_velocities(lattice);
   return report;
 }

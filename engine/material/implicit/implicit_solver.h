@@ -62,8 +62,8 @@ class ImplicitGroundContacts {
   // Adapts to a body whose inertia has changed by this factor.
   void scale_inertia(double factor);
 
-  // Sets the impulses of the contacts to those of the last tick, from which the step starts, and sums them by
-  // coordinate of the body, N s.
+  // Sets the impulses of the contacts to those of the last tick, from which the step starts, and adds them to
+  // the sums by coordinate of the body, N s.
   void restore_last_impulses(std::span<GroundContact> contacts, std::span<const GridPoint> points,
                              double time_s, std::vector<double>& impulses_ns);
   // Solves the contacts after everything else that pushes the body. Changes the impulses and the body's
@@ -161,8 +161,11 @@ class ImplicitSolver {
   Vector3 force_on_fixed(const SpringLattice& lattice, std::span<const int> nodes,
                          const Vector3& gravity_m_per_s2) const;
 
-  // Sets the lattice's velocities to those at the end of a step with the ground contacts' impulses of the
-  // last tick and without other contacts. Contacts then change the velocities.
+  // Adds an impulse on a lattice node to those that the next step starts from, N s. It acts in full, while
+  // those that contacts add later are estimated.
+  void add_known_impulse(const SpringLattice& lattice, int node, const Vector3& impulse_ns);
+  // Sets the lattice's velocities to those at the end of a step with the known impulses and the ground
+  // contacts' impulses of the last tick and without other contacts. Contacts then change the velocities.
   ImplicitReport begin_step(const ImplicitStep& step, SpringLattice& lattice,
                             std::span<GroundContact> on_ground = {});
   // Work of the contacts' impulses since the last response: with the velocity changes that the contacts
@@ -211,6 +214,7 @@ class ImplicitSolver {
   std::vector<int> fixing_node_;      // for each block node: lattice node that fixes it, or -1 if none
   // Velocities of the lattice's nodes before contacts.
   std::vector<std::array<float, 3>> velocity_;
+  std::vector<double> known_;    // known impulses of the next step, by coordinate of the block, N s
   std::vector<double> impulse_;  // working memory: impulses by coordinate of the block, N s
   ImplicitGroundContacts ground_contacts_;
   double step_s_ = 0.0;

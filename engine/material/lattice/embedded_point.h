@@ -34,6 +34,14 @@ struct EmbeddedPoint {
   Vector3 velocity_m_per_s(const LatticeView& lattice) const;
   // Distributes an impulse, N s, to the nodes.
   void push(const LatticeView& lattice, const Vector3& impulse) const;
+  // Calls visit(node, part) for each node and its part of an impulse.
+  template <class Visit>
+  void visit_shares(const Vector3& impulse, const Visit& visit) const {
+    for (int i = 0; i < count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      visit(node[at], Vector3(static_cast<double>(weight[at]) * impulse));
+    }
+  }
   // Sets to 1 the bytes of nodes with a significant weight.
   void mark(std::uint8_t* touched) const;
 };
