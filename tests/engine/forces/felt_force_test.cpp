@@ -101,6 +101,17 @@ INSTANTIATE_TEST_SUITE_P(, FeltForce,
                                          FeltCase{"gelatin-20-1", false, ForceRun::whole_table},
                                          FeltCase{"silicone-00-30", false, ForceRun::whole_table}));
 
+// The block is fine enough for the sphere to be equally deep at several places, between which its nearest
+// point jumps.
+TEST(HeldSphere, FeelsASteadyForceWhereSeveralPlacesAreEquallyDeep) {
+  if (const std::string reason = find_skip_reason(ForceRun::always); !reason.empty()) GTEST_SKIP() << reason;
+  Scene scene = block_scene("silicone-00-30", 2000);
+  scene.tool.substeps = 1;
+  scene.sculpting.is_critically_damped = true;
+  Simulation simulation = make_simulation(scene);
+  EXPECT_LT(press_and_hold(simulation, 0.5, 2500).ripple, 0.005);
+}
+
 struct Presses {
   double peak_over_held = 0.0, held_over_slow = 0.0;
 };

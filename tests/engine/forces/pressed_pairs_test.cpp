@@ -134,9 +134,10 @@ TEST_P(PressedPairs, PushWithEqualForces) {
     return face_displacement_m(faces[body],
                                [&](int node) { return simulation.lattice(body).displacement(node); });
   };
-  advance(simulation, 800, idle_tool());
+  const bool is_short = !find_skip_reason(ForceRun::full).empty();
+  advance(simulation, is_short ? 450 : 800, idle_tool());
   double left_n = 0.0, right_n = 0.0, left_m = 0.0, right_m = 0.0;
-  constexpr int ticks = 500;
+  const int ticks = is_short ? 100 : 500;
   for (int tick = 0; tick < ticks; ++tick) {
     simulation.advance(idle_tool());
     left_n += simulation.support_force_n(0, 0).x() / ticks;
@@ -159,14 +160,14 @@ TEST_P(PressedPairs, PushWithEqualForces) {
   EXPECT_NEAR(right_m, right_rest_m, 0.03 * pair.press_m);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    , PressedPairs,
-    testing::Values(Pair{"gelatin-20-1", "silicone-00-30", 5e-4, 200, ForceRun::always},
-                    Pair{"gelatin-20-1", "abs", 5e-4, 200, ForceRun::whole_table},
-                    Pair{"silicone-00-30", "steel-304", 5e-4, 200, ForceRun::whole_table},
-                    Pair{"silicone-soft", "polypropylene", 5e-4, 200, ForceRun::whole_table},
-                    Pair{"silicone-hard", "abs", 5e-4, 200, ForceRun::whole_table},
-                    Pair{"abs", "steel-304", 1e-4, 200, ForceRun::whole_table}));
+INSTANTIATE_TEST_SUITE_P(, PressedPairs,
+                         testing::Values(Pair{"gelatin-20-1", "silicone-00-30", 5e-4, 200, ForceRun::always},
+                                         Pair{"gelatin-20-1", "abs", 5e-4, 200, ForceRun::whole_table},
+                                         Pair{"silicone-00-30", "steel-304", 5e-4, 200,
+                                              ForceRun::whole_table},
+                                         Pair{"silicone-soft", "polypropylene", 5e-4, 200, ForceRun::full},
+                                         Pair{"silicone-hard", "abs", 5e-4, 200, ForceRun::whole_table},
+                                         Pair{"abs", "steel-304", 1e-4, 200, ForceRun::whole_table}));
 
 }  // namespace
 }  // namespace spoonbill

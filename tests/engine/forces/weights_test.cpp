@@ -169,9 +169,8 @@ void PrintTo(const Stack& stack, std::ostream* out) {
 
 class WeightOnBody : public testing::TestWithParam<Stack> {};
 
-TEST_P(WeightOnBody, ReachesTheSupportOfTheOther) {
-  const Stack& stack = GetParam();
-  if (const std::string reason = find_skip_reason(stack.run); !reason.empty()) GTEST_SKIP() << reason;
+// Returns the scene of a block on a plate.
+Scene stack_scene(const Stack& stack) {
   BoxSize plate;
   plate.size_m = {0.06, 0.016, 0.03};
   plate.rounding_m = 0.001;
@@ -186,11 +185,27 @@ TEST_P(WeightOnBody, ReachesTheSupportOfTheOther) {
   scene.bodies[0].supports = {{end_region(surface, 0, false, 0.1)}, {end_region(surface, 0, true, 0.1)}};
   scene.sculpting.gravity_m_per_s2 = gravity;
   scene.sculpting.drag_per_s = 30.0;
+  return scene;
+}
+
+TEST_P(WeightOnBody, ReachesTheSupportOfTheOther) {
+  const Stack& stack = GetParam();
+  if (const std::string reason = find_skip_reason(stack.run); !reason.empty()) GTEST_SKIP() << reason;
+  const Scene scene = stack_scene(stack);
   Simulation simulation = make_simulation(scene);
   const double force_n = settled_force_n(simulation, 8000, [&] { return support_n(simulation); });
   const double upper_n = weight_n(scene.bodies[1]);
   expect_weight(std::string(stack.upper) + " on " + stack.lower, force_n - weight_n(scene.bodies[0]),
                 upper_n);
+}
+
+// Contacts that started from zero force in each tick would shake the block.
+TEST(BlockOnPlate, ComesToRest) {
+  if (const std::string reason = find_skip_reason(ForceRun::always); !reason.empty()) GTEST_SKIP() << reason;
+  Simulation simulation = make_simulation(stack_scene({"silicone-soft", "abs", ForceRun::always}));
+  advance(simulation, 600, idle_tool());
+  const SpringLattice& block = simulation.lattice(1);
+  for (int n = 0; n < block.mesh().node_count(); ++n) EXPECT_LT(block.velocity(n).norm(), 1e-3) << n;
 }
 
 INSTANTIATE_TEST_SUITE_P(, WeightOnBody,
