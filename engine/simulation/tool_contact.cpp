@@ -392,14 +392,17 @@ void ToolContact::add_earlier_pushes(int body, const BodyState& state, std::size
   for (std::size_t p = 0; p < contact.points.size(); ++p) {
     const ContactPoint& point = contact.points[p];
     if (p == nearest || !point.is_used) continue;
+    const EmbeddedPoint embedded = state.mapping().at(point.u, point.v);
+    if (!is_solid_ && !(state.shell_thickness_m > 0.0)) {
+      overflow_ |= !constraints_.add_push(body, state.lattice, embedded, key_of(p));
+      continue;
+    }
     const Vector3 at_m = position(state.mapping().current(), point.u, point.v);
     const Vector3 push = push_direction_at(shape_, at_m);
     if (push.isZero(0.0)) continue;
     const double distance_m =
         is_solid_ ? shape_.at(at_m).distance_m : (at_m - shape_.centre_m).norm() - shape_.radius_m;
-    add_plane_push(body, state,
-                   {state.mapping().at(point.u, point.v), push, find_gap(state, point.u, point.v, distance_m),
-                    key_of(p)},
+    add_plane_push(body, state, {embedded, push, find_gap(state, point.u, point.v, distance_m), key_of(p)},
                    hold);
   }
 }

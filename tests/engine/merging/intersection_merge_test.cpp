@@ -293,7 +293,7 @@ TEST(IntersectionMerge, ABodyThatIsAsWideAsTheOtherIsRefusedBeforeItIsFitted) {
   const auto merged = merge_crossing(rod(Vector3(1, 0, 0)), drum.surface(), {});
   ASSERT_FALSE(merged.ok());
   EXPECT_EQ(merged.error().code, ErrorCode::mismatch);
-  EXPECT_NE(merged.error().message.find("as wide"), std::string::npos) << merged.error().message;
+  EXPECT_NE(merged.error().message.find("wider"), std::string::npos) << merged.error().message;
 }
 
 // The ball has a radius of 20 mm, the drum one of 8 mm; the drum's axis is 6 mm from the ball's centre. The
