@@ -393,10 +393,6 @@ void ToolContact::add_earlier_pushes(int body, const BodyState& state, std::size
     const ContactPoint& point = contact.points[p];
     if (p == nearest || !point.is_used) continue;
     const EmbeddedPoint embedded = state.mapping().at(point.u, point.v);
-    if (!is_solid_ && !(state.shell_thickness_m > 0.0)) {
-      overflow_ |= !constraints_.add_push(body, state.lattice, embedded, key_of(p));
-      continue;
-    }
     const Vector3 at_m = position(state.mapping().current(), point.u, point.v);
     const Vector3 push = push_direction_at(shape_, at_m);
     if (push.isZero(0.0)) continue;
@@ -464,8 +460,9 @@ void ToolContact::add_sphere_pushes(int body, const BodyState& state, const Tool
   const double cell = static_cast<double>(state.lattice.cell_size_m());
   if (-nearest.depth_m <= find_margin_m(state) || shape_.radius_m < cell) {
     const std::size_t point = track_nearest(body, state, hold.reach_m);
-    overflow_ |= !constraints_.add_plane_push(body, state.lattice, state.mapping().at(nearest.u, nearest.v),
-                                              -nearest.normal, shape_.radius_m, key_of(point));
+    add_plane_push(
+        body, state,
+        {state.mapping().at(nearest.u, nearest.v), -nearest.normal, -nearest.depth_m, key_of(point)}, hold);
     if (shape_.radius_m >= cell) add_earlier_pushes(body, state, point, hold);
   }
   for (const NearSample& sample : contact.collider.near_samples()) {
