@@ -69,12 +69,15 @@ double largest_distance_m(const std::filesystem::path& a, const std::filesystem:
 
 TEST_F(ConvertTest, AHandleGoesOutToCadAndComesBack) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
-  for (const char* name : {"out.step", "out.STP", "out.iges", "out.igs"}) {
+  for (const std::string name : {"out.step", "out.STP", "out.iges", "out.igs"}) {
     SCOPED_TRACE(name);
-    for (const char* unit : {"mm", "cm", "m", "in", "inch"}) {
+    for (const std::string unit : {"mm", "cm", "m", "in", "inch"}) {
+      // The ending only selects the format, and the unit is written in the same manner for each ending.
+      const bool is_usual = name == "out.step" || (name == "out.iges" && unit == "cm");
+      if (!is_usual && unit != "inch" && !is_full_run()) continue;
       const Json out = convert_for_facts({handle_, place_.text(name), "--unit", unit});
       EXPECT_EQ(out["unit_in"], "mm");
-      EXPECT_EQ(out["unit_out"], std::string(unit) == "inch" ? "in" : unit);
+      EXPECT_EQ(out["unit_out"], unit == "inch" ? "in" : unit);
       EXPECT_NEAR(out["size_mm"][0].get<double>(), 100.0, 0.1);
       const Json back = convert_for_facts({place_.text(name), place_.text("back.json")});
       EXPECT_EQ(back["unit_in"], out["unit_out"] == "in" ? Json("inch") : out["unit_out"]);

@@ -97,6 +97,7 @@ TEST(MaterialPress, ClayKeepsItsDentAndItsVolume) {
 
 TEST(MaterialPress, SiliconeSpringsBack) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  if (!is_full_run()) GTEST_SKIP() << only_in_full;
   ScriptedPress press("silicone-press");
   press.run_to(2.0);
   const double held_m = press.dent_m(), felt_n = press.force_n();

@@ -192,7 +192,7 @@ void expect_simulation_passive(double x_m, int runs, unsigned seed) {
 }
 
 int simulated_runs() {
-  return random_cases(3, 24);
+  return random_cases(is_full_run() ? 3 : 1, 24);
 }
 
 TEST(Passivity, TheHeldPartGivesBackNoMoreThanItTook) {

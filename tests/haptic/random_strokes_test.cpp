@@ -284,7 +284,7 @@ void try_strokes(std::uint64_t seed, int strokes, int most_bodies, int stroke_ti
 }
 
 TEST(RandomStrokes, NeverLeaveABodyBroken) {
-  try_strokes(21, sanitized ? 3 : random_cases(is_full_run() ? 60 : 8, 200), 1, 2000);
+  try_strokes(21, sanitized ? 3 : random_cases(is_full_run() ? 60 : 3, 200), 1, is_full_run() ? 2000 : 1000);
 }
 
 // A tick of bodies that are pressed into each other takes up to 40 ms.

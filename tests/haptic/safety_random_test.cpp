@@ -235,7 +235,7 @@ WatchedForces sculpt(Random& random, int ticks) {
 }
 
 TEST(SafetyAtRandom, LimitsHoldWhileSculpting) {
-  const int scenes = random_cases(6, 60);
+  const int scenes = random_cases(is_full_run() ? 6 : 2, 60);
   Random random(12);
   std::uint64_t with_force = 0;
   for (int scene = 0; scene < scenes; ++scene) {

@@ -7,6 +7,8 @@
 #include <Eigen/Geometry>
 #include <cstdlib>
 #include <functional>
+#include <map>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -49,36 +51,84 @@ class MomentPictures : public ::testing::Test {
     const char* recording;
   };
 
-  // State of a replay that can be painted repeatedly.
+  // State of a session that can be painted repeatedly.
   struct Stage {
-    Session session;
-    FramePainter painter;
     Snapshot snapshot;
+    SessionFacts facts;
+    ViewChoice view;
     Box framed;
+    std::shared_ptr<FramePainter> painter;  // draws only this session
   };
 
-  static Stage stage_of(const Moment& moment) {
-    auto recording = read_recording(recording_folder / (std::string(moment.recording) + ".recording.jsonl"));
-    EXPECT_TRUE(recording) << recording.error().message;
-    auto session = Session::make(recording->header.document, "recording", recording->header.device,
-                                 best_instruction_set());
-    EXPECT_TRUE(session) << session.error().message;
-    session->reading = recording->readings.front();
-    Snapshot snapshot;
-    write_snapshot(session.value(), snapshot);
+  static std::shared_ptr<FramePainter> make_painter() {
     auto painter = FramePainter::make(width_px, height_px);
-    const Box framed = framed_box(snapshot);
     EXPECT_TRUE(painter) << painter.error().message;
+    return std::make_shared<FramePainter>(std::move(painter).value());
+  }
 
-    PlaybackDevice device(recording->header.device, recording->readings);
-    const std::uint64_t ticks = recording->readings.size();
-    Lockstep lockstep(session.value(), {&device, ticks, recording->commands, {}, {}, 0, "recording"},
-                      nullptr);
-    const auto frame = static_cast<std::uint64_t>(moment.share * static_cast<double>(frame_count(ticks) - 1));
-    EXPECT_TRUE(lockstep.run_to(frame_tick(frame)));
-    session->flags = tick_flag_none;  // clears flags that many frames have accumulated
-    write_snapshot(session.value(), snapshot);
-    return {std::move(session).value(), std::move(painter).value(), std::move(snapshot), framed};
+  // A replay that can go on from one moment to a later one. The states up to each moment must be those that
+  // the recording has.
+  class Replay {
+   public:
+    explicit Replay(const char* recording) {
+      auto read = read_recording(recording_folder / (std::string(recording) + ".recording.jsonl"));
+      EXPECT_TRUE(read) << read.error().message;
+      auto session =
+          Session::make(read->header.document, "recording", read->header.device, best_instruction_set());
+      EXPECT_TRUE(session) << session.error().message;
+      session_ = std::make_unique<Session>(std::move(session).value());
+      session_->reading = read->readings.front();
+      Snapshot snapshot;
+      write_snapshot(*session_, snapshot);
+      framed_ = framed_box(snapshot);
+      readings_ = std::move(read->readings);
+      device_ = std::make_unique<PlaybackDevice>(read->header.device, readings_);
+      lockstep_ = std::make_unique<Lockstep>(
+          *session_,
+          LockstepInput{
+              device_.get(), readings_.size(), read->commands, read->checkpoints, {}, 0, "recording"},
+          nullptr);
+    }
+
+    bool is_after(double share) const { return lockstep_->tick() > tick_of(share); }
+
+    Stage run_to(double share) {
+      EXPECT_TRUE(lockstep_->run_to(tick_of(share)));
+      session_->flags = tick_flag_none;  // clears flags that many frames have accumulated
+      Stage stage;
+      write_snapshot(*session_, stage.snapshot);
+      write_facts(*session_, stage.facts);
+      stage.view = session_->view;
+      stage.framed = framed_;
+      stage.painter = painter_;
+      return stage;
+    }
+
+   private:
+    std::uint64_t tick_of(double share) const {
+      return frame_tick(
+          static_cast<std::uint64_t>(share * static_cast<double>(frame_count(lockstep_->tick_count()) - 1)));
+    }
+
+    std::vector<DeviceReading> readings_;
+    std::unique_ptr<Session> session_;
+    std::unique_ptr<PlaybackDevice> device_;
+    std::unique_ptr<Lockstep> lockstep_;
+    Box framed_;
+    std::shared_ptr<FramePainter> painter_ = make_painter();
+  };
+
+  // Returns the state at a moment. The cases share one replay of a recording, which begins again for a moment
+  // that is over.
+  static const Stage& stage_of(const Moment& moment) {
+    static std::map<std::string, Replay> replays;
+    static std::map<std::pair<std::string, double>, Stage> stages;
+    const auto [stage, is_new] = stages.try_emplace({moment.recording, moment.share});
+    if (!is_new) return stage->second;
+    const auto before = replays.find(moment.recording);
+    if (before != replays.end() && before->second.is_after(moment.share)) replays.erase(before);
+    Replay& replay = replays.try_emplace(moment.recording, moment.recording).first->second;
+    return stage->second = replay.run_to(moment.share);
   }
 
   static Document document_of(const char* model) {
@@ -92,29 +142,25 @@ class MomentPictures : public ::testing::Test {
     auto session = Session::make(document, document.name, VirtualDevice::default_specification(),
                                  best_instruction_set());
     EXPECT_TRUE(session) << session.error().message;
-    Snapshot snapshot;
-    write_snapshot(session.value(), snapshot);
-    auto painter = FramePainter::make(width_px, height_px);
-    EXPECT_TRUE(painter) << painter.error().message;
-    const Box framed = framed_box(snapshot);
-    return {std::move(session).value(), std::move(painter).value(), std::move(snapshot), framed};
+    Stage stage;
+    write_snapshot(session.value(), stage.snapshot);
+    write_facts(session.value(), stage.facts);
+    stage.view = session->view;
+    stage.framed = framed_box(stage.snapshot);
+    stage.painter = make_painter();
+    return stage;
   }
 
-  static Image paint(Stage& stage, const Edit& edit) {
-    ViewSettings view = frame_view(stage.session.view, stage.framed, width_px, height_px);
-    SessionFacts facts;
-    write_facts(stage.session, facts);
-    PanelModel panel = make_panel_model(facts, stage.snapshot, view);
+  static Image paint(const Stage& stage, const Edit& edit) {
+    ViewSettings view = frame_view(stage.view, stage.framed, width_px, height_px);
+    PanelModel panel = make_panel_model(stage.facts, stage.snapshot, view);
     if (edit) edit(view, panel);
     Image image;
-    EXPECT_TRUE(stage.painter.paint(stage.snapshot, view, panel, image));
+    EXPECT_TRUE(stage.painter->paint(stage.snapshot, view, panel, image));
     return image;
   }
 
-  static Image picture(const Moment& moment, const Edit& edit = {}) {
-    Stage stage = stage_of(moment);
-    return paint(stage, edit);
-  }
+  static Image picture(const Moment& moment, const Edit& edit = {}) { return paint(stage_of(moment), edit); }
 
   static void compare(const std::string& name, const Image& actual) {
     const auto approved_file = approved_folder / (name + ".png");
@@ -140,7 +186,7 @@ class MomentPictures : public ::testing::Test {
 
   // Returns the difference that each edit makes in the picture.
   static std::vector<double> changes(const Moment& moment, const std::vector<Edit>& edits) {
-    Stage stage = stage_of(moment);
+    const Stage& stage = stage_of(moment);
     const Image unchanged = paint(stage, {});
     std::vector<double> result;
     result.reserve(edits.size());
@@ -260,7 +306,7 @@ TEST_F(MaterialPictures, GelatinComesBackSlowly) {
 using LatticePictures = MomentPictures;
 
 TEST_F(LatticePictures, CellsOfJelly) {
-  Stage stage = stage_of_document(document_of("jelly"));
+  const Stage stage = stage_of_document(document_of("jelly"));
   compare("jelly-cells", paint(stage, {}));
 }
 
@@ -289,12 +335,12 @@ class MergePictures : public MomentPictures {
 };
 
 TEST_F(MergePictures, HandleAndBowl) {
-  Stage stage = stage_of_document(parts());
+  const Stage stage = stage_of_document(parts());
   compare("spoon-parts", paint(stage, {}));
 }
 
 TEST_F(MergePictures, Spoon) {
-  Stage stage = stage_of_document(spoon());
+  const Stage stage = stage_of_document(spoon());
   compare("spoon-merged", paint(stage, {}));
 }
 

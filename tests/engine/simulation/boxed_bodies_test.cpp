@@ -164,7 +164,8 @@ TEST(BoxedBody, TouchesTheGroundWithItsSkinHoweverItLies) {
     int nodes;
     double youngs_modulus_pa;
   };
-  for (const Case& each : {Case{800, 2e5}, Case{4000, 2e9}}) {
+  for (const Case& each : {Case{800, 2e5}, Case{800, 2e9}, Case{4000, 2e9}}) {
+    if (each.nodes > 800 && !is_full_run()) continue;
     Scene scene = held_ring();
     scene.planes.clear();
     scene.bodies[0].lattice.node_budget = each.nodes;

@@ -107,6 +107,7 @@ constexpr double friction_angle = 32.0 * degree_rad;
 TEST(OnGround, ABlockSticksBelowTheAngleOfFriction) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     for (const double angle : {0.8 * friction_angle, friction_angle - degree_rad}) {
+      if (angle < friction_angle - degree_rad && !is_full_run()) continue;
       Incline incline(angle, std::tan(friction_angle), stepping);
       for (int tick = 0; tick < 1500; ++tick) incline.tick();
       const double settled = incline.mean(false).x();
@@ -152,7 +153,7 @@ double lowest_of_skin(const Simulation& simulation) {
       const Surface& surface = simulation.surface();
       const double u =
           surface.u.domain_start() + (surface.u.domain_end() - surface.u.domain_start()) * i / 60.0;
-      lowest = std::min(lowest, evaluate(surface, u, 0.06 * j / 120.0).position_m.y());
+      lowest = std::min(lowest, position(surface, u, 0.06 * j / 120.0).y());
     }
   }
   return lowest;
@@ -178,7 +179,7 @@ double highest_of_skin(const Simulation& simulation) {
   for (int i = 0; i < 240; ++i) {
     const double u =
         surface.u.domain_start() + (surface.u.domain_end() - surface.u.domain_start()) * i / 240.0;
-    highest = std::max(highest, evaluate(surface, u, 0.03).position_m.y());
+    highest = std::max(highest, position(surface, u, 0.03).y());
   }
   return highest;
 }
@@ -208,6 +209,7 @@ double least_volume_share(const SpringLattice& lattice) {
 TEST(OnGround, AHandleThatFallsComesToRestOnItsSkin) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const double youngs : {1e4, 2e5, 2e9}) {
+    if (youngs == 2e5 && !is_full_run()) continue;
     Simulation simulation = simulate(falling_handle(youngs));
     for (int tick = 0; tick < 1500; ++tick) {
       simulation.advance(far_away);
@@ -248,6 +250,7 @@ TEST(OnGround, ASoftHandleAtRestStaysThere) {
 TEST(OnGround, AFallOfHalfAMetreLeavesNoCellInsideOut) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const double youngs : {4e2, 1e3, 1e9}) {
+    if (youngs == 1e3 && !is_full_run()) continue;
     Scene scene = falling_handle(youngs);
     scene.ground->point_m.y() = -0.5;
     scene.sculpting.drag_per_s = 0.0;

@@ -85,6 +85,8 @@ TEST(Shell, IsTouchedOnTheFaceThatIsMet) {
 TEST(Shell, OfClayIsDentedFromEitherSideAndStaysSo) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const bool from_below : {true, false}) {
+    // The default run presses the far face, which needs the shell's thickness.
+    if (from_below && !is_full_run()) continue;
     Simulation simulation = simulate(clay_bowl());
     const double sign = from_below ? 1.0 : -1.0;
     const double touch_m = from_below ? -shell_radius_m - shell_tool_radius_m
@@ -209,7 +211,7 @@ TEST(Shell, BearsAnotherBody) {
     scene.sculpting.gravity_m_per_s2 = {0.0, -9.81 * sign, 0.0};
     scene.sculpting.drag_per_s = 20.0;
     Simulation simulation = simulate(scene);
-    for (int tick = 0; tick < 1000; ++tick) simulation.advance(at_height(0.3));
+    for (int tick = 0; tick < (is_full_run() ? 1000 : 400); ++tick) simulation.advance(at_height(0.3));
     double lowest = 1.0;
     for (const Vector3& node : simulation.lattice(1).positions()) {
       lowest = std::min(lowest, sign * node.y());

@@ -125,7 +125,7 @@ TEST(StiffBodies, KeepTheShapeInWhichTheyAreCast) {
 // One of the hands has no coupling and moves at 5 m/s.
 TEST(StiffBodies, NoHandBlowsThemUp) {
   for (const double youngs : {2e6, 2e9, 193e9}) {
-    if (sanitized && youngs != 2e9) continue;
+    if ((sanitized || !is_full_run()) && youngs != 2e9) continue;
     Scene scene = held_stiff_handle(youngs);
     scene.planes.clear();
     Simulation simulation = simulate(scene);

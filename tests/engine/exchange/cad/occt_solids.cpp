@@ -37,6 +37,7 @@
 #include <numbers>
 
 #include "engine/exchange/cad/cad.h"
+#include "tests/engine/effort.h"
 #include "tests/engine/exchange/cad/occt_shapes.h"
 
 namespace spoonbill {
@@ -222,6 +223,13 @@ std::vector<NamedShape> solid_shapes() {
   add_sweeps(all);
   add_features(all);
   return all;
+}
+
+std::vector<NamedShape> every_second(std::vector<NamedShape> shapes, bool from_first) {
+  if (is_full_run()) return shapes;
+  std::vector<NamedShape> chosen;
+  for (std::size_t k = from_first ? 0 : 1; k < shapes.size(); k += 2) chosen.push_back(std::move(shapes[k]));
+  return chosen;
 }
 
 std::vector<NamedShape> hollow_solids() {

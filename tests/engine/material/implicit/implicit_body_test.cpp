@@ -52,6 +52,7 @@ TEST(ImplicitBody, SettlesToTheStaticAnswer) {
   const double second_moment = 0.012 * std::pow(0.005, 3) / 12.0;
   for (const double youngs : {193e9, 5e6}) {
     for (const double load : {0.03, 1.0}) {
+      if ((youngs < 1e9) != (load == 1.0) && !is_full_run()) continue;
       const Cantilever beam(load * youngs * second_moment / 0.01);
       const Material material = damped(elastic_material(youngs, 0.3, 1000.0), 1e-5);
       const StaticBody at_rest = StaticBody::make(beam.mesh, material, CellKind::hexahedra).value();
@@ -153,7 +154,7 @@ TEST(ImplicitBody, KeepsItsMomentum) {
 // The nodes are thrown about at up to 20 m/s, with any damping and any stiffness that needs the implicit
 // method. All values stay finite, and the body recovers its shape within a second.
 TEST(ImplicitBody, NothingBlowsItUp) {
-  const int trials = random_cases(8, 50);
+  const int trials = random_cases(is_full_run() ? 8 : 3, 50);
   Random random(11);
   for (int trial = 0; trial < trials; ++trial) {
     const Material material =
