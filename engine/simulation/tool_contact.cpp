@@ -460,10 +460,15 @@ void ToolContact::add_sphere_pushes(int body, const BodyState& state, const Tool
   const double cell = static_cast<double>(state.lattice.cell_size_m());
   if (-nearest.depth_m <= find_margin_m(state) || shape_.radius_m < cell) {
     const std::size_t point = track_nearest(body, state, hold.reach_m);
-    add_plane_push(
-        body, state,
-        {state.mapping().at(nearest.u, nearest.v), -nearest.normal, -nearest.depth_m, key_of(point)}, hold);
-    if (shape_.radius_m >= cell) add_earlier_pushes(body, state, point, hold);
+    const EmbeddedPoint embedded = state.mapping().at(nearest.u, nearest.v);
+    if (shape_.radius_m >= cell) {
+      add_plane_push(body, state, {embedded, -nearest.normal, -nearest.depth_m, key_of(point)}, hold);
+      add_earlier_pushes(body, state, point, hold);
+    } else {
+      // The surface cannot follow a dent narrower than a cell. Here the lattice must stay out of the tool.
+      overflow_ |= !constraints_.add_plane_push(body, state.lattice, embedded, -nearest.normal,
+                                                shape_.radius_m, key_of(point));
+    }
   }
   for (const NearSample& sample : contact.collider.near_samples()) {
     overflow_ |=
