@@ -12,6 +12,7 @@
 #include "haptic/script.h"
 #include "haptic/tick.h"
 #include "haptic/virtual_device.h"
+#include "tests/engine/effort.h"
 
 namespace spoonbill {
 namespace {
@@ -69,7 +70,9 @@ ScriptedStroke play(const std::string& name) {
 }
 
 TEST(UnheldBowl, StaysInTheScene) {
-  for (const char* name : {"unheld-bowl-sideways", "unheld-bowl-down", "handle-and-bowl"}) {
+  for (const std::string name : {"unheld-bowl-sideways", "unheld-bowl-down", "handle-and-bowl"}) {
+    // UnheldBowl.FollowsTheToolByHalfOfItsTravel moves the tool down too.
+    if (name == "unheld-bowl-down" && !is_full_run()) continue;
     const ScriptedStroke stroke = play(name);
     EXPECT_LT(stroke.farthest_m, stroke.scene_size_m) << name;
     EXPECT_GT(stroke.travel_m, 0.0) << name << " touches";

@@ -23,8 +23,9 @@ using std::numbers::pi;
 constexpr double ring_m = 0.03, tube_m = 0.01;
 
 // Returns a ring about y: `around` runs about y and `along` about the tube.
-LatticeMesh ring_in_box() {
-  return solid_lattice(round_torus(ring_m, tube_m), {3000, {}}).value();
+const LatticeMesh& ring_in_box() {
+  static const LatticeMesh mesh = solid_lattice(round_torus(ring_m, tube_m), {3000, {}}).value();
+  return mesh;
 }
 
 BodyLoads loads_on(const LatticeMesh& mesh, const std::vector<Load>& loads) {
@@ -64,7 +65,7 @@ void expect_on_the_body(const SpringLattice& lattice) {
 
 // The forces balance for any shape of the ring, up to single precision.
 TEST(BoxedLoads, PressureAllAroundNeitherMovesNorTurnsABody) {
-  const LatticeMesh mesh = ring_in_box();
+  const LatticeMesh& mesh = ring_in_box();
   SpringLattice lattice = springs(mesh);
   BodyLoads loads = loads_on(mesh, {PressureLoad{{}, 500.0}});
   for (const double bend : {0.0, 0.2}) {
@@ -89,7 +90,7 @@ TEST(BoxedLoads, PressureAllAroundNeitherMovesNorTurnsABody) {
 // The pressure on half a ring equals a pressure on the two discs where it is cut. The skin's polygons about
 // the tube are a few percent smaller than its circle.
 TEST(BoxedLoads, PressureOnAHalfPushesAsOnItsCuts) {
-  const LatticeMesh mesh = ring_in_box();
+  const LatticeMesh& mesh = ring_in_box();
   SpringLattice lattice = springs(mesh);
   BodyRegion half;
   half.around = {0.25, 0.75};
@@ -140,7 +141,7 @@ std::vector<FixedAxis> held_loosely(const LatticeMesh& mesh) {
 // The strain of a volume under uniform pressure p is 3 (1 - 2 nu) p / E. A partly filled cell is as stiff as
 // if its material were spread over the cell; less than a tenth of material counts as a tenth.
 TEST(BoxedLoads, PressureAllAroundShrinksARing) {
-  const LatticeMesh mesh = ring_in_box();
+  const LatticeMesh& mesh = ring_in_box();
   const double youngs = 1e5, poisson = 0.3, share = 1e-3;
   const BodyLoads loads = loads_on(mesh, {PressureLoad{{}, share * youngs}});
   const StaticBody body =
@@ -160,7 +161,7 @@ TEST(BoxedLoads, PressureAllAroundShrinksARing) {
 }
 
 TEST(BoxedLoads, AForceOnAPartIsAllOnThatPart) {
-  const LatticeMesh mesh = ring_in_box();
+  const LatticeMesh& mesh = ring_in_box();
   const Vector3 force_n(0.1, -0.2, 0.3);
   BodyRegion quarter;
   quarter.around = {0.25, 0.5};
@@ -182,7 +183,7 @@ TEST(BoxedLoads, AForceOnAPartIsAllOnThatPart) {
 }
 
 TEST(BoxedLoads, ASupportHoldsNothingBesideTheBody) {
-  const LatticeMesh mesh = ring_in_box();
+  const LatticeMesh& mesh = ring_in_box();
   for (const BodyRegion& region : {BodyRegion{{0.0, 0.1}}, BodyRegion{}}) {
     const SpringLattice lattice = springs(mesh);
     BodySupports supports = BodySupports::make({Support{region, {}}}, mesh).value();

@@ -67,13 +67,17 @@ TEST(Settling, AReleasedBodyComesBackWithoutSwinging) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     LoadedBlock bar = pushed_bar(stepping), swinging = pushed_bar(stepping);
     bar.is_critically_damped = true;
+    // The implicit solver is slower, and its rest is compared with the static one by ImplicitBody.
+    const bool is_compared = stepping == Stepping::springs || is_full_run();
     for (int tick = 0; tick < 4000; ++tick) {
       bar.tick(0.0);
-      swinging.tick(20.0);
+      if (is_compared) swinging.tick(20.0);
     }
     const double bent = tip_m(bar);
     EXPECT_GT(bent, 1e-3);
-    EXPECT_NEAR(bent / tip_m(swinging), 1.0, 2e-3) << "both come to the same rest";
+    if (is_compared) {
+      EXPECT_NEAR(bent / tip_m(swinging), 1.0, 2e-3) << "both come to the same rest";
+    }
     const double stored_j = 0.5 * bent * 5e-8 * bar.lattice.material().youngs_modulus_pa;
     bar.load({ForceLoad{{{1.0, 1.0}}, Vector3::Zero()}});
     double before = bent, most_j = 0.0;
