@@ -306,7 +306,7 @@ CommandEntry add_replay(OptionSet root) {
   add_picture_options(parser, options);
   parser
       .add_option("--rerecord", options->rerecord,
-                  "Recording of the replay to write, with the same bytes; default: none")
+                  "File for a new recording of the replay, with the same bytes as RECORDING; default: none")
       .show_as("FILE");
   add_force_option(parser, options->how);
   add_instruction_set_option(parser, options->instruction_set);

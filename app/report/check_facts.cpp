@@ -136,7 +136,7 @@ std::vector<std::string> closing_problems(const Body& body, const SurfaceCheck& 
   return problems;
 }
 
-// Uncertainties up to this length are rounding errors and are not shown.
+// Gaps and uncertainties up to this length are rounding errors and are not shown.
 constexpr double least_gap_m = 1e-8;
 
 std::string faces_text(std::size_t count) {

@@ -31,7 +31,7 @@ std::vector<NetEdge> find_collapsed_edges(const Surface& surface);
 // whether a point moved. Does not allocate.
 bool join_edge(ControlNet& net, const NetEdge& edge);
 
-// Joins each collapsed edge. Returns whether a point moved.
+// Moves the control points of each collapsed edge to their mean. Returns true if a point moved.
 bool join_collapsed_edges(Surface& surface);
 
 }  // namespace spoonbill

@@ -124,7 +124,7 @@ Status check_closed(const TrimLoop& loop, const KnotVector& along_u, const KnotV
     return knots.is_periodic() && std::abs(fraction - 1.0) <= trim_rounding_fraction;
   };
   if (goes_around(along_u, fraction_u) || goes_around(along_v, fraction_v)) {
-    return Error{ErrorCode::unsupported, what + "once around; lead it back along the seam"};
+    return Error{ErrorCode::unsupported, what + "one period further; lead it back along the seam"};
   }
   return Error{ErrorCode::mismatch, what + "which is not closed; let it end where it starts"};
 }

@@ -247,7 +247,9 @@ Result<std::vector<Vector2>> harmonic_tube_map(const PointGraph& graph, const Sh
   const auto v = compute_v(graph, ends);
   if (!v) return Error(ErrorCode::degenerate, "its points are not connected from end to end");
   const auto u = compute_u(graph, ends);
-  if (!u) return Error(ErrorCode::degenerate, "no path around it closes: it has a handle, or too few points");
+  if (!u)
+    return Error(ErrorCode::degenerate,
+                 "no closed path around it was found: it has a handle, or too few points");
   std::vector<Vector2> uv(graph.size());
   for (std::size_t n = 0; n < uv.size(); ++n) uv[n] = {(*u)[n], (*v)[n]};
   return uv;

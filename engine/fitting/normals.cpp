@@ -23,9 +23,10 @@ constexpr double opposite_cosine = -0.5;
 // Largest height of a neighbour above a node's tangent plane, relative to its distance, at which it counts as
 // being on the same face. A greater height means that the neighbour is on the other face of a wall.
 constexpr double most_height_fraction = 0.25;
-// Normals count as inconsistent only if both fractions are exceeded: that of pairs with opposite normals
-// among all pairs, and that of the rarer side, above or below the face, among the opposite pairs. At a wall,
-// all opposite pairs are on one side.
+// Limits for inconsistent normals; both must be exceeded. The first is the fraction of all pairs that have
+// opposite normals. In some of these opposite pairs, each node is above the tangent plane of the other; in
+// the rest, it is below. The second limit is the fraction of the opposite pairs that is of the rarer kind. At
+// a thin wall, all opposite pairs are of one kind.
 constexpr double least_flipped_fraction = 0.003, least_side_fraction = 0.2;
 constexpr double clear_majority = 0.75;
 

@@ -1,5 +1,5 @@
 // Checks on solids for reports: self-intersection and thickness of a solid bounded by several surfaces, and
-// overlaps between bodies. Outside the tick; deterministic; any thread.
+// overlaps between bodies. The checks are deterministic, may run on any thread, and are too slow for a tick.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// Checks that a surface bounds a body properly, and measures its shape for reports. Outside the tick;
-// deterministic; any thread.
+// Checks that a surface bounds a body properly, and measures its shape for reports. The checks are
+// deterministic, may run on any thread, and are too slow for a tick.
 #pragma once
 
 #include <optional>

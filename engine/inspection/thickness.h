@@ -1,6 +1,6 @@
 // Thickness of closed bodies: the distance from a surface point straight inwards to where the line leaves the
 // body through a wall. It is measured on one surface, or on a mesh and then corrected to the exact surfaces.
-// Outside the tick; any thread.
+// The search may run on any thread and is too slow for a tick.
 #pragma once
 
 #include <array>
@@ -27,8 +27,8 @@ struct SurfaceExit {
   double u = 0.0, v = 0.0;
 };
 
-// Thickness search on one surface, which must outlive the search. The surface is closed, or one of several
-// that close together, and has outward normals. One owner.
+// Thickness search on one surface, which must outlive the search. The surface has outward normals. It is
+// closed, or it is one of several surfaces that together bound a body. One owner.
 class ThicknessSearch {
  public:
   explicit ThicknessSearch(const Surface& surface);

@@ -89,7 +89,8 @@ bool is_short_cut(const std::vector<PreparedRow>& rows, std::size_t joint, doubl
   });
 }
 
-// Returns the length to be cut off each patch so that a blend fits; 0 if there is no blend.
+// Returns the length to cut off each patch so that a blend or a bridge fits between them; 0 if nothing needs
+// to be cut off.
 Result<double> blend_cut_m(const std::vector<PreparedRow>& rows, std::size_t joint, const JointState& state,
                            const JoinRequest& request) {
   if (request.blend_m > 0.0) {

@@ -1,5 +1,5 @@
 // Intersections of a surface with lines, which are straight or are lines of constant u of another surface,
-// and the contact of the ball that rolls along a corner. Outside the tick.
+// and the contact of the ball that rolls along a corner. These searches are too slow for a tick.
 #pragma once
 
 #include <optional>

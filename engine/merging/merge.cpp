@@ -334,7 +334,7 @@ Status check(const std::vector<Surface>& patches, const MergeRequest& request) {
         return Error(ErrorCode::unknown, name + " of a chosen edge does not exist");
       if (knots_along(patches[edge.patch], across(edge.side)).is_periodic()) {
         return Error(ErrorCode::mismatch, name + " has no edge at its " + side_name(edge.side) +
-                                              ": it is closed around there; choose another");
+                                              ": it is closed in this direction; choose another side");
       }
     }
   }

@@ -17,8 +17,8 @@
 
 namespace spoonbill {
 
-// Tool in the user's hand, or its mirror image. It can be moved, because the contact keeps only addresses of
-// grids, which the mappings hold by pointer.
+// Tool in the user's hand, or its mirror image. The C++ object may be moved: `contact` stores addresses of
+// grids only, and the grids stay where they are, because each mapping holds its grid by a shared pointer.
 struct HeldTool {
   ToolContact contact;
   Pose hand{};  // pose of the hand in the last tick

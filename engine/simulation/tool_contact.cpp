@@ -412,7 +412,7 @@ void ToolContact::add_pushes(int body, const BodyState& state, const ToolHold& h
   add_plane_push(body, state,
                  {state.mapping().at(nearest.u, nearest.v), -nearest.normal, -nearest.depth_m, key_of(point)},
                  hold);
-  // All locally nearest points of a B-spline tool are visited below.
+  // A B-spline tool needs no earlier pushes, because visit_near() visits all of its locally nearest points.
   if (!is_surface()) add_earlier_pushes(body, state, point, hold);
   visit_near(contact, state, [&](const Pushed& pushed) { add_plane_push(body, state, pushed, hold); });
 }

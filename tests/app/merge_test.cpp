@@ -237,7 +237,7 @@ TEST(MergeCommand, RefusesInOneLine) {
        "patch 9 of a chosen edge"},
       {{"merge", handle, bowl, "--edges", "1.u_end:2.v_end", "--out", out},
        exit_failed,
-       "closed around there"},
+       "it is closed in this direction"},
       {{"merge", handle, bowl, "--twist", "nan", "--out", out},
        exit_wrong_use,
        "'nan' is not a fraction of a turn from -1 to 1"},

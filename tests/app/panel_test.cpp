@@ -219,7 +219,8 @@ TEST(Panel, SwitchesRealTime) {
 }
 
 TEST(Panel, LetsUnfixedBodiesMoveAndKeepsThemAgain) {
-  // Returns the setting that is requested by clicks down the right edge of the panel.
+  // Clicks at one height after another along the right edge of the panel. Returns the settings requested by
+  // the first click that changes `free`.
   const auto find_switch = [](const PanelModel& model) -> std::optional<Sculpting> {
     for (float y = 330.0F; y < 480.0F; y += 10.0F) {
       for (const Request& request : click_once(model, 275.0F, y)) {

@@ -21,7 +21,7 @@ Eigen::Vector2d section(double turn) {
   return {0.5 * width_m * rounded(std::cos(angle)), 0.5 * thickness_m * rounded(std::sin(angle))};
 }
 
-// Inverts the rounding of a section's coordinate, so that nodes are evenly spaced along the sides.
+// Inverts the power by which section() rounds the corners, so that nodes are evenly spaced along the sides.
 double unrounded(double x) {
   return std::copysign(std::pow(std::abs(x), 1.0 / 0.55), x);
 }

@@ -39,8 +39,9 @@ class MeshProximity {
   MeshProximity(const MeshProximity&) = delete;
   MeshProximity& operator=(const MeshProximity&) = delete;
 
-  // Finds all points within `margin_m`. The surface must have the grid's knots and bound a body, with du x dv
-  // pointing outward. The mesh must have the vertices of the patches and be up to date (refit()).
+  // Finds all points within `margin_m`. The surface must have the knots of the grid that was passed to the
+  // constructor, and it must bound a body, with du x dv pointing outward. The mesh must have one vertex for
+  // each entry of the constructor's `patches`, and its boxes must be up to date (refit()).
   void find(const Surface& surface, const DeformingMesh& mesh, double margin_m);
 
   // Removes the samples for which `keep_sample` returns false, and the vertices for which `keep_vertex`

@@ -28,7 +28,7 @@ struct PairQuery {
 // Result of SurfacePairCollider::collide().
 struct PairResult {
   bool touching = false;   // true if the surfaces touch, to within touch_tolerance_m
-  bool contained = false;  // one body is inside the other; the only contact describes its exit
+  bool contained = false;  // true if one body is inside the other; the only contact pushes the inner body out
   // Distance of surfaces that do not touch; infinite if it is greater than the reach. It exceeds the true
   // distance by at most 1e-4 of itself or of the smaller surface's size, whichever is larger.
   double distance_m = std::numeric_limits<double>::infinity();

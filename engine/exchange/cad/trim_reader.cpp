@@ -301,9 +301,9 @@ double distance_to_edge(const gp_Pnt& point, const Geom_Curve& curve, double fir
   return nearest;
 }
 
-// Returns the largest distance of samples of the pieces from the 3D curves of their edges, and of the ends of
-// each edge from the ends of its pieces, in the unit of the face. `place` returns the point of the surface at
-// a parameter.
+// Returns the largest distance between the pieces of a chain and the 3D curves of their edges, in the unit of
+// the face. The pieces are sampled. A sample at an end of an edge is compared with that end; any other sample
+// is compared with the nearest point of the curve. `place` returns the point of the surface at a parameter.
 template <class Place>
 double measure_chain(const EdgeChain& chain, const Place& place) {
   double largest = 0.0;

@@ -134,7 +134,7 @@ class ContactConstraints {
   void begin(const ToolMotion& motion, double time_s);
 
   const ToolMotion& motion() const { return motion_; }
-  // Sets the force of the carried nodes on the tool in the coming substep, N.
+  // Sets the force in N that the nodes fixed to the tool (CarriedNodes) exert on it in the coming substep.
   void set_carried_force(const Vector3& force_n) { carried_force_ = force_n; }
 
   // Parts of a substep of h_s, after the kick and before the drift of the lattices. start() moves the tool's

@@ -22,8 +22,8 @@
 namespace spoonbill {
 namespace {
 
-// Smallest ratio of the shortest side to the longest: cells of flatter boxes have no spring that keeps them
-// open.
+// Smallest ratio of a body's thickness to its length. The cells of a flatter body could collapse, because no
+// spring would resist it.
 constexpr double min_cell_thickness_ratio = 1e-4;
 constexpr int samples_a_side = 5;
 

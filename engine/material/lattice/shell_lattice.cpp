@@ -26,7 +26,7 @@ class ShellSurface {
   // Kind of shell, see shell_lattice.h.
   enum class Form { sheet, ring, bowl };
 
-  // Fails if the surface is not one of these forms; the message gives the reason.
+  // Fails if the surface has none of the forms in `Form`. The error message gives the reason.
   static Result<ShellSurface> make(const Surface& surface);
 
   Form form() const { return form_; }

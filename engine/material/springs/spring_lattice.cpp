@@ -55,7 +55,8 @@ const float* data_or_null(const AlignedVector<float>& values) {
 
 constexpr int frequency_steps = 300;
 
-// Stiffness of a crushed cell divided by its shear modulus: that of a material with Poisson's ratio 0.45.
+// Stiffness of a crushed cell against a change of volume, divided by its shear modulus. The value is that of
+// a material with Poisson's ratio 0.45.
 constexpr double crushed_ratio = 8.0;
 constexpr float noise_fraction = 1e-4f;
 

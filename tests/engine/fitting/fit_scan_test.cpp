@@ -178,7 +178,7 @@ TEST(FitScan, IslandsAreBridgedToOneBody) {
   EXPECT_EQ(body.kind, ShapeKind::closed);
   EXPECT_EQ(body.folds.folds, 0U);
   EXPECT_NEAR(body.size_m.z(), 0.09, 1e-3);
-  // One body encloses the centroids of both islands, so its volume is at least nearly that of the two.
+  // The body covers both ellipsoids. Each of them has a volume of 4/3 pi 2e-6 m^3.
   EXPECT_GT(volume_of(body.surface), 2.0 * 4.0 / 3.0 * M_PI * 2e-6 * 0.9);
   EXPECT_LT(body.errors.data_to_surface.p95_m, 1e-3);
 }

@@ -124,7 +124,7 @@ void expect_runs_backwards(const TrimLoop& before, const TrimLoop& after,
   for (int i = 0; i <= 50; ++i) {
     const double parameter = start + (end - start) * i / 50;
     const Eigen::Vector2d expected = moved(position(before, parameter));
-    // The bound allows for rounding of numbers up to 2.
+    // The bound allows for the rounding of coordinates, whose magnitude is at most 2.
     EXPECT_NEAR((position(after, end - (parameter - start)) - expected).norm(), 0.0, 1e-14);
   }
 }

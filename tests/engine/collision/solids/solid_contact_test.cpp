@@ -107,7 +107,8 @@ TEST(SolidContact, TorusLinkedWithATorus) {
   }
 }
 
-// The depth is that of the surface in the tool: under an edge, it is measured to the nearer face.
+// The depth is the largest distance of a point of the surface inside the box from the nearest face of the
+// box. It is therefore less than the distance by which an edge or a corner is below the plane.
 TEST(SolidContact, BoxOnAPlaneByFaceEdgeAndCorner) {
   const Vector3 half(0.02, 0.03, 0.025);
   const double depth = 0.002;

@@ -77,7 +77,8 @@ TEST(Coherence, ASurfaceThatDidNotMoveIsNotEvaluatedAgain) {
   EXPECT_GT(collider.collide(surface, tool, 0.0, false).samples_evaluated, 0);
 }
 
-// Two random surfaces drift through each other: both colliders agree on whether they touch.
+// Two random surfaces drift through each other. At each step, a collider that starts from its last result and
+// a new collider must agree on whether the surfaces touch.
 TEST(Coherence, SurfacesThatDriftTouchAsForAColliderThatKnowsNothing) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   Random random(303);
@@ -99,7 +100,8 @@ TEST(Coherence, SurfacesThatDriftTouchAsForAColliderThatKnowsNothing) {
       EXPECT_EQ(one.touching, other.touching) << round << ' ' << step;
       EXPECT_EQ(collider.contacts().size(), fresh.contacts().size()) << round << ' ' << step;
       touching += other.touching;
-      // The distance is guaranteed to a ten-thousandth of the size or of itself.
+      // The error of a distance is at most 1e-4 of the distance or of the smaller surface's size, whichever
+      // is larger.
       constexpr double nearest_m = 2e-4;
       if (other.touching || !(other.distance_m < query.reach_m - nearest_m)) continue;
       ++apart;
