@@ -370,7 +370,8 @@ std::size_t ToolContact::track_nearest(int body, const BodyState& state, double 
     const double force_n = constraints_.last_force_n(body, key_of(p));
     point.is_used = point.is_used && force_n > 0.0;
     if (point.is_used) {
-      const double distance_m = (position(surface, point.u, point.v) - at_m).norm();
+      point.position_m = position(surface, point.u, point.v);
+      const double distance_m = (point.position_m - at_m).norm();
       if (distance_m <= least_m) {
         least_m = distance_m;
         same = p;
@@ -382,7 +383,7 @@ std::size_t ToolContact::track_nearest(int body, const BodyState& state, double 
     }
   }
   const std::size_t found = same < contact.points.size() ? same : weakest;
-  contact.points[found] = {true, nearest.u, nearest.v};
+  contact.points[found] = {true, nearest.u, nearest.v, at_m};
   return found;
 }
 
@@ -393,11 +394,10 @@ void ToolContact::add_earlier_pushes(int body, const BodyState& state, std::size
     const ContactPoint& point = contact.points[p];
     if (p == nearest || !point.is_used) continue;
     const EmbeddedPoint embedded = state.mapping().at(point.u, point.v);
-    const Vector3 at_m = position(state.mapping().current(), point.u, point.v);
-    const Vector3 push = push_direction_at(shape_, at_m);
+    const Vector3 push = push_direction_at(shape_, point.position_m);
     if (push.isZero(0.0)) continue;
-    const double distance_m =
-        is_solid_ ? shape_.at(at_m).distance_m : (at_m - shape_.centre_m).norm() - shape_.radius_m;
+    const double distance_m = is_solid_ ? shape_.at(point.position_m).distance_m
+                                        : (point.position_m - shape_.centre_m).norm() - shape_.radius_m;
     add_plane_push(body, state, {embedded, push, find_gap(state, point.u, point.v, distance_m), key_of(p)},
                    hold);
   }

@@ -117,6 +117,7 @@ class ToolContact {
   struct ContactPoint {
     bool is_used = false;
     double u = 0.0, v = 0.0;
+    Vector3 position_m = Vector3::Zero();  // in this tick
   };
   struct BodyContact {
     SurfaceCollider collider;
