@@ -103,7 +103,7 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-// Returns the largest shell thickness with which the body has a lattice. If there is none, returns the
+// Returns the largest shell thickness with which the body has a lattice. If no thickness does, returns the
 // smallest thickness tried.
 double find_shell_thickness(Body body, double size_m) {
   double thickness = shell_thickness_range_m.low;

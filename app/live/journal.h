@@ -177,7 +177,7 @@ class Journal {
   // Returns the last document that was saved since the previous call, or nullopt.
   std::optional<SavedDocument> consume_saved_document();
   // Returns the file that a save since the last call did not replace, because its content is not known to
-  // this session; nullopt if there is none.
+  // this session; nullopt if no save was refused.
   std::optional<std::filesystem::path> consume_save_conflict();
   // Sets the hash of the content of the document's file as it was read, see content_hash(); empty if there is
   // no file.

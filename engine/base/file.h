@@ -73,7 +73,7 @@ class OutputFile {
 
   // Returns the name under which the file grows: FILE.part, or FILE itself for a device or pipe.
   const std::filesystem::path& written_file() const { return written_; }
-  // Returns the new name of an older FILE.part that was moved out of the way; empty if there was none.
+  // Returns the new name of an older FILE.part that was moved out of the way; empty if no such file existed.
   const std::filesystem::path& kept_aside() const { return kept_aside_; }
 
   Status write(std::string_view bytes);

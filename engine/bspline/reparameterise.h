@@ -23,7 +23,7 @@ Surface exchanged(const Surface& surface);
 Result<Surface> with_domain(const Surface& surface, Direction direction, double start, double end);
 
 // Returns the surface with the seam of a periodic direction at the parameter `seam` (wrapped into the
-// domain); the domain stays the same. A knot is inserted there if there is none. Refuses an open direction.
+// domain); the domain stays the same. If no knot is there, one is inserted. Refuses an open direction.
 Result<Surface> with_seam_at(const Surface& surface, Direction direction, double seam);
 
 // Returns the clamped part from `start` to `end`. In a periodic direction it may cross the seam, with `end`

@@ -86,7 +86,7 @@ class GridLines {
   double snap(double parameter) const;
   // Returns the cell of a parameter, clamped to the domain; for a parameter on a line, the cell after it.
   int find_cell(double parameter) const;
-  // Returns the index of the line exactly at a parameter, or -1 if there is none.
+  // Returns the index of the line exactly at a parameter, or -1 if no line is there.
   int find_line(double parameter) const;
   // Returns the parameter. If the seam has a single line, both ends of the period give the same value.
   double merge_seam(double parameter) const;

@@ -595,7 +595,7 @@ constexpr double most_fairness = 10.0;
 constexpr double most_smoothing_ratio = 1.2;
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-// Returns the spans with folds or, if there are none, the spans with cusps, which are a lesser fault.
+// Returns the spans with folds or, if no span has folds, the spans with cusps, which are a lesser fault.
 const std::vector<bool>& SurfaceFitter::faulty_spans() const {
   return folds_.folds > 0 ? folds_.span_folds : folds_.span_cusps;
 }

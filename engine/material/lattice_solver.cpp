@@ -47,7 +47,7 @@ bool limit_support_motion(std::span<SupportedNodes> supports, const SpringLattic
   return limited;
 }
 
-// Returns the velocity of the support that moves the whole lattice, m/s; zero if there is none.
+// Returns the velocity of the support that moves the whole lattice, m/s; zero if no support does.
 Vector3 common_support_velocity(std::span<const SupportedNodes> supports, const SpringLattice& lattice,
                                 double time_s) {
   SPOONBILL_ASSERT_DEBUG(time_s > 0.0);
@@ -275,8 +275,7 @@ void solve_with_solvers(const Relaxation& relaxation, const TouchingTool& tool, 
   if (!touches(relaxation, tool, false)) return;
   const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
   for (int p = 0; p < solver_passes; ++p) {
-    tool.contacts->pass(views, *tool.state,
-                        {relaxation.time_s, ContactConstraints::Moved::by_solver, p % 2 == 1, caps});
+    tool.contacts->pass(views, *tool.state, {relaxation.time_s, MovedBy::solvers, p % 2 == 1, caps});
     const Response response = find_response(relaxation);
     const double fraction = response.find_best_fraction(tool.contacts->pass_work_j(*tool.state));
     respond(relaxation, response, fraction);
@@ -287,11 +286,10 @@ void solve_with_solvers(const Relaxation& relaxation, const TouchingTool& tool, 
 // Solves the contacts between implicitly stepped lattices. The forces of the last tick act in full, so that
 // an error of the assumed contact mass does not amplify them.
 void solve_with_solvers(const Relaxation& relaxation, BodyContacts& between, std::span<const float> caps) {
-  constexpr auto moved = BodyContacts::Moved::by_solvers;
   if (!between.has_constraint_between_solvers()) return;
   const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
   for (int p = 0; p < solver_passes; ++p) {
-    between.pass(views, {relaxation.time_s, moved, p % 2 == 1, caps});
+    between.pass(views, {relaxation.time_s, MovedBy::solvers, p % 2 == 1, caps});
     const Response response = find_response(relaxation);
     const double fraction = response.find_best_fraction(0.0);
     respond(relaxation, response, fraction);
@@ -309,7 +307,7 @@ void solve_tool(const Relaxation& relaxation, const TouchingTool& tool, const Su
   tool.contacts->start(views, *tool.state, h, static_cast<double>(substep.index) / substep.count);
   if (substep.index == 0) solve_with_solvers(relaxation, tool, caps);
   if (with_springs) {
-    tool.contacts->pass(views, *tool.state, {h, ContactConstraints::Moved::by_springs, false, caps});
+    tool.contacts->pass(views, *tool.state, {h, MovedBy::springs, false, caps});
   }
   tool.contacts->finish(*tool.state, h);
 }
@@ -324,7 +322,7 @@ void solve_contacts(const Relaxation& relaxation, const Substep& substep, std::s
     if (substep.index == 0) solve_with_solvers(relaxation, *between, push_caps);
     const auto h = static_cast<double>(substep.h);
     between->start(views, h);
-    between->pass(views, {h, BodyContacts::Moved::by_springs, false, push_caps});
+    between->pass(views, {h, MovedBy::springs, false, push_caps});
   }
   if (!ground) return;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {

@@ -9,6 +9,7 @@
 #include "engine/base/geometry.h"
 #include "engine/material/contact/body_contacts.h"
 #include "engine/material/contact/contact_constraints.h"
+#include "engine/material/contact/ground_contacts.h"
 #include "engine/material/implicit/implicit_solver.h"
 #include "engine/material/springs/spring_lattice.h"
 

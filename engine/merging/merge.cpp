@@ -208,8 +208,8 @@ Status open_poles(std::vector<Surface>& patches, const PatchEdge& a, const Patch
   return {};
 }
 
-// Returns the chosen edges or, if there are none and all patches are tubes, the nearest ends of the tubes.
-// Otherwise returns nothing, and edges are matched automatically.
+// Returns the chosen edges or, if no edge was chosen and all patches are tubes, the nearest ends of the
+// tubes. Otherwise returns nothing, and edges are matched automatically.
 std::vector<ChosenEdges> edges_to_join(const std::vector<Surface>& patches, const MergeRequest& request) {
   std::vector<ChosenEdges> pairs = request.chosen;
   if (!pairs.empty() || !std::all_of(patches.begin(), patches.end(), is_tube)) return pairs;

@@ -31,7 +31,7 @@ struct BodyState {
   Smoothing smoothing;
   std::vector<std::uint8_t> fixed, touched;            // one byte per node: 1 if fixed, 1 if touched
   std::optional<ImplicitSolver> implicit_solver = {};  // for materials too stiff for the lattice's springs
-  // A placeholder, which make_body_state() replaces by one with the lattice's number of nodes.
+  // make_body_state() sets the number of nodes.
   BodyHold hold = BodyHold(1);
   BodyLoads loads = {};
   BodySupports supports = {};

@@ -7,7 +7,7 @@
 #include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/collision/levels/surface_levels.h"
-#include "engine/material/contact/body_contacts.h"
+#include "engine/material/contact/ground_contacts.h"
 #include "engine/scene/loads.h"
 #include "engine/simulation/body_state.h"
 

@@ -356,7 +356,7 @@ class TypedSession {
                          .value();
 };
 
-// Opens the field at this height with Ctrl+click. Returns its identity, or 0 if there is none.
+// Opens the field at this height with Ctrl+click. Returns its identity, or 0 if no field is there.
 ImGuiID open_field(Frame& frame, const PanelModel& model, float y) {
   ImGuiIO& io = ImGui::GetIO();
   frame.draw(model);

@@ -29,7 +29,7 @@ struct Refusal {
                << "\": " << refusal.message;
   }
 
-  std::optional<ErrorCode> code;  // code of the error; nullopt if there is none
+  std::optional<ErrorCode> code;  // code of the error; nullopt without an error
   std::string field;
   std::string message;  // text of the error, which is not compared
 };

@@ -32,8 +32,8 @@ class MeshEdges {
   // The two ends of each side must differ, and all corners must be below `vertices`.
   MeshEdges(const std::vector<TriangleCorners>& triangles, std::size_t vertices);
 
-  // Returns the other side on the same edge. Returns `open` if there is none, `branching` if there are
-  // several.
+  // Returns the other side on the same edge. Returns `open` for an edge of one triangle, `branching` if there
+  // are several.
   MeshSide across(MeshSide side) const { return across_[side]; }
 
   std::size_t open_count() const { return open_count_; }

@@ -44,7 +44,7 @@ class NearPoints {
   // Offers the sample (i, j) of the finest grid to a cell of the other surface with the given corners.
   void offer(int i, int j, const SurfaceLevels& other, const LevelCell& patch, const PatchCorners& corners);
   // Returns the distance of a sample to the nearest triangle of the cells to which it has been offered;
-  // infinite if there are none.
+  // infinite without such a triangle.
   double offered_distance_m(int sample) const;
   // Replaces each sample's nearest point by that on the exact other surface, and removes samples beyond the
   // margin. `outside` is -1 if the other surface's du x dv points inward, else 1.

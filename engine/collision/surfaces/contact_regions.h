@@ -52,9 +52,9 @@ class ContactRegions {
   const SurfaceLevels* second_;
   // Number of the second surface's cells around each periodic direction; unlimited for an open direction.
   int around_u_ = 0, around_v_ = 0;
-  std::vector<int> parent_;    // union-find parent of each pair, which is an earlier pair or itself
-  std::vector<int> previous_;  // for each pair, the previous pair of the same first cell; -1 if there is none
-  std::vector<int> cell_;      // for each pair, the cell_index() of its first cell
+  std::vector<int> parent_;     // union-find parent of each pair, which is an earlier pair or itself
+  std::vector<int> previous_;   // for each pair, the previous pair of the same first cell; -1 for the first
+  std::vector<int> cell_;       // for each pair, the cell_index() of its first cell
   std::vector<Paired> paired_;  // indexed by cell_index()
   std::uint32_t group_ = 0;
   std::vector<Region> regions_;

@@ -47,7 +47,7 @@ class SurfacePairCollider {
   SurfacePairCollider(const SurfacePairCollider&) = delete;
   SurfacePairCollider& operator=(const SurfacePairCollider&) = delete;
 
-  // Finds the contacts, or the nearest points within the query's reach if there are none.
+  // Finds the contacts, or the nearest points within the query's reach if the surfaces do not touch.
   PairResult collide(const Surface& first, const Surface& second, const PairQuery& query);
 
   // Returns the contacts of the last collide(), one for each region.

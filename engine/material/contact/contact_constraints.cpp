@@ -114,9 +114,10 @@ void ContactConstraints::start(std::span<const LatticeView> lattices, ToolState&
   }
 }
 
-void ContactConstraints::pass(std::span<const LatticeView> lattices, ToolState& tool, const Pass& pass) {
+void ContactConstraints::pass(std::span<const LatticeView> lattices, ToolState& tool,
+                              const ContactPass& pass) {
   passed_ = {tool.velocity_m_per_s, tool_impulse_};
-  const bool by_solver = pass.moved == Moved::by_solver;
+  const bool by_solver = pass.moved_by == MovedBy::solvers;
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[pass.is_reversed ? count_ - 1 - c : c];
     if (constraint.is_implicit != by_solver) continue;
@@ -202,9 +203,8 @@ void ContactConstraints::solve_push(const LatticeView& lattice, Constraint& cons
                                     double h, double cap) {
   const std::optional<ContactPush> push = find_push(lattice, constraint, tool);
   if (!push) return;
-  const double target = push->target_m_per_s(h, constraint.is_implicit ? stiff_body_pace : tool_pace, cap);
-  const double started = h * constraint.force_n;
-  const double pushed = std::max(0.0, started + (target - push->relative.dot(push->normal)) * push->mass_kg);
+  const ContactPace& pace = constraint.is_implicit ? stiff_body_pace : tool_pace;
+  const double started = h * constraint.force_n, pushed = push->normal_impulse(h, pace, cap, started);
   if (constraint.keeps_force) constraint.force_n = pushed / h;
   if (pushed == 0.0 && started == 0.0) return;
   exchange(lattice, constraint, tool,

@@ -10,63 +10,12 @@
 #include <vector>
 
 #include "engine/base/geometry.h"
+#include "engine/material/contact/contact_push.h"
 #include "engine/material/contact/kept_forces.h"
 #include "engine/material/lattice/embedded_point.h"
 #include "engine/material/springs/spring_lattice.h"
 
 namespace spoonbill {
-
-// Limits on how fast a contact changes its gap.
-struct ContactPace {
-  double closing;           // largest fraction of a gap that may close in a substep
-  double correction_per_s;  // rate at which a penetration is corrected, at most max_correction in a substep
-};
-
-// Largest fraction of a penetration that a substep corrects. It is below 1, so that neighbouring points that
-// push the same node do not overshoot together.
-inline constexpr double max_correction = 0.7;
-
-// Pace of ground contacts. Each node on the ground has its own contact and closes its gap within a substep.
-inline constexpr ContactPace ground_pace{1.0, 4200.0};
-
-// State of a contact between two points before the drift of a substep, and the impulse that keeps the points
-// from passing each other.
-struct ContactPush {
-  double gap_m;      // distance of the points; negative if they penetrate
-  Vector3 normal;    // unit vector along which the points separate
-  Vector3 relative;  // separation velocity, m/s
-  double mass_kg;    // effective mass: 1 / the sum of the compliances
-
-  // Returns the smallest admissible separation speed, m/s. Points with a gap may approach but must not pass
-  // each other. A penetration is partly corrected, at `cap_m_per_s` at most.
-  double target_m_per_s(double h_s, const ContactPace& pace, double cap_m_per_s) const {
-    if (gap_m > 0.0) return -gap_m * pace.closing / h_s;
-    return std::min(-gap_m * std::min(pace.correction_per_s, max_correction / h_s), cap_m_per_s);
-  }
-  // Returns the impulse along the normal that reaches the admissible speed, N s; never negative.
-  double normal_impulse(double h_s, const ContactPace& pace, double cap_m_per_s) const {
-    return std::max(0.0, (target_m_per_s(h_s, pace, cap_m_per_s) - relative.dot(normal)) * mass_kg);
-  }
-  // Returns the friction impulse that stops the sliding, limited to `max_ns`. Subtract it from the normal
-  // impulse.
-  Vector3 drag(double max_ns) const {
-    const Vector3 sliding = relative - relative.dot(normal) * normal;
-    const double slide = sliding.norm() * mass_kg;
-    return (slide > 0.0 ? std::min(slide, max_ns) / slide : 0.0) * mass_kg * sliding;
-  }
-
-  // Returns the sum of the normal and the friction impulse, or nothing if the points separate fast enough. By
-  // Coulomb's law, friction is at most the coefficient times the normal impulse; below that, it stops the
-  // sliding.
-  std::optional<Vector3> impulse(double h_s, const ContactPace& pace, double cap_m_per_s,
-                                 double friction) const {
-    const double separating = relative.dot(normal);
-    const double target = target_m_per_s(h_s, pace, cap_m_per_s);
-    if (separating >= target) return std::nullopt;
-    const double push = (target - separating) * mass_kg;
-    return push * normal - drag(friction * push);
-  }
-};
 
 // Largest number of lattices that are stepped together.
 inline constexpr int lattice_capacity = 9;
@@ -101,8 +50,8 @@ struct ToolMotion {
 // A point at a sample of the surface has the sample's number as its key. The keys of points that are or were
 // nearest to the tool count down from nearest_point_key.
 inline constexpr int nearest_point_key = -1;
-inline constexpr int changing_point_key =
-    -1000;  // a point that differs in every tick; its push starts at zero
+// Key of a point that differs in every tick, whose push starts from zero.
+inline constexpr int changing_point_key = -1000;
 
 // Contacts of one tool in one tick, and their forces in the last tick. One owner, one thread; allocates only
 // in its constructor.
@@ -142,15 +91,8 @@ class ContactConstraints {
   // of the tick that has passed. pass() solves once the constraints with lattices that springs move, or those
   // with lattices that implicit solvers move. finish() moves the tool. Impulses on nodes and tool are equal
   // and opposite.
-  enum class Moved { by_springs, by_solver };
-  struct Pass {
-    double h_s;
-    Moved moved;
-    bool is_reversed;  // true: solves the last constraint first, because a pass favours the later ones
-    std::span<const float> push_speed_caps_m_per_s;  // largest correction speed for each body
-  };
   void start(std::span<const LatticeView> lattices, ToolState& tool, double h_s, double fraction);
-  void pass(std::span<const LatticeView> lattices, ToolState& tool, const Pass& pass);
+  void pass(std::span<const LatticeView> lattices, ToolState& tool, const ContactPass& pass);
   void finish(ToolState& tool, double h_s) { tool.position_m += h_s * tool.velocity_m_per_s; }
   // Scales the impulses of the last pass() on the tool by `fraction`. The caller must scale those on the
   // nodes.

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/material/contact/contact_constraints.h"
 #include "engine/material/implicit/implicit_body.h"
 #include "engine/material/lattice/lattice_mesh.h"
 #include "engine/material/lattice/layer_volumes.h"

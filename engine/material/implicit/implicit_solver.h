@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/base/geometry.h"
-#include "engine/material/contact/body_contacts.h"
+#include "engine/material/contact/ground_contacts.h"
 #include "engine/material/implicit/implicit_body.h"
 #include "engine/material/springs/spring_lattice.h"
 
@@ -218,7 +218,7 @@ class ImplicitSolver {
   std::vector<double> impulse_;  // working memory: impulses by coordinate of the block, N s
   ImplicitGroundContacts ground_contacts_;
   double step_s_ = 0.0;
-  // Inverse mass in the first response of the tick, 1/kg; 0 if there was none.
+  // Inverse mass in the first response of the tick, 1/kg; 0 without a response.
   double measured_inverse_mass_ = 0.0;
   double inertia_scale_ = 1.0;
   double contact_inverse_mass_ = 0.0, min_inverse_mass_ = 0.0;  // 1/kg, with the scaled inertia

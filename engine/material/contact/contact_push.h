@@ -1,0 +1,62 @@
+// Velocity constraint between two points that may push each other but never pull, as all contacts use it.
+#pragma once
+
+#include <algorithm>
+#include <span>
+
+#include "engine/base/geometry.h"
+
+namespace spoonbill {
+
+// Limits on how fast a contact changes its gap.
+struct ContactPace {
+  double closing;           // largest fraction of a gap that may close in a substep
+  double correction_per_s;  // rate at which a penetration is corrected, at most max_correction in a substep
+};
+
+// Largest fraction of a penetration that a substep corrects. It is below 1, so that neighbouring points that
+// push the same node do not overshoot together.
+inline constexpr double max_correction = 0.7;
+
+// State of a contact between two points before the drift of a substep, and the impulse that keeps the points
+// from passing each other.
+struct ContactPush {
+  double gap_m;      // distance of the points; negative if they penetrate
+  Vector3 normal;    // unit vector along which the points separate
+  Vector3 relative;  // separation velocity, m/s
+  double mass_kg;    // effective mass: 1 / the sum of the compliances
+
+  // Returns the smallest admissible separation speed, m/s. Points with a gap may approach but must not pass
+  // each other. A penetration is partly corrected, at `cap_m_per_s` at most.
+  double target_m_per_s(double h_s, const ContactPace& pace, double cap_m_per_s) const {
+    if (gap_m > 0.0) return -gap_m * pace.closing / h_s;
+    return std::min(-gap_m * std::min(pace.correction_per_s, max_correction / h_s), cap_m_per_s);
+  }
+  // Returns the impulse along the normal that reaches the admissible speed, N s; never negative. It includes
+  // `started_ns`, which has already acted.
+  double normal_impulse(double h_s, const ContactPace& pace, double cap_m_per_s, double started_ns) const {
+    const double missing = target_m_per_s(h_s, pace, cap_m_per_s) - relative.dot(normal);
+    return std::max(0.0, started_ns + missing * mass_kg);
+  }
+  // Returns the friction impulse that stops the sliding, limited to `max_ns`. Subtract it from the normal
+  // impulse. By Coulomb's law, the limit is the friction coefficient times the normal impulse.
+  Vector3 drag(double max_ns) const {
+    const Vector3 sliding = relative - relative.dot(normal) * normal;
+    const double slide = sliding.norm() * mass_kg;
+    return (slide > 0.0 ? std::min(slide, max_ns) / slide : 0.0) * mass_kg * sliding;
+  }
+};
+
+// Kind of solver that moves the lattices of a contact. Contacts whose lattices are all moved by implicit
+// solvers are solved once a tick, all others in each substep.
+enum class MovedBy { springs, solvers };
+
+// One pass over contacts, which solves each of those with the given kind of lattices once.
+struct ContactPass {
+  double h_s;
+  MovedBy moved_by;
+  bool is_reversed;  // true: solves the last constraint first, because a pass favours the later ones
+  std::span<const float> push_speed_caps_m_per_s;  // largest correction speed for each body
+};
+
+}  // namespace spoonbill
