@@ -393,13 +393,10 @@ void ToolContact::add_earlier_pushes(int body, const BodyState& state, std::size
   for (std::size_t p = 0; p < contact.points.size(); ++p) {
     const ContactPoint& point = contact.points[p];
     if (p == nearest || !point.is_used) continue;
-    const EmbeddedPoint embedded = state.mapping().at(point.u, point.v);
     const Vector3 push = push_direction_at(shape_, point.position_m);
     if (push.isZero(0.0)) continue;
-    const double distance_m = is_solid_ ? shape_.at(point.position_m).distance_m
-                                        : (point.position_m - shape_.centre_m).norm() - shape_.radius_m;
-    add_plane_push(body, state, {embedded, push, find_gap(state, point.u, point.v, distance_m), key_of(p)},
-                   hold);
+    const double gap = find_gap(state, point.u, point.v, shape_.distance(point.position_m));
+    add_plane_push(body, state, {state.mapping().at(point.u, point.v), push, gap, key_of(p)}, hold);
   }
 }
 
@@ -451,24 +448,81 @@ void ToolContact::add_shell_pushes(int body, const BodyState& state, const ToolH
   }
 }
 
-// Adds pushes for the samples near the tool, and one for the tangent plane at the nearest point. The tangent
-// plane is added for a tool that fits between samples, and for a tool so close that its nearest point remains
-// the nearest throughout a tick.
+namespace {
+
+// Gap beyond the tool's movement, in lattice cells, up to which points between samples are pushed.
+constexpr double between_margin_cells = 0.1;
+// Largest depth, in lattice cells, to which a sphere may reach between pushed points.
+constexpr double largest_reach_cells = 0.02;
+// Largest number of parts into which the side of a patch between samples is divided.
+constexpr int most_parts = 8;
+
+// Coordinates in [0, 1) x [0, 1) of a point on the bilinear patch between four samples.
+struct PatchPoint {
+  double s, t;
+
+  Vector3 position(const PatchCorners& corners) const {
+    return (1.0 - s) * ((1.0 - t) * corners[0] + t * corners[1]) +
+           s * ((1.0 - t) * corners[2] + t * corners[3]);
+  }
+};
+
+// Returns the number of parts into which sides are to be divided, given two opposite sides of a patch.
+int count_parts(const Vector3& one_side, const Vector3& other_side, double longest_m) {
+  const double parts = std::ceil(std::max(one_side.norm(), other_side.norm()) / longest_m);
+  return static_cast<int>(std::clamp(parts, 1.0, static_cast<double>(most_parts)));
+}
+
+}  // namespace
+
+// Adds pushes at fixed points between the samples, so close together that the sphere rests on the lattice as
+// if every point were pushed. A sphere of radius R reaches d^2 / (8 R) between points that are d apart. The
+// points are fixed because a push at the nearest point would move, and its force would depend on its path.
+void ToolContact::add_pushes_between_samples(int body, const BodyState& state, double reach_m) {
+  const BodyMapping& mapping = state.mapping();
+  const Grid& grid = mapping.nested().grid;
+  const auto &u = grid.u.parameters, &v = grid.v.parameters;
+  const int columns = grid.columns(), sample_count = grid.rows() * columns;
+  const double cell_m = static_cast<double>(state.lattice.cell_size_m());
+  const double margin_m = between_margin_cells * cell_m + reach_m;
+  const double longest_m = std::sqrt(8.0 * shape_.radius_m * largest_reach_cells * cell_m);
+  for (const LevelCell& cell : contacts_[body].collider.finest_cells()) {
+    const int first = cell.i * columns + cell.j;
+    const std::array<int, 4> samples{first, first + 1, first + columns, first + columns + 1};
+    PatchCorners rest, corners;
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      rest[c] = mapping.sample(samples[c]).rest_m(state.lattice);
+      corners[c] = mapping.sample(samples[c]).position_m(state.lattice);
+    }
+    const int parts_u = count_parts(rest[2] - rest[0], rest[3] - rest[1], longest_m);
+    const int parts_v = count_parts(rest[1] - rest[0], rest[3] - rest[2], longest_m);
+    for (int part = 1; part < parts_u * parts_v; ++part) {
+      const PatchPoint at{static_cast<double>(part / parts_v) / parts_u,
+                          static_cast<double>(part % parts_v) / parts_v};
+      if (shape_.distance(at.position(corners)) > margin_m) continue;
+      const double at_u = u[cell.i] + at.s * (u[cell.i + 1] - u[cell.i]);
+      const double at_v = v[cell.j] + at.t * (v[cell.j + 1] - v[cell.j]);
+      if (state.trim && !state.trim->contains(at_u, at_v)) continue;
+      const EmbeddedPoint point = mapping.at(at_u, at_v);
+      // Embedded points between samples are on chords; the surface bulges over them.
+      const Vector3 bulge = position(mapping.rest(), at_u, at_v) - at.position(rest);
+      const int key = sample_count + first * most_parts * most_parts + part;
+      overflow_ |= !constraints_.add_push(body, state.lattice, point, key, bulge);
+    }
+  }
+}
+
+// Adds pushes that keep the lattice, not the surface, out of the tool: the surface follows the lattice late
+// and would dent a plastic body unevenly.
 void ToolContact::add_sphere_pushes(int body, const BodyState& state, const ToolHold& hold) {
   BodyContact& contact = contacts_[body];
-  const SurfaceContact& nearest = contact.collision.nearest;
-  const double cell = static_cast<double>(state.lattice.cell_size_m());
-  if (-nearest.depth_m <= find_margin_m(state) || shape_.radius_m < cell) {
+  if (is_small(state)) {
+    const SurfaceContact& nearest = contact.collision.nearest;
     const std::size_t point = track_nearest(body, state, hold.reach_m);
-    const EmbeddedPoint embedded = state.mapping().at(nearest.u, nearest.v);
-    if (shape_.radius_m >= cell) {
-      add_plane_push(body, state, {embedded, -nearest.normal, -nearest.depth_m, key_of(point)}, hold);
-      add_earlier_pushes(body, state, point, hold);
-    } else {
-      // The surface cannot follow a dent narrower than a cell. Here the lattice must stay out of the tool.
-      overflow_ |= !constraints_.add_plane_push(body, state.lattice, embedded, -nearest.normal,
-                                                shape_.radius_m, key_of(point));
-    }
+    overflow_ |= !constraints_.add_plane_push(body, state.lattice, state.mapping().at(nearest.u, nearest.v),
+                                              -nearest.normal, shape_.radius_m, key_of(point));
+  } else {
+    add_pushes_between_samples(body, state, hold.reach_m);
   }
   for (const NearSample& sample : contact.collider.near_samples()) {
     overflow_ |=

@@ -147,12 +147,13 @@ class ToolContact {
   std::size_t track_nearest(int body, const BodyState& state, double reach_m);
   // Adds pushes at the contact points other than the nearest one.
   void add_earlier_pushes(int body, const BodyState& state, std::size_t nearest, const ToolHold& hold);
-  // Returns whether the tool is a sphere that fits between the samples of the body's surface.
+  // Returns whether the tool is a sphere smaller than a lattice cell.
   bool is_small(const BodyState& body) const;
   // Returns whether the tool in the hand is a B-spline. Checks the tool's kind as well, because the model may
   // belong to an earlier solid tool.
   bool is_surface() const { return is_solid_ && placed_ != nullptr; }
   void add_pushes(int body, const BodyState& state, const ToolHold& hold);
+  void add_pushes_between_samples(int body, const BodyState& state, double reach_m);
   void add_sphere_pushes(int body, const BodyState& state, const ToolHold& hold);
   // Returns the gap between the tool and the point (u, v) of the body's surface, or of the far face of a
   // shell, given the tool's distance to the surface.

@@ -47,9 +47,10 @@ double ContactConstraints::last_force_n(int body, int key) const {
   return kept_.find({.first = body, .point = key});
 }
 
-bool ContactConstraints::add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
-                                  int key) {
-  return add({.kind = Kind::sphere_push, .body = body, .point = point, .key = key}, lattice);
+bool ContactConstraints::add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point, int key,
+                                  const Vector3& offset_m) {
+  return add({.kind = Kind::sphere_push, .body = body, .point = point, .rest_m = offset_m, .key = key},
+             lattice);
 }
 
 bool ContactConstraints::add_plane_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
@@ -74,7 +75,7 @@ bool ContactConstraints::add(const Constraint& constraint, const SpringLattice& 
   if (count_ == static_cast<int>(constraints_.size())) return false;
   Constraint& added = constraints_[count_++];
   added = constraint;
-  added.rest_m = constraint.point.rest_m(lattice);
+  added.rest_m += constraint.point.rest_m(lattice);
   added.friction = constraint.point.friction(lattice);
   added.is_implicit = lattice.moved_by_solver();
   added.keeps_force =

@@ -66,8 +66,10 @@ class ContactConstraints {
   // Each add function returns false when full. `body` is the index of the lattice in the views passed to
   // solve().
   //
-  // Adds a point that the tool's sphere may push outward but never pulls.
-  bool add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point, int key);
+  // Adds a point that the tool's sphere may push outward but never pulls. The point is `offset_m` from the
+  // embedded one and moves with it.
+  bool add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point, int key,
+                const Vector3& offset_m = Vector3::Zero());
   // Adds a point that must stay beyond a plane that moves with the tool. The unit vector `normal` points to
   // the admissible side; `offset_m` is the plane's distance from the tool's centre along `normal`. For tools
   // smaller than a cell, and for tools whose surface is flat over the distance moved in a tick.
@@ -123,7 +125,8 @@ class ContactConstraints {
     Kind kind = Kind::sphere_push;
     int body = 0;
     EmbeddedPoint point;
-    Vector3 rest_m = Vector3::Zero();     // position in the rest shape
+    // Position in the rest shape; until add(), its offset from that of the embedded point.
+    Vector3 rest_m = Vector3::Zero();
     Vector3 direction = Vector3::Zero();  // plane push: normal; grip: offset in the tool's frame
     double offset_m = 0.0;                // distance of the plane from the tool's centre; plane push only
     // Velocity change of the point per impulse in the last pass(), 1/kg; 0 if the body does not yield.
