@@ -40,8 +40,8 @@ enum class FieldUnit {
   metre_per_s2
 };
 
-// Meaning of a vector: a position or other three lengths; a direction, which files may give with any length;
-// or any other quantity, such as a force.
+// Meaning of a vector: a position or another vector of three lengths; a direction, which files may give with
+// any length; or any other quantity, such as a force.
 enum class VectorSense { position, direction, quantity };
 
 // Slider of a number in the panel. The slider's range is a part of the field's range that is narrow enough to
@@ -74,7 +74,7 @@ struct FieldForm {
   // required; otherwise it is not accepted.
   const char* partner = nullptr;
   FieldSlider slider = {};
-  std::span<const char* const> choices = {};  // names of the values of an enumeration, in order
+  std::span<const char* const> choices = {};  // names of an enumeration's values, in their order
 };
 
 // Functions that get and set an enumeration whose values are 0, 1, 2, ...
@@ -158,7 +158,8 @@ struct Field {
   }
   bool applies(const Object& object) const { return applies_to == nullptr || applies_to(object); }
 
-  // optional() and the functions below it return a copy of the field with one property changed.
+  // Returns a copy of the field that files may omit. Each function below also returns a copy with one
+  // property changed.
   constexpr Field optional() const {
     Field field = *this;
     field.form.optional = true;

@@ -163,7 +163,7 @@ Status save_backup(const std::filesystem::path& file) {
 Status check_replaceable(const std::filesystem::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return {};
-  // For the administrator access() succeeds on every file, so the permission bits are tested too.
+  // For the administrator, access() succeeds on every file, so the permission bits are tested too.
   if ((status.st_mode & 0222) != 0 && ::access(file.c_str(), W_OK) == 0) return {};
   return Error{ErrorCode::unwritable, file.string() + ": is read-only; choose another name or use --force"};
 }
@@ -233,8 +233,8 @@ Error held_by_another(const std::filesystem::path& file) {
       file.string() + ": another program is writing it; wait until it has finished or choose another name"};
 }
 
-// Renames the existing FILE to FILE.1, FILE.2, ..., the first of these names that is free, and returns the
-// new name. An empty FILE is removed instead. Returns an empty path if nothing was renamed.
+// Renames the existing FILE to FILE.1 or, if this name is in use, to FILE.2 and so on. Returns the new name.
+// An empty FILE is removed instead. Returns an empty path if nothing was renamed.
 Result<std::filesystem::path> move_aside(const std::filesystem::path& file) {
   const OpenFile old(::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   struct stat status {};

@@ -72,8 +72,8 @@ class OutputFile {
   OutputFile& operator=(OutputFile&& other) noexcept;
   ~OutputFile();  // deletes an uncommitted file made by create()
 
-  // Returns the path that write() writes: FILE.part for a growing file, a temporary name for a file made by
-  // create(), or FILE itself for a device or pipe.
+  // Returns the path to which write() writes: FILE.part for a growing file, a temporary name for a file made
+  // by create(), or FILE itself for a device or pipe.
   const std::filesystem::path& written_file() const { return written_; }
   // Returns the new name that create_growing() gave to an older FILE.part; empty if there was no older
   // FILE.part.
@@ -105,7 +105,7 @@ class OutputFile {
 
   std::filesystem::path file_;    // name as given, for messages
   std::filesystem::path target_;  // path to replace or create, with links resolved
-  // The path that write() writes: a temporary file beside the target, or the target itself.
+  // Path to which write() writes: a temporary file beside the target, or the target itself.
   std::filesystem::path written_;
   std::filesystem::path kept_aside_;
   UnfinishedFile unfinished_;  // entry in the list of unfinished files, for an uncommitted file of create()

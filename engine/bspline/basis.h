@@ -33,8 +33,8 @@ using BlossomWeights = std::array<double, max_degree + 1>;
 // blossom is the symmetric multi-affine function that equals the polynomial where all arguments are equal.
 // Its values at consecutive knots are control points, which serves to convert between knot vectors (Ramshaw
 // 1989). `span` is a result of find_span(). The number of arguments must be from the degree to max_degree. If
-// it is above the degree, it is the degree to which the piece is raised; the blossom is then the mean over
-// all subsets of as many arguments as the original degree. Does not allocate.
+// there are more arguments than the degree, the blossom is that of the same polynomial raised to the higher
+// degree: the mean over all subsets of as many arguments as the original degree. Does not allocate.
 BlossomWeights blossom(const KnotVector& knots, int span, std::span<const double> arguments);
 
 // Parallel lines of control points. The next point of a line is `along` elements further in memory, the next

@@ -38,7 +38,7 @@ BlendingMatrix blending_matrix(const KnotVector& knots, std::span<const double> 
 
 // Returns an error unless each control point has a sample of its own where its basis function is not zero
 // (the condition of Schoenberg and Whitney 1953, wrapped for periodic directions). In an open direction the
-// samples then determine the control points; in a periodic direction they may still be singular (see
+// samples then determine the control points; in a periodic direction they may still not determine them (see
 // pseudo_inverse()). The error names the first control point without such a sample.
 Status check_schoenberg_whitney(const KnotVector& knots, std::span<const double> parameters);
 

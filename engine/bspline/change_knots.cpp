@@ -240,8 +240,8 @@ Result<Neighbourhood> around_knot(const Surface& surface, Direction direction, i
 }
 
 // Returns the copies of inner knots that can be removed within the tolerance, in order of cost. The cost of a
-// copy is the deviation after removing it together with the earlier copies of the same knot. It is computed
-// on the part of the surface around the knot, which is much faster than on the whole surface.
+// copy is the deviation after removing it together with the earlier copies of the same knot. The deviation is
+// computed on the part of the surface around the knot, which is much faster than on the whole surface.
 Result<std::vector<SpareKnot>> spare_knots(const Surface& surface, Direction direction, double tolerance_m,
                                            const Progress& progress) {
   std::vector<SpareKnot> spare;

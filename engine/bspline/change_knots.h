@@ -40,8 +40,8 @@ Result<Approximation> fit_coarser_knots(const Surface& surface, Direction direct
 Result<Approximation> approximated(const Surface& surface, Direction direction, const KnotVector& first,
                                    double tolerance_m, int largest_count, const Progress& progress = {});
 
-// Removes knots as long as the deviation stays within the tolerance, those with the smallest deviation first.
-// Keeps the degree and the knots at the ends. `progress` can cancel the removal.
+// Removes knots as long as the deviation stays within the tolerance, starting with those whose removal
+// changes the surface least. Keeps the degree and the knots at the ends. `progress` can cancel the removal.
 Result<Approximation> remove_spare_knots(const Surface& surface, Direction direction, double tolerance_m,
                                          const Progress& progress = {});
 

@@ -17,8 +17,8 @@ struct NetEdge {
   std::size_t first = 0, stride = 1, count = 0;
 };
 
-// Returns the edge row of control points at an end of u if `of_u`, otherwise the edge column at an end of v.
-// It is at the last end if `at_end`, otherwise at the first.
+// Returns the control points of an edge: a row at an end of u if `of_u`, otherwise a column at an end of v.
+// The edge is at the end of the domain if `at_end`, otherwise at its start.
 NetEdge find_edge(const ControlNet& net, bool of_u, bool at_end);
 
 // Returns true if the control points of the edge coincide up to collapsed_edge_fraction.

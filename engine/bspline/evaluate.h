@@ -72,7 +72,7 @@ class GridEvaluator {
   // Sum of the magnitudes of the basis functions' derivatives, for each row (u) or column (v) of samples.
   std::vector<double> u_magnitude_, v_magnitude_;
   DerivativeBound u_bound_, v_bound_;
-  // Number of blocks of columns. They include two more columns, in which normals at collapsed edges are
+  // Number of blocks for the grid's columns and two more columns, in which normals at collapsed edges are
   // computed.
   int blocks_ = 0;
   std::vector<EvaluateReach> reaches_;

@@ -104,8 +104,8 @@ struct KnotMultiplicity {
 // direction counts as clamped; the start of a period has the multiplicity of the seam.
 std::vector<KnotMultiplicity> knot_multiplicities(const KnotVector& knots);
 
-// Returns the positions of a periodic knot at or after `start` in the first two periods. In an open
-// direction, returns the knot itself.
+// Returns the first two positions at or after `start` at which a knot occurs that is repeated in every
+// period. In an open direction, returns the knot itself.
 std::vector<double> knot_positions_from(const KnotVector& knots, double knot, double start);
 
 // Returns a knot vector of a higher or equal degree that represents every spline over `knots`: each

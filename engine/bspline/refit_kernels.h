@@ -4,7 +4,7 @@
 
 namespace spoonbill {
 
-inline constexpr int product_lanes = 16;  // floats in a vector of MultiplyInOrder
+inline constexpr int product_lanes = 16;  // number of floats in one vector
 
 // Computes out (rows x columns) = a (rows x depth) b (depth x columns). The matrices are row-major without
 // gaps. `columns` must be a multiple of product_lanes, b and out must be aligned to 64 bytes, and out must

@@ -152,7 +152,7 @@ constexpr double product_noise = 16.0 * std::numeric_limits<Real>::epsilon();
 // Distance from an edge, in domain lengths. The edge counts as collapsed if du x dv grows by more than its
 // value at the edge over this distance. The control points of a collapsed edge need not coincide exactly,
 // because after a refit in single precision they coincide only to about 1e-7. The normals around the
-// remaining hole would be arbitrary.
+// remaining hole would otherwise be arbitrary.
 constexpr double hole = 1e-6;
 
 // Distances from an edge, in domain lengths. If the first-order growth of du x dv vanishes at the edge too,

@@ -28,8 +28,8 @@ constexpr std::size_t max_mean_listings = 16;  // largest mean number of columns
 constexpr std::size_t sampled_edge_count = 32;
 constexpr double sample_offset = 1e-9;
 
-// Wraps a parameter into a periodic domain, or clamps it into an open one, at least 2 trim_rounding_fraction
-// away from the ends.
+// Wraps a parameter into a periodic domain. Clamps it into an open domain, away from the ends by at least 2
+// trim_rounding_fraction of the domain's length.
 double inside(const KnotVector& knots, double parameter) {
   const double within = knots.into_domain(parameter);
   if (knots.is_periodic()) return within;
@@ -43,7 +43,7 @@ bool reaches_into(const Polygon& polygon, const KnotVector& along_u, const KnotV
          box.high.y() > along_v.domain_start() && box.low.y() < along_v.domain_end();
 }
 
-// Returns those copies of the polygon, shifted by whole periods, that reach into the domain.
+// Returns the copies of the polygon, shifted by whole periods, that reach into the domain.
 std::vector<Polygon> periodic_copies(const Polygon& polygon, const KnotVector& along_u,
                                      const KnotVector& along_v) {
   std::vector<Polygon> copies;

@@ -37,8 +37,8 @@ class TrimmedArea {
   bool is_whole() const { return edges_.empty(); }
 
   // Returns true if the point is in the remaining part, according to the loops' winding number. u, v are
-  // wrapped or clamped into the domain. In an open direction, a point within 2 trim_rounding_fraction of an
-  // end, as a fraction of the domain, is tested at this distance from the end. On a loop the result is
+  // wrapped or clamped into the domain. In an open direction, a point closer to an end than 2
+  // trim_rounding_fraction of the domain's length is moved inwards to that distance. On a loop the result is
   // undefined. Does not allocate.
   bool contains(double u, double v) const;
 

@@ -30,7 +30,7 @@ struct LinearTable {
 // Number of samples around a ring.
 inline constexpr int ring_samples = 256;
 
-// A ring of a tube: the line of constant v, sampled; in metres.
+// Samples of a ring of a tube, which is a line of constant v. Lengths are in metres.
 struct Ring {
   std::vector<Vector3> points;  // ring_samples points around the ring; the seam occurs once
   Vector3 centre = Vector3::Zero();
@@ -56,8 +56,8 @@ struct Rims {
   std::size_t first = 0, last = 0;
 };
 
-// Returns, for each end of the tube, the station nearest to the pole whose perimeter is at least 85 % of the
-// largest perimeter near this pole. Near means within a tenth of the tube's length.
+// Returns, for each end of the tube, the station nearest to the pole with a perimeter of at least 85 % of the
+// largest perimeter near the pole. Stations within a tenth of the tube's length count as near.
 Rims near_rims(const Profile& profile);
 
 // Returns, for each end of the tube, the first station from which the tube advances at least as fast as its
@@ -92,8 +92,8 @@ Extents lattice_extents(const Surface& surface, const Profile& profile, const Ri
                         const CrossSection& centre_section);
 
 // Parameters u of the lattice nodes around a ring, in the direction of u. A section has ni x nj nodes, of
-// which 2 (ni - 1) + 2 (nj - 1) are on the ring. The first is the corner node (ni - 1, nj - 1), which is
-// between the axes +e1 and +e2 of the section.
+// which 2 (ni - 1) + 2 (nj - 1) are on the ring. The first parameter is that of the corner node (ni - 1, nj -
+// 1), which is between the axes +e1 and +e2 of the section.
 struct RingParameters {
   std::vector<double> u;
 };

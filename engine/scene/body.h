@@ -91,7 +91,7 @@ Status check_lattice_request(const LatticeRequest& lattice);
 // Checks the numbers of loads and supports, and that point loads are within the surface's domain.
 Status check_loads(const Body& body);
 
-// Returns the area within the body's trim loops; null without trims.
+// Returns the area within the body's trim loops; null if the body has no trims.
 Result<std::shared_ptr<const TrimmedArea>> make_trimmed_area(const Body& body);
 
 }  // namespace spoonbill

@@ -95,7 +95,7 @@ inline constexpr Range<double> motion_frequency_range_hz{0.01, 100.0};
 inline constexpr double motion_speed_limit_m_per_s = 5.0;
 inline constexpr Range<double> ground_friction_range{0.0, 5.0};
 
-// Fields of a pressure load in files, except its region, which files store before them.
+// Name and fields of a pressure load in files. Files store the load's region before these fields.
 template <>
 inline constexpr const char* kind_name<PressureLoad> = "pressure";
 template <>
@@ -112,8 +112,8 @@ inline constexpr auto fields_of<ForceLoad> = std::to_array<Field<ForceLoad>>({
     choice_field<&ForceLoad::distributed_by>("shared_by", force_distribution_names),
 });
 
-// The table sets no limits for u and v. check_loads() checks that they are in the domain of the body's
-// surface.
+// The table of a point load sets no limits for u and v. check_loads() checks that they are in the domain of
+// the body's surface.
 template <>
 inline constexpr const char* kind_name<PointLoad> = "point";
 template <>

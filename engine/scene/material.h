@@ -47,8 +47,8 @@ inline constexpr Range<double> poissons_ratio_range{0.0, 0.49};
 // Below it, springs would need a volume force that is unstable under contact.
 inline constexpr double min_spring_poissons_ratio = 0.2;
 inline constexpr Range<double> density_range_kg_per_m3{1.0, 30000.0};
-// Range of the damping time. With a longer damping time, a tick would need more substeps than it has time
-// for.
+// Range of the damping time. With a longer damping time, a tick would need more substeps than can be computed
+// in time.
 inline constexpr Range<double> damping_time_range_s{0.0, 0.005};
 inline constexpr Range<double> yield_strain_range{1e-4, 0.5};  // for plastic materials
 // Range of the yield strain of materials that are not plastic. Such materials ignore the value.

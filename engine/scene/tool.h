@@ -174,7 +174,8 @@ struct ToolBody {
 struct Tool {
   ToolKind kind = ToolKind::sphere;
   ToolAction action = ToolAction::push;
-  // Radius of a sphere; 0 for a point. A solid smooths the surface within this distance of its nearest point.
+  // Radius of a sphere; 0 for a point. For a solid: radius of the area that it smooths around the surface
+  // point nearest to it.
   double radius_m = 0.008;
   int substeps = 6;  // steps of the springs per tick, 1 to 8; with more steps, bodies respond faster
   // Required for the kind `solid`; may be kept while another kind is in use.

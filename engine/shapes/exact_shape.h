@@ -31,7 +31,8 @@ struct ExactShape {
   // True if the shape has a pole (one point for all u) at the start or the end of v.
   bool pole_at_start = false, pole_at_end = false;
   // Flat ends of a shape with poles. The shape is flat for v from the start of the domain to `flat_to`, and
-  // from `flat_from` to the end of the domain. Both must be in `v.breaks`; empty if that end is not flat.
+  // from `flat_from` to the end of the domain. Each value must be one of `v.breaks`; it is empty if that end
+  // is not flat.
   std::optional<double> flat_to = {}, flat_from = {};
   std::function<Vector3(double u, double v)> at;
 
@@ -56,10 +57,10 @@ std::optional<Vector3> pole_normal(const ExactShape& shape, bool at_start);
 
 // Range of the sizes of stock shapes.
 inline constexpr Range<double> shape_size_range_m{1e-4, 10.0};
-// Smallest rounding, as a fraction of the shortest side that is rounded. Sharper edges need more control
-// points than a stock shape has.
+// Smallest radius of a rounded edge, as a fraction of the shortest side of the shape. Sharper edges need more
+// control points than a stock shape has.
 inline constexpr double min_rounding_fraction = 0.01;
-// Default rounding, as a fraction of the shortest side that is rounded.
+// Default radius of a rounded edge, as a fraction of the shortest side of the shape.
 inline constexpr double default_rounding_fraction = 0.1;
 
 // Returns an out_of_range error unless the length is within the range. The message is in millimetres, such as
@@ -67,7 +68,7 @@ inline constexpr double default_rounding_fraction = 0.1;
 Status check_length(std::string_view name, double length_m, Range<double> range_m);
 // Returns an error unless the size is within shape_size_range_m.
 Status check_size(std::string_view name, double size_m);
-// Returns an error unless the rounding is at least min_rounding_fraction of the side and at most `max_m`.
+// Returns an error unless the rounding is at least min_rounding_fraction of `side_m` and at most `max_m`.
 Status check_rounding(std::string_view name, double rounding_m, double side_m, double max_m);
 
 }  // namespace spoonbill

@@ -93,7 +93,8 @@ Result<ShapeKnots> ShapeKnots::with_control_count(const ShapeDirection& directio
   ShapeKnots knots(direction, degree);
   const int cells = static_cast<int>(knots.spans_.size());
   const int spare = control_count - knots.control_count();
-  // The breaks are ignored if fewer control points are spare than half the number of cells.
+  // The breaks are ignored if they leave too few spare control points, that is, fewer than half the number of
+  // cells.
   if (cells > 1 && spare < cells / 2) {
     knots.ends_ = {direction.start(), direction.end()};
     knots.jumps_ = {false, false};

@@ -31,8 +31,8 @@ double direction_angle(const MeridianPoint& direction) {
   return std::atan2(direction.y(), direction.x());
 }
 
-// A corner of a profile: the directions of the sides before and after it, and the angle by which it turns to
-// the left.
+// A corner of a profile: the directions of the sides before and after it, and the angle by which the profile
+// turns to the left.
 struct Corner {
   MeridianPoint before, after;
   double turn = 0.0;
@@ -49,8 +49,8 @@ struct Corner {
   double from() const { return direction_angle(-to_centre(1.0)); }
 };
 
-// Returns the direction in which the profile's mirror image in the axis is traversed, given that of the
-// profile. The mirror image is traversed backwards, so that both form one curve across the axis.
+// Returns the direction of the profile's mirror image in the axis, given the direction of the profile. The
+// mirror image is traversed backwards, so that the profile and its image form one continuous curve.
 MeridianPoint mirrored(const MeridianPoint& direction) {
   return {direction.x(), -direction.y()};
 }

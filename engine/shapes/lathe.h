@@ -45,14 +45,14 @@ class Meridian {
 };
 
 // Makes the body of revolution of a profile, with poles at both ends. If the profile runs upwards, the
-// outside of the body is away from the axis.
+// normals of the body point away from the axis.
 ExactShape revolved_shape(Meridian meridian);
 
 // Makes a body of revolution of a smooth profile through the points. An end of the profile on the axis
 // becomes a pole, where the profile is horizontal. If both ends are on the axis, the shape is closed. If a
 // profile ends at its first point, off the axis, the shape is a ring, which is closed in both directions. Any
-// other shape is open, with its outside away from the axis. Refuses too few or coincident points, negative
-// radii, and a profile that crosses the axis or itself.
+// other shape is open, with normals that point away from the axis. Refuses too few or coincident points,
+// negative radii, and a profile that crosses the axis or itself.
 Result<ExactShape> lathe_shape(const std::vector<MeridianPoint>& profile_m);
 
 }  // namespace spoonbill

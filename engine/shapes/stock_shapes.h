@@ -8,10 +8,11 @@
 
 namespace spoonbill {
 
-// A box along x, y and z with rounded edges. The poles are the centres of its two end faces. These are the
-// faces at the ends of the longest side or, if those are slender, the faces at the ends of the shortest side
-// if they are squarer. The edges around the end faces have the radius `rounding_m`. The four edges between
-// the end faces have twice this radius, but at most half the shortest side. The corners are parts of tori.
+// A box along x, y and z with rounded edges. The poles are the centres of its two end faces. The end faces
+// are at the ends of the longest side, unless these faces are slender and the faces at the ends of the
+// shortest side are squarer. The edges around the end faces have the radius `rounding_m`. The four edges
+// between the end faces have twice this radius, but at most half the shortest side. The corners are parts of
+// tori.
 struct BoxSize {
   Vector3 size_m{0.06, 0.04, 0.02};
   // Radius of the rounding, at most max_box_rounding_fraction of the shortest side.
@@ -35,7 +36,7 @@ Result<ExactShape> plate_shape(const PlateSize& size);
 // larger.
 double default_corner_m(const PlateSize& size);
 
-// Makes a horizontal open sheet: u along x, v against z, so that its normals point up.
+// Makes a horizontal open sheet. u runs along +x and v along -z, so that the normals point up.
 Result<ExactShape> sheet_shape(double x_size_m, double z_size_m);
 
 Result<ExactShape> sphere_shape(double radius_m);
