@@ -55,7 +55,7 @@ std::size_t shoulder(const Profile& profile, bool from_end) {
 }
 
 // A section is not bent if the straight line along its wide axis, through its centre, crosses the outline
-// close to both tips: at more than this fraction of the distance from the centre to the tip.
+// close to both tips. Close means at more than this fraction of the distance from the centre to the tip.
 constexpr double bent_fraction = 0.9;
 
 // Indices of the ring's points that are farthest along +e1 and along -e1.

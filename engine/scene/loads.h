@@ -104,6 +104,7 @@ inline constexpr auto fields_of<PressureLoad> = std::to_array<Field<PressureLoad
 });
 
 inline constexpr const char* force_distribution_names[] = {"surface", "volume"};
+// Name and fields of a force load in files. Files store the load's region before these fields.
 template <>
 inline constexpr const char* kind_name<ForceLoad> = "force";
 template <>

@@ -46,6 +46,7 @@ inline constexpr Range<double> poissons_ratio_range{0.0, 0.49};
 // Smallest Poisson's ratio of plastic, creeping and stiffening materials, which are simulated with springs.
 // Below it, springs would need a volume force that is unstable under contact.
 inline constexpr double min_spring_poissons_ratio = 0.2;
+// Range of the density, from aerogel to beyond osmium.
 inline constexpr Range<double> density_range_kg_per_m3{1.0, 30000.0};
 // Range of the damping time. With a longer damping time, a tick would need more substeps than can be computed
 // in time.

@@ -313,8 +313,8 @@ Result<DirectionError> error_along(const ExactShape& shape, bool along_u, const 
 }
 
 // Returns the number of rings of control points around a pole that must be in the pole's tangent plane. If
-// the shape has a flat end at the pole (ExactShape::flat_to), they are all rings that affect the flat end,
-// except the outermost one, which bends the surface beyond it. Otherwise returns 1.
+// the shape has a flat end at the pole (ExactShape::flat_to), the number is that of all rings that affect the
+// flat end, except the outermost one, which bends the surface beyond the flat end. Otherwise it is 1.
 int flat_rings(const ExactShape& shape, bool at_start, const KnotVector& v) {
   const std::vector<double>& knots = v.knots();
   const std::optional<double> border = at_start ? shape.flat_to : shape.flat_from;
