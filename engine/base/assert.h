@@ -7,8 +7,8 @@
 
 namespace spoonbill {
 
-// A failed assertion: its condition and its location. Copying and what() do not allocate, so that the haptic
-// thread may catch it.
+// A failed assertion: its condition and its location in the source. Copying and what() do not allocate, so
+// that the haptic thread may catch this exception.
 class FailedAssertion : public std::exception {
  public:
   // `condition` and `file` must be string literals.
@@ -42,7 +42,8 @@ void throw_failed_assertion(const FailedAssertion& failure);
       ::spoonbill::fail_assertion(#condition, __FILE__, __LINE__); \
   } while (false)
 
-// The condition is not evaluated in release builds, but the names in it count as used.
+// Release builds do not evaluate the condition. They still count the names in it as used, so that the
+// compiler does not warn of unused variables.
 #ifdef NDEBUG
 #define SPOONBILL_ASSERT_DEBUG(condition) static_cast<void>(sizeof(static_cast<bool>(condition)))
 #else

@@ -1,4 +1,4 @@
-// Containers that the standard library lacks: vectors aligned to cache lines and disjoint sets.
+// Containers that the standard library lacks: disjoint sets, and vectors aligned to cache lines.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,8 @@ namespace spoonbill {
 
 inline constexpr std::size_t cache_line_bytes = 64;
 
-// Allocates memory that starts on a cache line, so that no aligned vector load straddles two lines.
+// Allocates memory that starts on a cache line. If loads start at multiples of their own size from there,
+// none of them straddles two cache lines.
 template <class T>
 struct CacheLineAllocator {
   using value_type = T;

@@ -5,8 +5,8 @@
 namespace spoonbill {
 namespace {
 
-// Returns the status unchanged if it is ok; otherwise the same error with `field` set to the field's name in
-// files.
+// Returns the status unchanged if it is ok. Otherwise returns its error with Error::field set to the name
+// that the field has in files.
 Status with_field(Status status, const FieldForm& form) {
   if (status.ok()) return status;
   return Error{status.error().code, status.error().message, form.name};
@@ -20,8 +20,8 @@ std::string name_in_si(const FieldForm& form) {
   return in_millimetres ? std::string(name.substr(0, name.size() - 2)) + "m" : std::string(name);
 }
 
-// Builds the field's name only if the number is refused: a valid tool must be accepted between two ticks
-// without allocating.
+// The field's name is built only if the number is refused, because a valid tool must be accepted between two
+// ticks without allocating.
 Status check_value(const std::string& about, const FieldForm& form, double value, Range<double> range) {
   if (range.contains(value)) return {};
   return with_field(check_range(about + name_in_si(form), value, range), form);

@@ -1,6 +1,6 @@
-// Descriptions of the fields of a plain struct: name in files, range, unit, whether optional. Each struct has
-// one constexpr table beside it. Reading, writing, commands, checks, sliders of the panel and the JSON schema
-// all iterate over that table:
+// Descriptions of the fields of a plain struct: name in files, range, unit, and whether the field is
+// optional. Each struct has one constexpr table beside it. Reading, writing, commands, checks, sliders of the
+// panel and the JSON schema all iterate over that table:
 //
 //   template <>
 //   inline constexpr auto fields_of<FixingPlane> = std::to_array<Field<FixingPlane>>({
@@ -8,8 +8,8 @@
 //       direction_field("normal", &FixingPlane::normal, "Points away from the fixed side"),
 //   });
 //
-// Values are in SI units; files store lengths in millimetres, and the field's name says so. Fields appear in
-// files in the order of the table. Checks of numbers allocate only for an error message.
+// Values are in SI units, except that files store lengths in millimetres, in fields whose names end in "_mm".
+// Fields appear in files in the order of the table. Checks of numbers allocate only for an error message.
 #pragma once
 
 #include <array>
@@ -40,12 +40,12 @@ enum class FieldUnit {
   metre_per_s2
 };
 
-// Meaning of a vector: a position or other three lengths; a direction, which files may give with any length;
-// or any other quantity, such as a force.
+// Meaning of a vector: a position or another vector of three lengths; a direction, which files may give with
+// any length; or any other quantity, such as a force.
 enum class VectorSense { position, direction, quantity };
 
-// Slider of a number in the panel. Its range is within the field's range and narrow enough to set a value by
-// hand.
+// Slider of a number in the panel. The slider's range is a part of the field's range that is narrow enough to
+// set a value by hand.
 struct FieldSlider {
   const char* label = nullptr;  // null: the panel has no slider for the field
   Range<double> range{0.0, 0.0};
@@ -74,7 +74,7 @@ struct FieldForm {
   // required; otherwise it is not accepted.
   const char* partner = nullptr;
   FieldSlider slider = {};
-  std::span<const char* const> choices = {};  // names of the values of an enumeration, in order
+  std::span<const char* const> choices = {};  // names of an enumeration's values, in their order
 };
 
 // Functions that get and set an enumeration whose values are 0, 1, 2, ...
@@ -84,8 +84,8 @@ struct ChoiceMember {
   void (*set)(Object&, std::size_t);
 };
 
-// A pointer to a field of a struct. It is a union because a std::variant would be instantiated for each
-// struct in every source that includes a table.
+// A pointer to a member of a struct, or a ChoiceMember. It is stored in a union, because a std::variant would
+// be instantiated for each struct in every source that includes a table, which makes compilation slower.
 template <class Object>
 class FieldMember {
  public:
@@ -119,7 +119,7 @@ class FieldMember {
     return visitor(choice_);
   }
 
-  // Returns the pointer to the member if it has this type, otherwise null.
+  // Returns the pointer to the member if the member is a `Value`, otherwise null.
   template <class Value>
   constexpr Value Object::*pointer_to() const {
     Value Object::*found = nullptr;
@@ -147,10 +147,10 @@ template <class Object>
 struct Field {
   FieldForm form;
   FieldMember<Object> member;
-  // Function that returns the range of a number that depends on other fields of the object; null if the range
-  // is fixed.
+  // Function that returns the range of a number, for a range that depends on other fields of the object; null
+  // if the range is fixed.
   Range<double> (*range_by_object)(const Object&) = nullptr;
-  // Function that returns whether an object has this field at all; null if every object has it.
+  // Function that returns true if an object has this field; null if every object has it.
   bool (*applies_to)(const Object&) = nullptr;
 
   Range<double> range_for(const Object& object) const {
@@ -158,7 +158,8 @@ struct Field {
   }
   bool applies(const Object& object) const { return applies_to == nullptr || applies_to(object); }
 
-  // optional() and the functions below it return a copy of the field with one property changed.
+  // Returns a copy of the field that files may omit. Each function below also returns a copy with one
+  // property changed.
   constexpr Field optional() const {
     Field field = *this;
     field.form.optional = true;
@@ -192,11 +193,11 @@ struct NoFields {};
 template <class Object>
 inline constexpr NoFields fields_of;
 
-// Name that files use for a struct that is one of the alternatives of a variant.
+// Name that files use for a struct that is an alternative of a std::variant; null for other structs.
 template <class Object>
 inline constexpr const char* kind_name = nullptr;
 
-// Names of all alternatives of a variant, in order.
+// Names (kind_name) of all alternatives of a std::variant, in the order of the variant.
 template <class Variant>
 inline constexpr auto kind_names = nullptr;
 template <class... Alternatives>
@@ -300,13 +301,15 @@ consteval const Field<Object>& field_of(Value Object::*member) {
 // Returns the name under which messages report the field in SI units, such as "radius_m" for "radius_mm".
 std::string name_in_si(const FieldForm& form);
 
-// Returns an error unless the value is within its range. The message consists of `about` (such as "tool: "),
-// the field's name, the value and the range. The error's field is the name in files.
+// Returns an error unless the value is within its range; a direction must be a unit vector. The message
+// consists of `about` (such as "tool: "), the field's name in SI units, the value and the range. Error::field
+// is the name that the field has in files.
 Status check_value(const std::string& about, const FieldForm& form, double value, Range<double> range);
 Status check_value(const std::string& about, const FieldForm& form, int value, Range<double> range);
 Status check_value(const std::string& about, const FieldForm& form, const Vector3& value);
 
-// Returns an error for the first number or vector outside its range. Texts, switches and choices always pass.
+// Returns an error for the object's first number or vector that check_value() refuses. Texts, switches and
+// choices always pass.
 template <class Object>
 Status check_fields(const std::string& about, const Object& object) {
   const auto check = [&](const Field<Object>& field, auto member) -> Status {

@@ -124,12 +124,14 @@ std::string read_last_bytes(const std::filesystem::path& file, std::size_t count
 
 namespace {
 
-// Flushes the file to the disk. Pipes and read-only file systems have nothing to flush.
+// Flushes the file to the disk and returns true on success. Pipes and read-only file systems have nothing to
+// flush, which counts as success.
 bool flush_descriptor(int descriptor) {
   return ::fsync(descriptor) == 0 || errno == EINVAL || errno == EROFS;
 }
 
-// Makes a rename in the folder survive a power cut. Errors are ignored: some file systems cannot do this.
+// Flushes the folder of the file, so that a rename in it survives a power cut. Errors are ignored, because
+// some file systems cannot flush a folder.
 void flush_parent_folder(const std::filesystem::path& file) {
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -138,8 +140,8 @@ void flush_parent_folder(const std::filesystem::path& file) {
   ::close(descriptor);
 }
 
-// Saves FILE as FILE.bak: by a hard link, so that FILE is never absent, or by a copy where the file system
-// has no links.
+// Saves FILE as FILE.bak by a hard link, so that FILE is never absent. If the file system has no hard links,
+// copies the file instead.
 Status save_backup(const std::filesystem::path& file) {
   const std::filesystem::path backup = file.string() + ".bak";
   const std::filesystem::path staged = file.string() + ".bak.new";
@@ -161,7 +163,7 @@ Status save_backup(const std::filesystem::path& file) {
 Status check_replaceable(const std::filesystem::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return {};
-  // access() lets the administrator write every file, so the permission bits are tested too.
+  // For the administrator, access() succeeds on every file, so the permission bits are tested too.
   if ((status.st_mode & 0222) != 0 && ::access(file.c_str(), W_OK) == 0) return {};
   return Error{ErrorCode::unwritable, file.string() + ": is read-only; choose another name or use --force"};
 }
@@ -209,10 +211,11 @@ Result<OutputFile> OutputFile::create(const std::filesystem::path& file, Mode mo
 
 namespace {
 
-// With O_EXCL, open() fails if the name exists, even as a link.
+// With O_EXCL, open() fails if the name exists, even if it is a symbolic link.
 constexpr int new_file_flags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
 
-// Returns true unless another process holds the file. A file system without locks counts as free.
+// Locks the file. Returns false only if another process has locked it; without support for locks in the file
+// system, returns true.
 bool lock_file(int descriptor) {
   return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
 }
@@ -230,8 +233,8 @@ Error held_by_another(const std::filesystem::path& file) {
       file.string() + ": another program is writing it; wait until it has finished or choose another name"};
 }
 
-// Renames whatever is named `file` to FILE.1, or to the first such name that is free, and returns the new
-// name. Returns an empty path if nothing has the name, or if it was an empty file, which is removed.
+// Renames the existing FILE to FILE.1 or, if this name is in use, to FILE.2 and so on. Returns the new name.
+// An empty FILE is removed instead. Returns an empty path if nothing was renamed.
 Result<std::filesystem::path> move_aside(const std::filesystem::path& file) {
   const OpenFile old(::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   struct stat status {};
@@ -239,7 +242,7 @@ Result<std::filesystem::path> move_aside(const std::filesystem::path& file) {
       old.descriptor() >= 0 && ::fstat(old.descriptor(), &status) == 0 && S_ISREG(status.st_mode);
   if (is_regular) {
     if (!lock_file(old.descriptor())) return held_by_another(file);
-    // The file has lost its name since it was opened: another process has moved or finished it.
+    // If the name no longer refers to the opened file, another process has moved or finished that file.
     if (!has_name(old.descriptor(), file)) return std::filesystem::path();
     if (status.st_size == 0) {
       ::unlink(file.c_str());
@@ -272,11 +275,12 @@ Status OutputFile::open_whole() {
   return {};
 }
 
-// Opens FILE.part and locks it. The lock ends with the process, so it distinguishes a recording in progress
-// from the file that a crash left.
+// Opens FILE.part and locks it. The lock ends with the process, so a locked FILE.part is still being written,
+// and an unlocked one was left by a crash.
 Status OutputFile::open_growing() {
   written_ += ".part";
-  constexpr int most_tries = 100;  // a try fails only if another process acts at the same moment
+  // A try fails if an old FILE.part had to be moved aside, or if another process acts at the same moment.
+  constexpr int most_tries = 100;
   for (int n = 0; n < most_tries; ++n) {
     OpenFile opened(::open(written_.c_str(), new_file_flags, 0666));
     if (opened.descriptor() < 0 && errno != EEXIST) return write_error("cannot be written");

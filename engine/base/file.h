@@ -13,12 +13,13 @@
 
 namespace spoonbill {
 
-// Returns an error if read_file() would refuse the file before reading it: missing, a folder, a device or
-// pipe, not readable by this process, empty, or larger than `bytes_limit`. `remedy` is appended to the
-// message of the last case, for example "reduce the mesh". Never waits for the other end of a pipe.
+// Returns an error if the file is missing, a folder, a device or pipe, not readable by this process, empty,
+// or larger than `bytes_limit`. If it is too large, the message ends with `remedy`, for example "reduce the
+// mesh". Never waits for the other end of a pipe.
 Status check_file(const std::filesystem::path& file, std::size_t bytes_limit, std::string_view remedy = {});
 
-// Returns the file's content. Refuses what check_file() refuses, and a file that cannot be read to its end.
+// Returns the file's content. Refuses every file that check_file() refuses, and a file that cannot be read to
+// its end.
 Result<std::string> read_file(const std::filesystem::path& file, std::size_t bytes_limit,
                               std::string_view remedy = {});
 
@@ -26,13 +27,13 @@ Result<std::string> read_file(const std::filesystem::path& file, std::size_t byt
 // Refuses a missing file, a folder, a device or pipe, and a file that this process may not read.
 Result<std::ifstream> open_file(const std::filesystem::path& file);
 
-// Returns up to `count` bytes from the start or the end of a regular file, for recognising its format; empty
-// if the file is missing or not regular.
+// Returns up to `count` bytes from the start or the end of a regular file, for recognising its format.
+// Returns an empty text if the file cannot be opened or is not regular.
 std::string read_first_bytes(const std::filesystem::path& file, std::size_t count);
 std::string read_last_bytes(const std::filesystem::path& file, std::size_t count);
 
-// Selects whether commit() waits until the content is on the disk. A sequence of files is committed with
-// `later`, then flushed by one call of flush_to_disk().
+// Selects whether commit() waits until the content is on the disk. Several files can be committed with
+// `later` and then flushed by one call of flush_to_disk().
 enum class Durability { now, later };
 
 // Origin of a file's name. A name given by a person may be a link, whose target is then written, or a device
@@ -40,40 +41,42 @@ enum class Durability { now, later };
 // of unknown origin: whatever has that name is replaced, and links are not followed.
 enum class NamedBy { person, program };
 
-// Options for writing a file whose name may be in use. A regular file without permission to write is refused
-// unless `replaces_read_only`.
+// Options for writing a file whose name may be in use. A regular file that this process may not write is
+// refused unless `replaces_read_only` is true.
 struct OutputOptions {
   NamedBy named_by = NamedBy::person;
   bool replaces_read_only = false;
 };
 
-// Returns an error if `file` is a regular file that this process may not write, or whose permissions allow no
-// one to write it.
+// Returns an error if `file` is a regular file that this process may not write, or whose permissions do not
+// allow anyone to write it.
 Status check_replaceable(const std::filesystem::path& file);
 
 // A file that is being written. It has one owner and is used by one thread, never the haptic thread, because
 // writing may block.
 class OutputFile {
  public:
-  // Creates a file that appears under its name at commit(), whole; a crash at any moment leaves either the
-  // old content or the new. The new file has the permissions of the file that it replaces. Writes are
-  // buffered, so errors may be reported as late as commit().
+  // Creates a file whose whole content appears under its name at commit(). A crash at any moment leaves
+  // either the old content or the new. The new file has the permissions of the file that it replaces. Writes
+  // are buffered, so errors may be reported as late as commit().
   static Result<OutputFile> create(const std::filesystem::path& file, const OutputOptions& options = {});
 
-  // Creates a file that others may read while it grows: whatever write() has accepted survives a crash of
-  // this program. The file grows as FILE.part and becomes FILE at commit(); without commit() it remains
-  // FILE.part. Refuses a file that another process is growing (ErrorCode::unavailable). A FILE.part that a
-  // crash left is renamed, see kept_aside().
+  // Creates a file that other programs may read while it grows. All bytes that write() has accepted survive a
+  // crash of this program. The file grows as FILE.part and becomes FILE at commit(); without commit() it
+  // remains FILE.part. Refuses a file that another process is growing (ErrorCode::unavailable). If a crash
+  // has left a FILE.part, renames that file (see kept_aside()).
   static Result<OutputFile> create_growing(const std::filesystem::path& file,
                                            const OutputOptions& options = {});
 
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&& other) noexcept;
-  ~OutputFile();  // removes the file of create() if it was not committed
+  ~OutputFile();  // deletes an uncommitted file made by create()
 
-  // Returns the name under which the file grows: FILE.part, or FILE itself for a device or pipe.
+  // Returns the path to which write() writes: FILE.part for a growing file, a temporary name for a file made
+  // by create(), or FILE itself for a device or pipe.
   const std::filesystem::path& written_file() const { return written_; }
-  // Returns the new name of an older FILE.part that was moved out of the way; empty if no such file existed.
+  // Returns the new name that create_growing() gave to an older FILE.part; empty if there was no older
+  // FILE.part.
   const std::filesystem::path& kept_aside() const { return kept_aside_; }
 
   Status write(std::string_view bytes);
@@ -101,8 +104,8 @@ class OutputFile {
   bool writes_beside() const { return written_ != target_; }
 
   std::filesystem::path file_;    // name as given, for messages
-  std::filesystem::path target_;  // the file that is replaced or created, with links resolved
-  // The path that is written: a temporary file beside the target, or the target itself.
+  std::filesystem::path target_;  // path to replace or create, with links resolved
+  // Path to which write() writes: a temporary file beside the target, or the target itself.
   std::filesystem::path written_;
   std::filesystem::path kept_aside_;
   UnfinishedFile unfinished_;  // entry in the list of unfinished files, for an uncommitted file of create()
@@ -111,7 +114,7 @@ class OutputFile {
   Mode mode_ = Mode::whole;
 };
 
-// Writes a whole file as OutputFile::create() does.
+// Writes a file and commits it, with the guarantees of OutputFile::create().
 Status write_file(const std::filesystem::path& file, std::string_view bytes,
                   Durability durability = Durability::now, const OutputOptions& options = {});
 
@@ -120,7 +123,8 @@ Status write_file(const std::filesystem::path& file, std::string_view bytes,
 Status replace_file(const std::filesystem::path& file, std::string_view bytes,
                     const OutputOptions& options = {});
 
-// Flushes a file that another program has finished and renames it to `file`. Both must be in the same folder.
+// Flushes `finished`, a file that another program has written, and renames it to `file`. Both paths must be
+// in the same folder.
 Status publish_file(const std::filesystem::path& finished, const std::filesystem::path& file);
 
 // Waits until everything written to the file system of the folder is on the disk.

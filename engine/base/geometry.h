@@ -46,7 +46,7 @@ struct Pose {
 // Range of each coordinate that files, commands and the panel accept.
 inline constexpr Range<double> position_range_m{-100.0, 100.0};
 
-// Returns an error naming the first coordinate outside position_range_m.
+// Returns an error if a coordinate is outside position_range_m. The error names the first such coordinate.
 Status check_position(const std::string& field, const Vector3& position_m);
 // Returns an error unless the vector has length 1 within 1e-6, which allows for normals written as decimals.
 Status check_unit(const std::string& field, const Vector3& vector);
@@ -57,7 +57,7 @@ template <class Vector>
 struct AlignedBox {
   using Scalar = typename Vector::Scalar;
 
-  // Coordinate larger than any in use, but small enough that the size of an empty box is finite.
+  // Coordinate larger than any in use, but small enough that extent() of an empty box is finite.
   static constexpr Scalar far = Scalar(1e30);
 
   Vector low = Vector::Constant(far);
@@ -89,7 +89,7 @@ struct AlignedBox {
     return corner;
   }
 
-  // Returns the distance between the nearest points of both boxes; 0 if they overlap.
+  // Returns the distance between the nearest points of the two boxes; 0 if they overlap.
   Scalar gap(const AlignedBox& other) const {
     const Vector apart = (low - other.high).cwiseMax(other.low - high).cwiseMax(Scalar(0));
     return apart.norm();

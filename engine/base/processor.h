@@ -6,8 +6,8 @@
 
 namespace spoonbill {
 
-// A vector instruction set. All sets give the same bits: kernels use no FMA contraction and no reduction
-// whose order depends on the vector width.
+// A vector instruction set. Results are the same to the last bit with every set, because kernels use no FMA
+// contraction and no reduction whose order depends on the vector width.
 enum class InstructionSet { baseline, avx2, avx512 };
 
 // Returns the widest set that this processor supports.
@@ -20,8 +20,8 @@ std::vector<InstructionSet> available_instruction_sets();
 std::string_view name_of(InstructionSet set);
 
 // Flushes denormal numbers to zero on this thread while the object exists; its destructor restores the
-// previous mode. Denormals are about a hundred times slower than other numbers, and all threads must treat
-// them alike.
+// previous mode. Arithmetic with denormals is about a hundred times slower. All threads that compute a
+// simulation must treat denormals alike, so that they get the same results.
 class DenormalsFlushed {
  public:
   DenormalsFlushed();

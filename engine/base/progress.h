@@ -1,4 +1,4 @@
-// Progress reports and cancellation of work outside the tick.
+// Progress reports and cancellation for long computations, which never run within a simulation tick.
 #pragma once
 
 #include <functional>
@@ -9,8 +9,8 @@
 
 namespace spoonbill {
 
-// A copyable progress reporter, or a part of one. Its callback runs on the working thread; without a
-// callback, a report costs one comparison.
+// Reports the progress of a computation, or of a part of it, to a callback. Copyable. The callback runs on
+// the thread that reports; without a callback, a report costs one comparison.
 //
 //   for (int k = 0; k < count; ++k) {
 //     if (!progress.report(static_cast<double>(k) / count)) return Progress::stopped();
@@ -22,15 +22,15 @@ class Progress {
   // whether the work may continue.
   using Report = std::function<bool(double fraction)>;
 
-  Progress() = default;  // makes a progress without a callback
+  Progress() = default;  // constructs a reporter without a callback
   explicit Progress(Report report) : report_(std::move(report)) {}
 
-  // Reports the fraction of this part that is done, and returns whether the work may continue. If it may not,
-  // the caller must end early; if it has no result, it returns stopped().
+  // Reports the fraction of this part that is done, and returns true if the work may continue. Otherwise the
+  // caller must end early and, if it has no result yet, return stopped().
   bool report(double fraction) const { return !report_ || report_(start_ + (end_ - start_) * fraction); }
 
-  // Returns the progress of a part of the work, whose fractions 0 and 1 correspond to `from` and `to` of this
-  // progress. Successive parts must not overlap.
+  // Returns a reporter for a part of the work. It reports its fractions 0 and 1 as the fractions `from` and
+  // `to` of this reporter. Successive parts must not overlap.
   Progress part(double from, double to) const {
     SPOONBILL_ASSERT(0.0 <= from && from <= to);
     Progress part = *this;
@@ -49,8 +49,8 @@ class Progress {
   double start_ = 0.0, end_ = 1.0;
 };
 
-// Estimates the fraction done by a loop whose number of rounds is unknown. Each round counts as a fixed
-// fraction of the work that remained before it.
+// Estimates how much of a loop is done if its number of rounds is unknown. Each round counts as a fixed
+// fraction of the work that remained before the round.
 class RoundsDone {
  public:
   // `part_of_rest` is the fraction of the remainder that each round completes, strictly between 0 and 1.

@@ -12,7 +12,7 @@
 
 namespace spoonbill {
 
-// Kind of an error, for callers and tests that react to it; the message is for people.
+// Kind of an error. Callers and tests may depend on the kind; the message is for people.
 enum class ErrorCode {
   missing,            // a required file, field, option or part is absent
   unknown,            // a name, field, kind or option that does not exist
@@ -38,8 +38,8 @@ enum class ErrorCode {
 };
 
 struct Error {
-  // `field` is the JSON field, option or parameter at fault, such as "radius_mm"; empty if there is no single
-  // one.
+  // `field_name` is the JSON field, option or parameter at fault, such as "radius_mm"; empty if no single
+  // field is at fault.
   Error(ErrorCode error_code, std::string error_message, std::string field_name = {})
       : code(error_code), message(std::move(error_message)), field(std::move(field_name)) {}
 

@@ -21,17 +21,17 @@ std::string short_length_text(double length_m);
 // conversion: 0.009 m is 9.000000000000002 mm in binary arithmetic.
 std::string length_text(double length_m);
 
-// Returns a point with tenths of a millimetre, such as "(10.0, -5.2, 0.0) mm"; zeros have no sign.
+// Returns a point in millimetres with one decimal, such as "(10.0, -5.2, 0.0) mm"; zeros have no sign.
 std::string position_text(const Vector3& point_m);
 
 // Returns the text with dangerous characters in JSON's escaped form, such as "\u001b". Dangerous characters
 // could control a terminal, end its line or reorder its display: control characters (U+0000 to U+001F, U+007F
 // to U+009F), direction marks and line separators. Names in files can contain all of these. A byte that is
-// not UTF-8 becomes "\u00" and its two hexadecimal digits. A valid JSON document without line breaks stays
-// valid.
+// not UTF-8 becomes "\u00" and its two hexadecimal digits. A valid JSON document without line breaks and tabs
+// stays valid.
 std::string escaped(std::string_view text);
 
-// Returns the text with the characters that escaped() escapes replaced by "?".
+// Returns the text with "?" in place of each character that escaped() would escape.
 std::string without_controls(std::string_view text);
 
 // Returns the beginning of a text for quotation in a message: at most `longest` bytes, not ending within a

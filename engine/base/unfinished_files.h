@@ -1,5 +1,5 @@
-// List of the files that this process has begun but not finished, so that they can be removed or completed
-// when a signal ends the process.
+// List of the files that this process has begun but not finished. When a signal ends the process, these files
+// are removed or completed.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,12 @@
 namespace spoonbill {
 
 // An entry in the process's list of unfinished files. The entry exists as long as this object. The list is
-// global, because a signal ends the whole process. Thread-safe; never constructed on the haptic thread.
+// global, because a signal ends the whole process. Objects may be used on any thread except the haptic
+// thread.
 class UnfinishedFile {
  public:
   // Function that removes or completes the file when the process stops early, and returns one line for the
-  // user or an empty text. It is called on a thread other than the file's own.
+  // user or an empty text. It is not called on the thread that writes the file.
   using Ending = std::function<std::string()>;
 
   UnfinishedFile() = default;                           // makes an object without an entry
@@ -29,8 +30,8 @@ class UnfinishedFile {
   std::uint64_t number_ = 0;  // number of the entry; 0 for an object without one
 };
 
-// Ends every unfinished file and returns the lines for the user. Afterwards the process must end, because any
-// thread that begins or finishes an unfinished file then blocks forever.
+// Removes or completes every unfinished file and returns the lines for the user. Afterwards the process must
+// end, because every thread that then adds or removes a list entry blocks forever.
 std::vector<std::string> end_unfinished_files();
 
 }  // namespace spoonbill

@@ -13,7 +13,7 @@ namespace {
 
 using Table = std::array<std::array<double, max_degree + 1>, max_degree + 1>;
 
-// Returns a table of basis functions and knot differences. Entry [j][r] is basis function r of degree j if r
+// Returns a table of basis functions and knot differences. Entry [r][j] is basis function r of degree j if r
 // <= j. If r > j, it is a knot difference by which basis functions are divided.
 Table triangular_table(const double* knots, int degree, double u) {
   Table table;
@@ -34,8 +34,8 @@ Table triangular_table(const double* knots, int degree, double u) {
   return table;
 }
 
-// Computes the derivatives of basis function r up to order `highest`. The derivative of order k still lacks
-// the factor degree! / (degree - k)!.
+// Computes the derivatives of basis function r up to order `highest`. The caller must multiply the derivative
+// of order k by degree! / (degree - k)!.
 void compute_derivatives(const Table& table, int degree, int r, int highest, BasisFunctions& basis) {
   std::array<std::array<double, max_degree + 1>, 2> rows;
   std::array<double, max_degree + 1>* current = &rows[0];

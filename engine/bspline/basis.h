@@ -1,4 +1,4 @@
-// B-spline basis functions, blossoms and derivative bounds of one direction.
+// B-spline basis functions, blossoms and derivative bounds for one parameter direction.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@ namespace spoonbill {
 
 inline constexpr int max_basis_derivative = 2;
 
-// The nonzero basis functions of one span and their derivatives. values[d][j] is the d-th derivative of the
-// j-th nonzero basis function of `span`, j = 0..degree.
+// The nonzero basis functions of one knot span and their derivatives. values[d][j] is the d-th derivative of
+// the j-th nonzero basis function of `span`, j = 0..degree.
 struct BasisFunctions {
   int span = 0;
   std::array<std::array<double, max_degree + 1>, max_basis_derivative + 1> values{};
@@ -29,15 +29,16 @@ void basis_values(const KnotVector& knots, double u, BasisFunctions& basis);
 // Weights of a span's control points in the order of KnotVector::control_index(); their sum is 1.
 using BlossomWeights = std::array<double, max_degree + 1>;
 
-// Returns the blossom of a polynomial piece at the arguments: the symmetric multi-affine function that equals
-// the polynomial where all arguments are equal. At consecutive knots its values are control points; this
-// property converts between knot vectors (Ramshaw 1989). `span` is a result of find_span(). If there are more
-// arguments than the degree (at most max_degree), the piece is treated as a polynomial of that higher degree;
-// the blossom is then the mean over all subsets of as many arguments as the degree. Does not allocate.
+// Returns the blossom of a polynomial piece at the arguments, as weights of the piece's control points. The
+// blossom is the symmetric multi-affine function that equals the polynomial where all arguments are equal.
+// Its values at consecutive knots are control points, which serves to convert between knot vectors (Ramshaw
+// 1989). `span` is a result of find_span(). The number of arguments must be from the degree to max_degree. If
+// there are more arguments than the degree, the blossom is that of the same polynomial raised to the higher
+// degree: the mean over all subsets of as many arguments as the original degree. Does not allocate.
 BlossomWeights blossom(const KnotVector& knots, int span, std::span<const double> arguments);
 
-// Parallel lines of control points: the next point of a line is `along` elements further, the next line
-// `across` elements.
+// Parallel lines of control points. The next point of a line is `along` elements further in memory, the next
+// line `across` elements.
 template <class Real>
 struct ControlLines {
   const Real* x;
@@ -48,9 +49,9 @@ struct ControlLines {
   int across;
 };
 
-// Bound of a surface's first derivative in one direction: the length of the longest of the derivative's
-// control vectors, degree (P[i+1] - P[i]) / (knot[i+degree+1] - knot[i+1]) (Piegl and Tiller 1997, section
-// 3.3). Immutable once made; any thread may read it.
+// Bound of a surface's first derivative in one direction. The bound is the length of the derivative's longest
+// control vector; these vectors are degree (P[i+1] - P[i]) / (knot[i+degree+1] - knot[i+1]) (Piegl and Tiller
+// 1997, section 3.3). Immutable once made; any thread may read it.
 class DerivativeBound {
  public:
   explicit DerivativeBound(const KnotVector& knots);

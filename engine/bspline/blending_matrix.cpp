@@ -44,8 +44,9 @@ BlendingMatrix blending_matrix(const KnotVector& knots, std::span<const double> 
 
 namespace {
 
-// Smallest usable diagonal entry of R relative to the largest. For usable samplings up to degree 9 the ratio
-// stays above 1e-8; for singular samplings of periodic directions it is about 1e-16.
+// Smallest usable diagonal entry of R in a QR factorization, relative to the largest entry. For usable
+// samplings up to degree 9 this ratio stays above 1e-8; for singular samplings of periodic directions it is
+// about 1e-16.
 constexpr double rank_tolerance = 1e-12;
 
 // QR factorization with column pivoting by Householder reflections. Written by hand, because the order of
@@ -156,8 +157,8 @@ std::vector<double> sorted_distinct(const KnotVector& knots, std::span<const dou
   return sorted;
 }
 
-// Returns whether the basis function that starts at extended knot i is positive at t: inside its support, and
-// at a clamped end.
+// Returns true if the basis function that starts at extended knot i is positive at t. It is positive inside
+// its support, and at an end of its support where it is 1, as at a clamped end.
 bool supports(const KnotVector& knots, int i, double t) {
   const auto& extended = knots.extended_knots();
   const double start = extended[i], end = extended[i + knots.degree() + 1];

@@ -1,7 +1,7 @@
 // Blending matrices of one direction and their inverses. A blending matrix A has a row for each parameter and
 // a column for each control point, so that samples = A * control points (Eq. 4 of Pungotra et al. 2013). It
-// depends on knots, degree and parameters, never on control points. All functions are pure and run outside
-// the tick; any thread may call them.
+// depends on knots, degree and parameters, never on control points. All functions are pure, may be called
+// from any thread, and are too slow for a tick.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,23 +36,26 @@ struct BlendingMatrix {
 BlendingMatrix blending_matrix(const KnotVector& knots, std::span<const double> parameters,
                                int derivative_order);
 
-// Returns an error unless samples at the parameters determine every control point (Schoenberg and Whitney
-// 1953, wrapped for periodic directions). The error names the first control point without a sample of its
-// own.
+// Returns an error unless each control point has a sample of its own where its basis function is not zero
+// (the condition of Schoenberg and Whitney 1953, wrapped for periodic directions). In an open direction the
+// samples then determine the control points; in a periodic direction they may still not determine them (see
+// pseudo_inverse()). The error names the first control point without such a sample.
 Status check_schoenberg_whitney(const KnotVector& knots, std::span<const double> parameters);
 
 // Returns the pseudo-inverse A^+ (columns x rows) by QR; never by inverting A^T A, which squares the
 // condition number. Refuses samples that do not determine the control points: fewer samples than control
-// points, a gap, or a singular periodic sampling. A periodic sampling is singular if there are as many
-// samples as control points, their number is even, and an even degree is sampled at knots or an odd degree at
-// mid-spans.
+// points, a gap, or a singular periodic sampling. For evenly spaced periodic knots, a sampling is singular if
+// there are as many samples as control points, their number is even, and an even degree is sampled at the
+// knots or an odd degree midway between them.
 Result<Eigen::MatrixXd> pseudo_inverse(const KnotVector& knots, std::span<const double> parameters);
 
 // Constraints of a fit in one direction.
 struct RefitConstraints {
-  // One flag for each column of control points: 1 for a column that never moves. Empty if no column is fixed.
+  // One flag for each column of control points: 1 for a fixed column, otherwise 0. Empty if no column is
+  // fixed.
   std::vector<std::uint8_t> fixed_columns;
-  // True if the first or last sample is interpolated, so that a pole stays a pole; needs clamped knots.
+  // True if the first or the last sample, respectively, is interpolated, so that a pole stays a pole. The
+  // knots must be clamped there.
   bool keep_first = false, keep_last = false;
 };
 

@@ -18,8 +18,8 @@ namespace spoonbill {
 
 namespace {
 
-// The longest polynomial piece in a control point's support. The longest is used because blossoms lose digits
-// if their arguments are far from the piece.
+// The longest polynomial piece in the support of a control point's basis function. The longest piece is used,
+// because blossoms lose digits if their arguments are many piece lengths away from the piece.
 struct Piece {
   double length = 0.0;
   int span = 0;
@@ -39,7 +39,7 @@ std::vector<Piece> longest_pieces(const KnotVector& knots) {
   return longest;
 }
 
-// Returns the matrix that computes new control points (rows) from old ones (columns).
+// Returns the matrix that computes new control points (rows) from old control points (columns).
 Eigen::MatrixXd exact_conversion(const KnotVector& from, const KnotVector& to) {
   Eigen::MatrixXd conversion = Eigen::MatrixXd::Zero(to.control_point_count(), from.control_point_count());
   const auto& t = to.extended_knots();
@@ -96,8 +96,8 @@ Status check_contains_all(const KnotVector& from, const KnotVector& to) {
   return {};
 }
 
-// Returns parameters at which two splines over these knot vectors can be compared: in each common piece, one
-// more than determines a polynomial of the higher degree.
+// Returns parameters at which two splines over these knot vectors can be compared. In each common polynomial
+// piece there is one parameter more than a polynomial of the higher degree has coefficients.
 std::vector<double> distinguishing_parameters(const KnotVector& a, const KnotVector& b) {
   std::vector<double> ends = a.breakpoints();
   for (const double end : b.breakpoints()) ends.push_back(std::clamp(end, ends.front(), a.domain_end()));
@@ -210,8 +210,7 @@ Result<KnotVector> without_knots(const KnotVector& knots, std::span<const SpareK
                              : KnotVector::open(knots.degree(), std::move(fewer));
 }
 
-// The part of a surface in which the removal of an inner knot changes anything, and the knot's parameter in
-// that part.
+// The part of a surface that the removal of an inner knot may change, and the knot's parameter in that part.
 struct Neighbourhood {
   Surface surface;
   double knot;
@@ -240,9 +239,9 @@ Result<Neighbourhood> around_knot(const Surface& surface, Direction direction, i
   return Neighbourhood{std::move(near).value(), end_at(breakpoint)};
 }
 
-// Returns the copies of inner knots that can be removed within the tolerance, cheapest first. The cost of a
-// copy is the deviation after removing it together with the copies before it. Each cost is computed in the
-// knot's neighbourhood alone, which is much faster than in the whole direction.
+// Returns the copies of inner knots that can be removed within the tolerance, in order of cost. The cost of a
+// copy is the deviation after removing it together with the earlier copies of the same knot. The deviation is
+// computed on the part of the surface around the knot, which is much faster than on the whole surface.
 Result<std::vector<SpareKnot>> spare_knots(const Surface& surface, Direction direction, double tolerance_m,
                                            const Progress& progress) {
   std::vector<SpareKnot> spare;
@@ -337,8 +336,8 @@ Result<Approximation> remove_spare_knots(const Surface& surface, Direction direc
   SPOONBILL_ASSERT_DEBUG(is_valid(surface));
   Approximation best{surface, 0.0};
   for (RoundsDone done(0.2);; done.step()) {
-    // Removes as many of the cheapest knots as possible at once. The costs of the remaining knots then
-    // change, hence the loop.
+    // Each round removes at once as many knots as possible, in order of their cost. The rounds are repeated,
+    // because the removal changes the costs of the remaining knots.
     const auto spare =
         spare_knots(best.surface, direction, tolerance_m, progress.part(done.fraction(), done.fraction()));
     if (!spare) return spare.error();

@@ -1,6 +1,6 @@
-// Conversion of surfaces to other knot vectors: exact to finer ones (more knots, a higher degree, a part of
-// the domain), approximate to coarser ones, with a bound of the deviation. Pure functions outside the tick;
-// any thread may call them.
+// Conversion of surfaces to other knot vectors. It is exact if the new knots are finer (more knots, a higher
+// degree, a part of the domain). If they are coarser, it is approximate, and the deviation has a known bound.
+// All functions are pure, may be called from any thread, and are too slow for a tick.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,16 +12,16 @@
 
 namespace spoonbill {
 
-// Converts a surface exactly, except for rounding, to finer knots. They must contain each of the surface's
-// knots in the domain of `finer`, with its multiplicity raised by the difference of the degrees;
+// Converts a surface exactly, except for rounding, to finer knots. Each of the surface's knots in the domain
+// of `finer` must also be in `finer`, with a multiplicity raised by the difference of the degrees;
 // elevate_degree(), knot_union() and clamped_part() make such knots. If `finer` is open, it may cover a part
-// of a periodic direction. Each control point is the blossom of a polynomial piece in its support (Ramshaw
+// of a periodic direction. Each new control point is a value of the blossom of a polynomial piece (Ramshaw
 // 1989). The error for missing knots names one of them.
 Result<Surface> convert_to_finer_knots(const Surface& surface, Direction direction, const KnotVector& finer);
 
-// An approximation. `deviation_m` bounds the distance between both surfaces: it is the largest distance of
-// their control points over a common knot vector, and surfaces are in the convex hull of their control
-// points.
+// A surface that approximates another. `deviation_m` bounds the distance between the two surfaces. It is the
+// largest distance between their control points over a common knot vector; the distance between the surfaces
+// cannot be larger, because of the convex hull property.
 struct Approximation {
   Surface surface;
   double deviation_m = 0.0;
@@ -33,14 +33,15 @@ struct Approximation {
 Result<Approximation> fit_coarser_knots(const Surface& surface, Direction direction,
                                         const KnotVector& coarser);
 
-// Fits a surface, first over the knots `first`, then with pieces halved wherever the deviation exceeds
-// `tolerance_m`, until the deviation is within the tolerance everywhere. Fails if `largest_count` control
-// points do not suffice; the message states the deviation reached. `progress` can cancel the fit.
+// Fits a surface over the knots `first`, then halves the polynomial pieces in which the deviation exceeds
+// `tolerance_m`, and repeats the fit until the deviation is within the tolerance everywhere. Fails if
+// `largest_count` control points do not suffice; the message states the deviation reached. `progress` can
+// cancel the fit.
 Result<Approximation> approximated(const Surface& surface, Direction direction, const KnotVector& first,
                                    double tolerance_m, int largest_count, const Progress& progress = {});
 
-// Removes knots, cheapest first, as long as the deviation stays within the tolerance. Keeps the degree and
-// the knots at the ends. `progress` can cancel the removal.
+// Removes knots as long as the deviation stays within the tolerance, starting with those whose removal
+// changes the surface least. Keeps the degree and the knots at the ends. `progress` can cancel the removal.
 Result<Approximation> remove_spare_knots(const Surface& surface, Direction direction, double tolerance_m,
                                          const Progress& progress = {});
 
@@ -50,9 +51,9 @@ Result<Approximation> remove_spare_knots(const Surface& surface, Direction direc
 Surface combine_along(const Surface& surface, Direction direction, const Eigen::MatrixXd& weights,
                       const KnotVector& knots);
 
-// Removes `copies` copies of the knot at the parameter by least squares; exact where the surface is smooth
-// enough there. Refuses a parameter without a knot, more copies than there are, the ends of an open
-// direction, and all copies at the seam of a periodic one.
+// Removes `copies` copies of the knot at the parameter by least squares. The result is exact if the surface
+// is smooth enough at the knot. Refuses a parameter without a knot, more copies than there are, the ends of
+// an open direction, and the removal of all copies at the seam of a periodic direction.
 Result<Approximation> remove_knot(const Surface& surface, Direction direction, double parameter, int copies);
 
 }  // namespace spoonbill

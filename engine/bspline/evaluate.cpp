@@ -55,7 +55,7 @@ double max_value(const std::vector<double>& values) {
   return *std::max_element(values.begin(), values.end());
 }
 
-// Returns whether the first (last) sample is the first (last) control point itself.
+// Returns true if the first sample (ends_on_edge: the last sample) is at a clamped end of the domain.
 bool starts_on_edge(const GridDirection& direction) {
   return !direction.knots.is_periodic() && direction.values.values.front() == 1.0;
 }
@@ -84,7 +84,8 @@ NetExtent<Real> measure_extent(const NetView<Real>& net, int count) {
   return extent;
 }
 
-// Returns whether `count` control points coincide, starting at `first` and `step` elements apart.
+// Returns true if `count` control points coincide within the tolerance. The first has the index `first`, and
+// they are `step` elements apart.
 template <class Real>
 bool coincide(const NetView<Real>& net, int first, int step, int count, Real tolerance) {
   for (const Real* values : {net.x, net.y, net.z}) {
@@ -95,7 +96,8 @@ bool coincide(const NetView<Real>& net, int first, int step, int count, Real tol
   return true;
 }
 
-// Returns the largest rounding error of a computed derivative whose exact value is zero.
+// Returns a bound of the rounding error of a computed derivative. `magnitude` is the sum of the magnitudes of
+// the basis functions' derivatives.
 template <class Real>
 double noise(double largest_coordinate, double magnitude) {
   return 8.0 * std::numeric_limits<Real>::epsilon() * largest_coordinate * magnitude;
@@ -168,8 +170,9 @@ void GridEvaluator<Real>::set_up_rows(const GridDirection& u) {
   u_magnitude_ = row_magnitudes(u.first_derivatives, length);
 }
 
-// Stores A_v as dense blocks, so that loads are contiguous however few samples a span has. Copies of the last
-// sample column fill the last block, so that the padding causes no irregular samples.
+// Stores the blending matrix A_v as dense blocks, so that loads are contiguous however few samples a span
+// has. The last block is padded with copies of the last sample column, so that the padding never looks like a
+// sample without a normal.
 template <class Real>
 void GridEvaluator<Real>::set_up_columns(const GridDirection& v) {
   const double length = v.knots.domain_length();
@@ -253,9 +256,9 @@ auto GridEvaluator<Real>::collapsed_edges(const NetView<Real>& net, Real reach) 
   return edges;
 }
 
-// Returns a value of |du x dv|^2 above which every sample passes the kernels' test. The test compares |du x
-// dv|^2 with noise(du)^2 |dv|^2 + noise(dv)^2 |du|^2. The value is at least the smallest normal number, which
-// exceeds any value that underflow may round up.
+// Returns a value of |du x dv|^2 above which every sample has a normal according to the kernels. They test
+// whether |du x dv|^2 exceeds noise(du)^2 |dv|^2 + noise(dv)^2 |du|^2. The returned value is at least the
+// smallest normal number, because smaller numbers may be rounding errors of underflow.
 template <class Real>
 Real GridEvaluator<Real>::regularity_bound(const NetView<Real>& net, double largest_coordinate) const {
   const int rows = grid_->u.knots.control_point_count(), columns = net.columns;
@@ -280,9 +283,9 @@ void GridEvaluator<Real>::blend_control_rows(const NetView<Real>& net) {
   }
 }
 
-// Fills the two limit columns, which are used only for their normals. At a collapsed column du vanishes; at a
-// small distance h inside the surface, du is about h duv. The normal's limit is therefore computed from
-// derivatives along v in place of the values.
+// Fills the two limit columns, in which the normals of the first and the last column are computed if these
+// columns are collapsed. At a collapsed column du vanishes; at a small distance h inside the surface, du is
+// about h duv. The normal's limit is therefore computed with derivatives along v in place of values.
 template <class Real>
 void GridEvaluator<Real>::set_up_limit_columns(const CollapsedEdges& edges) {
   const int columns = grid_->columns();
@@ -322,9 +325,10 @@ EvaluateRow<Real> GridEvaluator<Real>::row_task(int row) const {
           Real(0)};
 }
 
-// Computes a row and returns the number of its samples without a normal. A row that is known to be regular is
-// written directly; its padding overwrites the start of the next row, which is computed later. Otherwise only
-// whole blocks are written directly, and the remaining columns and limit columns pass through the spare row.
+// Computes a row and returns the number of its samples without a normal. If all samples have normals for
+// certain, the row is written directly, and its padding overwrites the start of the next row, which is
+// computed later. Otherwise only whole blocks are written directly. The remaining columns and the limit
+// columns are computed in the spare row and copied.
 template <class Real>
 int GridEvaluator<Real>::compute_row(const EvaluateRow<Real>& task, int row, const CollapsedEdges& edges,
                                      GridSamples<Real>& samples) {
@@ -352,8 +356,9 @@ int GridEvaluator<Real>::compute_row(const EvaluateRow<Real>& task, int row, con
   return degenerate;
 }
 
-// Computes the normals of a collapsed row. There dv vanishes; at a distance h inside the surface, dv is about
-// h duv.
+// Computes the normals of a collapsed row. At such a row dv vanishes; at a small distance h inside the
+// surface, dv is about h duv. The normal's limit is therefore computed with derivatives along u in place of
+// values.
 template <class Real>
 void GridEvaluator<Real>::compute_limit_row(EvaluateRow<Real> task, int row, int inward,
                                             GridSamples<Real>& samples) {

@@ -1,5 +1,5 @@
-// Evaluation of surfaces on whole grids: M = A_u P A_v^T (Eq. 4 of Pungotra et al. 2013), points and unit
-// normals into structure-of-arrays buffers.
+// Evaluation of the points and unit normals of surfaces on whole grids: M = A_u P A_v^T (Eq. 4 of Pungotra et
+// al. 2013) with the samples M, the control points P and the blending matrices A_u and A_v.
 #pragma once
 
 #include <cstddef>
@@ -14,24 +14,24 @@
 
 namespace spoonbill {
 
-// Samples of a grid, rows x columns each, in the grid's order.
+// Samples of a surface on a grid. Each array has rows x columns values, in the order of Grid.
 template <class Real>
 struct GridSamples {
   std::vector<Real> x, y, z;     // points in metres
-  std::vector<Real> nx, ny, nz;  // unit normals, see unit_normal() for poles and collapsed edges
+  std::vector<Real> nx, ny, nz;  // unit normals; see GridEvaluator for collapsed edges
 
   void resize(std::size_t count) {
     for (auto* values : {&x, &y, &z, &nx, &ny, &nz}) values->resize(count);
   }
 };
 
-// Evaluates surfaces of one grid's knot structure. Owns its working memory: one evaluator for each thread, no
-// allocation after construction. The grid must outlive it.
+// Evaluates surfaces with the knots of one grid. An evaluator owns its working memory, so that each thread
+// needs its own, and does not allocate after construction. The grid must outlive it.
 //
-// A clamped edge whose control points coincide to a millionth of the net's extent counts as collapsed: its
-// samples get the limit of the normal from inside. Other samples at which du x dv is only rounding noise get
-// unit_normal(), but only a limited number of them in each pass, to bound its time; the rest get zero
-// normals.
+// A clamped edge whose control points coincide to a millionth of the net's extent counts as collapsed. Its
+// normals are the limits from inside the surface. Elsewhere, if du x dv is only rounding noise, the normal is
+// computed by unit_normal(). To bound the time, this is done for a limited number of samples in each
+// evaluation; further such samples get zero normals.
 template <class Real>
 class GridEvaluator {
  public:
@@ -45,7 +45,8 @@ class GridEvaluator {
   void points(const Real* x, const Real* y, const Real* z, GridSamples<Real>& samples);
 
  private:
-  // Inward direction, +1 or -1, of each outermost grid line that is on a collapsed edge; 0 for the others.
+  // For each outermost grid line: the inward direction, +1 or -1, if the line is on a collapsed edge;
+  // otherwise 0.
   struct CollapsedEdges {
     int first_row = 0, last_row = 0, first_column = 0, last_column = 0;
   };
@@ -65,16 +66,19 @@ class GridEvaluator {
 
   const Grid* grid_;
   const EvaluateKernels<Real>* kernels_;
-  // Values and derivatives of the basis functions: rows x bandwidth, derivatives scaled by the domain length.
+  // Values and derivatives of the basis functions along u: rows x bandwidth, the derivatives multiplied by
+  // the length of the domain.
   std::vector<Real> u_values_, u_derivatives_;
-  // For each row (column) of samples, sum of the magnitudes of the basis functions' derivatives.
+  // Sum of the magnitudes of the basis functions' derivatives, for each row (u) or column (v) of samples.
   std::vector<double> u_magnitude_, v_magnitude_;
   DerivativeBound u_bound_, v_bound_;
-  int blocks_ = 0;  // number of blocks of columns, including the two limit columns
+  // Number of blocks for the grid's columns and two more columns, in which normals at collapsed edges are
+  // computed.
+  int blocks_ = 0;
   std::vector<EvaluateReach> reaches_;
   AlignedVector<Real> v_values_, v_derivatives_;
-  AlignedVector<Real> blended_;           // control rows x blocks, blended along v
-  AlignedVector<Real> dv_noise_squared_;  // squared rounding error of dv, one for each column of all blocks
+  AlignedVector<Real> blended_;           // control points blended along v: control rows x blocks
+  AlignedVector<Real> dv_noise_squared_;  // squared rounding error of dv in each column
   AlignedVector<Real> spare_;             // samples of one row
 };
 

@@ -82,11 +82,12 @@ void points_row(const EvaluateRow<Real>& row, int first_block, int blocks, const
   }
 }
 
-// Treatment of irregular samples, whose du x dv does not exceed the rounding error. Their normals are set to
-// zero (full) or left undefined (if_regular).
+// Treatment of irregular samples. `full` sets their normals to zero; a sample is then irregular if its du x
+// dv does not exceed the rounding error. `if_regular` leaves their normals undefined; a sample is then
+// irregular if its |du x dv|^2 does not exceed EvaluateRow::surely_regular.
 enum class Care { full, if_regular };
 
-// Computes points and normals of a row; returns the number of irregular samples.
+// Computes points and normals of a row. Returns the number of irregular samples (see Care).
 template <class Real, int bandwidth, Care care>
 int points_and_normals_row(const EvaluateRow<Real>& row, int first_block, int blocks,
                            const EvaluateOutput<Real>& out) {

@@ -13,15 +13,15 @@ inline constexpr int evaluate_block = 16;
 // values of each.
 inline constexpr int evaluate_block_size = 6 * evaluate_block;
 
-// A block of columns that a control point affects.
+// Index of a control point along v, and a block of sample columns that this control point affects.
 struct EvaluateReach {
   int control;
   int block;
 };
 
-// The matrix A_v in blocks. Each entry of `reaches` has evaluate_block values and as many derivatives: those
-// of the control point's basis function at the samples of the block. The entries are ordered by control
-// point, so that consecutive sums go into different blocks and do not wait for each other.
+// The blending matrix A_v in blocks. Each entry of `reaches` has evaluate_block values and as many
+// derivatives, namely of the control point's basis function at the samples of the block. The entries are
+// ordered by control point. Consecutive sums then go into different blocks and do not wait for each other.
 template <class Real>
 struct EvaluateBand {
   const EvaluateReach* reaches;
@@ -31,8 +31,8 @@ struct EvaluateBand {
   int blocks;
 };
 
-// One row of A_u and the blended control rows (those of P A_v^T) that it combines. Entry k of the row applies
-// to blended row first + k, wrapped around at `control_rows`.
+// One row of the blending matrix A_u, and the rows of the product P A_v^T (the blended rows) that it
+// combines. Entry k of the row applies to blended row first + k, modulo `control_rows`.
 template <class Real>
 struct EvaluateRow {
   const Real* blended;
@@ -44,7 +44,7 @@ struct EvaluateRow {
   const Real* derivatives;
   Real du_noise_squared;         // squared rounding error of du in this row
   const Real* dv_noise_squared;  // squared rounding error of dv in each column
-  Real surely_regular;           // largest |du x dv|^2 that may be rounding error in any column
+  Real surely_regular;           // bound of |du x dv|^2; above it, no product is rounding error
 };
 
 // Destinations of a row of samples; no alignment is required.
@@ -72,8 +72,8 @@ struct EvaluateKernels {
   int (*points_and_normals)(const EvaluateRow<Real>& row, int first_block, int blocks,
                             const EvaluateOutput<Real>& out);
 
-  // Computes the same as points_and_normals(), bit for bit, at a fraction of the cost, but only if every
-  // sample is surely regular. Returns whether all samples are; if not, the normals are undefined.
+  // Computes the same as points_and_normals(), bit for bit, at a fraction of the cost. Returns true if |du x
+  // dv|^2 exceeds row.surely_regular at every sample; otherwise the normals are undefined.
   bool (*points_and_normals_if_regular)(const EvaluateRow<Real>& row, int first_block, int blocks,
                                         const EvaluateOutput<Real>& out);
 };

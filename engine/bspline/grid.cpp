@@ -56,8 +56,8 @@ GridDirection make_direction(const KnotVector& knots, std::vector<double> parame
   return {knots, std::move(parameters), std::move(values), std::move(first), std::move(second)};
 }
 
-// Interpolates between two ends. Returns exactly `end` for the last value, which the formula may miss by
-// rounding.
+// Interpolates between `start` (i = 0) and `end` (i = count). At i = count it returns exactly `end`, which
+// the formula may miss by rounding.
 double between(double start, double end, int i, int count) {
   return i >= count ? end : start + (end - start) * i / count;
 }
@@ -113,11 +113,11 @@ NestedParameters nested_parameters(const KnotVector& knots, int pieces_per_span,
 
 namespace {
 
-// Lines of points: three columns of coordinates for each point of a line.
+// A matrix of points. Each row is a line of points, with three columns for the coordinates of each point.
 using Lines = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Multiplies the matrices. Each sum adds its terms in the order of the rows, so that the same points give the
-// same bits on every machine; Eigen's product does not guarantee this.
+// Returns matrix times lines. Terms are summed in the order of the rows of `lines`, so that the same points
+// give the same bits on every machine. Eigen's product does not guarantee this.
 Lines product_in_order(const Eigen::MatrixXd& matrix, const Lines& lines) {
   Lines product = Lines::Zero(matrix.rows(), lines.cols());
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {

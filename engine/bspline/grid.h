@@ -1,5 +1,5 @@
-// Grids: the blending matrices of one knot structure and one sampling, shared by every surface of that
-// structure, and least-squares fits of surfaces to points and displacements on grids.
+// Grids of samples on surfaces, and least-squares fits of surfaces to points and displacements on grids. A
+// grid holds the blending matrices for its knots and parameters; all surfaces with these knots share it.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +18,8 @@
 
 namespace spoonbill {
 
-// One direction of a grid. Made outside the tick and immutable afterwards, so that any thread may read it.
+// One direction of a grid. Immutable once made, so that any thread may read it. Making one is too slow for a
+// tick.
 struct GridDirection {
   KnotVector knots;
   std::vector<double> parameters;  // parameters of the samples: strictly increasing, in the domain
@@ -31,7 +32,8 @@ struct GridDirection {
   // Returns the cell that contains the parameter: the first or the last cell for a parameter outside the
   // sampled range.
   int find_cell(double parameter) const;
-  // Maps a cell index across the seam of a periodic direction; returns -1 beyond an open end.
+  // Returns the index of a cell, wrapped across the seam of a periodic direction; returns -1 beyond an open
+  // end.
   int wrap_cell(int i) const;
 };
 
@@ -46,7 +48,7 @@ struct Grid {
 };
 
 // Makes a grid from strictly increasing parameters in the domain. Refuses fewer than two parameters, and
-// parameters that do not increase or are not finite.
+// parameters that do not increase or are outside the domain.
 Result<Grid> make_grid(const KnotVector& u, const KnotVector& v, std::vector<double> u_parameters,
                        std::vector<double> v_parameters);
 
@@ -59,7 +61,7 @@ std::vector<double> uniform_parameters_without_seam(const KnotVector& knots, int
 
 // Parameters of a grid with nested levels: each polynomial piece is cut into pieces_per_span * 2^levels equal
 // parts, both domain ends included. Level l (0 = coarsest) has every 2^(levels - l)-th parameter. No cell has
-// a knot inside, and the blending matrices of a coarse level consist of rows of those of the finest level.
+// a knot inside. The blending matrices of a coarse level consist of rows of the finest level's matrices.
 struct NestedParameters {
   int levels = 0;
   std::vector<double> parameters;
@@ -77,15 +79,16 @@ struct PointGrid {
   std::vector<Vector3> points_m;
 };
 
-// Ends that are interpolated instead of fitted; each needs a clamped end and a parameter on it.
+// Ends of the domain at which a surface interpolates the points instead of fitting them. Such an end must be
+// clamped, and the first or last parameter must be exactly there.
 struct InterpolatedEnds {
   bool u_first = false, u_last = false, v_first = false, v_last = false;
 };
 
-// Returns the surface with the least sum of squared distances at the parameters: P = A_u^+ M (A_v^+)^T (Eq. 5
-// of Pungotra et al. 2013 without inverting A^T A, which squares the condition number). Refuses a number of
-// points that differs from the number of parameter pairs, non-finite points, and parameters that do not
-// determine the control points.
+// Returns the surface with the least sum of squared distances from the points at their parameters: P = A_u^+
+// M (A_v^+)^T for the points M (Eq. 5 of Pungotra et al. 2013, but without inverting A^T A, which squares the
+// condition number). Refuses a number of points that differs from the number of parameter pairs, non-finite
+// points, and parameters that do not determine the control points.
 Result<Surface> fit_grid(const KnotVector& u, const KnotVector& v, const PointGrid& points,
                          const InterpolatedEnds& interpolated = {});
 
@@ -95,9 +98,10 @@ PointGrid sample_grid_points(const Surface& surface, std::vector<double> u, std:
 // Returns the largest distance in metres between a point of the grid and the surface at its parameters.
 double largest_deviation_m(const Surface& surface, const PointGrid& points);
 
-// Returns the largest value of a function of two parameters near a sample, found by ever smaller steps
-// starting from half the sample distances; never less than the value at the sample. `value` must accept
-// parameters up to one step outside the sampled range. Steps must not be negative.
+// Searches for the largest value of a function of two parameters near the sample (u, v), and returns it;
+// never less than the value at the sample. The search goes in ever smaller steps, which start from half of
+// `step_u` and `step_v`, the distances between samples. `value` must accept parameters up to these distances
+// outside the sampled range.
 template <class Value>
 double find_peak(const Value& value, double u, double v, double step_u, double step_v) {
   SPOONBILL_ASSERT(step_u >= 0.0 && step_v >= 0.0);
@@ -119,18 +123,18 @@ double find_peak(const Value& value, double u, double v, double step_u, double s
   return largest;
 }
 
-// Moves control points by the displacement of grid samples, dP = A_u^+ dM (A_v^+)^T. Fitting displacements
-// keeps an untouched surface unchanged to the last bit, where refitting positions (Eq. 5 of Pungotra et al.
-// 2013) would smooth it. Owns both pseudo-inverses in single precision and the working memory; does not
-// allocate after make(). One owner, one thread.
+// Computes the displacements dP of control points from the displacements dM of grid samples: dP = A_u^+ dM
+// (A_v^+)^T. A surface whose samples do not move stays unchanged to the last bit, whereas a fit of the
+// positions (Eq. 5 of Pungotra et al. 2013) would smooth it. Owns both pseudo-inverses in single precision
+// and the working memory; does not allocate after make(). For use by one thread.
 class DisplacementRefit {
  public:
   // Makes a refit without constraints. Refuses a grid whose samples do not determine the control points (see
   // pseudo_inverse()).
   static Result<DisplacementRefit> make(const Grid& grid, InstructionSet set);
 
-  // Makes a refit under constraints on the control points. The columns of control points that are not fixed
-  // fit the samples by least squares.
+  // Makes a refit under constraints on the columns of control points. The columns that are neither fixed nor
+  // interpolated fit the samples by least squares.
   static Result<DisplacementRefit> make(const Grid& grid, const RefitConstraints& constraints,
                                         InstructionSet set);
 
@@ -154,7 +158,7 @@ class DisplacementRefit {
   std::vector<float> u_inverse_;  // pseudo-inverse along u: control_rows x sample_rows
   // Transposed pseudo-inverse along v: sample_stride x control_stride, zero-padded.
   AlignedVector<float> v_inverse_transposed_;
-  AlignedVector<float> half_;  // product with u_inverse_ only: control_rows x sample_stride
+  AlignedVector<float> half_;  // u_inverse_ times samples: control_rows x sample_stride
   // Result before its padding is removed: control_rows x control_stride.
   AlignedVector<float> padded_control_;
 };

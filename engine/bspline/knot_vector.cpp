@@ -80,9 +80,9 @@ std::optional<Error> periodic_multiplicity_error(const std::vector<double>& knot
   return std::nullopt;
 }
 
-// Extends the knots of one period on both sides. The new knots are computed from their differences to the
-// seam, so that knots that coincide at one end of the period coincide exactly at the other end, and the
-// sequence never decreases.
+// Extends the knots of one period on both sides. The new knots are computed from the differences between
+// knots and the seam. Knots that coincide at one end of the period then coincide exactly at the other end,
+// and the sequence never decreases.
 std::vector<double> extend_periodic(const std::vector<double>& knots, int degree) {
   const int r = static_cast<int>(knots.size()) - 1;
   const double start = knots.front(), end = knots.back(), period = end - start;
@@ -220,8 +220,9 @@ bool same_knot(double a, double b, double length) {
   return std::abs(a - b) <= same_knot_fraction * length;
 }
 
-// Assembles a knot vector from unsorted multiplicities. The start of an open one must have multiplicity
-// degree + 1; its end is added with the same multiplicity.
+// Assembles a knot vector from unsorted multiplicities, which do not include the end of the domain. In an
+// open direction the start must have the multiplicity degree + 1, and the end is added with the same
+// multiplicity.
 Result<KnotVector> assemble(int degree, bool periodic, const std::vector<KnotMultiplicity>& all, double end) {
   std::vector<double> knots;
   for (const auto& [knot, multiplicity] : all) {

@@ -10,7 +10,8 @@
 
 namespace spoonbill {
 
-// Largest degree; the smallest is 1. Above 9 the pseudo-inverse of the refit loses too many digits.
+// Largest degree; the smallest is 1. Above 9, the pseudo-inverse in a least-squares fit (pseudo_inverse())
+// loses too many digits.
 inline constexpr int max_degree = 9;
 
 // A parameter direction of a surface.
@@ -21,8 +22,8 @@ constexpr const char* direction_name(Direction direction) {
   return direction == Direction::u ? "direction u" : "direction v";
 }
 
-// Degree, knots and thereby the number of control points of one direction. A value type, immutable once made;
-// any thread may read it.
+// Degree and knots of one direction, which determine the number of control points. A value type, immutable
+// once made; any thread may read it.
 class KnotVector {
  public:
   // Constructs an empty knot vector, to be assigned before any use other than comparison.
@@ -36,11 +37,11 @@ class KnotVector {
 
   // Makes a periodic knot vector for r >= 2 control points from the r + 1 knots of one period; the last knot
   // is the first plus the period. B_i starts at knot i, and B_i(u) = B_0((u - i + r) mod r) for uniform knots
-  // (Eq. 3 of Pungotra et al. 2013 with modulus r; their modulus r + 1 makes the sum fall to 1/3 at the
-  // seam).
+  // (Eq. 3 of Pungotra et al. 2013, but with modulus r; with their modulus r + 1, the sum of the basis
+  // functions falls to 1/3 at the seam).
   static Result<KnotVector> periodic(int degree, std::vector<double> knots);
 
-  // Makes evenly spaced knots over [0, 1].
+  // Makes evenly spaced knots over the domain [0, 1].
   static Result<KnotVector> clamped_uniform(int degree, int control_point_count);
   static Result<KnotVector> periodic_uniform(int degree, int control_point_count);
 
@@ -103,25 +104,25 @@ struct KnotMultiplicity {
 // direction counts as clamped; the start of a period has the multiplicity of the seam.
 std::vector<KnotMultiplicity> knot_multiplicities(const KnotVector& knots);
 
-// Returns the first two parameters at or after `start` that a periodic knot has, one period apart. In an open
-// direction, returns the knot itself.
+// Returns the first two positions at or after `start` at which a knot occurs that is repeated in every
+// period. In an open direction, returns the knot itself.
 std::vector<double> knot_positions_from(const KnotVector& knots, double knot, double start);
 
 // Returns a knot vector of a higher or equal degree that represents every spline over `knots`: each
-// multiplicity grows by the difference of the degrees. Open ends become clamped. Refuses a lower degree and
-// one above max_degree.
+// multiplicity grows by the difference of the degrees. Open ends become clamped. Refuses a lower degree and a
+// degree above max_degree.
 Result<KnotVector> elevate_degree(const KnotVector& knots, int degree);
 
 // Returns a knot vector of a lower or equal degree. The continuity at every knot stays the same but is at
 // most C^(degree - 1). Open ends become clamped.
 Result<KnotVector> reduce_degree(const KnotVector& knots, int degree);
 
-// Returns the union of two knot vectors: every knot with the larger of its two multiplicities. Refuses
-// different degrees, periodicity or domains.
+// Returns the union of two knot vectors: every knot of either, with the larger of its two multiplicities.
+// Refuses different degrees, periodicity or domains.
 Result<KnotVector> knot_union(const KnotVector& a, const KnotVector& b);
 
-// Returns the part from `start` to `end` as a clamped knot vector. In a periodic direction it may cross the
-// seam, with `end` at most one period beyond `start`. Refuses an empty part and one outside the domain.
+// Returns the part from `start` to `end` as a clamped knot vector. In a periodic direction the part may cross
+// the seam, with `end` at most one period beyond `start`. Refuses a part that is empty or outside the domain.
 Result<KnotVector> clamped_part(const KnotVector& knots, double start, double end);
 
 // Returns the knots scaled to the domain [start, end]. Refuses ends that are not finite or not increasing.

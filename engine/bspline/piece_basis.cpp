@@ -63,8 +63,8 @@ PieceBasis::PieceBasis(const KnotVector& knots)
   }
 }
 
-// Finds the piece by an estimate that is exact for evenly spaced knots; for other knots a few steps correct
-// the estimate.
+// Finds the piece by an estimate that is exact for evenly spaced knots. For other knots, steps to
+// neighbouring pieces correct the estimate.
 int PieceBasis::find_piece(double u) const {
   const int pieces = static_cast<int>(breaks_.size()) - 1;
   int piece = std::clamp(static_cast<int>((u - breaks_.front()) * pieces_a_unit_), 0, pieces - 1);
@@ -181,7 +181,7 @@ bool is_on_edge(const PiecewiseSurface& surface, double u, double v) {
 }
 
 Vector3 unit_normal(const PiecewiseSurface& surface, const SurfacePoint& at, double u, double v) {
-  // On an edge that is collapsed to a point, one of the tangents is rounding noise of any direction.
+  // On an edge that is collapsed to a point, one of the tangents is only rounding noise.
   if (is_on_edge(surface, u, v)) return unit_normal(*surface.surface, u, v);
   const Vector3 across = at.du.cross(at.dv);
   const double squared = across.squaredNorm();

@@ -1,5 +1,5 @@
-// Basis functions of a knot vector as the polynomials of its pieces, for fast evaluation of single points: no
-// division and no recursion.
+// Basis functions as one polynomial for each knot span. They serve to evaluate single points fast, without
+// division and recursion.
 #pragma once
 
 #include <array>
@@ -10,9 +10,9 @@
 
 namespace spoonbill {
 
-// The basis functions of a knot vector, which must outlive the object, as polynomials. Allocates only when
-// constructed; immutable afterwards, so that any thread may read it. Values equal those of basis_functions()
-// except for rounding.
+// The basis functions of a knot vector as polynomials. The knot vector must outlive the object. Allocates
+// only when constructed; immutable afterwards, so that any thread may read it. Values equal those of
+// basis_functions() except for rounding.
 class PieceBasis {
  public:
   explicit PieceBasis(const KnotVector& knots);
@@ -35,29 +35,29 @@ class PieceBasis {
   int find_piece(double u) const;
 
   const KnotVector* knots_;
-  int degree_, padded_;  // padded_ is degree + 1 rounded up to whole vectors
+  int degree_, padded_;  // padded_ is degree + 1, rounded up to whole SIMD vectors
   std::vector<double> breaks_;
   double pieces_a_unit_;
-  std::vector<double> scales_;  // dx / du of each piece, with x as for coefficients_
+  std::vector<double> scales_;  // dx / du of each piece; see coefficients_ for x
   std::vector<int> controls_;   // degree + 1 indices of control points for each piece
   // Polynomial coefficients of each piece, in a variable x that runs from -1 to 1 across the piece: degree +
   // 1 rows of padded_ values, highest power first.
   std::vector<double> coefficients_;
 };
 
-// A surface with the polynomials of its knots. A view: the referenced objects must outlive it.
+// A surface and the polynomials of its knot vectors. A view: the referenced objects must outlive it.
 struct PiecewiseSurface {
   const Surface* surface;
   const PieceBasis* u;
   const PieceBasis* v;
 };
 
-// Return the same as evaluate() and position() of the surface, except for rounding.
+// Returns the same as the function of this name for a Surface, except for rounding.
 SurfacePoint evaluate(const PiecewiseSurface& surface, double u, double v);
 Vector3 position(const PiecewiseSurface& surface, double u, double v);
-// Returns whether u, v is at the end of an open domain.
+// Returns true if u or v is at an end of the domain of an open direction.
 bool is_on_edge(const PiecewiseSurface& surface, double u, double v);
-// Returns the unit normal of the surface at u, v, given the result of evaluate() there.
+// Returns the unit normal of the surface at u, v. `at` must be the result of evaluate() at u, v.
 Vector3 unit_normal(const PiecewiseSurface& surface, const SurfacePoint& at, double u, double v);
 
 }  // namespace spoonbill

@@ -4,8 +4,8 @@ namespace spoonbill::SPOONBILL_KERNELS {
 
 namespace {
 
-// Number of products added to a sum while the sum stays in a register. The corresponding rows of b stay in
-// the cache while they are used for all rows of a.
+// Number of products added to a sum while the sum stays in a register. It is also the number of rows of b
+// that stay in the cache while they are used for all rows of a.
 constexpr int unrolled = 8;
 
 using Lanes = float __attribute__((vector_size(4 * product_lanes)));

@@ -13,10 +13,10 @@ namespace spoonbill {
 
 namespace {
 
-// Coordinates of all control points that have one index along the direction.
+// Coordinates of all control points that have the same index along the direction.
 using ControlLine = std::vector<double>;
 
-// A sequence of lines of control points; the support of the basis function of line i is from knots[i] to
+// A sequence of lines of control points. Line i has a basis function with the support from knots[i] to
 // knots[i + degree + 1].
 struct Sequence {
   int degree;
@@ -30,7 +30,7 @@ ControlLine mix(const ControlLine& a, const ControlLine& b, double weight_of_b) 
   return mixed;
 }
 
-// Inserts a knot once. The sequence must have `degree` knots on either side of it.
+// Inserts a knot once. The sequence must have `degree` knots on either side of the new knot.
 void insert_once(Sequence& sequence, double knot) {
   const auto& knots = sequence.knots;
   const int degree = sequence.degree;
@@ -56,9 +56,9 @@ std::vector<double> with_knot(const KnotVector& knots, double knot) {
   return more;
 }
 
-// Inserts the knot into the central period and into every period in which it affects the central one. Returns
-// the lines of the central period. Further periods are added on either side, so that each inserted knot is an
-// inner knot.
+// Repeats the period several times and inserts the knot into the central period and into every other period
+// in which an inserted knot affects the central one. Outermost periods without the knot make each inserted
+// knot an inner knot. Returns the lines of the central period.
 std::vector<ControlLine> insert_into_periodic(const KnotVector& knots, const std::vector<ControlLine>& lines,
                                               double knot) {
   const int degree = knots.degree(), count = knots.control_point_count();
@@ -83,8 +83,8 @@ std::vector<ControlLine> insert_into_periodic(const KnotVector& knots, const std
 int count_multiplicity(const KnotVector& knots, double knot) {
   const auto& all = knots.knots();
   int multiplicity = static_cast<int>(std::count(all.begin(), all.end(), knot));
-  // Some of the seam's knots are listed at the start of the period and the others at the end; one is listed
-  // twice, at both.
+  // Some copies of the seam's knot are listed at the start of the period and the others at the end. One copy
+  // is listed at both.
   if (knots.is_periodic() && knot == all.front()) {
     multiplicity += static_cast<int>(std::count(all.begin(), all.end(), all.back())) - 1;
   }
@@ -181,7 +181,7 @@ ControlNet reorder_lines(const ControlNet& net, Direction direction, const From&
   return result;
 }
 
-// Returns the index of the first knot of the period that is not before `seam`.
+// Returns the index of the period's first knot that is at or after `seam`.
 int knot_at(const KnotVector& knots, double seam) {
   const auto& all = knots.knots();
   return static_cast<int>(std::lower_bound(all.begin(), all.end() - 1, seam) - all.begin());
@@ -195,7 +195,8 @@ Result<KnotVector> rotate_knots(const KnotVector& knots, int first) {
   for (int i = 0; i < count; ++i) {
     const int from = (first + i) % count;
     const bool wrapped = first + i >= count;
-    // The first knot of the seam must be exactly the start of the domain, without rounding.
+    // The order of these operations makes the new seam's knot exactly equal to the start of the domain,
+    // without rounding.
     turned.push_back(wrapped ? (all[from] - start) + (end - all[first]) + start
                              : start + (all[from] - all[first]));
   }
@@ -209,8 +210,8 @@ Surface reversed(const Surface& surface, Direction direction) {
   const KnotVector& knots = knots_along(surface, direction);
   const int count = knots.control_point_count(), degree = knots.degree();
   const auto from = [&](int i) {
-    // The support of a basis function ends degree + 1 knots after it starts, which determines its mirror
-    // image in a period.
+    // The index of a periodic basis function is that of the knot at which its support starts. Its mirror
+    // image starts where the support ends, degree + 1 knots further.
     return knots.is_periodic() ? ((count - 1 - degree - i) % count + count) % count : count - 1 - i;
   };
   return replace_knots(surface, direction, reversed(knots), reorder_lines(surface.net, direction, from));

@@ -15,7 +15,7 @@ struct GaussPoint {
 };
 
 // Returns the points of the Gauss-Legendre rule with five points on each interval between breaks. The rule is
-// exact up to degree 9.
+// exact for polynomials up to degree 9.
 std::vector<GaussPoint> place_gauss_points(std::span<const double> breaks) {
   const double root = std::sqrt(70.0);
   const double inner = std::sqrt(5.0 - 2.0 * std::sqrt(10.0 / 7.0)) / 3.0;

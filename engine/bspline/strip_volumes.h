@@ -1,4 +1,5 @@
-// Volumes between a point and strips of a surface, which add up to a body's volume by the divergence theorem.
+// Volumes between a point and strips of a surface. By the divergence theorem, the volumes of all strips of a
+// closed surface add up to the volume of the body.
 #pragma once
 
 #include <span>
@@ -8,9 +9,10 @@
 
 namespace spoonbill {
 
-// Returns, in m^3, the volume between `apex_m` and each strip of the surface between consecutive values of v.
-// It is positive where the normals (along du x dv) point away from the apex. The values must increase. The
-// quadrature is exact up to degree 3 in each direction; its operations round alike on every processor.
+// Divides the surface into strips between consecutive values of `v`, which must not decrease. Returns the
+// volume in m^3 between `apex_m` and each strip, positive where the normals (along du x dv) point away from
+// the apex. The quadrature is exact for surfaces of degree 3 or less in each direction, and gives the same
+// bits on every processor.
 std::vector<double> compute_strip_volumes_m3(const Surface& surface, std::span<const double> v,
                                              const Vector3& apex_m);
 

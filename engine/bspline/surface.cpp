@@ -144,23 +144,23 @@ Vector3 unit_normal(const Surface& surface, double u, double v) {
 
 namespace {
 
-// Smallest usable ratio of |du x dv| to the largest value that the control points in reach allow. Where the
-// ratio is smaller, the product is rounding noise of the coordinates.
+// Smallest usable ratio of |du x dv| to its upper bound (LimitTangents::product_bound). If the ratio is
+// smaller, the product is only rounding noise of the coordinates.
 template <class Real>
 constexpr double product_noise = 16.0 * std::numeric_limits<Real>::epsilon();
 
-// Distance from an edge, in domain lengths. The edge counts as collapsed if du x dv grows over this distance
-// by more than its size at the edge. Exact coincidence is not required, because a refit in single precision
-// moves the control points of a ring together only to about 1e-7. The normals around the remaining hole would
-// be arbitrary.
+// Distance from an edge, in domain lengths. The edge counts as collapsed if du x dv grows by more than its
+// value at the edge over this distance. The control points of a collapsed edge need not coincide exactly,
+// because after a refit in single precision they coincide only to about 1e-7. The normals around the
+// remaining hole would otherwise be arbitrary.
 constexpr double hole = 1e-6;
 
-// Distances from the edge, in domain lengths, of the points at which the normal is taken if the first-order
-// limit vanishes too.
+// Distances from an edge, in domain lengths. If the first-order growth of du x dv vanishes at the edge too,
+// the normal is taken from points at these distances inside.
 constexpr double steps_inside[] = {0x1p-14, 0x1p-10, 0x1p-6};
 
-// Derivatives for parameters scaled to a domain of length 1, and an upper bound of |du x dv| that follows
-// from the control points in reach.
+// Derivatives for parameters scaled to a domain of length 1, and an upper bound of |du x dv|. The bound
+// follows from the control points that affect the point.
 struct LimitTangents {
   Vector3 du = Vector3::Zero(), dv = Vector3::Zero();
   Vector3 duu = Vector3::Zero(), duv = Vector3::Zero(), dvv = Vector3::Zero();

@@ -9,8 +9,8 @@
 
 namespace spoonbill {
 
-// Coordinates of a control net in metres, of either precision, in the order of ControlNet. A view: does not
-// own them.
+// Coordinates of control points in metres, in single or double precision, in the order of ControlNet. A view:
+// does not own the coordinates.
 template <class Real>
 struct NetView {
   const Real* x;
@@ -19,8 +19,8 @@ struct NetView {
   int columns;
 };
 
-// Returns the unit normal as unit_normal(Surface) does, but from a view of the control points; computes in
-// double. u and v are wrapped or clamped into the domain. Does not allocate.
+// Returns the same as unit_normal(Surface), but from a view of the control points. u and v are wrapped or
+// clamped into the domain. Computes in double precision and does not allocate.
 template <class Real>
 Vector3 unit_normal(const KnotVector& u_knots, const KnotVector& v_knots, const NetView<Real>& net, double u,
                     double v);
@@ -30,8 +30,8 @@ extern template Vector3 unit_normal(const KnotVector&, const KnotVector&, const 
 extern template Vector3 unit_normal(const KnotVector&, const KnotVector&, const NetView<double>&, double,
                                     double);
 
-// The rows x columns control points in metres as a structure of arrays. Point (i, j) has the index i *
-// columns + j; i runs along u.
+// The control points of a surface in metres, rows x columns, as a structure of arrays. Point (i, j) has the
+// index i * columns + j; i runs along u.
 struct ControlNet {
   int rows = 0;
   int columns = 0;
@@ -56,8 +56,8 @@ struct ControlNet {
 // Returns the box around the control points, which also contains the surface.
 Box bounding_box(const ControlNet& net);
 
-// A surface, a plain value with one owner. `net` may be changed in place, but it must keep the size that the
-// knots require.
+// A B-spline surface: a plain value with one owner. `net` may be changed in place, but must keep the size
+// that the knots require.
 struct Surface {
   KnotVector u;
   KnotVector v;
@@ -95,13 +95,14 @@ SurfacePoint evaluate(const Surface& surface, double u, double v);
 // Returns only the position, with the same bits as evaluate(), at two fifths of the cost.
 Vector3 position(const Surface& surface, double u, double v);
 
-// Returns the unit normal along du x dv. At poles and collapsed edges, where that product vanishes, returns
-// the limit from inside the surface; zero where the surface has no normal (a single point or a line).
+// Returns the unit normal along du x dv. At poles and collapsed edges, where du x dv vanishes, returns the
+// limit from inside the surface. Returns zero if there is no limit, because the surface is only a point or a
+// line.
 Vector3 unit_normal(const Surface& surface, double u, double v);
 
-// Returns a bound, in metres, of how far a surface point moves when a parameter changes by the length of its
-// domain. If u and v change by the fractions a and b of their domains, a point moves by at most hypot(a, b)
-// times the bound.
+// Returns a bound, in metres, of how far a surface point moves when one parameter changes by the length of
+// its domain. If u and v change by the fractions a and b of their domains, the point moves by at most
+// hypot(a, b) times the bound.
 double stretch_bound_m(const Surface& surface);
 
 }  // namespace spoonbill

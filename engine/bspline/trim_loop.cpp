@@ -30,8 +30,8 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-// Returns the edges sorted by x. Coordinates are in units of the tolerance, so that edges at most 1 apart
-// touch.
+// Returns the edges of all polygons, sorted by their lowest x. Coordinates are in units of the tolerance, so
+// that a point touches an edge if it is at most 1 away.
 std::vector<PolygonEdge> sorted_edges(const std::vector<std::vector<Eigen::Vector2d>>& polygons,
                                       const Eigen::Vector2d& tolerance) {
   std::vector<PolygonEdge> edges;
@@ -75,7 +75,7 @@ std::optional<PolygonCrossing> find_crossing(const std::vector<std::vector<Eigen
       if (edges[j].low_y() > high_y || edges[j].high_y() < low_y) continue;
       if (!cross_each_other(edges[i], edges[j])) continue;
       const auto [first, second] = std::minmax(edges[i].polygon, edges[j].polygon);
-      // The midpoint of the shorter edge is nearer to the crossing.
+      // The midpoint of the shorter edge is used, because it is nearer to the crossing.
       const PolygonEdge& shorter =
           (edges[i].to - edges[i].from).norm() < (edges[j].to - edges[j].from).norm() ? edges[i] : edges[j];
       return PolygonCrossing{first, second, (0.5 * (shorter.from + shorter.to)).cwiseProduct(tolerance)};
@@ -86,8 +86,8 @@ std::optional<PolygonCrossing> find_crossing(const std::vector<std::vector<Eigen
 
 namespace {
 
-// Largest number of chords of one piece. A curve of degree max_degree whose control points span three domains
-// needs this many; only curves with control points even farther away would need more.
+// Largest number of chords for one polynomial piece of a curve. A piece of degree max_degree whose control
+// points span three domains needs fewer. Only curves with control points even farther away would need more.
 constexpr double largest_piece_chord_count = 8000.0;
 
 std::string point_text(const Eigen::Vector2d& point) {
@@ -148,7 +148,8 @@ Status check_within(const std::vector<double>& values, const KnotVector& knots, 
   return {};
 }
 
-// Returns a bound of the second derivative of a piece, in domain lengths.
+// Returns a bound of the second derivative of a loop in one knot span. Coordinates are fractions of the
+// surface's domain, whose lengths are `lengths`.
 double second_derivative_bound(const TrimLoop& loop, int span, const Eigen::Vector2d& lengths) {
   const int degree = loop.knots.degree();
   if (degree < 2) return 0.0;
@@ -170,7 +171,7 @@ double second_derivative_bound(const TrimLoop& loop, int span, const Eigen::Vect
   return largest;
 }
 
-// Number and error of the chords, evenly spaced in the parameter, that replace one piece.
+// Number and error of the chords that replace one polynomial piece. They are evenly spaced in the parameter.
 struct PieceChords {
   int count = 1;
   double error_fraction = 0.0;  // largest distance of a chord from the curve, as a fraction of the domain
@@ -183,8 +184,8 @@ PieceChords count_chords(const TrimLoop& loop, double start, double length, cons
   return {count, bound * length * length / (8.0 * count * count)};
 }
 
-// Returns the curve's points at the ends of the chords, which may be outside the domain; nullopt if there are
-// more chords than the limit.
+// Returns the curve's points at the ends of the chords. These points may be outside the surface's domain.
+// Returns nullopt if there are more chords than trim_chord_count_limit.
 std::optional<std::vector<Eigen::Vector2d>> sample_corners(const TrimLoop& loop,
                                                            const Eigen::Vector2d& lengths) {
   std::vector<Eigen::Vector2d> corners;
@@ -212,8 +213,8 @@ bool has_matching_net(const TrimLoop& loop) {
 }
 
 TrimLoop reverse_curve(TrimLoop loop) {
-  // The support of a periodic basis function ends degree + 1 knots after it starts, so reversal changes its
-  // index.
+  // The index of a periodic basis function is that of the knot at which its support starts. Its mirror image
+  // starts where the support ends, degree + 1 knots further.
   const int count = loop.knots.control_point_count();
   const int first = loop.knots.is_periodic() ? 2 * count - 1 - loop.knots.degree() % count : count - 1;
   const TrimLoop forwards = loop;
@@ -349,8 +350,8 @@ TrimLoop with_seam_at(const TrimLoop& loop, Direction direction, const KnotVecto
   std::vector<double>& values = along(moved, direction);
   const double start = knots.domain_start(), length = knots.domain_length();
   double shift = start - knots.into_domain(seam);
-  // The shift brings the start of the loop into the domain, so that the whole loop is within one period of
-  // the domain.
+  // The shift brings the start of the loop into the domain. The whole loop is then within one period of the
+  // domain.
   const Eigen::Vector2d first = position(loop, loop.knots.domain_start());
   const double moved_first = (direction == Direction::u ? first.x() : first.y()) + shift;
   shift -= length * std::floor((moved_first - start) / length);

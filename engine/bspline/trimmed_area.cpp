@@ -21,15 +21,15 @@ namespace {
 using Polygon = std::vector<Eigen::Vector2d>;
 
 constexpr std::size_t column_count_limit = 1024;
-constexpr std::size_t max_mean_listings = 16;  // largest mean number of columns that list an edge
-// Largest number of edges of a loop beside which winding numbers are sampled, and the distance of the samples
-// from the edges in domain lengths. The distance is larger than rounding, but smaller than the overlap that
-// touching loops may have.
+constexpr std::size_t max_mean_listings = 16;  // largest mean number of columns for one edge
+// Limits for the sampling of winding numbers beside a loop. The first is the largest number of the loop's
+// edges that are sampled. The second is the distance of the samples from the edges, in domain lengths; it is
+// larger than rounding errors, but smaller than the overlap that touching loops may have.
 constexpr std::size_t sampled_edge_count = 32;
 constexpr double sample_offset = 1e-9;
 
-// Wraps a parameter into a periodic domain, or clamps it into an open one, at least 2 trim_rounding_fraction
-// away from the ends.
+// Wraps a parameter into a periodic domain. Clamps it into an open domain, away from the ends by at least 2
+// trim_rounding_fraction of the domain's length.
 double inside(const KnotVector& knots, double parameter) {
   const double within = knots.into_domain(parameter);
   if (knots.is_periodic()) return within;
@@ -43,7 +43,7 @@ bool reaches_into(const Polygon& polygon, const KnotVector& along_u, const KnotV
          box.high.y() > along_v.domain_start() && box.low.y() < along_v.domain_end();
 }
 
-// Returns those copies of the polygon, shifted by whole periods, that reach into the domain.
+// Returns the copies of the polygon, shifted by whole periods, that reach into the domain.
 std::vector<Polygon> periodic_copies(const Polygon& polygon, const KnotVector& along_u,
                                      const KnotVector& along_v) {
   std::vector<Polygon> copies;
@@ -132,9 +132,9 @@ std::map<int, int> TrimmedArea::windings_beside(const std::vector<Eigen::Vector2
   return found;
 }
 
-// Returns the value of level_ for which the part on the left of the loop remains. The most frequent of the
-// winding numbers sampled on the left decides, because rounding may falsify single samples where loops touch,
-// or where a loop touches itself across the seam.
+// Returns the value of level_ for which the part on the left of the loop remains. Winding numbers are sampled
+// on the left, and the most frequent one is used, because rounding may falsify single samples where loops
+// touch, or where a loop touches itself across the seam.
 int TrimmedArea::find_level(const std::vector<Eigen::Vector2d>& polygon) const {
   const bool outer = signed_area(polygon) > 0.0;
   const std::map<int, int> found = windings_beside(polygon, sample_offset);
@@ -181,8 +181,9 @@ std::size_t TrimmedArea::find_column(double u) const {
   return static_cast<std::size_t>(std::clamp(add_edges, 0.0, columns - 1.0));
 }
 
-// Returns the winding number: edges below the point that run to the right count up, those to the left count
-// down. An edge includes its end at the lower u but not the other, so that a corner counts once.
+// Returns the winding number of a point: the number of edges below the point that run to the right, minus the
+// number of edges below it that run to the left. An edge includes its end at the lower u but not its other
+// end, so that a corner counts once.
 int TrimmedArea::winding(double u, double v) const {
   int number = 0;
   const std::size_t column = find_column(u);
@@ -197,8 +198,8 @@ int TrimmedArea::winding(double u, double v) const {
   return number;
 }
 
-// Sorts the edges into columns. Returns false if they span so many columns that the lists need much memory; a
-// single column always succeeds.
+// Sorts the edges into columns of equal width in u. Returns false if the edges span so many columns that the
+// lists need much memory. A single column always succeeds.
 bool TrimmedArea::fill_columns(std::size_t columns) {
   column_starts_.assign(columns + 1, 0);
   const auto visit = [&](const auto& add) {
@@ -333,7 +334,7 @@ double v_at(const TrimmedArea::Edge& edge, double u) {
   return edge.from.y() + (u - edge.from.x()) / (edge.to.x() - edge.from.x()) * (edge.to.y() - edge.from.y());
 }
 
-// Lower or upper side of a piece of a cell: its v at the two lines of u that bound the piece.
+// Lower or upper side of a piece of a cell, given by its v at the two values of u between which the piece is.
 struct CutSide {
   double v_first, v_last;
 };
@@ -369,7 +370,7 @@ class Cutter {
     }
   }
 
-  // Adds the pieces of a cell between u = `first` and u = `last`. No edge begins or ends in between, so the
+  // Adds the pieces of a cell between u = `first` and u = `last`. No edge begins or ends between them, so the
   // edges can be ordered by v.
   void add_slab(int i, int j, double first, double last) {
     const double v0 = v_.at(j), v1 = v_.at(j + 1);
@@ -398,8 +399,7 @@ class Cutter {
     if (piece.corners.front() == piece.corners.back()) piece.corners.pop_back();
     if (piece.corners.size() < 3) return;
     for (const Eigen::Vector2d& corner : piece.corners) {
-      // A crossing of two grid lines needs no entry, because it is already a corner of every piece that
-      // touches it.
+      // A crossing of two grid lines needs no entry, because every piece that touches it has a corner there.
       if (u_.find_line(corner.x()) >= 0 && v_.find_line(corner.y()) >= 0) continue;
       on_u_line_[u_.merge_seam(corner.x())].insert(corner.y());
       if (v_.find_line(corner.y()) >= 0) on_v_line_[v_.merge_seam(corner.y())].insert(corner.x());
@@ -407,8 +407,8 @@ class Cutter {
     pieces_.push_back(std::move(piece));
   }
 
-  // Adds the triangles of a piece. Corners that neighbouring pieces have on its sides become further
-  // vertices; if there are any, the triangles form a fan around the piece's centre.
+  // Adds the triangles of a piece. Corners of neighbouring pieces that are on a side of this piece become
+  // further vertices. If there are any, the triangles form a fan around the piece's centre.
   void emit(const Piece& piece) {
     std::vector<std::uint32_t> ring;
     Eigen::Vector2d centre = Eigen::Vector2d::Zero();

@@ -1,6 +1,6 @@
 // Trimmed areas: the part of a surface's domain that remains inside its trim loops, prepared for point
-// queries, and the grid cells and triangles of that part. Functions are pure, outside the tick; any thread
-// may call them.
+// queries, and the grid cells and triangles of that part. All functions are pure and may be called from any
+// thread. Except for point queries, they are too slow for a tick.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,14 +21,14 @@ namespace spoonbill {
 
 inline constexpr Range<int> trim_loop_count_range{0, 1000};
 
-// A trimmed area. Immutable once made; any thread may query it. It depends on the domains of u and v, not on
-// control points, and stays valid while the surface deforms.
+// The part of a surface's domain that remains inside its trim loops. Immutable once made; any thread may
+// query it. It does not depend on control points and stays valid while the surface deforms.
 class TrimmedArea {
  public:
-  // Constructs the untrimmed area of any domain.
+  // Constructs the area of a surface without trims, which is the whole of any domain.
   TrimmedArea() = default;
 
-  // Makes the area of loops that make_trim_loop() returned. Refuses too many loops or chords, loops that
+  // Makes the area inside loops that make_trim_loop() returned. Refuses too many loops or chords, loops that
   // cross or coincide, loops that disagree on which part remains (such as a counter-clockwise hole), and
   // loops that leave no area.
   static Result<TrimmedArea> make(const KnotVector& along_u, const KnotVector& along_v,
@@ -36,16 +36,18 @@ class TrimmedArea {
 
   bool is_whole() const { return edges_.empty(); }
 
-  // Returns whether the point is in the remaining part, according to the loops' winding number. u, v are
-  // wrapped or clamped into the domain. A point at an end of an open direction is tested 2
-  // trim_rounding_fraction of the domain inside. On a loop the result is undefined. Does not allocate.
+  // Returns true if the point is in the remaining part, according to the loops' winding number. u, v are
+  // wrapped or clamped into the domain. In an open direction, a point closer to an end than 2
+  // trim_rounding_fraction of the domain's length is moved inwards to that distance. On a loop the result is
+  // undefined. Does not allocate.
   bool contains(double u, double v) const;
 
-  // Returns the remaining fraction of the domain, above 0 and at most 1.
+  // Returns the fraction of the domain's (u, v) area that remains, above 0 and at most 1.
   double remaining_fraction() const { return remaining_fraction_; }
 
-  // An edge of a polygon within trim_chord_fraction of a loop, with the remaining part on its left. Polygons
-  // that cross a seam continue outside the domain and occur again on the other side.
+  // An edge of a polygon that replaces a loop. The remaining part of the domain is on its left. The edge is
+  // within trim_chord_fraction of the loop. A polygon that crosses a seam continues outside the domain; its
+  // edges occur again, shifted by a period, on the other side.
   struct Edge {
     Eigen::Vector2d from, to;
   };
@@ -62,7 +64,7 @@ class TrimmedArea {
 
   KnotVector along_u_, along_v_;
   std::vector<Edge> edges_;
-  int level_ = 0;  // number added to the winding number; a point remains if their sum is above 0
+  int level_ = 0;  // a point remains if its winding number plus level_ is above 0
   double remaining_fraction_ = 1.0;
   // Indices of the edges, listed for columns of equal width in u. The edges that may cross a vertical line in
   // column c are the entries column_starts_[c] to column_starts_[c + 1] - 1 of column_edges_.
@@ -70,7 +72,8 @@ class TrimmedArea {
 };
 
 // The grid lines of one direction that bound its cells, including the ends of the domain. In a periodic
-// direction, the grid may omit the second line at the seam; its last cells then end at the first line.
+// direction the two ends are the same line of the surface, so the grid may omit the second one; its last
+// cells then end at the first line.
 class GridLines {
  public:
   // The parameters must include both ends of an open direction.
@@ -84,11 +87,13 @@ class GridLines {
   // Returns the nearest grid line if it is within a billionth of the domain, so that no sliver is cut off;
   // otherwise the parameter itself.
   double snap(double parameter) const;
-  // Returns the cell of a parameter, clamped to the domain; for a parameter on a line, the cell after it.
+  // Returns the index of the cell that contains a parameter; outside the domain, the nearest cell. A
+  // parameter on a line belongs to the cell after the line.
   int find_cell(double parameter) const;
   // Returns the index of the line exactly at a parameter, or -1 if no line is there.
   int find_line(double parameter) const;
-  // Returns the parameter. If the seam has a single line, both ends of the period give the same value.
+  // Returns the start of the period for the end of the period, if the grid has a single line at the seam.
+  // Returns any other parameter unchanged.
   double merge_seam(double parameter) const;
 
  private:
@@ -97,8 +102,8 @@ class GridLines {
   double snap_ = 0.0;
 };
 
-// State of each cell of a grid on a trimmed area, and the edges in cut cells. Immutable once made; any thread
-// may read it.
+// For each cell of a grid: whether the cell is inside a trimmed area, outside it or cut by its edges, and the
+// edges in each cut cell. Immutable once made; any thread may read it.
 class TrimmedCells {
  public:
   // State of a cell: outside the area (away), cut by edges of the area, or entirely inside (kept).
@@ -107,7 +112,8 @@ class TrimmedCells {
   TrimmedCells(const GridLines& u, const GridLines& v, const TrimmedArea& area);
 
   State state(int i, int j) const { return states_[index(i, j)]; }
-  // Returns the parts of edges in a cut cell, in grid order. An edge along a grid line cuts no cell.
+  // Returns the parts of the area's edges that are inside a cut cell. They are in the order of the area's
+  // edges. An edge along a grid line cuts no cell.
   std::span<const TrimmedArea::Edge> edges(int i, int j) const {
     const std::size_t cell = index(i, j);
     return std::span(edges_).subspan(starts_[cell], starts_[cell + 1] - starts_[cell]);
@@ -124,29 +130,31 @@ class TrimmedCells {
   std::vector<TrimmedArea::Edge> edges_;
 };
 
-// A vertex between the grid's samples, interpolated bilinearly among the corners of its cell. A vertex on a
-// side of the cell therefore stays on the side's chord, and neighbouring triangles meet without a gap.
+// A vertex between the grid's samples, interpolated bilinearly between the corners of its cell. A vertex on a
+// side of the cell is therefore on the straight line between the side's ends, and neighbouring triangles meet
+// without a gap.
 struct CutVertex {
   double u = 0.0, v = 0.0;
   std::array<std::uint32_t, 4> corners{};  // samples of the grid, counter-clockwise from the lowest u and v
   std::array<double, 4> weights{};         // bilinear weights of the corners; their sum is 1
 };
 
-// Triangles of a trimmed grid.
+// Triangles of the part of a grid that is inside a trimmed area.
 struct TrimmedGrid {
-  // Vertices that are no samples; their numbers follow those of the grid's samples.
+  // Vertices that are not samples of the grid. They are numbered after the samples.
   std::vector<CutVertex> vertices;
-  // Counter-clockwise with u to the right and v up. No vertex is in the interior of a triangle's side.
+  // Vertex numbers of each triangle, counter-clockwise with u to the right and v up. No vertex is in the
+  // interior of a triangle's side.
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-// Cuts a grid along the trims. In the result, sample (i, j) of the grid has the number i * columns + j. A
-// periodic direction may omit the second line at the seam; its last cells then end at the first line. The
-// parameters must include both ends of an open direction.
+// Divides the part of a grid inside a trimmed area into triangles. In the result, sample (i, j) of the grid
+// has the number i * columns + j. A periodic direction may omit the second line at the seam; its last cells
+// then end at the first line. The parameters must include both ends of an open direction.
 TrimmedGrid trim_grid(const GridDirection& u, const GridDirection& v, const TrimmedArea& area);
 
-// Returns the remaining fraction of a surface's area in space. It is computed from triangles of 8 x 8 cells
-// in each polynomial piece; the error shrinks with the square of the cell size.
+// Returns the fraction of a surface's area in space that remains inside the trims. It is computed from
+// triangles of 8 x 8 cells in each polynomial piece; the error shrinks with the square of the cell size.
 double remaining_area_fraction(const Surface& surface, const TrimmedArea& area);
 
 }  // namespace spoonbill

@@ -14,7 +14,7 @@ namespace spoonbill {
 namespace {
 
 constexpr int along_samples = 400;
-// Smallest perimeter of a rim, as a fraction of the largest perimeter nearby.
+// Smallest perimeter of a rim, as a fraction of the largest perimeter near the same pole.
 constexpr double rim_fraction = 0.85;
 
 std::size_t near_rim(const Profile& profile, bool from_end) {
@@ -30,8 +30,8 @@ std::size_t near_rim(const Profile& profile, bool from_end) {
   return station(s);
 }
 
-// Largest distance from a pole, as a fraction of the body's length, to which the hollow around the pole and
-// everything that protrudes around it may extend.
+// Largest distance from a pole, as a fraction of the body's length, to which a hollow around the pole and the
+// material that protrudes around the hollow may extend.
 constexpr double end_fraction = 0.4;
 
 std::size_t shoulder(const Profile& profile, bool from_end) {
@@ -54,9 +54,8 @@ std::size_t shoulder(const Profile& profile, bool from_end) {
   return station(s);
 }
 
-// A section is not bent if a straight line along its wide axis, through its centre, crosses the outline far
-// enough out on both sides: farther from the centre than this fraction of the distance to the tip on that
-// side.
+// A section is not bent if the straight line along its wide axis, through its centre, crosses the outline
+// close to both tips. Close means at more than this fraction of the distance from the centre to the tip.
 constexpr double bent_fraction = 0.9;
 
 // Indices of the ring's points that are farthest along +e1 and along -e1.
@@ -73,8 +72,8 @@ Tips find_tips(const Ring& ring, const Vector3& e1) {
   return tips;
 }
 
-// Returns whether the wide axis through the centre leaves the section before its tips, as in the bowl of a
-// spoon, where the centre of the ring is outside the section or near one side.
+// Returns true if the wide axis through the centre leaves the section before it reaches the tips. An example
+// is the bowl of a spoon, where the centre of the ring is outside the section or near one side.
 bool is_bent(const Ring& ring, const Vector3& e1, const Vector3& e2) {
   const Tips tips = find_tips(ring, e1);
   const auto reach = [&](int s) { return e1.dot(ring.points[s] - ring.centre); };
@@ -112,8 +111,8 @@ void measure_bent(const Ring& ring, CrossSection& section) {
 }
 
 // A table that maps the arc length of a ring to u (continued past the seam), and the arc lengths at which the
-// ring crosses +e1, +e2, -e1, -e2 and +e1. Crossings are found from signs rather than angles, because some
-// library functions return different bits on different processors.
+// ring crosses the axes +e1, +e2, -e1, -e2 and, after a full turn, +e1. Crossings are found from signs rather
+// than angles, because some library functions return different bits on different processors.
 struct RingArc {
   LinearTable arc_to_u;
   std::array<double, 5> crossing{};
@@ -167,15 +166,16 @@ RingArc bent_arc(const Surface& surface, const Ring& ring, const CrossSection& s
   return result;
 }
 
-// Largest relative difference between the variances along the two axes at which the axes count as arbitrary.
+// Largest relative difference between the variances along the two axes at which the directions of the axes
+// count as arbitrary, as in a round or square section.
 constexpr double nearly_alike = 1e-3;
 // Smallest ratio of |sum of z^4| to the sum of |z|^4 at which a ring counts as having corners. Smaller ratios
 // are only the ripple of a round ring. Here z is a point of the section as a complex number.
 constexpr double min_squareness = 0.02;
 
-// Turns e1 to the midpoint of a side of a square section, where every axis is a principal axis. The fourth
-// moment is a complex number whose angle is four times the angle of a corner. The axis of a round section
-// does not change.
+// Turns e1 to the midpoint of a side of a square section, in which every direction is a principal axis. The
+// fourth moment is a complex number whose angle is four times the angle of a corner. The axis of a round
+// section does not change.
 void turn_to_sides(const Ring& ring, const Vector3& axis, Vector3& e1) {
   const Vector3 e2 = axis.cross(e1);
   std::complex<double> moment = 0.0;

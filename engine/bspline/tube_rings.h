@@ -1,5 +1,5 @@
-// Rings of a closed tube at constant v, their profile along the tube, and the positions of lattice nodes on
-// them.
+// Rings of a closed tube, which are its lines of constant v, the profile of the rings along the tube, and the
+// positions of lattice nodes on the rings.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct LinearTable {
 // Number of samples around a ring.
 inline constexpr int ring_samples = 256;
 
-// A ring of a tube, in metres.
+// Samples of a ring of a tube, which is a line of constant v. Lengths are in metres.
 struct Ring {
   std::vector<Vector3> points;  // ring_samples points around the ring; the seam occurs once
   Vector3 centre = Vector3::Zero();
@@ -41,7 +41,8 @@ struct Ring {
 // Samples the ring of a surface at v. The surface must be periodic along u.
 Ring sample_ring(const Surface& surface, double v);
 
-// The centre line of a tube: v, distance from the first pole, perimeter and centre of each station.
+// The centre line of a tube at many stations: for each, the v, distance from the first pole, perimeter and
+// centre of the ring there.
 struct Profile {
   std::vector<double> v, distance, perimeter;
   std::vector<Vector3> centre;
@@ -50,52 +51,55 @@ struct Profile {
 // Samples the profile; the surface must be periodic along u and open along v.
 Profile sample_profile(const Surface& surface);
 
-// Indices of the stations where the caps end and the sides begin.
+// Indices of the stations of a Profile where the caps of a tube end and its sides begin.
 struct Rims {
   std::size_t first = 0, last = 0;
 };
 
-// Returns, from each pole, the first station whose perimeter is at least 85 % of the largest perimeter within
-// a tenth of the length from that pole.
+// Returns, for each end of the tube, the station nearest to the pole with a perimeter of at least 85 % of the
+// largest perimeter near the pole. Stations within a tenth of the tube's length count as near.
 Rims near_rims(const Profile& profile);
 
 // Returns, for each end of the tube, the first station from which the tube advances at least as fast as its
-// mean radius (perimeter / 2 pi) grows. The search begins at the station that protrudes farthest. If a body
-// is hollow around its pole, its cap therefore extends over the edge of the hollow to the side.
+// mean radius (perimeter / 2 pi) grows. The search begins at the station that protrudes farthest. If the end
+// of a body is hollow around the pole, the cap therefore extends over the edge of the hollow to the side.
 Rims shoulder_rims(const Profile& profile);
 
-// Returns, for each end of the tube, that one of the two rims that is farther from the pole.
+// Returns, for each end of the tube, the rim of `a` or `b` that is farther from the pole.
 Rims further_rims(const Rims& a, const Rims& b);
 
 // Axes and extents of a cross-section, in metres.
 struct CrossSection {
   Vector3 e1, e2;                       // the wide and the narrow axis
   double width = 0.0, thickness = 0.0;  // for a bent section, measured along its bend and across it
-  bool bent = false;                    // true for a section such as that of a spoon's bowl
+  bool bent = false;                    // true for a curved section, as of a spoon's bowl
 };
 
 // Returns the axes and extents of a ring's section perpendicular to `axis`.
 CrossSection principal_axes(const Ring& ring, const Vector3& axis);
 
-// Width and thickness from which the numbers of lattice cells are chosen. Numbers that suit the section at
-// half length make slender cells elsewhere if an extent varies by more than a factor of 2.5 along the body,
-// as in a spoon. The extent is then the geometric mean of its smallest and its largest value.
+// Width and thickness from which the numbers of lattice cells are chosen. They are those of the section at
+// half length, unless the width or the thickness varies by more than a factor of 2.5 along the body, as in a
+// spoon. The geometric mean of the smallest and the largest value is then used, because the value at half
+// length would give slender cells elsewhere.
 struct Extents {
   double width, thickness;
   bool bent = false;  // true if any section between the rims is bent
 };
 
-// Returns the extents of the tube's sections between the rims.
+// Returns the extents for the tube's sections between the rims (see Extents).
 Extents lattice_extents(const Surface& surface, const Profile& profile, const Rims& rims,
                         const CrossSection& centre_section);
 
-// Parameters u of the 2 (ni - 1) + 2 (nj - 1) nodes around a ring, in the direction of u. The first is that
-// of corner node (ni - 1, nj - 1), which is between +e1 and +e2.
+// Parameters u of the lattice nodes around a ring, in the direction of u. A section has ni x nj nodes, of
+// which 2 (ni - 1) + 2 (nj - 1) are on the ring. The first parameter is that of the corner node (ni - 1, nj -
+// 1), which is between the axes +e1 and +e2 of the section.
 struct RingParameters {
   std::vector<double> u;
 };
 
-// Returns the parameters of ni x nj nodes around a ring, spaced evenly along each side.
+// Returns the parameters of the nodes around a ring, for a section of ni x nj nodes. The nodes are spaced
+// evenly along each side.
 RingParameters ring_parameters(const Surface& surface, const Ring& ring, const CrossSection& section, int ni,
                                int nj);
 

@@ -20,10 +20,10 @@
 namespace spoonbill {
 
 // Parameters of the self-organising map that spreads a lattice's inner nodes (Kohonen 1990). Points of the
-// body are drawn at random. The node nearest to a point x and its neighbours at grid distance d move towards
-// it: w += rate * exp(-d^2 / 2 s^2) (x - w). The rate and the neighbourhood s shrink geometrically from their
-// first to their last values. With s below about one grid step, neighbours no longer follow, and the map can
-// stay folded (Erwin et al. 1992).
+// body are drawn at random. For each point x, the node nearest to x moves towards x, and so do the nodes
+// around it: a node w at the grid distance d moves by the vector (x - w) times rate * exp(-d^2 / 2 s^2). The
+// rate and the neighbourhood s shrink geometrically from their first to their last values. If s is below
+// about one grid step, neighbours no longer follow, and the map can stay folded (Erwin et al. 1992).
 struct FeatureMapSettings {
   int draws_per_node = 500;  // number of random points drawn for each inner node
   double first_rate = 0.1, last_rate = 0.01;
@@ -53,8 +53,8 @@ struct LatticeRequest {
   // Nodes in each direction, at least 2. The directions are:
   // - tubes and rings: across (first, second) and along (third) the body;
   // - triangle meshes and bodies in a box of cells (box_lattice.h): x, y and z;
-  // - shells: along u, through the thickness, along v;
-  // - closed shells: around, through, along, with the first node around counted twice.
+  // - open shells: along u, through the thickness, along v;
+  // - closed shells: around, through and along the shell; the first node around also counts as the last.
   std::optional<std::array<int, 3>> counts;
   // Settings of the map that spreads the inner nodes of a tube after transfinite interpolation has placed
   // them. If empty, the nodes stay where interpolation placed them.
@@ -71,7 +71,7 @@ struct Body {
   Surface surface;
   Material material;  // material of the body outside its regions
   LatticeRequest lattice;
-  // Parts of the body with their own material or friction; later ones override earlier ones.
+  // Parts of the body with their own material or friction. Where parts overlap, the later part applies.
   std::vector<MaterialRegion> regions = {};
   std::vector<Load> loads = {};
   std::vector<Support> supports = {};
@@ -85,14 +85,13 @@ struct Body {
 inline constexpr Range<int> control_point_count_range{2, 200};  // number of control points in each direction
 inline constexpr Range<double> shell_thickness_range_m{1e-5, 0.1};
 
-// The error of each of the following checks names the first field that is out of range, with its value and
-// range.
+// Returns an error that names the first field out of range, with its value and its range.
 Status check_feature_map(const FeatureMapSettings& settings);
 Status check_lattice_request(const LatticeRequest& lattice);
-// Checks how many loads and supports there are, and that point loads are within the surface's domain.
+// Checks the numbers of loads and supports, and that point loads are within the surface's domain.
 Status check_loads(const Body& body);
 
-// Returns the area within the body's trim loops; null without trims.
+// Returns the area within the body's trim loops; null if the body has no trims.
 Result<std::shared_ptr<const TrimmedArea>> make_trimmed_area(const Body& body);
 
 }  // namespace spoonbill

@@ -15,9 +15,9 @@ double smooth_step(double t) {
   return s * s * s * (10.0 + s * (6.0 * s - 15.0));
 }
 
-// Returns the sine of an angle in turns, by a Taylor series over a quarter turn, truncated below 1e-14. The C
-// library's sine depends on the processor; it must not be used for motions, which enter the state of the
-// simulation.
+// Returns the sine of an angle in turns. A Taylor series is used for the first quarter turn; its truncation
+// error is below 1e-17. The C library's sine depends on the processor. It must not be used for motions,
+// because they enter the state of the simulation.
 double sine_of_turns(double turns) {
   double t = turns - std::floor(turns);
   if (t > 0.5) return -sine_of_turns(t - 0.5);

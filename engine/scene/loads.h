@@ -26,8 +26,8 @@ inline constexpr auto fields_of<FixingPlane> = std::to_array<Field<FixingPlane>>
     direction_field("normal", &FixingPlane::normal),
 });
 
-// Pressure on the surface of a region. A positive pressure pushes inwards, a negative one pulls outwards. Its
-// direction and area follow the deformation of the surface.
+// Pressure on the surface of a region. A positive pressure pushes inwards, a negative one pulls outwards. The
+// direction and area of the load follow the deformation of the surface.
 struct PressureLoad {
   BodyRegion region;
   double pressure_pa = 0.0;
@@ -79,9 +79,9 @@ struct Ground {
   double friction = 0.5;              // the smaller of the friction coefficients of ground and body applies
 };
 
-// Returns the displacement of a moving support at a time of at least 0.
+// Returns the displacement of a moving support at `time_s`, which must not be negative.
 Vector3 displacement_at(const SupportMotion& motion, double time_s);
-// Returns an upper bound of a motion's speed. A ramp reaches this speed.
+// Returns the highest speed of a motion.
 double top_speed_m_per_s(const SupportMotion& motion);
 
 inline constexpr Range<int> fixing_plane_count_range{0, 64};
@@ -95,8 +95,7 @@ inline constexpr Range<double> motion_frequency_range_hz{0.01, 100.0};
 inline constexpr double motion_speed_limit_m_per_s = 5.0;
 inline constexpr Range<double> ground_friction_range{0.0, 5.0};
 
-// Tables of the fields of each load. Files store these fields after the load's region; a point load has no
-// region.
+// Name and fields of a pressure load in files. Files store the load's region before these fields.
 template <>
 inline constexpr const char* kind_name<PressureLoad> = "pressure";
 template <>
@@ -105,6 +104,7 @@ inline constexpr auto fields_of<PressureLoad> = std::to_array<Field<PressureLoad
 });
 
 inline constexpr const char* force_distribution_names[] = {"surface", "volume"};
+// Name and fields of a force load in files. Files store the load's region before these fields.
 template <>
 inline constexpr const char* kind_name<ForceLoad> = "force";
 template <>
@@ -113,7 +113,8 @@ inline constexpr auto fields_of<ForceLoad> = std::to_array<Field<ForceLoad>>({
     choice_field<&ForceLoad::distributed_by>("shared_by", force_distribution_names),
 });
 
-// check_loads() checks u and v, because their range is the domain of the body's surface.
+// The table of a point load sets no limits for u and v. check_loads() checks that they are in the domain of
+// the body's surface.
 template <>
 inline constexpr const char* kind_name<PointLoad> = "point";
 template <>
@@ -141,8 +142,7 @@ inline constexpr auto fields_of<Ground> = std::to_array<Field<Ground>>({
     number_field("friction", &Ground::friction, ground_friction_range),
 });
 
-// The error of each of the following checks names the first field that is out of range, with its value and
-// range.
+// Returns an error that names the first field out of range, with its value and its range.
 Status check_fixing_plane(const FixingPlane& plane);
 Status check_load(const Load& load);  // does not check u and v of a point load: see check_loads()
 Status check_support(const Support& support);

@@ -20,17 +20,17 @@ struct Material {
   double youngs_modulus_pa = 0.0;
   double poissons_ratio = 0.0;
   double density_kg_per_m3 = 0.0;
-  // Voigt damping of changes of shape, not of volume: the stress has a viscous part, the elastic stiffness
-  // times this time times the strain rate. A vibration of frequency f has the loss factor 2 pi f times the
-  // damping time.
+  // Voigt damping of changes of shape, not of volume. The viscous stress is the product of the elastic
+  // stiffness, the damping time and the strain rate. A vibration of frequency f has the loss factor 2 pi f
+  // times the damping time.
   double damping_time_s = 0.0;
   bool plastic = false;
   double yield_strain = 0.0;  // deviatoric strain of a spring above which its rest length flows
-  // Rate at which the rest length grows per unit of strain beyond yield, in real time.
+  // Rate at which a spring's rest length flows, in real time, per unit of strain beyond the yield strain.
   double flow_rate_per_s = 0.0;
   double hardening = 0.0;  // growth of the yield strain per unit of permanent strain
-  // Factor by which springs stiffen with their strain e. With b for this value, the factor is 1 + b e^2, at
-  // most 2, for b > 0; for b < 0 it is (1 - b e^2)^(-1/2), which softens.
+  // Coefficient b of the factor by which a spring's stiffness changes with its strain e. For b > 0 the spring
+  // stiffens by the factor 1 + b e^2, at most 2. For b < 0 it softens by the factor (1 - b e^2)^(-1/2).
   double stiffening = 0.0;
   // Fraction of the stress that relaxes at constant strain, with the time constant `relaxation_time_s`. 0: no
   // creep.
@@ -39,18 +39,20 @@ struct Material {
   double friction = 0.0;  // Coulomb friction coefficient of the surface
 };
 
-// Ranges of the materials' properties. Stiffness reaches from the softest gel to beyond diamond, density from
-// aerogel to beyond osmium. Every solver stays finite within all ranges.
+// Range of Young's modulus, from the softest gel to beyond diamond. Within this range and those of the other
+// properties, every solver stays finite.
 inline constexpr Range<double> youngs_modulus_range_pa{1.0, 1e12};
 inline constexpr Range<double> poissons_ratio_range{0.0, 0.49};
 // Smallest Poisson's ratio of plastic, creeping and stiffening materials, which are simulated with springs.
 // Below it, springs would need a volume force that is unstable under contact.
 inline constexpr double min_spring_poissons_ratio = 0.2;
+// Range of the density, from aerogel to beyond osmium.
 inline constexpr Range<double> density_range_kg_per_m3{1.0, 30000.0};
-// Range of the damping time. With a longer one, a tick would need more substeps than it has time for.
+// Range of the damping time. With a longer damping time, a tick would need more substeps than can be computed
+// in time.
 inline constexpr Range<double> damping_time_range_s{0.0, 0.005};
-inline constexpr Range<double> yield_strain_range{1e-4, 0.5};  // range for plastic materials
-// Range for materials that are not plastic, which ignore the value.
+inline constexpr Range<double> yield_strain_range{1e-4, 0.5};  // for plastic materials
+// Range of the yield strain of materials that are not plastic. Such materials ignore the value.
 inline constexpr Range<double> elastic_yield_strain_range{0.0, 0.5};
 inline constexpr Range<double> flow_rate_range_per_s{0.0, 8000.0};
 // Range of the hardening. Above the upper limit, clay would spring back.
@@ -91,49 +93,50 @@ inline constexpr auto fields_of<Material> = std::to_array<Field<Material>>({
         .with_partner("relaxing_share"),
 });
 
-// Returns whether the material neither flows, creeps nor stiffens. Such a material can be simulated with
-// hexahedra, at any Poisson's ratio.
+// Returns true if the material does not flow, creep or stiffen. Such a material can be simulated with
+// hexahedral elements, at any Poisson's ratio.
 bool is_linear_elastic(const Material& material);
 
-// Refuses a material with a value outside its range, or a material that both flows and creeps. The error
-// names the field, its value and its range.
+// Refuses a material with a value outside its range, and a material that both flows and creeps. Refuses a
+// Poisson's ratio below min_spring_poissons_ratio unless the material is linear elastic. The error names the
+// field.
 Status check_material(const Material& material);
 
 // Position of a point in the body's own coordinates. All values are NaN for lattice nodes outside the body.
 struct BodyCoordinates {
-  double along = 0.0;   // fraction of the body's length, or of the turn of a ring; 0 to 1
-  double around = 0.0;  // fraction of a turn, 0 to 1; 0 on the axis, where it is undefined
+  double along = 0.0;   // fraction of the body's length, or of a ring's circumference; 0 to 1
+  double around = 0.0;  // fraction of a turn, 0 to 1; set to 0 on the axis
   double depth_m = 0.0;
 };
 
 // Part of a body in the body's own coordinates, which deformation does not change. The default is the whole
 // body.
 struct BodyRegion {
-  Range<double> along{0.0, 1.0};   // fraction of the body's length along v, or of the turn of a ring
+  Range<double> along{0.0, 1.0};   // fraction of the body's length, or of a ring's circumference, along v
   Range<double> around{0.0, 1.0};  // fraction of a turn along u; the range crosses the seam if low > high
   Range<double> depth_m{0.0, std::numeric_limits<double>::infinity()};  // depth below the surface at rest
 };
 
 bool contains(const BodyRegion& region, const BodyCoordinates& point);
 
-// Returns an error unless all fractions are from 0 to 1, `along` and the depths do not decrease, the depths
-// are at least 0, and `around` is not empty. The error names the field.
+// Returns an error unless all fractions are from 0 to 1, the lower ends of `along` and `depth_m` are not
+// above the upper ends, the depths are at least 0, and the ends of `around` differ. The error names the
+// field.
 Status check_region(const BodyRegion& region);
 
-// Region of a body whose material or friction differs from the rest.
+// Region of a body whose material or friction differs from the rest of the body.
 struct MaterialRegion {
   BodyRegion region;
   // Material of the region; if empty, the region keeps the material that it has without this entry.
   std::optional<Material> material = {};
-  // Friction of the region. If empty, the friction of `material`; if that is empty too, the friction stays
-  // unchanged.
+  // Friction coefficient of the region. If it is empty, the friction of `material` applies.
   std::optional<double> friction = {};
 };
 
 inline constexpr Range<int> material_region_count_range{0, 16};
 
-// Refuses an invalid region, a material or friction out of range, and an entry with neither. The error names
-// the field.
+// Refuses an invalid region, a material or friction out of range, and an entry that has neither material nor
+// friction. The error names the field.
 Status check_material_region(const MaterialRegion& region);
 
 }  // namespace spoonbill

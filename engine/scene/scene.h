@@ -1,4 +1,5 @@
-// A scene, from which a simulation is built, and the commands that change it. Plain data; lengths in metres.
+// A scene, from which a simulation is built, and the commands that change the simulation. Plain data; lengths
+// in metres.
 #pragma once
 
 #include <optional>
@@ -21,11 +22,12 @@ namespace spoonbill {
 struct Sculpting {
   double drag_per_s = 24.0;  // damping of all motion, proportional to mass; does not change static forces
   Vector3 gravity_m_per_s2 = Vector3::Zero();
-  double force_scale = 1.0;  // force at the hand in newtons, per newton of contact force
-  // Damps each body critically as well, so that it comes to rest without ringing (critical_damping_per_s()).
+  double force_scale = 1.0;  // force at the hand per newton of contact force
+  // If true, each body is also damped critically, so that it comes to rest without ringing
+  // (critical_damping_per_s()).
   bool is_critically_damped = false;
-  // If true, a body that nothing fixes may move away. If false, and without gravity and ground, such a body
-  // keeps its mean position and orientation, as in a gentle hand (keeps_place()).
+  // If true, a body that nothing fixes may move away. If false, such a body keeps its mean position and
+  // orientation, provided that there is neither gravity nor ground (keeps_place()).
   bool free = false;
   // If true, every body has its true inertia, and a tick takes as many substeps as that needs. If false,
   // inertia is scaled up until the tool's number of substeps suffices (SpringLattice::set_inertia()).
@@ -61,7 +63,7 @@ inline bool keeps_place(const Scene& scene) {
   return keeps_place(scene.sculpting, scene.ground.has_value());
 }
 
-// Limits of files, commands and the panel's sliders, within which every solver stays finite.
+// Limits that files, commands and the panel enforce. Within them every solver stays finite.
 inline constexpr Range<int> body_count_range{1, 1000};  // number of bodies in a document
 // Number of bodies that can be simulated together.
 inline constexpr Range<int> sculpted_body_count_range{1, 8};
@@ -92,11 +94,10 @@ inline constexpr auto fields_of<Symmetry> = std::to_array<Field<Symmetry>>({
 // Refuses more bodies than can be simulated together; the error explains how to select some.
 Status check_body_count(const Scene& scene);
 
-// The error of each of the following checks names the first field that is out of range, with its value and
-// range.
+// Returns an error that names the first field out of range, with its value and its range.
 Status check_sculpting(const Sculpting& sculpting);
 Status check_symmetry(const Symmetry& symmetry);
-// Refuses a soft tool with an action other than push, or with symmetry.
+// Refuses a soft tool if its action is not push or if symmetry is on.
 Status check_tool_and_symmetry(const Tool& tool, const Symmetry& symmetry);
 
 // The commands that the panel, a script or a recording sends to a simulation between two ticks.
@@ -110,7 +111,7 @@ struct RemovePlanes {};
 struct SetTool {
   Tool tool;
 };
-// Sets the material of a body outside its regions.
+// Sets the material of a body. Regions with a material of their own keep it.
 struct SetMaterial {
   Material material;
   int body = 0;  // index in the scene
@@ -124,7 +125,7 @@ struct SetSymmetry {
 // Moves the tool to the hand, ignoring contact on the path between them. This command is sent when the tool
 // starts to follow the hand after a pause.
 struct ResetProxy {};
-// Suspends the tool until it has left the body.
+// Makes the tool pass through the body until it has left the body.
 struct LiftTool {};
 // Makes the current shape the rest shape.
 struct KeepShape {};

@@ -10,7 +10,8 @@
 namespace spoonbill {
 namespace {
 
-// Returns whether Tool has a field with the parameter's name whose range contains the parameter's range.
+// Returns true if Tool has a field with the parameter's name, and the field's range contains the parameter's
+// range.
 constexpr bool is_tool_field(const ToolParameter& parameter) {
   for (const Field<Tool>& field : fields_of<Tool>) {
     if (std::string_view(field.form.name) != parameter.field) continue;

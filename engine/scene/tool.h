@@ -1,4 +1,4 @@
-// The tool: its shape, its action and its material. Plain data; lengths in metres.
+// The sculpting tool: its shape, its action and its material. Plain data; lengths in metres.
 //
 // The table `tool_actions` defines the actions for files, commands, the panel, keys, help and JSON schema. A
 // new action needs an enumerator and a row here, and a kernel in engine/simulation/tool_step.cpp for the
@@ -40,7 +40,7 @@ struct ToolParameter {
   Range<double> range{0.0, 0.0};
 };
 
-// Key of the window that selects a kind of tool together with the action: a digit or a capital letter.
+// Key that selects, in the window, a kind of tool together with the action: a digit or a capital letter.
 struct ToolKey {
   const char* key = nullptr;  // null if there is no key
   ToolKind kind = ToolKind::sphere;
@@ -52,8 +52,8 @@ struct ToolActionRow {
   const char* name;   // name in files
   const char* label;  // label in the panel
   const char* help;   // one sentence without a full stop
-  // True if the tool holds on to what it touches first until the button is released. With other actions the
-  // tool lets go when it moves away.
+  // True if the tool grips the surface at the first contact and holds it until the button is released. False
+  // if the tool releases the surface when it moves away.
   bool grips;
   bool allows_soft_tool;
   ToolAction inverse;  // action while Ctrl is down; equal to `action` if there is no inverse
@@ -135,12 +135,12 @@ constexpr const ToolParameter* find_tool_parameter(ToolAction action, std::strin
   return nullptr;
 }
 
-// A solid bounded by a closed tube.
+// A solid bounded by a B-spline tube with closed ends.
 struct SurfaceSolid {
   Surface surface;
 };
 
-// A solid bounded by a cleaned mesh (triangle_mesh.h).
+// A solid bounded by a cleaned triangle mesh (see CleanMesh).
 struct MeshSolid {
   CleanMesh mesh;
 };
@@ -154,8 +154,8 @@ using ToolSolid = std::variant<ImplicitShape, MeshSolid, SurfaceSolid>;
 
 // Largest number of triangles of a tool's mesh in a document.
 inline constexpr int tool_triangle_limit = 200000;
-// Largest number of triangles of a soft tool's mesh, which is moved and searched in every tick of one
-// millisecond.
+// Largest number of triangles of a soft tool's mesh. It is small, because the mesh is moved and searched in
+// every tick of one millisecond.
 inline constexpr int soft_mesh_triangle_limit = 20000;
 
 // A deformable tool with its own lattice. The nodes behind the plane `grip` move with the hand.
@@ -165,7 +165,7 @@ struct SoftTool {
   FixingPlane grip;  // plane in the tool's frame; the hand holds the nodes behind it
 };
 
-// Body of a tool that is neither a point nor a sphere, in the tool's frame. Immutable once made.
+// Body of a tool of the kind `solid`, in the tool's frame. Immutable once made.
 struct ToolBody {
   ToolSolid solid;
   std::optional<SoftTool> soft;  // properties of a soft tool; empty if the tool is rigid
@@ -174,20 +174,22 @@ struct ToolBody {
 struct Tool {
   ToolKind kind = ToolKind::sphere;
   ToolAction action = ToolAction::push;
-  double radius_m = 0.008;  // radius of a sphere; 0 for a point; smoothing reach of a solid
-  int substeps = 6;         // steps of the springs per tick, 1 to 8: with more, bodies respond faster
+  // Radius of a sphere; 0 for a point. For a solid: radius of the area that it smooths around the surface
+  // point nearest to it.
+  double radius_m = 0.008;
+  int substeps = 6;  // steps of the springs per tick, 1 to 8; with more steps, bodies respond faster
   // Required for the kind `solid`; may be kept while another kind is in use.
   std::shared_ptr<const ToolBody> body = {};
 };
 
-// Returns the range that the tool's action accepts for a field, by the field's name in files; `any` if the
-// action does not use the field.
+// Returns the range that the tool's action accepts for a field; `any` if the action does not use the field.
+// `field` is the field's name in files.
 inline Range<double> range_in_action(const Tool& tool, const char* field, Range<double> any) {
   const ToolParameter* parameter = find_tool_parameter(tool.action, field);
   return parameter == nullptr ? any : parameter->range;
 }
 
-// Fields of a tool except its body; files store the two parts of the body as "solid" and "soft".
+// Fields of a tool except its body. Files store the body in two fields, "solid" and "soft".
 template <>
 inline constexpr auto fields_of<Tool> = std::to_array<Field<Tool>>({
     choice_field<&Tool::kind>("kind", tool_kind_names),
@@ -204,7 +206,7 @@ inline constexpr auto fields_of<Tool> = std::to_array<Field<Tool>>({
         }),
 });
 
-// The error of each of the following checks names the first field at fault.
+// Returns an error that names the first field at fault.
 Status check_tool_body(const ToolBody& body);
 Status check_tool(const Tool& tool);
 

@@ -13,12 +13,12 @@ namespace spoonbill {
 
 namespace {
 
-// Step of finite differences, as a fraction of the domain. It is far above rounding and far below a knot
-// span.
+// Step of finite differences, as a fraction of the domain. It is far larger than rounding errors and far
+// shorter than a knot span.
 constexpr double difference_step = 1e-6;
 constexpr int newton_steps = 4;
-// Largest cosine of the angle between the normal at a pole and a tangent there; above it, the shape has no
-// tangent plane.
+// Largest cosine of the angle between the mean normal at a pole and a tangent at the pole. If a cosine is
+// larger, the shape has no tangent plane there.
 constexpr double flat_tolerance = 1e-4;
 
 double into_domain(const ShapeDirection& direction, double parameter) {

@@ -1,5 +1,5 @@
-// Exact shapes: functions of two parameters that surfaces are fitted to, with their derivatives, distances
-// and size checks.
+// Exact shapes: functions of two parameters to which surfaces are fitted. Also their derivatives, distances
+// to points, and checks of their sizes.
 #pragma once
 
 #include <functional>
@@ -13,8 +13,8 @@
 
 namespace spoonbill {
 
-// One direction of the parameters. `breaks` increase from one end of the domain to the other; the shape is
-// smooth between two of them, and the fit puts a knot at each.
+// One direction of a shape's parameters. `breaks` increase from one end of the domain to the other. The shape
+// is smooth between successive breaks, and a fit puts a knot at each break.
 struct ShapeDirection {
   bool periodic = false;
   std::vector<double> breaks{0.0, 1.0};
@@ -24,22 +24,23 @@ struct ShapeDirection {
 };
 
 // A shape whose points are in metres and whose du x dv points outwards. `at` is called with parameters within
-// the domain and must be continuous there. Fits are best if equal parameter steps cover about equal distances
-// everywhere.
+// the domain and must be continuous there. A fit is best if equal steps of a parameter cover about equal
+// distances everywhere.
 struct ExactShape {
   ShapeDirection u, v;
   // True if the shape has a pole (one point for all u) at the start or the end of v.
   bool pole_at_start = false, pole_at_end = false;
-  // Flat ends of a shape with poles: v from the start of the domain to `flat_to` and from `flat_from` to its
-  // end. Each is one of `breaks`; empty if that end is not flat.
+  // Flat ends of a shape with poles. The shape is flat for v from the start of the domain to `flat_to`, and
+  // from `flat_from` to the end of the domain. Each value must be one of `v.breaks`; it is empty if that end
+  // is not flat.
   std::optional<double> flat_to = {}, flat_from = {};
   std::function<Vector3(double u, double v)> at;
 
   bool is_closed() const { return u.periodic && (v.periodic || (pole_at_start && pole_at_end)); }
 };
 
-// Tangents of a shape by finite differences, one-sided at the ends of an open direction. The normal is zero
-// where the tangents are parallel, as at a pole.
+// Tangents and unit normal of a shape by finite differences, which are one-sided at the ends of an open
+// direction. The normal is zero if the tangents are parallel, as at a pole.
 struct ShapeTangents {
   Vector3 du, dv;
   Vector3 normal = Vector3::Zero();
@@ -50,15 +51,16 @@ ShapeTangents tangents(const ExactShape& shape, double u, double v);
 // v, reduced by Gauss-Newton steps.
 double distance_near(const ExactShape& shape, const Vector3& point_m, double u, double v);
 
-// Returns the unit normal at the pole at the start or end of v, if the shape has a tangent plane there.
+// Returns the unit normal at the pole at the start or the end of v; nullopt if the shape has no tangent plane
+// there.
 std::optional<Vector3> pole_normal(const ExactShape& shape, bool at_start);
 
 // Range of the sizes of stock shapes.
 inline constexpr Range<double> shape_size_range_m{1e-4, 10.0};
-// Smallest rounding, as a fraction of the shortest side that is rounded. Sharper edges need more control
-// points than a stock shape has.
+// Smallest radius of a rounded edge, as a fraction of the shortest side of the shape. Sharper edges need more
+// control points than a stock shape has.
 inline constexpr double min_rounding_fraction = 0.01;
-// Default rounding, as a fraction of the shortest side that is rounded.
+// Default radius of a rounded edge, as a fraction of the shortest side of the shape.
 inline constexpr double default_rounding_fraction = 0.1;
 
 // Returns an out_of_range error unless the length is within the range. The message is in millimetres, such as
@@ -66,7 +68,7 @@ inline constexpr double default_rounding_fraction = 0.1;
 Status check_length(std::string_view name, double length_m, Range<double> range_m);
 // Returns an error unless the size is within shape_size_range_m.
 Status check_size(std::string_view name, double size_m);
-// Returns an error unless the rounding is at least min_rounding_fraction of the side and at most `max_m`.
+// Returns an error unless the rounding is at least min_rounding_fraction of `side_m` and at most `max_m`.
 Status check_rounding(std::string_view name, double rounding_m, double side_m, double max_m);
 
 }  // namespace spoonbill

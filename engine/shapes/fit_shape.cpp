@@ -18,14 +18,14 @@ namespace spoonbill {
 
 namespace {
 
-// Largest ratio of the lengths of neighbouring spans. It keeps the control net even and least squares well
-// conditioned.
+// Largest ratio of the lengths of neighbouring spans. The limit keeps the control net even and the
+// least-squares problem well conditioned.
 constexpr double largest_step = 3.0;
-// Fraction of the largest error up to which a cell's error may be mere ringing of neighbouring cells. Cells
-// with such errors are refined in a later round, if their error remains.
+// A cell is not refined if its error is at most this fraction of the largest error of any cell. Its error may
+// be only ringing from neighbouring cells; if it remains, the cell is refined in a later round.
 constexpr double ringing_fraction = 0.1;
-// Largest factor by which one step refines a cell. An error that is far from its asymptotic order would
-// otherwise give far too many spans.
+// Largest factor by which one round increases the number of spans in a cell. Far too many spans would
+// otherwise result if the error does not yet decrease with the asymptotic order of convergence.
 constexpr int max_subdivision = 3;
 
 }  // namespace
@@ -93,14 +93,15 @@ Result<ShapeKnots> ShapeKnots::with_control_count(const ShapeDirection& directio
   ShapeKnots knots(direction, degree);
   const int cells = static_cast<int>(knots.spans_.size());
   const int spare = control_count - knots.control_count();
-  // The breaks are ignored if they leave fewer spare control points than half the number of cells.
+  // The breaks are ignored if they leave too few spare control points, that is, fewer than half the number of
+  // cells.
   if (cells > 1 && spare < cells / 2) {
     knots.ends_ = {direction.start(), direction.end()};
     knots.jumps_ = {false, false};
     knots.spans_ = {direction.periodic ? control_count : control_count - degree};
     return knots;
   }
-  // At first, only the longest spans are divided; a third of the spare control points is left for
+  // The longest spans are divided first. If there are breaks, a third of the spare control points is left for
   // refine_worst().
   for (int left = spare - (cells > 1 ? spare / 3 : 0); left > 0; --left) {
     std::size_t longest = 0;
@@ -162,7 +163,7 @@ std::vector<double> ShapeKnots::largest_in_cells(const std::vector<double>& at,
                                                  const std::vector<double>& error_m) const {
   std::vector<double> largest(spans_.size(), 0.0);
   for (std::size_t p = 0; p < at.size(); ++p) {
-    // A parameter on the border of two cells counts for both cells.
+    // An error at the border of two cells counts for both cells.
     for (std::size_t k = 0; k < spans_.size(); ++k) {
       if (at[p] >= ends_[k] && at[p] <= ends_[k + 1]) largest[k] = std::max(largest[k], error_m[p]);
     }
@@ -213,17 +214,18 @@ void ShapeKnots::even_out() {
 namespace {
 
 constexpr int max_control_points = 200;
-// Number of samples in each span: more than twice its unknowns, so that no error hides between samples.
+// Number of samples in each span. A span usually adds one control point, so the fit has about six samples for
+// each unknown, and no error remains hidden between samples.
 constexpr int samples_in_span = 6;
 constexpr int lines_in_cell = 3;
 constexpr int checks_in_span = 5;
-// Fraction of the tolerance that the error in each direction may use.
+// Fraction of the tolerance that the error of a fit in one direction may use.
 constexpr double direction_fraction = 0.5;
 constexpr int max_rounds = 12;
 
 using Lines = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Progress of a fit with an unknown number of rounds.
+// Progress of a fit whose number of rounds is unknown.
 class FitRounds {
  public:
   explicit FitRounds(const ShapeFit& fit) : progress_(&fit.progress) {}
@@ -240,8 +242,8 @@ struct DirectionError {
   std::vector<double> at, error_m;
 };
 
-// Returns the values, at the samples, of the least-squares fit of lines of samples. Sums are ordered, so that
-// the knots are the same on every machine.
+// Fits splines to lines of samples by least squares and returns the splines' values at the parameters of the
+// samples. The order of summation is fixed, so that the resulting knots are the same on every machine.
 Lines evaluate_fit(const Eigen::MatrixXd& inverse, const BlendingMatrix& blending, const Lines& samples) {
   Lines control = Lines::Zero(inverse.rows(), samples.cols());
   for (Eigen::Index i = 0; i < inverse.rows(); ++i) {
@@ -266,8 +268,8 @@ std::vector<double> midpoints(const std::vector<double>& parameters, const Shape
   return result;
 }
 
-// Returns the error of a fit in u alone or v alone. Only the component of the error along the normal counts,
-// unless `keeps_parameters` is true.
+// Returns the largest error of a fit in u alone or v alone, for each parameter in this direction. Only the
+// component of the error along the normal counts, unless `keeps_parameters` is true.
 Result<DirectionError> error_along(const ExactShape& shape, bool along_u, const ShapeKnots& knots,
                                    const std::vector<double>& lines, bool keeps_parameters,
                                    FitRounds& rounds) {
@@ -310,9 +312,9 @@ Result<DirectionError> error_along(const ExactShape& shape, bool along_u, const 
   return result;
 }
 
-// Returns the number of rings of control points around a pole that must be in the pole's tangent plane. These
-// are all rings that affect the flat part, except the outermost one, which bends the surface beyond the flat
-// part. Returns 1 if no part is flat.
+// Returns the number of rings of control points around a pole that must be in the pole's tangent plane. If
+// the shape has a flat end at the pole (ExactShape::flat_to), the number is that of all rings that affect the
+// flat end, except the outermost one, which bends the surface beyond the flat end. Otherwise it is 1.
 int flat_rings(const ExactShape& shape, bool at_start, const KnotVector& v) {
   const std::vector<double>& knots = v.knots();
   const std::optional<double> border = at_start ? shape.flat_to : shape.flat_from;
@@ -385,7 +387,7 @@ Result<Measure> measure(const ExactShape& shape, const Surface& surface, const S
   return result;
 }
 
-// Measures the deviation at equal parameters, like measure() but more densely: also on the edges and near the
+// Measures the deviation at equal parameters, more densely than measure(), and also on the edges and near the
 // worst sample.
 Result<Measure> measure_closely(const ExactShape& shape, const Surface& surface, const ShapeKnots& u,
                                 const ShapeKnots& v, FitRounds& rounds) {

@@ -15,7 +15,8 @@ namespace spoonbill {
 
 namespace {
 
-// Smallest length of a piece, as a fraction of the whole profile. A shorter piece is a rounding error.
+// Smallest length of a line or an arc, as a fraction of the whole profile. A shorter piece is a rounding
+// error and is omitted.
 constexpr double min_piece = 1e-9;
 
 double cross(const MeridianPoint& a, const MeridianPoint& b) {
@@ -30,8 +31,8 @@ double direction_angle(const MeridianPoint& direction) {
   return std::atan2(direction.y(), direction.x());
 }
 
-// A corner of a profile: the directions before and after it, its turn to the left, and the length that its
-// rounding removes from each of the two sides.
+// A corner of a profile: the directions of the sides before and after it, and the angle by which the profile
+// turns to the left.
 struct Corner {
   MeridianPoint before, after;
   double turn = 0.0;
@@ -48,7 +49,8 @@ struct Corner {
   double from() const { return direction_angle(-to_centre(1.0)); }
 };
 
-// Returns a direction of the profile, mirrored in the axis.
+// Returns the direction of the profile's mirror image in the axis, given the direction of the profile. The
+// mirror image is traversed backwards, so that the profile and its image form one continuous curve.
 MeridianPoint mirrored(const MeridianPoint& direction) {
   return {direction.x(), -direction.y()};
 }
@@ -166,7 +168,7 @@ double cross_xy(const Vector3& a, const Vector3& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-// Returns whether the segments a b and c d cross.
+// Returns true if the segment from a to b crosses the segment from c to d.
 bool crosses(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
   return cross_xy(b - a, c - a) * cross_xy(b - a, d - a) < 0.0 &&
          cross_xy(d - c, a - c) * cross_xy(d - c, b - c) < 0.0;
@@ -191,7 +193,7 @@ Status check_profile(const std::vector<Vector3>& points, bool pole_first, bool p
   return {};
 }
 
-// Returns a multiple of the enclosed volume. It is positive if the outer part of the profile runs upwards.
+// Returns the enclosed volume divided by pi. It is positive if the outer part of the profile runs upwards.
 double signed_volume(const std::vector<Vector3>& points) {
   double sum = 0.0;
   for (std::size_t k = 0; k + 1 < points.size(); ++k) {

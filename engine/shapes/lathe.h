@@ -16,9 +16,10 @@ using MeridianPoint = Eigen::Vector2d;
 // A profile of lines and arcs in the half-plane beside the axis, parametrised by arc length.
 class Meridian {
  public:
-  // Makes a profile through the vertices, each inner corner rounded by an arc of its radius (0: not rounded).
-  // The first and last vertex may be on the axis; their roundings apply to the corner between the profile and
-  // its mirror image. Refuses roundings that do not fit on a side, and names them.
+  // Makes a profile of straight sides between the vertices. The corner at a vertex is rounded by an arc with
+  // the radius in `roundings` (0: not rounded). The first and the last vertex may be on the axis; their
+  // roundings apply to the corner between the profile and its mirror image. Refuses roundings that do not fit
+  // on a side, and names them.
   static Result<Meridian> rounded(std::span<const MeridianPoint> vertices, std::span<const double> roundings);
 
   // Makes a half circle around the origin from its lowest point to its highest.
@@ -27,7 +28,7 @@ class Meridian {
   double length_m() const { return starts_.back(); }
   // Returns the point at a distance along the profile.
   MeridianPoint at(double distance_m) const;
-  // Returns the distances along the profile at which its pieces begin and end.
+  // Returns the distances along the profile at which its lines and arcs begin and end.
   const std::vector<double>& breaks_m() const { return starts_; }
 
  private:
@@ -44,14 +45,14 @@ class Meridian {
 };
 
 // Makes the body of revolution of a profile, with poles at both ends. If the profile runs upwards, the
-// outside of the body is away from the axis.
+// normals of the body point away from the axis.
 ExactShape revolved_shape(Meridian meridian);
 
 // Makes a body of revolution of a smooth profile through the points. An end of the profile on the axis
-// becomes a pole, where the profile is horizontal; with both ends on the axis the shape is closed. If the
-// last point of a profile off the axis is its first, the shape is a ring, closed in both directions. Any
-// other shape is open, with its outside away from the axis. Refuses too few or coincident points, negative
-// radii, and a profile that crosses the axis or itself.
+// becomes a pole, where the profile is horizontal. If both ends are on the axis, the shape is closed. If a
+// profile ends at its first point, off the axis, the shape is a ring, which is closed in both directions. Any
+// other shape is open, with normals that point away from the axis. Refuses too few or coincident points,
+// negative radii, and a profile that crosses the axis or itself.
 Result<ExactShape> lathe_shape(const std::vector<MeridianPoint>& profile_m);
 
 }  // namespace spoonbill

@@ -11,13 +11,14 @@ namespace spoonbill {
 
 namespace {
 
-// A row of the system: before * x[k - 1] + here * x[k] + after * x[k + 1] = right.
+// Row k of a tridiagonal system for the unknowns x: before * x[k - 1] + here * x[k] + after * x[k + 1] =
+// right.
 struct TridiagonalRow {
   double before = 0.0, here = 1.0, after = 0.0, right = 0.0;
 };
 
-// Solves a tridiagonal system by Gaussian elimination without pivoting; the rows of a spline are diagonally
-// dominant.
+// Solves a tridiagonal system by Gaussian elimination. No pivoting is needed, because the rows of a spline
+// are diagonally dominant.
 std::vector<double> solve(std::vector<TridiagonalRow> rows) {
   for (std::size_t k = 1; k < rows.size(); ++k) {
     const double factor = rows[k].before / rows[k - 1].here;
@@ -54,7 +55,7 @@ bool is_level(const CurveEnds& ends, int axis) {
   return axis == 0 ? ends.level_x : axis == 1 ? ends.level_y : ends.level_z;
 }
 
-// One coordinate of a spline: its values and the lengths of its pieces.
+// One coordinate of a spline: its values at the points, and the parameter lengths of the pieces between them.
 struct SplineLine {
   std::vector<double> values, lengths;
 

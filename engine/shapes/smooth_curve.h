@@ -1,5 +1,4 @@
-// Smooth curves through points: cubic splines with continuous curvature, parametrised by chord length (de
-// Boor 1978, chapter 4).
+// Smooth curves through points: cubic splines with continuous curvature (de Boor 1978, chapter 4).
 #pragma once
 
 #include <vector>
@@ -10,8 +9,8 @@
 
 namespace spoonbill {
 
-// End conditions of an open curve, for each coordinate: level (first derivative zero) or, by default,
-// straight (second derivative zero).
+// End conditions of an open curve, for each coordinate: the first derivative is zero (level) or, by default,
+// the second derivative is zero.
 struct CurveEnds {
   bool level_x = false, level_y = false, level_z = false;
 };
@@ -22,13 +21,13 @@ class SmoothCurve {
   // Constructs an empty curve, to be assigned before any use.
   SmoothCurve() = default;
 
-  // Makes a curve through at least two points, or three if closed; a closed curve continues from the last
-  // point to the first. Refuses too few points, and successive points that coincide; the error numbers them
-  // from 1.
+  // Makes a curve through at least two points, or three if closed, parametrised by chord length. A closed
+  // curve continues from the last point to the first. Refuses too few points, and successive points that
+  // coincide; the error numbers points from 1.
   static Result<SmoothCurve> through(std::vector<Vector3> points_m, bool closed, const CurveEnds& first = {},
                                      const CurveEnds& last = {});
-  // Makes a curve with given increasing parameters: one for each point and, for a closed curve, one more for
-  // its end. Points may coincide.
+  // Makes a curve with the given increasing parameters, which start at 0: one for each point and, for a
+  // closed curve, one more for its end. Points may coincide.
   static SmoothCurve at_parameters(std::vector<Vector3> points_m, std::vector<double> parameters, bool closed,
                                    const CurveEnds& first = {}, const CurveEnds& last = {});
 
@@ -44,8 +43,8 @@ class SmoothCurve {
   Vector3 first_derivative(double t) const;
   Vector3 second_derivative(double t) const;
 
-  // Returns the second derivatives at the points. They depend linearly on the points, so blending the points
-  // of two curves blends the derivatives too.
+  // Returns the second derivatives at the points. They depend linearly on the points. If the points of two
+  // curves with the same parameters are blended, the derivatives are therefore blended too.
   const std::vector<Vector3>& second_derivatives() const { return second_derivatives_; }
 
  private:

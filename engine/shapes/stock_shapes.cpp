@@ -36,8 +36,8 @@ class RoundedRectangle {
   double length() const { return ends_.back(); }
   double rounding() const { return rounding_; }
 
-  // Returns fractions of the length, from 0 to 1: where a side meets a corner, and where the slowed part of a
-  // side ends.
+  // Returns the breaks of the outline as fractions of its length, from 0 to 1. Breaks are where a side meets
+  // a corner, and where the part of a side in which at() slows down begins or ends.
   std::vector<double> breaks() const {
     std::vector<double> fractions = {0.0};
     const auto add = [&](double distance) {
@@ -60,10 +60,10 @@ class RoundedRectangle {
     Vector2 position, normal;
   };
 
-  // Returns the point at a fraction of the length. On a shrunk outline, the corners have shorter arcs, so
-  // that a point moves along them only at `speed_at_corners` times its speed on the sides. Near the corners
-  // the sides slow down to that speed. A curve through a side and a corner then needs no extra knots to stay
-  // smooth.
+  // Returns the point at a fraction of the length. If the outline is shrunk, the arcs at its corners become
+  // shorter, and a point moves along them only at `speed_at_corners` times its speed on the sides. The point
+  // therefore slows down to this speed near the ends of the sides. A curve through a side and a corner then
+  // needs no extra knots to stay smooth.
   Point at(double fraction, double speed_at_corners) const {
     const double distance = fraction * length();
     const auto after = std::upper_bound(ends_.begin() + 1, ends_.end() - 1, distance);
@@ -90,12 +90,12 @@ class RoundedRectangle {
   }
 
  private:
-  // Returns the length of the part of a side, next to a corner, in which the point slows down. It is chosen
-  // to keep the lines across the outline nearly straight.
+  // Returns the length of the part of a side, next to a corner, in which at() slows down. This length keeps
+  // the lines across the outline nearly straight.
   double slowed() const { return 4.0 * rounding_; }
 
-  // Returns the position on a side, measured from its centre. It is a cubic over the whole side or, on a long
-  // side, over the slowed parts at its ends.
+  // Returns the position on a side, measured from its centre. The position is a cubic function of
+  // `off_centre` over the whole side or, on a long side, over the slowed parts at its ends.
   double position_on_side(double half_side, double off_centre, double slower) const {
     if (!(half_side > 0.0)) return 0.0;
     if (half_side <= slowed()) {
@@ -119,8 +119,9 @@ class RoundedRectangle {
   std::array<double, 10> ends_{};
 };
 
-// A box with its end faces across its third axis. Its rings are outlines of its section. Towards an end, the
-// outlines first follow the rounded edge and then shrink to the centre of the end face.
+// A box whose end faces are perpendicular to its third axis. Its lines of constant v are outlines of its
+// section. Towards an end, these outlines first follow the rounded edge and then shrink to the centre of the
+// end face.
 class BoxAlong {
  public:
   BoxAlong(const Vector3& half_m, double edge_rounding_m, double end_rounding_m)
@@ -189,8 +190,8 @@ class BoxAlong {
 };
 
 // Returns the axis through the end faces. It is the longest axis, unless the faces at its ends are slender
-// and those at the ends of the shortest axis are squarer. Slender end faces would have slender cells around
-// their poles.
+// and the faces at the ends of the shortest axis are squarer. Slender end faces would have slender cells
+// around the poles.
 int box_axis(const Vector3& size_m) {
   std::array<int, 3> order = {2, 1, 0};
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return size_m[a] < size_m[b]; });

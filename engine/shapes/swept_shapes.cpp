@@ -17,8 +17,8 @@ namespace spoonbill {
 namespace {
 
 constexpr int frames = 2048;
-// Largest extent of the section toward the centre of a bend, as a fraction of the bend's radius. At a value
-// closer to 1, the inside of the tube would almost fold.
+// Largest extent of a tube's section toward the centre of a bend, as a fraction of the bend's radius. If it
+// were closer to 1, the inner side of the bend would almost fold.
 constexpr double max_bend_fraction = 0.98;
 
 struct SweepFrame {
@@ -32,7 +32,7 @@ Vector3 reflect(const Vector3& vector, const Vector3& by) {
   return squared > 0.0 ? Vector3(vector - 2.0 / squared * by.dot(vector) * by) : vector;
 }
 
-// Returns the frame at a nearby position, rotated as little as possible about the curve.
+// Returns the frame at a nearby position of the curve, rotated as little as possible about the tangent.
 SweepFrame transport(const SweepFrame& from, const Vector3& position, const Vector3& along) {
   const Vector3 step = position - from.position;
   const Vector3 across = reflect(from.across, step), tangent = reflect(from.along, step);
@@ -132,8 +132,8 @@ namespace {
 // Number of evenly spaced points at which each section is sampled.
 constexpr int around = 256;
 constexpr int length_steps = 4096;
-// Distance of the inner control points from the ends, relative to the radius, of a cubic that approximates a
-// quarter circle (Goldapp 1991).
+// A Bezier cubic approximates a quarter circle if each inner control point has this distance from the nearest
+// end point, as a fraction of the radius (Goldapp 1991).
 constexpr double arc_handle = 0.5522847498;
 constexpr double default_bulge = 0.5;
 
@@ -188,9 +188,9 @@ double squared_distance(const Section& a, const Section& b, std::size_t start, b
   return sum;
 }
 
-// Changes the order of a section's points: possibly reverses it and, if the section is closed, starts at
-// another point. The points are then as near as possible to the points of `before` with the same index, after
-// both sections are centred at the origin.
+// Changes the order of a section's points so that they match those of the section `before`: possibly reverses
+// the order and, if the section is closed, starts at another point. The sum of squared distances between
+// points with the same index is then least, if the centroids of both sections are moved to the origin.
 void align_to(const Section& before, Section& section, bool closed) {
   std::size_t best_start = 0;
   bool best_backwards = false;
@@ -239,8 +239,8 @@ Result<std::vector<Section>> even_sections(const LoftSections& loft) {
   return sections;
 }
 
-// The sides of a loft. Splines across the sections run through the points with the same index; along the
-// sections, further splines interpolate between them.
+// The sides of a loft. Splines across the sections run through the points with the same index. Further
+// splines, along the sections, interpolate between the splines across the sections.
 class LoftSides {
  public:
   LoftSides(const std::vector<Section>& sections, bool closed) {
@@ -281,7 +281,8 @@ class LoftSides {
            scale * ((a * a * a - a) * second_[s].at(u) + (b * b * b - b) * second_[s + 1].at(u));
   }
 
-  // Returns the derivative with respect to t, the distance across the sections.
+  // Returns the derivative with respect to t. The parameter t is 0 at the first section and grows from one
+  // section to the next by their mean distance.
   Vector3 across(double u, double t) const {
     const auto [s, length, b] = find_piece(t);
     const double a = 1.0 - b;
@@ -306,8 +307,8 @@ class LoftSides {
   std::vector<SmoothCurve> points_, second_;
 };
 
-// A cap over an end of the sides, from the end ring to a pole. Each line of constant u is a cubic that
-// continues the tangent of the sides and meets the pole perpendicular to the pole's normal.
+// A cap over an end of the sides of a loft, from the end ring to a pole. Each line of constant u is a cubic
+// that continues the tangent of the sides and meets the pole perpendicular to the pole's normal.
 class LoftCap {
  public:
   LoftCap(std::shared_ptr<const LoftSides> sides, bool at_end, std::optional<double> height_m)
@@ -323,7 +324,8 @@ class LoftCap {
     const double radius = mean_radius(ring);
     height_m_ = height_m.value_or(default_bulge * radius);
     pole_ = compute_centroid(ring) + height_m_ * outward_;
-    // Approximate length of a quarter of an ellipse. The error is 3 % at the default height and at most 22 %.
+    // This approximates the length of a quarter of an ellipse. The error is 3 % at the default height and at
+    // most 22 %.
     length_m_ = 0.25 * std::numbers::pi * (radius + height_m_);
   }
 
