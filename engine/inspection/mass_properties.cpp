@@ -77,8 +77,8 @@ void visit_whole_surface(const Surface& surface, const AreaVisitor& visit) {
   }
 }
 
-// Uses Radon's rule of seven points: the centroid of the triangle, and three points on its medians at each of
-// two distances.
+// Visits the seven points of Radon's rule in a triangle of parameters: the centroid, and three points on the
+// medians at each of two distances from it.
 void visit_triangle(const Surface& surface, const std::array<Parameters, 3>& corners,
                     const AreaVisitor& visit) {
   const Parameters first = corners[1] - corners[0], second = corners[2] - corners[0];
@@ -118,7 +118,7 @@ void visit_area(const Surface& surface, const TrimmedArea& area, const AreaVisit
 
 EnclosedMass compute_enclosed_mass(const Surface& surface, const TrimmedArea& area) {
   SPOONBILL_ASSERT_DEBUG(is_valid(surface));
-  // Moments are taken about a point of the body, so that a large distance from the origin costs no precision.
+  // Moments are taken about a control point, so that a large distance from the origin costs no precision.
   const Vector3 origin = surface.net.point(0, 0);
   EnclosedMass mass;
   // Along a direction of degree p, the integrand of the first moment has degree 4 p - 1.

@@ -14,7 +14,7 @@
 
 namespace spoonbill {
 
-// Edges whose distance is below this value coincide.
+// Edges no farther apart than this, in metres, coincide.
 inline constexpr double closing_tolerance_m = 1e-6;
 
 enum class Closedness {

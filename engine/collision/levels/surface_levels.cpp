@@ -117,8 +117,8 @@ void SurfaceBounds::update_row_norms(const ControlNet& net, int i) {
   }
 }
 
-// Computes the bounds of the elements (eu, .). For all columns at once, first takes the maximum over the rows
-// of these elements.
+// Computes the bounds of the elements in row eu. First takes, in each column of the unrolled net, the maximum
+// over the rows of control points on which these elements depend.
 void SurfaceBounds::update_elements(int eu) {
   double* const uu = row_[0][0].data();
   double* const vv = row_[0][1].data();

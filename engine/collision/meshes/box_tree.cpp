@@ -130,7 +130,8 @@ std::optional<LineExit> LineExits::first(const Vector3& from, const Vector3& dir
   };
   const auto test_triangle = [&](std::uint32_t position) {
     const Triangle& triangle = triangles_[position];
-    // Tolerance with which a line along an edge hits at least one of the edge's triangles.
+    // Tolerance, as a fraction of the triangle's sides, with which a line through an edge hits at least one
+    // of the triangles of the edge.
     constexpr double tolerance = 1e-6;
     const auto hit =
         intersect_line_triangle(from, direction, triangle[0], triangle[1], triangle[2], tolerance);

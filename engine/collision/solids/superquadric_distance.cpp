@@ -14,8 +14,8 @@ constexpr double least_ratio = 1e-60;  // fraction of a semi-axis below which a 
 // Convergence tolerance of log(price), where `price` is the Lagrange multiplier. It also determines the
 // accuracy of the distance.
 constexpr double convergence_step = 1e-13;
-// Largest |log(gauge)| of a point that counts as on the surface. The distance to the tangent plane is there
-// exact up to rounding.
+// Largest |log(gauge)| of a point that counts as on the surface. The gauge is 1 on the surface and less
+// inside. At such a point, the distance to the tangent plane is exact up to rounding.
 constexpr double at_surface_gauge = 1e-14;
 
 double log_of_sum(double a, double b) {
@@ -26,7 +26,8 @@ double log_of_sum(double a, double b) {
 // One coordinate x of the nearest point, as L = log(x / a), the root of e^L + price e^((q-1) L) = target.
 struct Coordinate {
   double log_value = nothing;
-  // The second term: offset of the point from the surface along this axis, divided by the semi-axis.
+  // Second term of the equation: offset of the point from the surface along this axis, divided by the
+  // semi-axis.
   double reach = 0.0;
   double slope = 0.0;  // derivative of log_value with respect to log(price)
 };
@@ -166,7 +167,7 @@ struct Fractions {
 }  // namespace
 
 // Half the squared distance from a point of the first octant to a point of the surface, and its derivatives
-// with respect to both logits.
+// with respect to the coordinates `around` and `along` of the surface point.
 struct SuperquadricDistance::Expansion {
   double half_square;  // half the squared distance
   double slope[2];
@@ -233,8 +234,8 @@ SuperquadricDistance::Spot SuperquadricDistance::improve(Spot spot, const Vector
   return spot;
 }
 
-// Returns the distance to the tangent plane at a spot. Any tangent plane bounds the solid, because it is
-// convex.
+// Returns the distance to the tangent plane at a point of the surface. Any tangent plane bounds the solid,
+// because the solid is convex.
 DistanceSample SuperquadricDistance::tangent(const Spot& spot, const Vector3& point) const {
   const Fractions around(spot.around), along(spot.along);
   const double ring = along.log_fraction / along_, ring_normal = along.log_fraction - ring;

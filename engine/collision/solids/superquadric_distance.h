@@ -22,10 +22,11 @@ class SuperquadricDistance final : public SignedDistance {
   explicit SuperquadricDistance(const SuperquadricShape& shape);
   DistanceSample at(const Vector3& point_m) const override;
   // Returns the distance to a tangent plane if that distance is at least `enough_m`; otherwise the distance
-  // to the solid. The plane touches the solid where the ray from its centre to the point leaves it.
+  // to the solid. The plane touches the solid where the ray from the solid's centre to the point leaves the
+  // solid.
   DistanceSample at_within(const Vector3& point_m, double enough_m) const override;
-  // Returns whether the distance exceeds `limit_m`. For points inside the solid, the gauge alone decides, and
-  // no distance is computed.
+  // Returns true if the distance exceeds `limit_m`. For a point inside the solid, returns false without
+  // computing the distance.
   bool is_beyond(const Vector3& point_m, double limit_m) const override;
   bool is_convex() const override { return true; }
   Box bounds() const override { return {-axes_, axes_}; }

@@ -13,8 +13,8 @@ namespace {
 // Number of times that a triangle is cut into four parts before it counts as within reach.
 constexpr int triangle_cuts = 6;
 
-// Returns false only if no point of the triangle is within reach. Tests balls around the triangle and around
-// its parts.
+// Returns false only if no point of the triangle is within `reach_m` of the tool. Tests balls around the
+// triangle and around its parts.
 bool is_within(const ToolShape& tool, const Triangle& triangle, double reach_m, int cuts) {
   const auto& [a, b, c] = triangle;
   const Vector3 centre = (a + b + c) / 3.0;

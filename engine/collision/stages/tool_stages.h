@@ -9,7 +9,7 @@
 
 namespace spoonbill {
 
-// Records the stages of a SurfaceCollider: its cells, spheres, triangles and contacts. One owner, one thread.
+// Records the stages of a SurfaceCollider: its cells, spheres, triangles and contacts. Not thread-safe.
 // Surfaces given to add() must have the knots that were given to make().
 class ToolStages {
  public:
