@@ -46,8 +46,8 @@ struct EnclosedMass {
 
 EnclosedMass compute_enclosed_mass(const Surface& surface, const TrimmedArea& area = {});
 
-// Volume of a shell: between the part of a surface within its trims and the offset of that part against the
-// normals.
+// Volume of a shell. The shell is between the part of a surface within its trims and the offset of that part
+// in the direction opposite to the normals.
 struct ShellMass {
   double volume_m3 = 0.0;
   Vector3 centre_m = Vector3::Zero();  // centre of the volume

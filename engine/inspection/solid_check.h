@@ -43,7 +43,7 @@ struct BodyOverlap {
 };
 
 struct BodyOverlaps {
-  // Deepest contact of each touching pair of bodies, in the order of the pairs.
+  // Deepest contact of each touching pair of bodies, in ascending order of the bodies' indices.
   std::vector<BodyOverlap> found;
   bool complete = true;  // false if surfaces are near each other in too many points to search them all
 };

@@ -14,7 +14,8 @@
 
 namespace spoonbill {
 
-// An inward line from a surface point to the opposite wall: its length, and the parameters of both ends.
+// An inward line from a surface point to the opposite wall: its length, and the parameters and positions of
+// both ends.
 struct Thickness {
   double thickness_m = 0.0;
   double u = 0.0, v = 0.0, opposite_u = 0.0, opposite_v = 0.0;
@@ -39,7 +40,7 @@ class ThicknessSearch {
 
   // Returns the thickness at a surface point. Returns nothing where the surface has no normal, or where the
   // inward line leaves through no wall (exits_through_wall()). Near an edge the line may leave too obliquely
-  // or pass between the samples.
+  // or miss the facets between the samples.
   std::optional<Thickness> at(double u, double v) const;
 
   // Returns the smallest thickness at the samples, refined around the best of them. A wall thinner than the

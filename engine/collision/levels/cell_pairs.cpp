@@ -12,7 +12,7 @@ namespace {
 
 // Number of groups of slabs in the cache, which is cleared when it is full.
 constexpr int group_capacity = 8192;
-// Factor on bulges that allows for rounding: the parameter steps of an element's cells differ slightly.
+// Factor on bulges, because rounding makes the parameter steps of an element's cells differ slightly.
 constexpr double size_tolerance = 1.0 + 1e-9;
 
 }  // namespace
@@ -284,8 +284,8 @@ void CellPairs::refine(const CellPair& elements, double reach, int level) {
   }
 }
 
-// Pairs of children of the same two cells are neighbours, so all of them except the first are marked as such
-// (-1).
+// Adds a pair of cells. Pairs of children of the same two cells are neighbours, so all of them except the
+// first get the region -1, which marks a neighbour of the preceding pair.
 void CellPairs::add_pair(const NodePair& nodes, bool is_first) {
   overflow_ = overflow_ || pairs_.size() == limit_;
   if (!overflow_) pairs_.push_back({nodes.first.cell, nodes.second.cell, is_first ? 0 : -1});

@@ -59,8 +59,8 @@ class CellSlabs {
   }
 
  private:
-  // Finds the cached group of slabs of a key, or claims a free group. Returns true if its slabs must still be
-  // computed.
+  // Finds the cached group of slabs for `key`, or claims a free group. Returns true if the slabs of the group
+  // must still be computed.
   bool claim_slot(int key, SlabGroup*& group) {
     Slot& slot = slots_[key];
     const bool is_current = slot.generation == generation_;
@@ -153,8 +153,8 @@ class CellPairs {
  public:
   CellPairs(SurfaceLevels& first, SurfaceLevels& second);
 
-  // Must be called when the control points of the first or second surface have moved, after the begin() of
-  // its SurfaceLevels.
+  // invalidate_first() must be called when the control points of the first surface have moved, after the
+  // begin() of its SurfaceLevels. The same applies to invalidate_second() and the second surface.
   void invalidate_first();
   void invalidate_second();
 

@@ -58,7 +58,7 @@ class SurfaceBounds {
   int elements_v() const { return static_cast<int>(span_v_.size()); }
 
   // Returns an upper bound of the distance of the surface from the bilinear patch of a cell of the element,
-  // in metres. `h_u` and `h_v` are the cell's sides in parameters.
+  // in metres. `h_u` and `h_v` are the lengths of the cell in u and v.
   double bulge(int element_u, int element_v, double h_u, double h_v) const {
     const std::size_t e = static_cast<std::size_t>(element_u * elements_v() + element_v);
     return (h_u * h_u * second_uu_[e] + h_v * h_v * second_vv_[e]) / 8.0;
@@ -78,7 +78,7 @@ class SurfaceBounds {
   // Index of the row or column of control points for each row and column of the unrolled net.
   std::vector<int> control_u_, control_v_;
   std::vector<double> first_scale_u_, second_scale_u_, first_scale_v_, second_scale_v_;
-  // Squared norms of the second derivatives' control points, by unrolled index.
+  // Squared norms of the second derivatives' control points, by row and column of the unrolled net.
   std::vector<double> norm_uu_, norm_vv_;
   std::vector<double> second_uu_, second_vv_;
   std::uint64_t stamp_ = 1;
@@ -131,8 +131,7 @@ class SurfaceLevels {
   // Starts a query. Must be called whenever the control points may have moved. Returns false if none has
   // moved since the last call; all evaluated values then remain valid. The surface must have the grid's knots
   // and exist until the next begin(). The optional `samples` contain all samples of the surface on the finest
-  // grid, in the order of GridEvaluator<double>. They must exist equally long, and no sample is then
-  // evaluated.
+  // grid, in the order of GridEvaluator<double>. They must exist just as long; no sample is then evaluated.
   bool begin(const Surface& surface, const PlanarPoints& samples = {});
 
   const Surface& surface() const { return *surface_; }
@@ -141,7 +140,7 @@ class SurfaceLevels {
   SurfaceBounds& bounds() { return bounds_; }
   int samples_evaluated() const { return samples_evaluated_; }
 
-  // Returns one sample of the finest grid. Its index is row * columns + column.
+  // Returns one sample of the finest grid. The index of a sample is row * columns + column.
   Vector3 sample(int index);
   // Evaluates the samples of the coarsest level that are in one column. This is cheaper than single samples,
   // because the samples of a column share their sums along v.

@@ -20,7 +20,7 @@ struct Item {
 };
 
 // A range of items for which a node must still be made. `right_of` is the parent's index if the node is a
-// right child, otherwise none.
+// right child, otherwise `none`.
 struct PendingNode {
   std::uint32_t begin, end;
   std::uint32_t right_of;

@@ -45,7 +45,7 @@ MeshProximity::MeshProximity(const NestedGrid& surface, std::vector<int> patches
   candidates_.reserve(patch_count);
   samples_.reserve(near_point_limit);
   vertices_.reserve(near_point_limit);
-  // Each step of a descent into the binary tree leaves one node on the stack.
+  // Each step of a descent into the binary tree adds at most one node to the stack.
   pending_.reserve(64);
 }
 

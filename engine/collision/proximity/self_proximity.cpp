@@ -93,8 +93,8 @@ void RestPairs::find_neighbours() {
   }
 }
 
-// Computes the lengths of the shortest paths from one block to the others (Dijkstra's algorithm), up to the
-// neighbour distance.
+// Computes the lengths of the shortest paths from one block to the others (Dijkstra's algorithm), up to
+// neighbour_distance_m_.
 void RestPairs::measure_from(int block, std::vector<double>& distances) const {
   using Path = std::pair<double, int>;
   std::priority_queue<Path, std::vector<Path>, std::greater<>> queue;
@@ -237,7 +237,7 @@ constexpr int positions_around = 24;
 constexpr double lead_cells = 1.0;
 constexpr std::size_t element_pair_capacity = 1 << 14;
 // Largest number of pairs of elements that one search compares. That number of comparisons takes about 50 ms.
-// It limits the time for a body that is crumpled so that all elements are near each other.
+// The limit bounds the time for a body so crumpled that all elements are near each other.
 constexpr int element_test_capacity = 1 << 23;
 // Number of elements whose cells are cached. The cache is cleared when it is full.
 constexpr int slot_capacity = 1024;

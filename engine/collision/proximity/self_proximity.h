@@ -22,9 +22,9 @@ namespace spoonbill {
 inline constexpr double neighbour_cells = 4.0;
 inline constexpr double neighbour_thicknesses = 3.0;
 
-// Factor on the neighbour distance. Two points that face each other through the body, at most this many
-// neighbour distances apart, count as points of opposite sides, which never meet. Points farther apart, such
-// as those at the ends of a bar, may meet.
+// Factor on the distance below which points are neighbours. Two points that face each other through the body,
+// at most this many such distances apart, count as points of opposite sides, which never meet. Points farther
+// apart, such as those at the ends of a bar, may meet.
 inline constexpr double through_body = 2.0;
 
 // Decides which pairs of points of one body's surface can ever touch from outside, by the positions of the
@@ -53,7 +53,8 @@ class RestPairs {
   double step_between(int block, int other) const;
 
   Surface rest_;
-  std::vector<double> u_, v_;  // starts of the parameter blocks, and the end of the last block
+  std::vector<double> u_,
+      v_;  // starts of the blocks of the surface in u and in v, and the end of the last block
   double cell_m_, neighbour_distance_m_ = 0.0;
   std::vector<RestPoint> points_;       // one for each sample
   std::vector<Vector3> block_centres_;  // one for each block

@@ -208,9 +208,9 @@ bool may_contain(const PosedMesh& mesh, const PosedMesh& other) {
                      [&](const Box& part) { return around.holds(part); });
 }
 
-// Search for the regions in which two meshes overlap. All vertices of a triangle that are inside the other
-// mesh are in the same region. A pair of crossing triangles is in the same region as the inside vertices of
-// both triangles. Two pairs are in the same region if they have one triangle in common and their other
+// Search for the regions in which two meshes overlap. The vertices of a triangle that are inside the other
+// mesh are all in the same region. A pair of crossing triangles is in the same region as the inside vertices
+// of both triangles. Two pairs are in the same region if they have one triangle in common and their other
 // triangles share a vertex.
 class ContactSearch {
  public:
@@ -352,8 +352,8 @@ class ContactSearch {
     }
   }
 
-  // Offers the deepest points of those edges of a triangle that have no end inside the other mesh. The pairs
-  // from `first` to `end` all have this triangle of mesh `s`.
+  // Finds the deepest points of those edges of a triangle that have no end inside the other mesh, and updates
+  // the deepest points of their regions. The pairs from `first` to `end` all have this triangle of mesh `s`.
   void find_deepest_between(int s, std::size_t first, std::size_t end) {
     const TriangleCorners& corners = meshes_[s]->corners(pairs_[first][s]);
     for (int k = 0; k < 3; ++k) {
@@ -440,7 +440,7 @@ class ContactSearch {
   std::array<MeshDepths, 2> depths_;  // depths of each mesh in the other
   std::vector<Pair> pairs_;           // pairs of triangles that meet, in ascending order
   DisjointSets regions_{0};
-  std::vector<Deepest> deepest_;  // deepest point of each region, at the region's lowest item
+  std::vector<Deepest> deepest_;  // deepest point of each region, at the index of its lowest item
 };
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace spoonbill {
 // Signed distance from a point to a solid, and its gradient.
 struct DistanceSample {
   double distance_m = 0.0;  // negative inside
-  // Unit vector. If several points of the solid's surface are nearest, it belongs to one of them.
+  // Unit vector. If several points of the solid's surface are nearest, the gradient belongs to one of them.
   Vector3 gradient = Vector3::UnitY();
 };
 

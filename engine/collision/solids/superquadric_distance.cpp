@@ -32,8 +32,9 @@ struct Coordinate {
   double slope = 0.0;  // derivative of log_value with respect to log(price)
 };
 
-// Solves for the coordinate by Newton's method. It starts where the larger term alone equals the target, at
-// or above the root. Both terms are convex in L, so the iteration decreases monotonically.
+// Solves e^L + price e^((q-1) L) = target for L by Newton's method. It starts where the larger term alone
+// equals the target, at or above the root. Both terms are convex in L, so the iteration decreases
+// monotonically.
 Coordinate solve_coordinate(double log_target, double log_price, double q) {
   if (log_target == nothing) return {};
   const double target = stable_exp(log_target);
@@ -53,7 +54,7 @@ Vector3 with_signs_of(const Vector3& point, const Vector3& magnitude) {
   return (point.array() < 0.0).select(-magnitude, magnitude);
 }
 
-// Returns log(|p_i| / a_i) for each coordinate, or `nothing` for 0.
+// Returns log(|p_i| / a_i) for each coordinate p_i of the point and semi-axis a_i, or `nothing` for 0.
 Vector3 log_targets(const Vector3& point, const Vector3& axes) {
   Vector3 logs;
   for (int k = 0; k < 3; ++k) {
@@ -197,8 +198,8 @@ void SuperquadricDistance::expand(const Spot& spot, const Vector3& point, Expans
   out.curvature[2] = square.dot(by_along.cwiseAbs2()) + pull.dot(along_twice);
 }
 
-// Moves the spot to a local minimum of the distance by Newton's method. Steps are damped so that the distance
-// decreases.
+// Moves a point of the surface to a local minimum of the distance by Newton's method. Steps are damped so
+// that the distance decreases.
 SuperquadricDistance::Spot SuperquadricDistance::improve(Spot spot, const Vector3& point) const {
   Expansion here, there;
   expand(spot, point, here);
@@ -252,7 +253,7 @@ DistanceSample SuperquadricDistance::tangent(const Spot& spot, const Vector3& po
   return {normal.dot(point.cwiseAbs() - at), signed_normal};
 }
 
-// Returns the spot where the ray from the solid's centre through the point leaves the solid.
+// Returns the point of the surface where the ray from the solid's centre through `point` leaves the solid.
 SuperquadricDistance::Spot SuperquadricDistance::radial_exit(const Vector3& point) const {
   const Vector3 ratio = point.cwiseAbs().cwiseQuotient(axes_);
   const double x = around_ * log_ratio(ratio.x()), z = around_ * log_ratio(ratio.z());
@@ -261,7 +262,7 @@ SuperquadricDistance::Spot SuperquadricDistance::radial_exit(const Vector3& poin
   return {bounded(x - z), bounded(along_ * (ring - log_ratio(ratio.y())))};
 }
 
-// Returns the spot where the line through the point along one axis leaves the solid.
+// Returns the point of the surface where the line through `point` along one axis leaves the solid.
 SuperquadricDistance::Spot SuperquadricDistance::axis_exit(const Vector3& point, int axis) const {
   const Vector3 ratio = point.cwiseAbs().cwiseQuotient(axes_);
   const auto power = [](double value, double q) { return stable_exp(q * log_ratio(value)); };

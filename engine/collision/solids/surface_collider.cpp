@@ -142,8 +142,8 @@ Clearance SurfaceCollider::clearance(const Surface& surface, const ToolShape& to
 
 // Returns the depth of a tool inside a closed surface along the normal of the nearest wall, or 0 if the tool
 // is not inside. A sphere is inside if its centre is inside. A convex solid that touches the wall is inside
-// if the centre of its bounds is inside; for a non-convex one, the result is 0. A solid that does not touch
-// the wall is inside if its point nearest to the wall is inside.
+// if the centre of its bounds is inside; a non-convex solid that touches the wall never counts as inside. A
+// solid that does not touch the wall is inside if its point nearest to the wall is inside.
 double SurfaceCollider::depth_inside(const ToolShape& tool, const SurfaceContact& nearest) const {
   if (tool.kind == ToolShape::Kind::sphere) {
     const bool inside = (tool.centre_m - nearest.point_m).dot(nearest.normal) < 0.0;
@@ -278,7 +278,7 @@ double SurfaceCollider::enough() const {
   return best >= 0.0 ? std::max(best - tolerance_, -touch_tolerance_m) : best - tolerance_;
 }
 
-// Searches between the samples of a finest cell, where a nearer point may be, by branch and bound.
+// Searches a cell of the finest level for a nearer point between its samples, by branch and bound.
 void SurfaceCollider::search_between_samples(const Surface& surface, const ToolShape& tool,
                                              const LevelCell& cell, bool& overflow) {
   if (is_cut(cell)) return search_trimmed_cell(surface, tool, cell);

@@ -57,7 +57,7 @@ inline constexpr int surface_cut_limit = 20000;
 // Result of SurfaceCollider::collide().
 struct CollisionResult {
   // True if the surface is within the margin or encloses the tool. The tolerance is 1e-6 m for a margin of 0,
-  // otherwise that of `nearest`.
+  // otherwise 2e-5 m or 5e-5 m, as for `nearest`.
   bool found = false;
   // Deepest contact, valid if `found` is true. No point is deeper by more than 2e-5 m, or 5e-5 m for a
   // non-convex solid of unknown concavity.

@@ -148,7 +148,7 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
 constexpr int max_contact_steps = 60, max_restarts = 2;
-// Smallest decrease of the distance by a step that is worthwhile, as a fraction of the solid's size.
+// Smallest decrease of the distance for which a step is worthwhile, as a fraction of the solid's size.
 constexpr double least_depth_gain = 1e-12;
 // Half the distance between the two points of a central difference of the gradient: a fraction of the solid's
 // size, and its largest value in metres.
@@ -278,8 +278,8 @@ class Descent {
     count_ = 1;
   }
 
-  // Returns the weighted mean curvature of the faces, with lengths along du and dv as variables. Negative
-  // eigenvalues are replaced by their absolute values.
+  // Returns the weighted mean of the curvature matrices of the faces, with lengths along du and dv as
+  // variables. Negative eigenvalues are replaced by their absolute values.
   Matrix2d quadratic() const {
     Matrix2d sum = Matrix2d::Zero();
     for (int k = 0; k < count_; ++k) sum += weights_[k] * faces_[k].curvature;

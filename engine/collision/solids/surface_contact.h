@@ -46,7 +46,7 @@ struct ToolContactRegion {
 
 inline constexpr int tool_region_capacity = 64;
 
-// Makes the contact at a spot. Its depth is the negative of the spot's distance.
+// Makes the contact at a point of a surface. Its depth is the negative of the point's distance from the tool.
 SurfaceContact contact_at(const Surface& surface, const SurfaceSpot& spot);
 
 }  // namespace spoonbill

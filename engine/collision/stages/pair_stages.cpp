@@ -28,7 +28,8 @@ void PairStages::add(const Surface& first, const Surface& second, double margin_
   query.first_closed = first_closed;
   query.second_closed = second_closed;
   query.reach_m = margin_m;
-  // A new collider does not start from the contacts of an earlier call, so that all stages are passed.
+  // A new collider does not start from the contacts of an earlier call, so that the search passes through all
+  // stages.
   collider_ = std::make_unique<SurfacePairCollider>(*first_, *second_);
   const PairResult result = collider_->collide(first, second, query);
   stages.overflow |= result.overflow;

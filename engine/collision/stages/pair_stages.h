@@ -19,8 +19,8 @@ class PairStages {
  public:
   static Result<PairStages> make(const Surface& first, const Surface& second);
 
-  // Adds the stages of a contact search up to `margin_m`. `first_closed` and `second_closed` have the same
-  // meaning as in PairQuery.
+  // Adds the stages of a contact search up to `margin_m`. `first_closed` and `second_closed` are true if that
+  // surface bounds a body, with du x dv pointing outward.
   void add(const Surface& first, const Surface& second, double margin_m, bool first_closed,
            bool second_closed, ContactStages& stages);
 

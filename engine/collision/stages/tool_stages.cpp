@@ -41,7 +41,8 @@ ToolStages::ToolStages(NestedGrid nested) : nested_(std::make_unique<NestedGrid>
 void ToolStages::add(const Surface& surface, const ToolShape& tool, double margin_m, bool closed,
                      ContactStages& stages, std::shared_ptr<const TrimmedArea> trim) {
   SPOONBILL_ASSERT(margin_m >= 0.0);
-  // A new collider does not start from the contact of an earlier call, so that all stages are passed.
+  // A new collider does not start from the contact of an earlier call, so that the search passes through all
+  // stages.
   collider_ = std::make_unique<SurfaceCollider>(*nested_, std::move(trim));
   const CollisionResult result = collider_->collide(surface, tool, margin_m, closed);
   stages.overflow |= result.overflow;

@@ -14,7 +14,7 @@ namespace spoonbill {
 namespace {
 
 // Largest outward component of a ring's points that counts as rounding error, as a fraction of the radius. A
-// ring with a smaller one is flat.
+// ring whose outward component is smaller is flat.
 constexpr double flat_fraction = 1e-9;
 
 Status check_poles(const Surface& surface) {

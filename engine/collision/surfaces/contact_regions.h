@@ -142,14 +142,13 @@ struct RegionRanges {
 };
 RegionRanges region_ranges(const RegionCells& cells);
 
-// Returns the pair, of a few pairs of the region, at which the first surface is deepest behind the second.
+// Returns the pair at which the first surface is deepest behind the second, among a few pairs of the region.
 // Returns `touch` if the first surface is not behind the second at any of them. `outside` is 1 if the second
 // surface's outward normal is du x dv, -1 if it is opposite.
 PairParameters find_deepest_seed(const RegionCells& cells, const PairParameters& touch, double outside);
 
-// Returns the side of this surface that faces the other surface, as the sign of du x dv: 1 if the two normals
-// oppose each other, -1 if they agree. `normal` is the other surface's outward normal, `own` the du x dv of
-// this surface.
+// Returns the side of a surface that faces another surface: 1 for the side of du x dv, -1 for the opposite
+// side. `normal` is the other surface's outward normal; `own` is the du x dv of the surface itself.
 double facing_side(const Vector3& normal, const Vector3& own);
 
 }  // namespace spoonbill

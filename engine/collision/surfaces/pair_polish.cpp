@@ -18,7 +18,7 @@ constexpr int max_tries = 12;
 constexpr double least_damping = 1e-9;
 // Smallest decrease of the distance, in metres, that is more than rounding.
 constexpr double least_polish_gain_m = 1e-15;
-// Smallest decrease of the distance, in metres, that the quadratic model must predict.
+// Smallest decrease of the distance, in metres, that the quadratic model must predict for a step to be tried.
 constexpr double least_promise_m = 1e-17;
 
 // Returns true if the parameter is at an end of an open domain and the step would leave the domain.

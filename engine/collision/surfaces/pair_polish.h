@@ -81,7 +81,7 @@ DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& 
 
 // One region in which two surfaces cross or touch.
 struct PairContact {
-  // The deepest point of one surface, and the nearest point of the other.
+  // The deepest point of one surface, and the point of the other surface that is nearest to it.
   SurfacePair pair;
   Vector3 normal;                // unit vector in the direction in which the first surface leaves the second
   double depth_m = 0.0;          // depth along the normal; 0 if the surfaces only touch

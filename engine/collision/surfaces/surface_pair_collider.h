@@ -72,7 +72,7 @@ class SurfacePairCollider {
   using Region = ContactRegions::Region;
 
   // Points of a region from which the next collide() starts: the point where the surfaces touched, and the
-  // points where the first surface was deepest, one for each side as in Seeds.
+  // points where the first surface was deepest on either side of the second.
   struct Seed {
     PairParameters touch, deepest[2];
     bool deep[2] = {false, false};
@@ -100,7 +100,7 @@ class SurfacePairCollider {
   ContactRegions regions_;
   PairSearch search_;
   std::vector<PairContact> contacts_;
-  // Seeds of the present contacts, and of those of the previous collide().
+  // Starting points stored by the present collide() and by the previous one.
   std::vector<Seed> seeds_, last_seeds_;
   std::size_t query_ = 0;
   // Nearest points in the last collide() of surfaces that did not touch.
