@@ -148,7 +148,8 @@ ShellMass compute_shell_mass(const Surface& surface, double thickness_m, const T
     const double size = weight * normal.norm();
     const double mean = 0.5 * (curvatures->smallest + curvatures->largest);
     const double gaussian = curvatures->smallest * curvatures->largest;
-    // Integral over the thickness of the area of parallel surfaces, and the same integral weighted by depth.
+    // Volume of the shell, which is the area of parallel surfaces integrated over the thickness; then the
+    // same integral weighted by the depth.
     const double volume = size * t * (1.0 - mean * t + gaussian * t * t / 3.0);
     const double depth = size * t * t * (0.5 - 2.0 / 3.0 * mean * t + 0.25 * gaussian * t * t);
     mass.volume_m3 += volume;

@@ -232,8 +232,8 @@ class CellPairs {
     return first_tree_.box(nodes[0]).gap(second_tree_.box(nodes[1]));
   }
   CellPair elements(const std::array<int, 2>& nodes) const;
-  // Splits the node with the larger box into its two halves. Returns the pair of each half with the other
-  // node.
+  // Splits the node with the larger box into its two child nodes. Returns two pairs, one of each child with
+  // the node that is not split.
   std::array<std::array<int, 2>, 2> split(const std::array<int, 2>& nodes) const {
     const auto [a, b] = nodes;
     const ElementTree::Node& node_a = first_tree_.node(a);

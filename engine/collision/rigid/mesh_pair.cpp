@@ -406,7 +406,7 @@ class ContactSearch {
   }
 
   // Makes the contact of a region that is a whole part of one mesh inside the other mesh. `item` is one of
-  // its vertices. Returns nothing if the region is not a whole part.
+  // the region's vertices. Returns nothing if the region is not a whole part.
   std::optional<MeshPairContact> make_containment_contact(std::size_t item) {
     const int s = item < meshes_[0]->vertex_count() ? 0 : 1;
     const auto vertex = static_cast<std::uint32_t>(item - vertex_item(s, 0));

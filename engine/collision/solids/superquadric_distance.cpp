@@ -26,8 +26,8 @@ double log_of_sum(double a, double b) {
 // One coordinate x of the nearest point, as L = log(x / a), the root of e^L + price e^((q-1) L) = target.
 struct Coordinate {
   double log_value = nothing;
-  // Second term of the equation: offset of the point from the surface along this axis, divided by the
-  // semi-axis.
+  // The term price e^((q-1) L). It is the offset of the point from the surface along this axis, divided by
+  // the semi-axis.
   double reach = 0.0;
   double slope = 0.0;  // derivative of log_value with respect to log(price)
 };

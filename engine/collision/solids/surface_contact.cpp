@@ -210,7 +210,7 @@ class Descent {
     double gain;
   };
 
-  // Evaluates the expansion of the face at the parameters and stores it.
+  // Evaluates and stores the expansion of the face of the solid that is nearest at the given parameters.
   void evaluate_face(const Vector2d& at) {
     const SurfacePoint point =
         evaluate(surface_, surface_.u.into_domain(at.x()), surface_.v.into_domain(at.y()));

@@ -17,7 +17,7 @@ namespace spoonbill {
 bool hulls_are_apart(const ControlNet& first, const ControlNet& second);
 
 // Decides which pairs of points count. It is needed when a surface is tested against itself: Newton's method
-// may converge to one point for both, and its distance of zero from itself means nothing.
+// may move both points to the same position, and a distance of zero between them then means nothing.
 class PairJudge {
  public:
   virtual bool counts(const PairParameters& at) const = 0;

@@ -117,7 +117,7 @@ bool SurfacePairCollider::touches(const RegionCells& cells, const Seed* last) {
   return false;
 }
 
-// Computes the depth of a region; `contact` contains the point where the surfaces touch. Returns the seed
+// Computes the depth of a region; `contact` contains the point where the surfaces touch. Returns the points
 // from which the next collide() starts in this region.
 SurfacePairCollider::Seed SurfacePairCollider::resolve_contact(const RegionCells& cells,
                                                                const PairQuery& query, const Seed* last,
@@ -165,7 +165,7 @@ RegionCentre SurfacePairCollider::find_centre(const RegionCells& cells) const {
 // Returns the starting points for both sides of the second surface: the deepest and the one farthest in front
 // among several points. These are the centre of the region, the deepest points of the last call, and others
 // in the directions of a few pairs at which the surfaces cross: at half and at twice the distance of the
-// pair. With a seed from the last call, only one of these others is evaluated per call.
+// pair. If the last call stored points for this region, only one of these others is evaluated per call.
 SurfacePairCollider::Seeds SurfacePairCollider::find_seeds(const RegionCells& cells, const Seed* last) const {
   const RegionCentre centre = find_centre(cells);
   Seeds seeds;

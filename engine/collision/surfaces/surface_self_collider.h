@@ -55,15 +55,15 @@ class PatchFolds {
   // for S_uu and S_vv.
   std::vector<double> mixed_;
   struct Direction {
-    // Knot span of each element, and control point index of each unrolled index. Unrolled indices continue
-    // past the seam of a periodic direction.
+    // Knot span of each element, and index of each control point along the direction. In a periodic
+    // direction, the first control points are repeated at the end.
     std::vector<int> span, control;
-    std::vector<double> scale;  // degree / (u_{i+p+1} - u_{i+1}) of the unrolled index i
+    std::vector<double> scale;  // degree / (u_{i+p+1} - u_{i+1}) for each index i of `control`
     int degree = 0;
   };
   static Direction unroll(const KnotVector& knots);
   Direction u_, v_;
-  // Working memory: norms of the control points of S_uv, by unrolled index.
+  // Working memory: norms of the control points of S_uv, with the same repetition as in Direction::control.
   std::vector<double> steps_;
   std::vector<Cones> cones_;  // indexed by SurfaceLevels::cell_index()
   std::vector<std::uint32_t> computed_at_;
