@@ -16,7 +16,7 @@ namespace {
 // edge.
 constexpr double off_knots = 1e-6;
 constexpr double off_poles = 1e-2;
-// Number of cells in which the minimum is refined. They are the cells with the smallest values.
+// Largest number of cells in which the minimum is refined. They are the cells with the smallest values.
 constexpr std::size_t searched = 12;
 constexpr std::size_t cells_between_reports = 256;
 // Number of times that the pattern search halves its step.
@@ -156,7 +156,8 @@ std::optional<PrincipalCurvatures> compute_principal_curvatures(const SurfacePoi
 
 namespace {
 
-// Largest extent of a surface that counts as a point. It may be only the rounding of the coordinates.
+// Largest extent of a surface that counts as a point. Such an extent may be due to the rounding of
+// coordinates.
 constexpr double least_size_m = 1e-9;
 
 // Returns the curvatures at a point of a surface of the given size. Returns nothing where a derivative

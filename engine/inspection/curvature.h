@@ -1,5 +1,5 @@
 // Principal curvatures of a trimmed surface and their extremes, and a search for minima over the polynomial
-// pieces of a surface. Pure functions, outside the tick; any thread.
+// pieces of a surface. The functions are pure, may run on any thread, and are too slow for a tick.
 #pragma once
 
 #include <functional>
@@ -56,10 +56,10 @@ struct CurvatureRange {
   bool exists = false;  // false if no part of the surface has a curvature; the extremes then mean nothing
 };
 
-// Finds the extremes over all pieces, on both sides of each knot, except within a hundredth of a piece from a
-// pole. A smooth extreme has a relative accuracy of a millionth. Radii of curvature below a millionth of the
-// surface's size are ignored. No extreme exists on a surface without extent or area, or if `progress` stopped
-// the search.
+// Finds the smallest and the largest curvature over all polynomial pieces, on both sides of each knot, except
+// within a hundredth of a piece from a pole. A smooth extreme has a relative accuracy of a millionth. Radii
+// of curvature below a millionth of the surface's size are ignored. No extreme exists on a surface without
+// extent or area, or if `progress` stopped the search.
 CurvatureRange find_curvature_range(const Surface& surface, const TrimmedArea& area = {},
                                     const Progress& progress = {});
 

@@ -77,8 +77,8 @@ void visit_whole_surface(const Surface& surface, const AreaVisitor& visit) {
   }
 }
 
-// Uses Radon's rule of seven points: the centroid of the triangle, and three points on its medians at each of
-// two distances.
+// Visits the seven points of Radon's rule in a triangle of parameters: the centroid, and three points on the
+// medians at each of two distances from it.
 void visit_triangle(const Surface& surface, const std::array<Parameters, 3>& corners,
                     const AreaVisitor& visit) {
   const Parameters first = corners[1] - corners[0], second = corners[2] - corners[0];
@@ -118,7 +118,7 @@ void visit_area(const Surface& surface, const TrimmedArea& area, const AreaVisit
 
 EnclosedMass compute_enclosed_mass(const Surface& surface, const TrimmedArea& area) {
   SPOONBILL_ASSERT_DEBUG(is_valid(surface));
-  // Moments are taken about a point of the body, so that a large distance from the origin costs no precision.
+  // Moments are taken about a control point, so that a large distance from the origin costs no precision.
   const Vector3 origin = surface.net.point(0, 0);
   EnclosedMass mass;
   // Along a direction of degree p, the integrand of the first moment has degree 4 p - 1.
@@ -148,7 +148,8 @@ ShellMass compute_shell_mass(const Surface& surface, double thickness_m, const T
     const double size = weight * normal.norm();
     const double mean = 0.5 * (curvatures->smallest + curvatures->largest);
     const double gaussian = curvatures->smallest * curvatures->largest;
-    // Integral over the thickness of the area of parallel surfaces, and the same integral weighted by depth.
+    // Volume of the shell, which is the area of parallel surfaces integrated over the thickness; then the
+    // same integral weighted by the depth.
     const double volume = size * t * (1.0 - mean * t + gaussian * t * t / 3.0);
     const double depth = size * t * t * (0.5 - 2.0 / 3.0 * mean * t + 0.25 * gaussian * t * t);
     mass.volume_m3 += volume;

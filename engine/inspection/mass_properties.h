@@ -1,5 +1,5 @@
-// Area, volume, centre and density of a surface or a body, by quadrature. Pure functions, outside the tick;
-// any thread.
+// Area, volume, centre and density of a surface or a body, by quadrature. The functions are pure, may run on
+// any thread, and are too slow for a tick.
 #pragma once
 
 #include <functional>
@@ -20,8 +20,8 @@ struct PieceQuadrature {
   std::vector<double> parameters, weights;
 };
 
-// Returns a rule with `nodes` nodes in each piece; `nodes` must be at least 1. It is exact up to degree 2
-// nodes - 1.
+// Returns a rule with `nodes` nodes in each polynomial piece; `nodes` must be at least 1. The rule is exact
+// for polynomials up to degree 2 * nodes - 1.
 PieceQuadrature make_piece_quadrature(const KnotVector& knots, int nodes);
 
 // Function that receives a surface point and its weight, the part of the parameter domain that the point
@@ -46,8 +46,8 @@ struct EnclosedMass {
 
 EnclosedMass compute_enclosed_mass(const Surface& surface, const TrimmedArea& area = {});
 
-// Volume of a shell: between the part of a surface within its trims and the offset of that part against the
-// normals.
+// Volume of a shell. The shell is between the part of a surface within its trims and the offset of that part
+// in the direction opposite to the normals.
 struct ShellMass {
   double volume_m3 = 0.0;
   Vector3 centre_m = Vector3::Zero();  // centre of the volume
@@ -58,13 +58,14 @@ struct ShellMass {
 // and less than every convex radius of curvature.
 ShellMass compute_shell_mass(const Surface& surface, double thickness_m, const TrimmedArea& area = {});
 
-// Mass of a body made of several materials.
+// Densities and centre of mass of a body made of several materials.
 struct MaterialMix {
   double density_kg_per_m3 = 0.0;           // mean density of the body
   double own_density_kg_per_m3 = 0.0;       // density of the body's own material
   double own_fraction = 1.0;                // fraction of the volume that the body's own material fills
   Vector3 mass_offset_m = Vector3::Zero();  // from the centre of the volume to the centre of mass
-  std::vector<std::string> materials;       // names of the materials in use, the body's own first
+  // Names of the materials in use. The body's own material is first if it is in use.
+  std::vector<std::string> materials;
 };
 
 // Adds up the cells of the body's lattice, each with the material of its region. Fails for a body for which
@@ -90,7 +91,7 @@ struct BodyMass {
 BodyMass mass_of_volume(const Body& body, double volume_m3, const Vector3& centre_m);
 
 // Returns the mass of a body. Returns nothing if the body neither encloses a volume nor is a shell with a
-// thickness.
+// thickness, or if its trims are invalid.
 std::optional<BodyMass> compute_body_mass(const Body& body);
 
 }  // namespace spoonbill

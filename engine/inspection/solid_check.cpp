@@ -22,7 +22,7 @@ constexpr std::size_t max_meetings = 100'000, max_reported = 16;
 constexpr double relative_spacing = 0.005;
 constexpr int max_along_side = 200;
 // Limit on the number of samples, in addition to one for each triangle. While there are more, the spacing
-// grows by this factor.
+// grows by the factor `spacing_growth`.
 constexpr std::size_t max_samples = 500'000;
 constexpr double spacing_growth = 1.4;
 // Margin between samples and the sides of their triangle, as a fraction of the triangle. A line that starts
@@ -38,8 +38,8 @@ std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
   return triangles;
 }
 
-// Returns the point where a side of one triangle passes through the other. If rounding hides it, returns the
-// mean of all corners.
+// Returns the point where a side of one triangle passes through the other. If rounding hides that point,
+// returns the mean of all corners.
 Vector3 find_crossing(const Triangle& first, const Triangle& second) {
   for (const auto& [sides, through] : {std::pair(first, second), std::pair(second, first)}) {
     for (std::size_t k = 0; k < sides.size(); ++k) {
@@ -71,8 +71,9 @@ void find_self_intersections(const TriangleMesh& mesh, const LineExits& exits, d
   check.self_intersections.resize(std::min(check.self_intersections.size(), max_reported));
 }
 
-// Walls behind the triangles of a mesh, as a function of two parameters for all triangles. In triangle k, u
-// runs from k to k + 1 along the first side, and v from 0 at that side to 1 at the third corner.
+// Walls behind the triangles of a mesh, as a function of two parameters u and v for all triangles. In
+// triangle k, u runs from k to k + 1 along the first side, and v from 0 at that side to 1 at the third
+// corner.
 class Walls {
  public:
   // Triangles whose height is below the error are skipped, because their normals are unreliable.
@@ -136,8 +137,8 @@ class Walls {
   double min_height_m_;
 };
 
-// Search for the thinnest wall. It is refined in the cells that have the thinnest walls of the mesh at their
-// centres and whose walls agree with the exact surfaces. If no cell agrees, the mesh alone is used.
+// Search for the thinnest wall. The search is refined in the cells that have the thinnest walls of the mesh
+// at their centres and whose walls agree with the exact surfaces. If no cell agrees, the mesh alone is used.
 class ThinnestWallSearch {
  public:
   ThinnestWallSearch(const Walls& walls, const ExactWalls& exact) : walls_(walls), exact_(exact) {}
@@ -210,7 +211,7 @@ std::optional<SolidCheck> check_solid(const TriangleMesh& mesh, const std::vecto
 
 namespace {
 
-// Number of levels at which cells are a quarter of an element wide, as for collisions in reports.
+// With this number of levels, cells are a quarter of an element wide, as for collisions in reports.
 constexpr int levels = 2;
 
 std::optional<BodyOverlap> find_overlap(const SurfacePairCollider& collider, const PairResult& result) {

@@ -29,8 +29,8 @@ struct SolidCheck {
 
 // Checks a solid by its mesh. The mesh must be watertight, have outward normals and deviate from the bounding
 // surfaces by at most `error_m`. Intersections no deeper than twice the error are ignored. If there are no
-// surfaces or some face inwards, thicknesses are those of the mesh. Returns nothing if `progress` stopped the
-// check.
+// surfaces, or the normals of some point inwards, thicknesses are those of the mesh. Returns nothing if
+// `progress` stopped the check.
 std::optional<SolidCheck> check_solid(const TriangleMesh& mesh, const std::vector<const Surface*>& surfaces,
                                       double error_m, const Progress& progress = {});
 
@@ -43,7 +43,7 @@ struct BodyOverlap {
 };
 
 struct BodyOverlaps {
-  // Deepest contact of each touching pair of bodies, in the order of the pairs.
+  // Deepest contact of each touching pair of bodies, in ascending order of the bodies' indices.
   std::vector<BodyOverlap> found;
   bool complete = true;  // false if surfaces are near each other in too many points to search them all
 };

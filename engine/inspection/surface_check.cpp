@@ -74,8 +74,8 @@ constexpr int cells_per_span = 4;
 // Smallest |du x dv| that is not a defect, as a fraction of its mean over the surface.
 constexpr double min_area_ratio = 1e-7;
 constexpr std::size_t max_defects = 16;
-// Number of control points above which elements are not halved for the search. With halved elements, loops of
-// half a cell are found on usual nets; the elements of larger nets are fine enough.
+// Number of control points above which elements are not halved in the search for self-intersections. Halved
+// elements reveal smaller loops; the elements of larger nets are small enough.
 constexpr std::size_t large_net = 2500;
 
 // Determines which neighbouring cells along one direction belong to the same smooth sheet. Sheets are
@@ -84,8 +84,8 @@ constexpr std::size_t large_net = 2500;
 class SmoothNeighbours {
  public:
   explicit SmoothNeighbours(const KnotVector& knots) {
-    // Each entry is the start of a piece. The last piece ends at the first entry, which for an open direction
-    // counts as clamped.
+    // Each entry is the start of a piece. The first entry is also the end of the last piece; in an open
+    // direction it counts as clamped, so that no piece follows smoothly.
     const std::vector<KnotMultiplicity> starts = knot_multiplicities(knots);
     for (std::size_t piece = 0; piece < starts.size(); ++piece) {
       smooth_after_.push_back(starts[(piece + 1) % starts.size()].multiplicity < knots.degree());

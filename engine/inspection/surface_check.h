@@ -14,7 +14,7 @@
 
 namespace spoonbill {
 
-// Edges whose distance is below this value coincide.
+// Edges no farther apart than this, in metres, coincide.
 inline constexpr double closing_tolerance_m = 1e-6;
 
 enum class Closedness {
@@ -57,13 +57,13 @@ struct SurfaceCheck {
   // How nearly the surface is closed, ignoring trims; all other members refer to the area within the trims.
   Closing closing;
   bool is_trimmed = false;
-  EnclosedMass mass;  // the volume and its centre are valid only if encloses()
+  EnclosedMass mass;  // the volume and its centre are valid only if encloses() is true
   CurvatureRange curvature;
   double bending = 0.0;  // result of compute_bending_energy()
   std::vector<SurfaceDefect> surface_defects;
   std::vector<SelfIntersection> self_intersections;
   bool self_intersections_complete = true;  // false if there are too many intersections to search them all
-  std::optional<Thickness> thinnest = {};   // set only if encloses() and the volume is positive
+  std::optional<Thickness> thinnest = {};   // set only if encloses() is true and the volume is positive
 
   // Returns whether the surface bounds a body by itself.
   bool encloses() const { return closing.closedness == Closedness::solid && !is_trimmed; }

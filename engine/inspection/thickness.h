@@ -14,7 +14,8 @@
 
 namespace spoonbill {
 
-// An inward line from a surface point to the opposite wall: its length, and the parameters of both ends.
+// An inward line from a surface point to the opposite wall: its length, and the parameters and positions of
+// both ends.
 struct Thickness {
   double thickness_m = 0.0;
   double u = 0.0, v = 0.0, opposite_u = 0.0, opposite_v = 0.0;
@@ -28,7 +29,7 @@ struct SurfaceExit {
 };
 
 // Thickness search on one surface, which must outlive the search. The surface has outward normals. It is
-// closed, or it is one of several surfaces that together bound a body. One owner.
+// closed, or it is one of several surfaces that together bound a body. Immutable.
 class ThicknessSearch {
  public:
   explicit ThicknessSearch(const Surface& surface);
@@ -39,7 +40,7 @@ class ThicknessSearch {
 
   // Returns the thickness at a surface point. Returns nothing where the surface has no normal, or where the
   // inward line leaves through no wall (exits_through_wall()). Near an edge the line may leave too obliquely
-  // or pass between the samples.
+  // or miss the facets between the samples.
   std::optional<Thickness> at(double u, double v) const;
 
   // Returns the smallest thickness at the samples, refined around the best of them. A wall thinner than the
@@ -67,7 +68,7 @@ struct WallThickness {
 };
 
 // Corrects thicknesses that were measured on a mesh to the exact surfaces that the mesh approximates. The
-// surfaces must outlive the object, and all their normals must point out of the material. One owner.
+// surfaces must outlive the object, and all their normals must point out of the material. Immutable.
 class ExactWalls {
  public:
   // `error_m` is the largest distance of the mesh from the surfaces, at least 0.
@@ -75,7 +76,8 @@ class ExactWalls {
 
   // Returns the wall between the surfaces nearest to the ends of `mesh_wall`, along the normal of the first
   // surface, exact up to rounding. Returns nothing if there are no two surfaces, or if their distance differs
-  // from the mesh's by more than its error explains, as at a sliver whose normal is wrong.
+  // from the thickness of `mesh_wall` by more than the mesh's error explains, as at a sliver whose normal is
+  // wrong.
   std::optional<WallThickness> at(const WallThickness& mesh_wall) const;
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 // Number of groups of slabs in the cache, which is cleared when it is full.
 constexpr int group_capacity = 8192;
-// Factor on bulges that allows for rounding: the parameter steps of an element's cells differ slightly.
+// Factor on bulges, because rounding makes the parameter steps of an element's cells differ slightly.
 constexpr double size_tolerance = 1.0 + 1e-9;
 
 }  // namespace
@@ -133,8 +133,8 @@ int ElementTree::find_leaf_near(const Vector3& point) const {
   return nearest;
 }
 
-// Updates the boxes of the elements (element_u, .). A corner box is intersected with the box of the control
-// points if the bulge is large compared to the corner box.
+// Updates the boxes of the elements in row element_u. The box around an element's corners is intersected with
+// the box of its control points if the bulge is large compared to the box around the corners.
 void ElementTree::update_strip(SurfaceLevels& levels, int element_u) {
   levels.element_boxes(element_u, strip_.data(), bulges_.data());
   for (int element_v = 0; element_v < v_.elements(); ++element_v) {
@@ -174,7 +174,8 @@ CellPairs::CellPairs(SurfaceLevels& first, SurfaceLevels& second)
       second_slabs_(second),
       first_tree_(first.nested().grid.u.knots, first.nested().grid.v.knots),
       second_tree_(second.nested().grid.u.knots, second.nested().grid.v.knots) {
-  // Each step of a descent leaves at most three node pairs on one stack, or fifteen cell pairs on the other.
+  // Each step of a descent removes one entry from a stack. It adds at most four entries to node_pairs_, or
+  // sixteen to pending_.
   node_pairs_.reserve(256);
   pending_.reserve(
       static_cast<std::size_t>(16 * (2 + std::max(first.nested().levels, second.nested().levels))));
@@ -283,8 +284,8 @@ void CellPairs::refine(const CellPair& elements, double reach, int level) {
   }
 }
 
-// Pairs of children of the same two cells are neighbours, so all of them except the first are marked as such
-// (-1).
+// Adds a pair of cells. Pairs of children of the same two cells are neighbours, so all of them except the
+// first get the region -1, which marks a neighbour of the preceding pair.
 void CellPairs::add_pair(const NodePair& nodes, bool is_first) {
   overflow_ = overflow_ || pairs_.size() == limit_;
   if (!overflow_) pairs_.push_back({nodes.first.cell, nodes.second.cell, is_first ? 0 : -1});

@@ -1,5 +1,6 @@
-// Pairs of cells of two surfaces that may meet, found from coarse to fine: boxes over the elements, then
-// slabs around the patches of the cells.
+// Coarse-to-fine search for pairs of cells of two surfaces that may meet. An element is a polynomial piece of
+// a surface; a cell is a rectangle between samples of an element. The search tests boxes around elements,
+// then slabs around cells.
 #pragma once
 
 #include <array>
@@ -13,7 +14,8 @@
 
 namespace spoonbill {
 
-// Cache of the slabs around one surface's cells. One owner, one thread; allocates only on construction.
+// Cache of the slabs that bound the cells of one surface (SlabGroup). Not thread-safe. Allocates only on
+// construction.
 class CellSlabs {
  public:
   explicit CellSlabs(SurfaceLevels& levels);
@@ -21,7 +23,8 @@ class CellSlabs {
   // Clears the cache. Must be called after SurfaceLevels::begin().
   void begin();
 
-  // A cell, the number of its element and its index in the quadtree of the element's cells.
+  // A cell and its index in the quadtree of its element. `element_key` is the first of the keys that are
+  // reserved for the cells of the element.
   struct QuadtreeCell {
     LevelCell cell;
     int element_key, index_in_element;
@@ -56,8 +59,8 @@ class CellSlabs {
   }
 
  private:
-  // Finds the cached group of slabs of a key, or claims a free group. Returns true if its slabs must still be
-  // computed.
+  // Finds the cached group of slabs for `key`, or claims a free group. Returns true if the slabs of the group
+  // must still be computed.
   bool claim_slot(int key, SlabGroup*& group) {
     Slot& slot = slots_[key];
     const bool is_current = slot.generation == generation_;
@@ -79,27 +82,29 @@ class CellSlabs {
     int group = 0;
   };
   int elements_v_, keys_per_element_, keys_;
-  std::vector<Slot> slots_;  // by key: first the children of each cell, then the cells themselves
+  // Indexed by key: first a slot for the children of each cell, then a slot for each cell itself.
+  std::vector<Slot> slots_;
   std::uint32_t generation_ = 0;
   int used_ = 0;
   double samples_[3][9];  // working memory: 3 x 3 samples of each coordinate
 };
 
 // Binary tree of boxes over the elements of one surface. It limits the parameter ranges that can meet another
-// surface, as section 4.1 of Pungotra et al. 2013 does by overlapping hulls. One owner, one thread; allocates
-// only on construction.
+// surface, as section 4.1 of Pungotra et al. 2013 does by overlapping hulls. Not thread-safe. Allocates only
+// on construction.
 class ElementTree {
  public:
   ElementTree(const KnotVector& u, const KnotVector& v);
 
   struct Node {
-    int first_u, end_u, first_v, end_v;  // the elements that the node contains, as ranges
+    int first_u, end_u, first_v, end_v;  // ranges of the elements that the node contains
     int left = -1, right = -1;           // child nodes; -1 in a leaf, which is one element
     bool is_leaf() const { return left < 0; }
   };
 
-  // Updates the boxes to the current shape. An element's box encloses its corners and bulge. Where the
-  // surface is far from flat, this box is intersected with the box of the element's control points.
+  // Updates the boxes to the current shape. The box of an element encloses its four corners, enlarged by the
+  // bulge, which is a bound of the surface's distance from the bilinear patch of the corners. If the bulge is
+  // large, the box is intersected with that of the element's control points.
   void update(SurfaceLevels& levels);
 
   int root() const { return 0; }
@@ -137,19 +142,19 @@ inline constexpr std::size_t cell_pair_capacity = 1 << 19;
 // A pair of cells, one of each surface.
 struct CellPair {
   LevelCell first, second;
-  // Index of the region, which ContactRegions sets. Before that, -1 if both cells are equal or adjacent to
-  // the cells of the preceding pair, otherwise 0.
+  // Index of the pair's contact region, set by ContactRegions. Before that, -1 if each cell is known to be
+  // equal or adjacent to the corresponding cell of the preceding pair, otherwise 0.
   int region = 0;
 };
 
-// Coarse-to-fine search for pairs of cells of two surfaces that may meet. One owner, one thread; allocates
-// only on construction.
+// Coarse-to-fine search for pairs of cells of two surfaces that may meet. Not thread-safe. Allocates only on
+// construction.
 class CellPairs {
  public:
   CellPairs(SurfaceLevels& first, SurfaceLevels& second);
 
-  // invalidate_first() and invalidate_second() must be called when the control points of that surface have
-  // moved, after its SurfaceLevels::begin().
+  // invalidate_first() must be called when the control points of the first surface have moved, after the
+  // begin() of its SurfaceLevels. The same applies to invalidate_second() and the second surface.
   void invalidate_first();
   void invalidate_second();
 
@@ -157,11 +162,11 @@ class CellPairs {
   // themselves.
   void update();
 
-  // Returns two elements, as coarsest cells, that are likely to be near each other.
+  // Returns two elements that are likely to be near each other, each as a cell of level 0.
   CellPair find_likely_near_elements() const;
 
-  // Returns all pairs of cells that may be within `reach_m` of each other, at the finest level. Where the
-  // surfaces meet over a large area, the level is the finest one whose pairs fit the capacity.
+  // Returns all pairs of cells that may be within `reach_m` of each other, at the finest level. If the
+  // surfaces meet over a large area, returns the pairs of the finest level at which they fit the capacity.
   std::vector<CellPair>& find_within(double reach_m);
   // Returns the pairs of cells at one level, 0 being the coarsest, that may be within `reach_m` of each
   // other.
@@ -169,7 +174,7 @@ class CellPairs {
   // Returns the pairs that the last search found. ContactRegions may have changed their order.
   const std::vector<CellPair>& pairs() const { return pairs_; }
 
-  // Calls visit(pair) for each pair of elements, as coarsest cells, whose boxes are within reach() of each
+  // Calls visit(pair) for each pair of elements, as cells of level 0, whose boxes are within reach() of each
   // other, roughly nearest first. reach() may decrease during the search.
   template <class Reach, class Visit>
   void visit_elements(const Reach& reach, const Visit& visit) {
@@ -190,7 +195,7 @@ class CellPairs {
     }
   }
 
-  // Calls visit(pair) for each pair of elements, as coarsest cells, whose boxes are within `reach` of each
+  // Calls visit(pair) for each pair of elements, as cells of level 0, whose boxes are within `reach` of each
   // other, in metres. Stops when visit() returns false.
   template <class Visit>
   void visit_near_elements(double reach, const Visit& visit) {
@@ -227,8 +232,8 @@ class CellPairs {
     return first_tree_.box(nodes[0]).gap(second_tree_.box(nodes[1]));
   }
   CellPair elements(const std::array<int, 2>& nodes) const;
-  // Splits the node with the larger box into its two halves. Returns the pair of each half with the other
-  // node.
+  // Splits the node with the larger box into its two child nodes. Returns two pairs, one of each child with
+  // the node that is not split.
   std::array<std::array<int, 2>, 2> split(const std::array<int, 2>& nodes) const {
     const auto [a, b] = nodes;
     const ElementTree::Node& node_a = first_tree_.node(a);

@@ -4,8 +4,8 @@ namespace spoonbill::SPOONBILL_KERNELS {
 
 namespace {
 
-// Bounds of the rounding error of a slab's extent in single precision: as a fraction of the slab's size, and
-// as a fraction of its coordinates.
+// The rounding error of a slab's extent in single precision is at most the sum of these fractions of the
+// slab's size and of its coordinates.
 constexpr double size_rounding = 1e-6;
 constexpr double position_rounding = 2.5e-7;
 // Bound of the relative rounding error of the offset between two centres.
@@ -141,7 +141,8 @@ void compute_slabs(const PlanarPoints& samples, double bulge, SlabGroup& group) 
                         magnitude(v[1][k]) + magnitude(v[2][k]) + twisted + bulge;
     const double position = magnitude(centre[0][k]) + magnitude(centre[1][k]) + magnitude(centre[2][k]);
     const double margin = bulge + size_rounding * size + position_rounding * position;
-    // Includes the sides' offsets along the normal, because rounding tilts the normal of a long, narrow cell.
+    // The thickness includes the sides' offsets along the normal, because rounding tilts the normal of a
+    // long, narrow cell.
     group.thickness[k] =
         static_cast<float>(magnitude(nx * u[0][k] + ny * u[1][k] + nz * u[2][k]) +
                            magnitude(nx * v[0][k] + ny * v[1][k] + nz * v[2][k]) +
@@ -165,8 +166,8 @@ struct ManyVectors {
   Many x, y, z;
 };
 
-// Repeats the four lanes once for each slab that is tested at once. `Out` is a template parameter so that
-// only the branch for its size is compiled.
+// Repeats the four lanes for each of the `slabs_at_once` slabs. `Out` is a template parameter so that only
+// the branch for its size is compiled.
 template <int a = 0>
 struct RepeatAll {
   template <class Out>
@@ -246,8 +247,8 @@ inline __attribute__((always_inline)) void find_separated(const ManySlabs& a, co
   store_product_magnitude(b.normal, a.v, v_b);
   separated = across_a > a.thickness + b.slack + u_a + v_a + further;
   separated |= across_b > b.thickness + a.slack + u_b + v_b + further;
-  // A plane across the line between the centres separates the slabs if squared > along + slack * length. Both
-  // sides are squared, so that no root is needed.
+  // A plane perpendicular to the line between the centres separates the slabs if `beyond` is greater than
+  // `slack` times the length of that line. Both sides are squared, so that no root is needed.
   Many au, av, bu, bv;
   store_product_magnitude(a.u, offset, au);
   store_product_magnitude(a.v, offset, av);
@@ -270,7 +271,8 @@ inline __attribute__((always_inline)) unsigned lane_bits(const ManyBits& lanes) 
 #endif
 }
 
-// Tests the slabs of `a` from slab `first` on. Returns the bits of the lanes that are not separated.
+// Tests `slabs_at_once` slabs of `a`, starting with slab `first`, against all slabs of `b`. Returns the bits
+// of the pairs that are not separated.
 template <int first>
 inline __attribute__((always_inline)) unsigned find_meeting_from(const SlabGroup& a, const ManySlabs& b,
                                                                  float reach) {

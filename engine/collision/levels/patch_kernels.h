@@ -31,9 +31,9 @@ struct PlanarOutput {
 // Slabs around four cells, or around one cell that is repeated in all lanes.
 //
 // The bilinear patch of a cell's corners is p(s, t) = centre + s along_u + t along_v + s t w, with s and t
-// from -1 to 1. The surface deviates from this patch by at most the bulge. Along the unit normal, it is at
-// most `thickness` from the centre; along any unit vector d, at most |d . along_u| + |d . along_v| + slack.
-// The values are in single precision; thickness and slack include the rounding.
+// from -1 to 1. The surface deviates from this patch by at most the bulge. Along the unit normal, the surface
+// is at most `thickness` from the centre; along any unit vector d, at most |d . along_u| + |d . along_v| +
+// slack. The values are in single precision; thickness and slack include the rounding.
 struct SlabGroup {
   float centre[3][slab_lanes];
   float along_u[3][slab_lanes];
@@ -43,11 +43,11 @@ struct SlabGroup {
   float slack[slab_lanes];
 };
 
-// The kernels of one instruction set. Pure; any thread.
+// The kernels of one instruction set. They are pure functions and may be called from any thread.
 struct PatchKernels {
   // Samples one element: first along v, for each row of control points, into `lines` (working memory of 3 *
   // u.bandwidth * v.padded numbers), then along u. Rows of `samples` are `columns` apart. Each sum starts at
-  // zero and adds its terms in the order of SurfaceLevels::sample(), so that the results are bitwise equal.
+  // zero and adds its terms in the same order as SurfaceLevels::sample(), so both give bitwise equal results.
   void (*sample_tile)(const TileBand& u, const TileBand& v, const PlanarPoints& net, long net_columns,
                       double* lines, const PlanarOutput& samples, long columns);
 
@@ -55,9 +55,9 @@ struct PatchKernels {
   // surface deviates from the bilinear patch of each cell by at most `bulge`.
   void (*compute_slabs)(const PlanarPoints& samples, double bulge, SlabGroup& group);
 
-  // Returns bit 4 i + j set if slab i of the first group may be within `reach` of slab j of the second. The
-  // tested separating planes are perpendicular to the two normals and to the line between the centres.
-  // `lanes` is the number of slabs of the first group, 1 or 4.
+  // Sets bit 4 i + j of the result if slab i of the first group may be within `reach` of slab j of the
+  // second. The tested separating planes are perpendicular to the two normals and to the line between the
+  // centres. `lanes` is the number of slabs of the first group, 1 or 4.
   unsigned (*find_meeting)(const SlabGroup& first, int lanes, const SlabGroup& second, float reach);
 };
 

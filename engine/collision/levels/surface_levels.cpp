@@ -87,8 +87,8 @@ void SurfaceBounds::unroll_row(const ControlNet& net, int i) {
   }
 }
 
-// Computes, for row i of the unrolled control net and all its columns, the squared norms of the control
-// points of the second derivatives. Rows i and i + 1 must be unrolled already.
+// Computes the squared norms of the control points of the second derivatives for row i of the control net,
+// which is unrolled along its periodic directions. Rows i and i + 1 must be unrolled already.
 void SurfaceBounds::update_row_norms(const ControlNet& net, int i) {
   if (i + 2 < rows_) unroll_row(net, i + 2);
   const std::vector<double>*const here = row_[i % 3], *const next = row_[(i + 1) % 3],
@@ -117,8 +117,8 @@ void SurfaceBounds::update_row_norms(const ControlNet& net, int i) {
   }
 }
 
-// Computes the bounds of the elements (eu, .). For all columns at once, first takes the maximum over the rows
-// of these elements.
+// Computes the bounds of the elements in row eu. First takes, in each column of the unrolled net, the maximum
+// over the rows of control points on which these elements depend.
 void SurfaceBounds::update_elements(int eu) {
   double* const uu = row_[0][0].data();
   double* const vv = row_[0][1].data();
@@ -507,8 +507,8 @@ const CoverSphere& SurfaceLevels::cover(const LevelCell& cell) {
 
 namespace {
 
-// Returns the gap between the corners of a and those of b along `direction`, multiplied by the length of
-// `direction`. It is positive if all of b is beyond a, negative if they overlap.
+// Returns the gap between the corners of `a` and the corners of `b` along `direction`, multiplied by the
+// length of `direction`. The gap is positive if all of `b` is beyond `a`, negative if the two overlap.
 double gap_along(const Vector3& direction, const PatchCorners& a, const PatchCorners& b) {
   double last_a = -std::numeric_limits<double>::infinity(), first_b = -last_a;
   for (const Vector3& corner : a) last_a = std::max(last_a, direction.dot(corner));

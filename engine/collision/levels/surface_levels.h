@@ -1,6 +1,6 @@
-// Levels of detail of one surface (section 4.1 of Pungotra et al. 2013). They comprise samples at nested
-// strides of its blending matrices, evaluated on demand, bounds of the surface between these samples, and
-// lower bounds of the distance between patches.
+// Levels of detail of one surface (section 4.1 of Pungotra et al. 2013). A level is a grid of samples, whose
+// spacing halves from each level to the next. Samples are evaluated on demand. Bounds of the surface between
+// samples give lower bounds of the distance between two surfaces.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 namespace spoonbill {
 
 // Rectangle in a surface's parameter domain that encloses some cells of a grid. If these cells are on both
-// sides of a periodic direction's seam, it covers the whole domain in that direction.
+// sides of a periodic direction's seam, the rectangle covers the whole domain in that direction.
 struct ParameterRange {
   double u0, u1, v0, v1;
   bool contains(double u, double v) const { return u0 <= u && u <= u1 && v0 <= v && v <= v1; }
@@ -28,7 +28,8 @@ struct ParameterRange {
 // Upper bounds of the norms of the second derivatives over each element (one polynomial piece in u by one in
 // v).
 //
-// They come from the control points of the derivative surfaces, whose convex hull contains the derivatives:
+// The bounds come from the control points of the derivative surfaces, whose convex hull contains the
+// derivatives:
 //   Q_i = p (P_{i+1} - P_i) / (u_{i+p+1} - u_{i+1}),
 //   second_i = (p - 1) (Q_{i+1} - Q_i) / (u_{i+p+1} - u_{i+2}).
 // A cell of sides h_u, h_v inside one element is within (h_u^2 M_uu + h_v^2 M_vv) / 8 of the bilinear patch
@@ -36,19 +37,19 @@ struct ParameterRange {
 // interpolation, once for each direction. The bounds are valid only for the control points of the last
 // update.
 //
-// One owner, one thread; allocates only on construction.
+// Not thread-safe. Allocates only on construction.
 class SurfaceBounds {
  public:
   SurfaceBounds(const KnotVector& u, const KnotVector& v);
 
   // Updates the bounds of all elements from the control points. The overload with `element_v` updates only
-  // the elements (., element_v), and skips those that were updated since begin().
+  // the elements in that column, and only if they have not been updated since begin().
   void update(const ControlNet& net);
   void begin() { ++stamp_; }
   void update(const ControlNet& net, int element_v);
 
-  // Updates the boxes that box() and row_box() return. box() encloses the control points of the elements (.,
-  // element_v), row_box() those of the elements (element_u, .).
+  // Updates the boxes that box() and row_box() return. box() encloses the control points of the elements in
+  // column element_v, row_box() those of the elements in row element_u.
   void update_boxes(const ControlNet& net);
   Box box(int element_v) const;
   Box row_box(int element_u) const;
@@ -57,31 +58,35 @@ class SurfaceBounds {
   int elements_v() const { return static_cast<int>(span_v_.size()); }
 
   // Returns an upper bound of the distance of the surface from the bilinear patch of a cell of the element,
-  // in metres. `h_u` and `h_v` are the cell's sides in parameters.
+  // in metres. `h_u` and `h_v` are the lengths of the cell in u and v.
   double bulge(int element_u, int element_v, double h_u, double h_v) const {
     const std::size_t e = static_cast<std::size_t>(element_u * elements_v() + element_v);
     return (h_u * h_u * second_uu_[e] + h_v * h_v * second_vv_[e]) / 8.0;
   }
 
  private:
-  int rows_ = 0, columns_ = 0;  // numbers of rows and columns of the unrolled control net
+  // Numbers of rows and columns of the unrolled control net. This net repeats the first control points of a
+  // periodic direction at its end.
+  int rows_ = 0, columns_ = 0;
   int degree_u_ = 0, degree_v_ = 0;
   void update_column_norms(const ControlNet& net, int column);
   void unroll_row(const ControlNet& net, int i);
   void update_row_norms(const ControlNet& net, int i);
   void update_elements(int element_u);
 
-  std::vector<int> span_u_, span_v_;        // knot span of each element
-  std::vector<int> control_u_, control_v_;  // control point index of each unrolled index
+  std::vector<int> span_u_, span_v_;  // knot span of each element
+  // Index of the row or column of control points for each row and column of the unrolled net.
+  std::vector<int> control_u_, control_v_;
   std::vector<double> first_scale_u_, second_scale_u_, first_scale_v_, second_scale_v_;
-  // Squared norms of the second derivatives' control points, by unrolled index.
+  // Squared norms of the second derivatives' control points, by row and column of the unrolled net.
   std::vector<double> norm_uu_, norm_vv_;
   std::vector<double> second_uu_, second_vv_;
   std::uint64_t stamp_ = 1;
-  // Stamp of the last update: of each unrolled column, and of the elements of each span of v.
+  // Value of stamp_ at the last update of each column of the unrolled net, and of the elements in each span
+  // of v.
   std::vector<std::uint64_t> column_at_, element_at_;
   std::vector<double> row_[3][3];         // working memory: row i of the unrolled net is at index i mod 3
-  std::vector<double> low_[3], high_[3];  // working memory: one value for each column of control points
+  std::vector<double> low_[3], high_[3];  // bounds of the coordinates in each column of control points
   std::vector<Box> row_boxes_;            // one box for each row of control points
 };
 
@@ -117,17 +122,16 @@ inline Vector3 patch_centre(const PatchCorners& corners) {
   return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
 }
 
-// Samples, bounds and spheres of one surface at all levels. One owner, one thread; allocates only on
-// construction. The grid must outlive it.
+// Samples, bounds and spheres of one surface at all levels. Not thread-safe. Allocates only on construction.
+// The grid must outlive the object.
 class SurfaceLevels {
  public:
   explicit SurfaceLevels(const NestedGrid& nested, InstructionSet set = best_instruction_set());
 
   // Starts a query. Must be called whenever the control points may have moved. Returns false if none has
   // moved since the last call; all evaluated values then remain valid. The surface must have the grid's knots
-  // and outlive the calls below. The optional `samples` contain all samples of the finest grid in the order
-  // of GridEvaluator<double>; no sample is then evaluated. They must belong to the surface and outlive the
-  // calls below.
+  // and exist until the next begin(). The optional `samples` contain all samples of the surface on the finest
+  // grid, in the order of GridEvaluator<double>. They must exist just as long; no sample is then evaluated.
   bool begin(const Surface& surface, const PlanarPoints& samples = {});
 
   const Surface& surface() const { return *surface_; }
@@ -136,12 +140,13 @@ class SurfaceLevels {
   SurfaceBounds& bounds() { return bounds_; }
   int samples_evaluated() const { return samples_evaluated_; }
 
-  // Returns one sample of the finest grid. Its index is row * columns + column.
+  // Returns one sample of the finest grid. The index of a sample is row * columns + column.
   Vector3 sample(int index);
   // Evaluates the samples of the coarsest level that are in one column. This is cheaper than single samples,
-  // because they share their sums along v.
+  // because the samples of a column share their sums along v.
   void sample_column(int column);
-  // Evaluates all samples of one element. Cheaper than single samples, with bitwise equal results.
+  // Evaluates all samples of one element. This is cheaper than single samples, and the results are bitwise
+  // equal.
   void sample_element(int element_u, int element_v);
   // Returns all samples of the finest grid. Only entries that have been evaluated are valid.
   PlanarPoints samples() const { return external_samples_.x != nullptr ? external_samples_ : own_samples(); }
@@ -151,7 +156,7 @@ class SurfaceLevels {
   bool is_finest(const LevelCell& cell) const { return cell.level >= nested_->levels; }
   PatchCorners corners(const LevelCell& cell);
 
-  // Computes the boxes of the elements (element_u, .) from their corners and bulges, and the bulges
+  // Computes the boxes of the elements in row element_u from their corners and bulges, and the bulges
   // themselves. Both arrays have elements_v() entries.
   void element_boxes(int element_u, Box* boxes, double* bulges);
 
@@ -170,7 +175,7 @@ class SurfaceLevels {
   int total_cell_count() const { return static_cast<int>(covers_.size()); }
 
  private:
-  // Basis functions at one sample. Their values are `padded` elements apart.
+  // Basis functions at one sample. Their values are `Bands::padded` numbers apart.
   struct BandEntry {
     const int* controls;
     const double* values;
@@ -212,9 +217,9 @@ class SurfaceLevels {
 };
 
 // Returns a lower bound of the distance between two patches, in metres. It is the largest gap between their
-// corners along three directions, the line between the centres and both normals, minus both bulges. A surface
-// leaves the hull of its patch's corners by at most its bulge, so a plane that separates the hulls bounds the
-// distance.
+// corners along three directions (the line between the centres and both normals), minus both bulges. A
+// surface leaves the hull of its patch's corners by at most its bulge, so a plane that separates the hulls
+// bounds the distance.
 double patch_distance(const PatchCorners& a, double bulge_a, const PatchCorners& b, double bulge_b);
 
 // Returns a lower bound of the distance between two patches, in metres. It is the largest gap between their

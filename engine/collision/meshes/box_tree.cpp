@@ -20,7 +20,7 @@ struct Item {
 };
 
 // A range of items for which a node must still be made. `right_of` is the parent's index if the node is a
-// right child, otherwise none.
+// right child, otherwise `none`.
 struct PendingNode {
   std::uint32_t begin, end;
   std::uint32_t right_of;
@@ -130,7 +130,8 @@ std::optional<LineExit> LineExits::first(const Vector3& from, const Vector3& dir
   };
   const auto test_triangle = [&](std::uint32_t position) {
     const Triangle& triangle = triangles_[position];
-    // Tolerance with which a line along an edge hits at least one of the edge's triangles.
+    // Tolerance, as a fraction of the triangle's sides, with which a line through an edge hits at least one
+    // of the triangles of the edge.
     constexpr double tolerance = 1e-6;
     const auto hit =
         intersect_line_triangle(from, direction, triangle[0], triangle[1], triangle[2], tolerance);

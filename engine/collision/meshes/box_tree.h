@@ -32,8 +32,8 @@ class BoxTree {
     bool is_leaf() const { return count > 0; }
   };
 
-  // Builds the tree by halving the items at the median of their box centres along the longest side. `boxes`
-  // must not be empty, `leaf_size` at least 1.
+  // Builds the tree by repeatedly halving the items at the median of their box centres, along the axis in
+  // which the centres extend farthest. `boxes` must not be empty, `leaf_size` must be at least 1.
   BoxTree(const std::vector<Box>& boxes, std::uint32_t leaf_size);
 
   // Updates all boxes: bounding_box(position) returns the current box of the item at a position in order().
@@ -94,7 +94,8 @@ struct LineExit {
   double to_b = 0.0, to_c = 0.0;  // barycentric weights of the corners b and c
 };
 
-// Ray casting against the triangles of a body, for use outside the tick. Immutable; any thread.
+// Search for the point at which a line leaves a body that is bounded by triangles. Immutable, so any thread
+// may use it. Too slow for a tick.
 class LineExits {
  public:
   // `triangles` must not be empty and must be counter-clockwise seen from outside.
@@ -113,8 +114,8 @@ class LineExits {
 };
 
 // Returns true if a line that leaves through the triangle passes through a wall, that is, if its unit
-// direction is within 50 degrees of the triangle's normal. A more oblique exit is beside an edge, where the
-// distance between the sides does not measure the thickness of a wall.
+// direction is within 50 degrees of the triangle's normal. A more oblique exit is usually near an edge of the
+// body, where the length of the line is not the thickness of a wall.
 bool exits_through_wall(const Triangle& triangle, const Vector3& direction);
 
 struct MeshIntersection {
@@ -135,8 +136,8 @@ struct MeshIntersections {
 // millionth, so that they do not intersect there. `triangles` must be in the order of the tree's leaves.
 //
 // The search takes about a microsecond per triangle without intersections. It ends early if it needs more
-// than 200 pair tests per triangle, for example with long needles. `progress` can stop it, but is not told
-// the fraction done.
+// than 200 pair tests per triangle, for example with long needles. `progress` can stop it, but does not
+// receive the fraction done.
 MeshIntersections self_intersections(const std::vector<Vector3>& vertices_m,
                                      const std::vector<TriangleCorners>& triangles, const BoxTree& tree,
                                      std::size_t limit, const Progress& progress = {});

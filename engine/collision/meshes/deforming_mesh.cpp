@@ -11,7 +11,8 @@
 namespace spoonbill {
 namespace {
 
-// Smallest distance from the surface, in metres, at which the direction of the offset is reliable.
+// Smallest distance of a point from its nearest point on the mesh, in metres, at which the direction between
+// the two is reliable.
 constexpr double on_surface_m = 1e-12;
 
 Box box_of_corners(const std::vector<Vector3>& vertices, const TriangleCorners& corners) {

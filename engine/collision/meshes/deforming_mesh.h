@@ -20,12 +20,13 @@ struct PointOnMesh {
 // Result of DeformingMesh::nearest().
 struct NearestOnMesh {
   PointOnMesh on;
-  Vector3 normal = Vector3::UnitY();  // unit outward normal, parallel to the line between the two points
-  double gap_m = 0.0;                 // signed distance along the normal; negative inside
+  // Unit outward normal at the nearest point, parallel to the line from there to the query point.
+  Vector3 normal = Vector3::UnitY();
+  double gap_m = 0.0;  // signed distance along the normal; negative inside the mesh
 };
 
-// Nearest point search on a closed deforming mesh. One owner, one thread; allocates only on construction and
-// copy.
+// Nearest point search on a closed deforming mesh. Not thread-safe. Allocates only when it is constructed or
+// copied.
 class DeformingMesh {
  public:
   // The mesh must be manifold: two triangles share each edge, and the triangles around each vertex form one

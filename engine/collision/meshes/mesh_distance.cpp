@@ -20,7 +20,7 @@ namespace {
 constexpr double far_radii = 3.0;
 
 struct Moments {
-  Vector3 area = Vector3::Zero();  // half the sum of the triangles' cross products
+  Vector3 area = Vector3::Zero();  // sum of the triangles' area vectors
   Vector3 weighted = Vector3::Zero();
   double weight = 0.0;
 };
@@ -80,8 +80,8 @@ double WindingNumber::at(const Vector3& point_m) const {
 
 namespace {
 
-// Smallest distance from the surface at which the direction of the offset is reliable, as a fraction of the
-// mesh's size.
+// Smallest distance of a point from its nearest point on the mesh at which the direction between the two is
+// reliable, as a fraction of the mesh's size.
 constexpr double on_surface_fraction = 1e-12;
 constexpr double convex_fraction = 1e-7;
 // Largest number of triangles for which convexity is tested, because the test compares every face with every

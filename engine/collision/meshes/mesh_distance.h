@@ -1,5 +1,5 @@
-// Signed distance of a triangle mesh, of each of its parts, and the winding number that gives the sign where
-// normals cannot.
+// Signed distance to a triangle mesh and to each of its parts. Where normals cannot give the sign, the
+// winding number of the mesh does.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@
 namespace spoonbill {
 
 // Winding number of a mesh around a point (Jacobson et al. 2013). It is 1 inside a mesh with outward normals
-// and 0 outside, and an integer for every closed mesh, even if it intersects itself. Distant nodes of the
-// tree count as dipoles (Barill et al. 2018); the error is below 0.1, so that rounding gives the integer.
-// Immutable; any thread. at() allocates nothing.
+// and 0 outside. It is an integer for every closed mesh, even if the mesh intersects itself. Distant nodes of
+// the tree count as dipoles (Barill et al. 2018); the error is below 0.1, so that rounding gives the integer.
+// Immutable, so any thread may use it. at() allocates nothing.
 class WindingNumber {
  public:
   // `triangles` must be in the order of the tree's leaves. Mesh and tree must outlive the object.
@@ -36,8 +36,8 @@ class WindingNumber {
   std::vector<Dipole> dipoles_;  // one for each node of the tree
 };
 
-// Distance to the triangles of one closed part or of some sheets. Immutable; any thread. Queries allocate
-// nothing.
+// Distance to the triangles of one closed part or of some sheets. Immutable, so any thread may use it.
+// Queries allocate nothing.
 class ShellDistance {
  public:
   // `triangles` must not be empty. The normals of a solid must point outward, those of a cavity into the
@@ -62,8 +62,8 @@ class ShellDistance {
   // takes at least twice as long.
   bool uses_normals() const { return !corner_normals_.empty(); }
 
-  // Returns true if all vertices are behind all faces, within 1e-7 of the size. Also returns false if
-  // convexity was not tested.
+  // Returns true if no vertex is in front of a face by more than 1e-7 of the mesh's size. Returns false for
+  // any shell that is not a solid, does not use normals or is too large to test.
   bool is_convex() const;
 
   static constexpr std::size_t checked_triangles = 1'000'000;
@@ -93,9 +93,10 @@ inline constexpr double sheet_thickness_m = 1e-3;
 // Signed distance to the union of the mesh's closed parts (without their cavities) and its sheets. A sheet
 // counts as a plate of the given thickness with rounded edges, centred on the sheet.
 //
-// Outside, and inside a single solid, the distance is exact up to rounding. Where parts overlap, it is the
-// largest of the depths in the single parts, a lower bound of the true depth. When a point moves, its
-// distance changes continuously and by at most the distance that the point moved. Immutable; any thread.
+// Outside, and inside a single solid, the distance is exact up to rounding. Where parts overlap, its
+// magnitude is the largest of the depths in the single parts, a lower bound of the true depth. When a point
+// moves, its distance changes continuously and by at most the distance that the point moved. Immutable, so
+// any thread may use it.
 class MeshDistance final : public SignedDistance {
  public:
   explicit MeshDistance(const CleanMesh& mesh, double thickness_m = sheet_thickness_m);

@@ -159,8 +159,8 @@ Result<TriangleMesh> refine_edges(TriangleMesh mesh, double longest_m, std::size
 
 namespace {
 
-// Smallest cosine of the angle between the normals of two triangles that are smoothed together: that of 30
-// degrees.
+// Smallest cosine of the angle between the normals of two triangles that are smoothed together. The largest
+// angle is 30 degrees.
 constexpr double least_cosine = 0.866;
 
 }  // namespace

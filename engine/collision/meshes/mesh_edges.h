@@ -29,11 +29,12 @@ class MeshEdges {
   static constexpr MeshSide open = 0xffffffffU;       // marks a side on an edge of one triangle
   static constexpr MeshSide branching = 0xfffffffeU;  // marks a side on an edge of three or more triangles
 
-  // The two ends of each side must differ, and all corners must be below `vertices`.
+  // The two ends of each side must differ, and all corner indices must be less than `vertices`, the number of
+  // vertices.
   MeshEdges(const std::vector<TriangleCorners>& triangles, std::size_t vertices);
 
-  // Returns the other side on the same edge. Returns `open` for an edge of one triangle, `branching` if there
-  // are several.
+  // Returns the other side on the same edge. Returns `open` if the edge has one triangle, `branching` if it
+  // has more than two.
   MeshSide across(MeshSide side) const { return across_[side]; }
 
   std::size_t open_count() const { return open_count_; }
@@ -55,7 +56,8 @@ class MeshEdges {
 // triangles. Fails with too_many if the result has more than `triangle_limit` triangles.
 Result<TriangleMesh> refine_edges(TriangleMesh mesh, double longest_m, std::size_t triangle_limit);
 
-// Smoothed normals, insensitive to slivers. The mesh must outlive the object; any thread.
+// Smoothed normals, insensitive to slivers. The mesh must outlive the object. Immutable, so any thread may
+// use it.
 class SmoothNormals {
  public:
   explicit SmoothNormals(const TriangleMesh& mesh);

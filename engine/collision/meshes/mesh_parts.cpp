@@ -68,7 +68,8 @@ Flood flood_parts(const TriangleMesh& mesh) {
   return flood;
 }
 
-// Returns the triangles sorted by part, in their original order within each part.
+// Returns the triangles sorted by part, in their original order within each part. Sets the range of triangles
+// of each part.
 std::vector<std::uint32_t> sort_by_part(const Flood& flood, std::vector<MeshPart>& parts) {
   for (const std::uint32_t part : flood.part_index) ++parts[part].end_triangle;
   std::uint32_t begin = 0;
@@ -108,7 +109,7 @@ void find_cavities(const TriangleMesh& mesh, std::vector<MeshPart>& parts,
   }
   std::stable_sort(closed.begin(), closed.end(),
                    [&](int a, int b) { return std::abs(volumes[a]) > std::abs(volumes[b]); });
-  // Containers that are inside out, then containers with outward normals.
+  // Closed parts that are not cavities: first those with inward normals, then those with outward normals.
   std::vector<std::pair<int, Box>> containers[2];
   std::size_t work = 0;
   for (const int p : closed) {
@@ -358,8 +359,8 @@ std::size_t find_part_of_vertex(const std::vector<MeshPart>& parts, std::uint32_
 std::vector<Openings> find_openings(MeshParts& parts) {
   const TriangleMesh& mesh = parts.mesh;
   const MeshEdges edges(mesh.triangles, mesh.vertices_m.size());
-  // An edge that branches in the whole mesh may have only two triangles in one part. These triangles then
-  // need not be oriented consistently.
+  // An edge of three or more triangles in the whole mesh may have only two triangles in one part. These two
+  // need not be oriented consistently, because split_into_parts() did not compare them.
   for (MeshSide side = 0; side < 3 * mesh.triangles.size(); ++side) {
     const MeshSide other = edges.across(side);
     if (other == MeshEdges::open || other == MeshEdges::branching) continue;

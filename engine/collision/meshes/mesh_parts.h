@@ -17,7 +17,7 @@ struct MeshParts {
 };
 
 // Splits a mesh into parts that are connected over edges of exactly two triangles, and orients each part
-// consistently. The corners of each triangle must differ. No part is marked as closed.
+// consistently. The corners of each triangle must differ. `closed` is false for all parts.
 MeshParts split_into_parts(const TriangleMesh& mesh);
 
 // Removes open parts whose area is below speck_area_fraction of the closed parts' area. Returns the number of
@@ -35,12 +35,13 @@ double signed_volume(const TriangleMesh& mesh, const MeshPart& part);
 double triangle_area(const Vector3& a, const Vector3& b, const Vector3& c);
 double part_area(const TriangleMesh& mesh, const MeshPart& part);
 
-// Appends the part's vertices and triangles to `to`. Returns the part as it is described in `to`.
+// Appends the part's vertices and triangles to `to`. Returns the description of the appended part.
 MeshPart append_part(const TriangleMesh& from, const MeshPart& part, TriangleMesh& to);
 
-// Marks the orientable parts that have no holes, or only small holes (hole_area_fraction), as closed. Fills
-// each small hole with a fan of triangles around the length-weighted mean of its boundary loop. Returns the
-// number of holes filled. A crack, whose loop has no area, counts as filled but gets no triangles.
+// Marks an orientable part as closed if it has no holes or only small holes (hole_area_fraction), and fills
+// these holes. A hole with three sides is filled by one triangle. Any other hole is filled by a fan of
+// triangles around the length-weighted mean of its boundary loop. Returns the number of holes filled. A
+// crack, whose loop has almost no area, counts as filled but gets no triangles.
 std::size_t fill_small_holes(MeshParts& parts);
 
 }  // namespace spoonbill

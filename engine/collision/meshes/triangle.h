@@ -1,4 +1,5 @@
-// Queries on triangles in double precision: intersection, nearest point, solid angle. Pure; any thread.
+// Queries on triangles in double precision: intersection, nearest point, solid angle. The functions are pure
+// and may be called from any thread.
 #pragma once
 
 #include <array>
@@ -16,10 +17,10 @@ inline Box bounding_box(const Triangle& t) {
   return {t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])};
 }
 
-// Returns true if the triangles intersect or touch, or if no plane separates them by more than `slack_m`. The
-// result is true for every pair nearer than the slack. It is also true for some pairs slightly farther apart
-// whose corners face each other. The separating axes are both normals, the cross products of the edges and,
-// for coplanar triangles, the in-plane directions across the edges.
+// Returns false if a plane separates the triangles by more than `slack_m`, otherwise true. Pairs nearer than
+// the slack always give true. Some pairs slightly farther apart, whose corners face each other, also give
+// true, because only these separating directions are tested: both normals, the cross products of the edges
+// and, for coplanar triangles, the in-plane directions across the edges.
 bool triangles_meet(const Triangle& a, const Triangle& b, double slack_m = 0.0);
 
 // Result of intersect_line_triangle().

@@ -82,7 +82,7 @@ class VertexGrid {
     return no_vertex;
   }
 
-  // Adds a vertex. Its index is the next index of the kept vertices.
+  // Adds a vertex. Its index is the number of vertices added before it.
   void add(const Vector3& vertex) {
     std::uint32_t& first = first_[slot(cell(vertex))];
     next_.push_back(first);

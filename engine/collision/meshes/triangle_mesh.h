@@ -19,7 +19,7 @@ struct TriangleMesh {
   std::vector<TriangleCorners> triangles;  // indices into vertices_m; counter-clockwise seen from outside
 };
 
-// A set of triangles that are connected over edges of exactly two triangles. Parts have no vertices in
+// A set of triangles that are connected over edges shared by exactly two triangles. Parts have no vertices in
 // common. An open part is a sheet and has no inside.
 struct MeshPart {
   std::uint32_t first_vertex = 0, end_vertex = 0;
@@ -47,7 +47,7 @@ struct MeshReport {
 // Result of clean_mesh().
 struct CleanMesh {
   TriangleMesh mesh;
-  std::vector<MeshPart> parts;  // sorted like their triangles
+  std::vector<MeshPart> parts;  // in the order of their triangles
   MeshReport report;
 };
 
@@ -71,7 +71,7 @@ inline constexpr double speck_area_fraction = 1e-3;
 // opposite orientation is a cavity and stays oriented inward.
 //
 // Error messages begin with `source`. Fails if there are no triangles or more than the limit, if an index is
-// beyond the vertices, if a coordinate is not finite or outside position_range_m, and if the mesh has no
+// beyond the vertices, if a coordinate is not finite or outside position_range_m, or if the mesh has no
 // extent or no area.
 Result<CleanMesh> clean_mesh(TriangleMesh mesh, const std::string& source,
                              std::size_t triangle_limit = mesh_triangle_limit);

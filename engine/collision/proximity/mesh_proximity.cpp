@@ -45,7 +45,7 @@ MeshProximity::MeshProximity(const NestedGrid& surface, std::vector<int> patches
   candidates_.reserve(patch_count);
   samples_.reserve(near_point_limit);
   vertices_.reserve(near_point_limit);
-  // Each step of a descent into the binary tree leaves one node on the stack.
+  // Each step of a descent into the binary tree adds at most one node to the stack.
   pending_.reserve(64);
 }
 
@@ -101,8 +101,9 @@ void MeshProximity::search_element(const ElementTree::Node& element, const Box& 
   if (is_near) collect_samples(element, mesh, margin);
 }
 
-// Offers a vertex to an element if the element's box is within the margin. Only the first near vertex of each
-// patch is offered to an element.
+// Updates the candidate of the vertex's patch with the distance of the vertex from an element, if the
+// element's box is within the margin. The candidate of a patch is its first near vertex; its other vertices
+// are skipped.
 void MeshProximity::offer_vertex(const ElementTree::Node& element, const Box& box, std::uint32_t vertex,
                                  const Vector3& point, double margin) {
   const int patch = patches_[vertex];

@@ -24,12 +24,12 @@ struct SampleNearMesh {
 struct VertexNearSurface {
   std::uint32_t vertex;
   double u, v;         // parameters of the nearest point of the surface
-  Vector3 normal;      // unit outward normal of the surface at that point
-  double gap_m = 0.0;  // distance along that normal; negative if the vertex is inside the body
+  Vector3 normal;      // unit outward normal of the surface at the nearest point
+  double gap_m = 0.0;  // distance along the normal; negative if the vertex is inside the body
 };
 
-// Proximity search of a surface and a mesh. One owner, one thread; allocates only on construction. The grid
-// must outlive it.
+// Proximity search of a surface and a mesh. Not thread-safe. Allocates only on construction. The grid must
+// outlive the search.
 class MeshProximity {
  public:
   // `patches` assigns each vertex of the mesh to a patch, numbered from 0. Vertices may be much denser than
@@ -93,7 +93,8 @@ class MeshProximity {
   std::vector<std::uint32_t> sampled_at_;      // number of the find() call that last visited each sample
   // Number of the find() call that last added each patch to candidates_, at the index candidate_index_.
   std::vector<std::uint32_t> patch_at_;
-  // Element to which each patch was last offered. Elements are counted through all searches.
+  // Number of the element with which each patch's candidate was last compared. Elements are counted over all
+  // searches.
   std::vector<std::uint32_t> offered_at_;
   std::vector<int> candidate_index_;
   std::vector<Candidate> candidates_;

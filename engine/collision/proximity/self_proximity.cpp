@@ -14,8 +14,8 @@ namespace spoonbill {
 
 namespace {
 
-// Smallest cosine of the angle between a direction and the inward normal at which the direction leads into
-// the body.
+// Smallest cosine of the angle between a direction and the inward normal for which the direction counts as
+// leading into the body.
 constexpr double inward_cosine = 0.3;
 // Least thickness of a body, in lattice cells. Facing points that are nearer to each other are on two parts
 // that already touch in the rest shape.
@@ -93,8 +93,8 @@ void RestPairs::find_neighbours() {
   }
 }
 
-// Computes the lengths of the shortest paths from one block to the others (Dijkstra's algorithm), up to the
-// neighbour distance.
+// Computes the lengths of the shortest paths from one block to the others (Dijkstra's algorithm), up to
+// neighbour_distance_m_.
 void RestPairs::measure_from(int block, std::vector<double>& distances) const {
   using Path = std::pair<double, int>;
   std::priority_queue<Path, std::vector<Path>, std::greater<>> queue;
@@ -119,7 +119,7 @@ void RestPairs::measure_from(int block, std::vector<double>& distances) const {
         offer(to, distance + step_between(at, to));
       }
     }
-    // Adds steps across a pole, where all blocks of the column are neighbours.
+    // At a pole, all blocks of the column are neighbours, so a path may step from any of them to any other.
     if (rest_.v.is_periodic() || (j != 0 && j != columns - 1)) continue;
     for (int row = 0; row < rows; ++row) {
       offer(row * columns + j, distance + step_between(at, row * columns + j));
@@ -190,8 +190,8 @@ void RingSeparation::compute_centres(const ControlNet& net) {
   }
 }
 
-// Computes the interval of each control column along an axis of the ring, from the ring's first control
-// column to its last.
+// Computes the interval that the control points of each column occupy along the axis of a ring. The axis
+// leads from the centre of the ring's first control column to the centre of its last.
 void RingSeparation::compute_intervals(const ControlNet& net, int ring) {
   is_current_[ring] = 1;
   const int* const column = column_.data() + ring * width_;
@@ -229,14 +229,15 @@ bool RingSeparation::are_apart_along(const ControlNet& net, int axis_ring, int o
 
 namespace {
 
-// Number of positions around a ring at which it is tested whether the ring can meet another ring.
+// Approximate number of positions around a ring at which it is tested whether the ring can meet another ring.
 constexpr int positions_around = 24;
 // Extra search distance beyond the margin, in lattice cells. If no two elements are within the margin plus
-// this distance of each other, none can come within the margin until a control point has moved by half of it.
+// this distance of each other, none can come within the margin until a control point has moved by half of
+// this distance.
 constexpr double lead_cells = 1.0;
 constexpr std::size_t element_pair_capacity = 1 << 14;
-// Largest number of pairs of elements that one search compares, which takes about 50 ms. It limits the time
-// for a body that is crumpled so that all elements are near each other.
+// Largest number of pairs of elements that one search compares. That number of comparisons takes about 50 ms.
+// The limit bounds the time for a body so crumpled that all elements are near each other.
 constexpr int element_test_capacity = 1 << 23;
 // Number of elements whose cells are cached. The cache is cleared when it is full.
 constexpr int slot_capacity = 1024;
@@ -291,8 +292,9 @@ bool SelfProximity::can_meet(int ring, int other) const {
   return false;
 }
 
-// Returns true if no two parts can have come within the margin since nothing was near. A surface moves no
-// farther than its control points, so two parts approach each other by at most twice the farthest move.
+// Returns true if an earlier search found nothing near and no two parts can have come within the margin
+// since. A surface moves no farther than its control points, so two parts approach each other by at most
+// twice the farthest move.
 bool SelfProximity::is_still_clear(const ControlNet& net) const {
   if (!clear_) return false;
   const double most = 0.5 * lead_cells * cell_m_;
@@ -404,8 +406,8 @@ void SelfProximity::offer_elements(const LevelCell& one, const LevelCell& other,
   offer_samples(other, bounding_box(one), cells, reach);
 }
 
-// Offers the samples of an element to the cells of another element, which is inside `box`. Skips a cell if a
-// cell that was offered before is nearer to the sample.
+// Compares the samples of an element with the cells of another element, which is inside `box`. Skips a cell
+// if the sample is known to be nearer to another cell.
 void SelfProximity::offer_samples(const LevelCell& element, const Box& box, std::span<const NearCell> cells,
                                   double reach) {
   SurfaceLevels& levels = near_.levels();
@@ -414,7 +416,7 @@ void SelfProximity::offer_samples(const LevelCell& element, const Box& box, std:
   for (int i = element.i; i < element.i + side; ++i) {
     for (int j = element.j; j <= element.j + side; ++j) {
       // The samples at the end of an element belong to the next element. All samples of a pole are one point,
-      // so only one is offered.
+      // so only one of them is compared.
       const bool pole = !ring && (j == 0 || j == columns - 1);
       if (pole ? i > 0 : j == element.j + side) continue;
       const int sample = i * columns + j;
@@ -437,7 +439,8 @@ void SelfProximity::offer_samples(const LevelCell& element, const Box& box, std:
   }
 }
 
-// Rejects points at which Newton's method arrived at a neighbour or at another wall.
+// Returns false if Newton's method found a nearest point on a neighbouring part or on another wall of the
+// body.
 bool SelfProximity::is_contact(const NearPoint& near) const {
   if (near.gap_m < -deepest_self_cells * cell_m_) return false;
   if (!(near.normal.dot(unit_normal(near_.levels().surface(), near.u, near.v)) < 0.0)) return false;

@@ -1,5 +1,5 @@
-// Search for parts of one body's surface that are near each other from outside. It finds samples with the
-// nearest points of other parts, and the locally nearest or deepest points between samples.
+// Search for parts of one body's surface that are near each other across the space outside the body. It finds
+// samples with the nearest points of other parts, and the locally nearest or deepest points between samples.
 #pragma once
 
 #include <array>
@@ -14,20 +14,22 @@
 
 namespace spoonbill {
 
-// Distance along the surface at rest below which points are neighbours. It is the larger of two lengths: a
-// number of lattice cells, and a number of thicknesses of the body (twice its volume divided by its area). A
-// bar bent into a loop whose inner side touches itself is longer than 4.4 times its bending radius. With
-// three thicknesses, only loops with a bending radius below two thirds of the thickness are missed.
+// Distance along the surface at rest below which two points are neighbours, which cannot touch. It is the
+// larger of two lengths: a number of lattice cells, and a number of thicknesses of the body (twice its volume
+// divided by its area). A bar bent into a loop whose inner side touches itself is longer than 4.4 times its
+// bending radius. With three thicknesses, only loops with a bending radius below two thirds of the thickness
+// are missed.
 inline constexpr double neighbour_cells = 4.0;
 inline constexpr double neighbour_thicknesses = 3.0;
 
-// Factor on the neighbour distance. Two points that face each other through the body, at most this many
-// neighbour distances apart, count as its two sides, which never meet. Points farther apart, such as those at
-// the ends of a bar, may meet.
+// Factor on the distance below which points are neighbours. Two points that face each other through the body,
+// at most this many such distances apart, count as points of opposite sides, which never meet. Points farther
+// apart, such as those at the ends of a bar, may meet.
 inline constexpr double through_body = 2.0;
 
-// Decides by their rest positions which pairs of points of one body's surface can ever touch from outside.
-// All other pairs are neighbours or face each other through the body. Immutable; any thread.
+// Decides which pairs of points of one body's surface can ever touch from outside, by the positions of the
+// points at rest. All other pairs are neighbours or face each other through the body. Immutable, so any
+// thread may use it.
 class RestPairs {
  public:
   // `rest` is the surface at rest, with the knots of the grid and with du x dv pointing outward. `cell_m` is
@@ -51,7 +53,8 @@ class RestPairs {
   double step_between(int block, int other) const;
 
   Surface rest_;
-  std::vector<double> u_, v_;  // starts of the parameter blocks, and the end of the last block
+  std::vector<double> u_,
+      v_;  // starts of the blocks of the surface in u and in v, and the end of the last block
   double cell_m_, neighbour_distance_m_ = 0.0;
   std::vector<RestPoint> points_;       // one for each sample
   std::vector<Vector3> block_centres_;  // one for each block
@@ -59,12 +62,12 @@ class RestPairs {
   std::vector<bool> neighbours_;
 };
 
-// Finds rings of a surface (its elements between two knots of v) that may be near each other. Tests their
-// boxes, then intervals along each ring's axis. For a long body that is not folded, all pairs are ruled out
-// in a few microseconds. One owner, one thread; allocates only on construction.
+// Finds rings of a surface (its elements between two knots of v) that may be near each other. Tests the boxes
+// of the rings, then the intervals that they occupy along each ring's axis. For a long body that is not
+// folded, all pairs are ruled out in a few microseconds. Not thread-safe. Allocates only on construction.
 class RingSeparation {
  public:
-  // `pairs` lists the pairs of rings to be tested. A ring is given by its element of v.
+  // `pairs` lists the pairs of rings to be tested. A ring is given by the index of its elements along v.
   RingSeparation(const KnotVector& v, std::vector<std::array<int, 2>> pairs);
 
   // Returns the pairs of rings for which no separating plane with a gap above `reach_m` was found. Updates
@@ -82,9 +85,9 @@ class RingSeparation {
   bool are_apart_along(const ControlNet& net, int axis_ring, int other, double reach_m);
 
   int columns_, width_;      // number of columns of control points: in the net, and in a ring
-  std::vector<int> column_;  // the control columns of each ring, width_ for each
+  std::vector<int> column_;  // indices of the control columns of each ring, width_ per ring
   std::vector<std::array<int, 2>> pairs_, near_;
-  std::vector<Vector3> centres_;    // one for each control column
+  std::vector<Vector3> centres_;    // sum of the points of each control column
   std::vector<double> low_, high_;  // for each control column, its interval along the axis of each ring
   std::vector<Box> boxes_;          // one for each ring
   std::vector<char> is_current_;    // for each ring, true if its intervals are up to date
@@ -94,8 +97,8 @@ class RingSeparation {
 // wall.
 inline constexpr double deepest_self_cells = 1.0;
 
-// Self-proximity search of one surface. One owner, one thread; allocates only on construction. The grid must
-// outlive it.
+// Self-proximity search of one surface. Not thread-safe. Allocates only on construction. The grid must
+// outlive the search.
 class SelfProximity {
  public:
   // `rest` bounds a body, with du x dv pointing outward. `cell_m` is the size of the cells of the body's
@@ -118,7 +121,8 @@ class SelfProximity {
   const std::vector<NearPoint>& points() const { return near_.points(); }
   // Returns the number of surface points that the last find() evaluated.
   int evaluations() const { return near_.evaluations(); }
-  // Returns true if the last find() found nothing near, so that the next call takes almost no time.
+  // Returns true if the last find() found nothing near. The next call then takes almost no time, unless the
+  // surface has moved far.
   bool is_clear() const { return clear_; }
   // Returns true if a capacity was exceeded, so that points may be missing. Fewer control points or a smaller
   // margin help.

@@ -29,8 +29,8 @@ struct NearPoint {
   double gap_m = 0.0;                 // distance along the normal; negative inside the other body
 };
 
-// Collects the points of one surface that are near another. Call the functions in the order of their
-// declaration. One owner, one thread; allocates only on construction. The grid must outlive it.
+// Collects the points of one surface that are near another surface. Call the functions in the order of their
+// declaration. Not thread-safe. Allocates only on construction. The grid must outlive the object.
 class NearPoints {
  public:
   explicit NearPoints(const NestedGrid& nested);
@@ -38,16 +38,17 @@ class NearPoints {
   // Removes all points. Returns false if the surface has not moved since the last call.
   bool begin(const Surface& surface);
 
-  // Offers the corners of a cell to a cell of the other surface, which may be the same surface: computes
-  // their distances and remembers the nearest.
+  // Compares the corners of a cell with `patch`, a cell of the other surface, and remembers the nearest point
+  // for each corner. The other surface may be the same surface.
   void offer_corners(const LevelCell& cell, SurfaceLevels& other, const LevelCell& patch);
-  // Offers the sample (i, j) of the finest grid to a cell of the other surface with the given corners.
+  // Compares the sample (i, j) of the finest grid with `patch`, a cell of the other surface with the given
+  // corners, and remembers the nearest point.
   void offer(int i, int j, const SurfaceLevels& other, const LevelCell& patch, const PatchCorners& corners);
-  // Returns the distance of a sample to the nearest triangle of the cells to which it has been offered;
-  // infinite without such a triangle.
+  // Returns the distance of a sample from the nearest cell with which it has been compared; infinite if there
+  // is none. A cell is treated as two triangles.
   double offered_distance_m(int sample) const;
-  // Replaces each sample's nearest point by that on the exact other surface, and removes samples beyond the
-  // margin. `outside` is -1 if the other surface's du x dv points inward, else 1.
+  // Replaces each sample's nearest point by the nearest point of the exact other surface. Removes samples
+  // beyond the margin. `outside` is -1 if the other surface's du x dv points inward, else 1.
   void compute_nearest(const SurfaceLevels& other, double outside, double margin_m);
   // Adds the locally nearest points between samples, where a surface may be nearer than at any sample.
   void add_between_samples(const SurfaceLevels& other, double outside);
@@ -91,8 +92,8 @@ class NearPoints {
   bool overflow_ = false;
 };
 
-// Proximity search of two surfaces. One owner, one thread; allocates only on construction. The grids must
-// outlive it.
+// Proximity search of two surfaces. Not thread-safe. Allocates only on construction. The grids must outlive
+// the search.
 class SurfaceProximity {
  public:
   SurfaceProximity(const NestedGrid& first, const NestedGrid& second);

@@ -15,7 +15,7 @@ namespace spoonbill {
 // Indices of two bodies: the first in this tree, the second in the other tree or in the same tree.
 using BodyPair = std::pair<std::size_t, std::size_t>;
 
-// Tree of the boxes of bodies. Immutable, but queries must not run concurrently: one owner, one thread.
+// Tree of the boxes of bodies. Immutable, but not thread-safe: queries must not run concurrently.
 class BodyTree {
  public:
   // The `boxes`, in metres, must be finite and may have no volume. Boxes that touch count as near: to find

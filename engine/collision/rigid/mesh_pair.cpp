@@ -32,7 +32,7 @@ struct DeepPoint {
   DistanceSample other;  // signed distance from the point to the other mesh
 };
 
-// Depths of one mesh in another, evaluated on demand. One owner. The meshes must outlive it.
+// Depths of one mesh in another, evaluated on demand. Not thread-safe. The meshes must outlive the object.
 class MeshDepths {
  public:
   MeshDepths(const PosedMesh& mesh, const PosedMesh& other, double thickness_m);
@@ -45,13 +45,14 @@ class MeshDepths {
   bool is_inside(std::uint32_t v);
 
   // Divides the edge into the stretches that are inside the other mesh, and calls `visit` with the deepest
-  // point of each stretch if it is deeper than `least_m` (not negative). Exact up to rounding if the other
-  // mesh is convex; otherwise stretches shorter than 1/32 of its size may be missed.
+  // point of each stretch if that point is deeper than `least_m` (not negative). Exact up to rounding if the
+  // other mesh is convex. Otherwise, stretches shorter than a step between samples (step_fraction) may be
+  // missed.
   void visit_edge(std::uint32_t from, std::uint32_t to, double least_m,
                   const std::function<void(const DeepPoint&)>& visit);
 
-  // Returns the triangle of the other mesh nearest to the point if the thickness of a plate, of either mesh,
-  // fills the space between them.
+  // Returns the triangle of the other mesh nearest to the point, if the half thicknesses of plates of both
+  // meshes fill the space between the point and this triangle.
   std::optional<std::uint32_t> find_plate_neighbour(const DeepPoint& deep) const;
 
   // Returns the outward direction of the other mesh at a point of its surface.
@@ -71,7 +72,8 @@ class MeshDepths {
   std::unique_ptr<ShellDistance> surface_;
 };
 
-// Step between depth samples along an edge, as a fraction of the other mesh's size.
+// Step between depth samples along an edge, as a fraction of the other mesh's size. An edge has at most
+// `steps_limit` steps.
 constexpr double step_fraction = 1.0 / 32.0;
 constexpr double steps_limit = 256.0;
 constexpr int climbs_limit = 32;
@@ -114,7 +116,7 @@ void MeshDepths::visit_edge(std::uint32_t from, std::uint32_t to, double least_m
   const DeepPoint start = at_vertex(from), end = at_vertex(to);
   const Vector3 edge = end.point_m - start.point_m;
   const double length_m = edge.norm(), half_thickness_m = mesh_.half_thickness_at_m(from);
-  // Along an edge, the depth changes by at most the distance moved, which bounds the depth in between.
+  // Along an edge, the depth changes by at most the distance moved, which bounds the depth between the ends.
   if (!(0.5 * (start.depth_m + end.depth_m + length_m) > least_m)) return;
   const int steps = static_cast<int>(
       std::clamp(std::ceil(length_m / (step_fraction * other_box_.size())), 1.0, steps_limit));
@@ -206,10 +208,10 @@ bool may_contain(const PosedMesh& mesh, const PosedMesh& other) {
                      [&](const Box& part) { return around.holds(part); });
 }
 
-// Search for the regions in which two meshes overlap. All vertices of a triangle that are inside the other
-// mesh are in the same region. A pair of crossing triangles is in the same region as the inside vertices of
-// both triangles. It is also in the same region as a pair in which one of the triangles is the same and the
-// other is a neighbour.
+// Search for the regions in which two meshes overlap. The vertices of a triangle that are inside the other
+// mesh are all in the same region. A pair of crossing triangles is in the same region as the inside vertices
+// of both triangles. Two pairs are in the same region if they have one triangle in common and their other
+// triangles share a vertex.
 class ContactSearch {
  public:
   ContactSearch(const PosedMesh& first, const PosedMesh& second, double thickness_m)
@@ -239,8 +241,8 @@ class ContactSearch {
     int side = 0;
   };
 
-  // Returns the number of a vertex in regions_. Its items are the vertices of the first mesh, then those of
-  // the second, then the pairs of triangles.
+  // Returns the number of a vertex among the items of regions_. These are the vertices of the first mesh,
+  // then the vertices of the second, then the pairs of triangles.
   std::size_t vertex_item(int s, std::uint32_t v) const {
     return s == 0 ? v : meshes_[0]->vertex_count() + v;
   }
@@ -300,8 +302,8 @@ class ContactSearch {
     }
   }
 
-  // Joins pairs that have the same triangle of the other mesh, and triangles of mesh `s` with a common
-  // vertex.
+  // Joins the regions of pairs that have the same triangle of the other mesh and whose triangles of mesh `s`
+  // have a common vertex.
   void join_neighbours(int s) {
     std::vector<std::size_t> order(pairs_.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
@@ -350,8 +352,8 @@ class ContactSearch {
     }
   }
 
-  // Offers the deepest points of those edges of a triangle that have no end inside the other mesh. The pairs
-  // from `first` to `end` all have this triangle of mesh `s`.
+  // Finds the deepest points of those edges of a triangle that have no end inside the other mesh, and updates
+  // the deepest points of their regions. The pairs from `first` to `end` all have this triangle of mesh `s`.
   void find_deepest_between(int s, std::size_t first, std::size_t end) {
     const TriangleCorners& corners = meshes_[s]->corners(pairs_[first][s]);
     for (int k = 0; k < 3; ++k) {
@@ -404,7 +406,7 @@ class ContactSearch {
   }
 
   // Makes the contact of a region that is a whole part of one mesh inside the other mesh. `item` is one of
-  // its vertices. Returns nothing if the region is not a whole part.
+  // the region's vertices. Returns nothing if the region is not a whole part.
   std::optional<MeshPairContact> make_containment_contact(std::size_t item) {
     const int s = item < meshes_[0]->vertex_count() ? 0 : 1;
     const auto vertex = static_cast<std::uint32_t>(item - vertex_item(s, 0));
@@ -438,7 +440,7 @@ class ContactSearch {
   std::array<MeshDepths, 2> depths_;  // depths of each mesh in the other
   std::vector<Pair> pairs_;           // pairs of triangles that meet, in ascending order
   DisjointSets regions_{0};
-  std::vector<Deepest> deepest_;  // deepest point of each region, at the region's lowest item
+  std::vector<Deepest> deepest_;  // deepest point of each region, at the index of its lowest item
 };
 
 }  // namespace

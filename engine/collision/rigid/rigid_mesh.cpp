@@ -20,8 +20,8 @@ namespace {
 
 using Model = fcl::BVHModel<fcl::OBBRSS<double>>;
 
-// Smallest value to which twice the area of the smallest triangle is scaled. FCL's triangle distance ignores
-// normals whose squared length is below 1e-15.
+// Coordinates are scaled so that twice the area of the smallest triangle is at least this value. FCL's
+// triangle distance ignores normals whose squared length is below 1e-15.
 constexpr double smallest_doubled_area = 1e-6;
 
 void update_smallest_area(const TriangleMesh& mesh, double& doubled_area) {

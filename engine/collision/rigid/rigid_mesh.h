@@ -44,8 +44,8 @@ class RigidMesh {
   // have the same scale.
   std::optional<Nearest> nearest(const RigidMesh& other, double below_m) const;
 
-  // Returns at most about `limit` pairs of crossing or touching triangles, sorted. A pair has an index into
-  // this mesh and one into the other. Both meshes must have the same scale.
+  // Returns at most about `limit` pairs of crossing or touching triangles, sorted. A pair has the index of a
+  // triangle of this mesh and of a triangle of the other. Both meshes must have the same scale.
   using Crossing = std::pair<std::uint32_t, std::uint32_t>;
   std::vector<Crossing> find_crossings(const RigidMesh& other, std::size_t limit) const;
 
@@ -54,8 +54,8 @@ class RigidMesh {
   std::unique_ptr<Tree> tree_;
 };
 
-// A posed mesh of several parts, each with its box and FCL tree. Closed parts are solid, open ones plates.
-// Immutable after make_rigid(); any thread may read it.
+// A posed mesh of several parts, each with its box and FCL tree. Closed parts are solid; open parts are
+// plates. Immutable after make_rigid(), so that any thread may read it.
 class PosedMesh {
  public:
   // `mesh` must have at least one part; `thickness_m` is positive.

@@ -46,8 +46,8 @@ double power_of_two(int power) {
 
 }  // namespace
 
-// Reduces x to within half a part of an octave and evaluates the Taylor series there. Its term of order six
-// is below rounding.
+// Splits x into k log(2) / parts, with the nearest integer k, and a rest, at which the Taylor series is
+// evaluated. The series' term of order six is below rounding.
 double stable_exp(double x) {
   if (!(x > -700.0)) return 0.0;
   const double whole = (x * (parts * 1.4426950408889634) + to_whole) - to_whole;
@@ -62,7 +62,7 @@ double stable_exp(double x) {
   return (root + root * beyond) * power_of_two(half) * power_of_two(power - half);
 }
 
-// Uses log(m) = 2 artanh((m - 1) / (m + 1)) for m within a factor of sqrt(2) of 1.
+// Splits x into m 2^k, with m within a factor of sqrt(2) of 1, and uses log(m) = 2 artanh((m - 1) / (m + 1)).
 double stable_log(double x) {
   SPOONBILL_ASSERT_DEBUG(x > 0.0);
   const std::uint64_t bits = std::bit_cast<std::uint64_t>(x), mantissa_bits = (std::uint64_t{1} << 52) - 1;

@@ -1,4 +1,4 @@
-// exp and log with the same bits on every processor. Those of the C library may differ, because it selects
+// exp and log with the same bits on every processor. The C library's results may differ, because it selects
 // its instructions at run time.
 #pragma once
 

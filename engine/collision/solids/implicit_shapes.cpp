@@ -251,8 +251,8 @@ EllipsoidDistance::EllipsoidDistance(const EllipsoidShape& shape) : axes_(shape.
 }
 
 // Returns the root w. The reciprocal norm of the vector scaled_k / (w + excess_k) is a concave, increasing
-// function of w. Newton's method that starts below the root therefore never passes it (More and Sorensen
-// 1983).
+// function of w. If Newton's method starts below the root, it therefore never passes the root (More and
+// Sorensen 1983).
 double EllipsoidDistance::solve(const Vector3& scaled, double low) const {
   double w = low;
   for (int step = 0; step < 60; ++step) {
@@ -272,8 +272,8 @@ double EllipsoidDistance::solve(const Vector3& scaled, double low) const {
   return w;
 }
 
-// Returns the distance of a point on the plane of the two longer axes, or close to it. The nearest surface
-// point must be above or below that plane.
+// Returns the distance of a point that is on or close to the plane of the two longer axes. The nearest
+// surface point must be above or below that plane.
 DistanceSample EllipsoidDistance::at_central_plane(const Vector3& point_m) const {
   Vector3 nearest = Vector3::Zero();
   double rest = 1.0;

@@ -138,7 +138,7 @@ Status check_implicit_shape(const ImplicitShape& shape);
 // the size.
 //
 // Inside a superquadric, the distance is the best result of several searches, which can all miss the nearest
-// wall. In about one of 100,000 points, the depth is therefore too large, by up to some thousandths of the
+// wall. At about one of 100,000 points, the depth is therefore too large, by up to some thousandths of the
 // size. The gradient always belongs to a plane that bounds the solid. A query of a superquadric takes about
 // 20 us, a hundred times as long as for other shapes.
 std::shared_ptr<const SignedDistance> make_signed_distance(const ImplicitShape& shape);

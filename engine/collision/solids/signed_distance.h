@@ -10,12 +10,12 @@ namespace spoonbill {
 // Signed distance from a point to a solid, and its gradient.
 struct DistanceSample {
   double distance_m = 0.0;  // negative inside
-  // Unit vector; if several directions lead to the nearest surface, one of them.
+  // Unit vector. If several points of the solid's surface are nearest, the gradient belongs to one of them.
   Vector3 gradient = Vector3::UnitY();
 };
 
-// Signed distance of a solid in its own frame. Immutable; any thread. at() allocates nothing and never
-// throws.
+// Signed distance of a solid in its own frame. Immutable, so any thread may use it. at() allocates nothing
+// and never throws.
 class SignedDistance {
  public:
   virtual ~SignedDistance() = default;

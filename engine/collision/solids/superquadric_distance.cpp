@@ -14,8 +14,8 @@ constexpr double least_ratio = 1e-60;  // fraction of a semi-axis below which a 
 // Convergence tolerance of log(price), where `price` is the Lagrange multiplier. It also determines the
 // accuracy of the distance.
 constexpr double convergence_step = 1e-13;
-// Largest |log(gauge)| of a point that counts as on the surface. The distance to the tangent plane is there
-// exact up to rounding.
+// Largest |log(gauge)| of a point that counts as on the surface. The gauge is 1 on the surface and less
+// inside. At such a point, the distance to the tangent plane is exact up to rounding.
 constexpr double at_surface_gauge = 1e-14;
 
 double log_of_sum(double a, double b) {
@@ -26,13 +26,15 @@ double log_of_sum(double a, double b) {
 // One coordinate x of the nearest point, as L = log(x / a), the root of e^L + price e^((q-1) L) = target.
 struct Coordinate {
   double log_value = nothing;
-  // The second term: offset of the point from the surface along this axis, divided by the semi-axis.
+  // The term price e^((q-1) L). It is the offset of the point from the surface along this axis, divided by
+  // the semi-axis.
   double reach = 0.0;
   double slope = 0.0;  // derivative of log_value with respect to log(price)
 };
 
-// Solves for the coordinate by Newton's method. It starts where the larger term alone equals the target, at
-// or above the root. Both terms are convex in L, so the iteration decreases monotonically.
+// Solves e^L + price e^((q-1) L) = target for L by Newton's method. It starts where the larger term alone
+// equals the target, at or above the root. Both terms are convex in L, so the iteration decreases
+// monotonically.
 Coordinate solve_coordinate(double log_target, double log_price, double q) {
   if (log_target == nothing) return {};
   const double target = stable_exp(log_target);
@@ -52,7 +54,7 @@ Vector3 with_signs_of(const Vector3& point, const Vector3& magnitude) {
   return (point.array() < 0.0).select(-magnitude, magnitude);
 }
 
-// Returns log(|p_i| / a_i) for each coordinate, or `nothing` for 0.
+// Returns log(|p_i| / a_i) for each coordinate p_i of the point and semi-axis a_i, or `nothing` for 0.
 Vector3 log_targets(const Vector3& point, const Vector3& axes) {
   Vector3 logs;
   for (int k = 0; k < 3; ++k) {
@@ -166,7 +168,7 @@ struct Fractions {
 }  // namespace
 
 // Half the squared distance from a point of the first octant to a point of the surface, and its derivatives
-// with respect to both logits.
+// with respect to the coordinates `around` and `along` of the surface point.
 struct SuperquadricDistance::Expansion {
   double half_square;  // half the squared distance
   double slope[2];
@@ -196,8 +198,8 @@ void SuperquadricDistance::expand(const Spot& spot, const Vector3& point, Expans
   out.curvature[2] = square.dot(by_along.cwiseAbs2()) + pull.dot(along_twice);
 }
 
-// Moves the spot to a local minimum of the distance by Newton's method. Steps are damped so that the distance
-// decreases.
+// Moves a point of the surface to a local minimum of the distance by Newton's method. Steps are damped so
+// that the distance decreases.
 SuperquadricDistance::Spot SuperquadricDistance::improve(Spot spot, const Vector3& point) const {
   Expansion here, there;
   expand(spot, point, here);
@@ -233,8 +235,8 @@ SuperquadricDistance::Spot SuperquadricDistance::improve(Spot spot, const Vector
   return spot;
 }
 
-// Returns the distance to the tangent plane at a spot. Any tangent plane bounds the solid, because it is
-// convex.
+// Returns the distance to the tangent plane at a point of the surface. Any tangent plane bounds the solid,
+// because the solid is convex.
 DistanceSample SuperquadricDistance::tangent(const Spot& spot, const Vector3& point) const {
   const Fractions around(spot.around), along(spot.along);
   const double ring = along.log_fraction / along_, ring_normal = along.log_fraction - ring;
@@ -251,7 +253,7 @@ DistanceSample SuperquadricDistance::tangent(const Spot& spot, const Vector3& po
   return {normal.dot(point.cwiseAbs() - at), signed_normal};
 }
 
-// Returns the spot where the ray from the solid's centre through the point leaves the solid.
+// Returns the point of the surface where the ray from the solid's centre through `point` leaves the solid.
 SuperquadricDistance::Spot SuperquadricDistance::radial_exit(const Vector3& point) const {
   const Vector3 ratio = point.cwiseAbs().cwiseQuotient(axes_);
   const double x = around_ * log_ratio(ratio.x()), z = around_ * log_ratio(ratio.z());
@@ -260,7 +262,7 @@ SuperquadricDistance::Spot SuperquadricDistance::radial_exit(const Vector3& poin
   return {bounded(x - z), bounded(along_ * (ring - log_ratio(ratio.y())))};
 }
 
-// Returns the spot where the line through the point along one axis leaves the solid.
+// Returns the point of the surface where the line through `point` along one axis leaves the solid.
 SuperquadricDistance::Spot SuperquadricDistance::axis_exit(const Vector3& point, int axis) const {
   const Vector3 ratio = point.cwiseAbs().cwiseQuotient(axes_);
   const auto power = [](double value, double q) { return stable_exp(q * log_ratio(value)); };

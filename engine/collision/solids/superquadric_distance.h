@@ -22,10 +22,11 @@ class SuperquadricDistance final : public SignedDistance {
   explicit SuperquadricDistance(const SuperquadricShape& shape);
   DistanceSample at(const Vector3& point_m) const override;
   // Returns the distance to a tangent plane if that distance is at least `enough_m`; otherwise the distance
-  // to the solid. The plane touches the solid where the ray from its centre to the point leaves it.
+  // to the solid. The plane touches the solid where the ray from the solid's centre to the point leaves the
+  // solid.
   DistanceSample at_within(const Vector3& point_m, double enough_m) const override;
-  // Returns whether the distance exceeds `limit_m`. For points inside the solid, the gauge alone decides, and
-  // no distance is computed.
+  // Returns true if the distance exceeds `limit_m`. For a point inside the solid, returns false without
+  // computing the distance.
   bool is_beyond(const Vector3& point_m, double limit_m) const override;
   bool is_convex() const override { return true; }
   Box bounds() const override { return {-axes_, axes_}; }
@@ -33,7 +34,7 @@ class SuperquadricDistance final : public SignedDistance {
  private:
   // A point of the surface in the first octant, in coordinates that keep their precision near an edge.
   // `around` is the logit of the fraction that (x/a)^q2 has of (x/a)^q2 + (z/c)^q2. `along` is the logit of
-  // the fraction that rho^q1 has of rho^q1 + (y/b)^q1.
+  // the fraction that rho^q1 has of rho^q1 + (y/b)^q1, where rho = |(x/a, z/c)|_q2.
   struct Spot {
     double around, along;
   };

@@ -48,9 +48,9 @@ constexpr std::size_t cell_capacity = 16384;
 constexpr std::size_t patch_capacity = 512;
 constexpr std::size_t near_capacity = 4096;
 constexpr int deepest_patch = 24;
-// Proven accuracy of the nearest point in metres. It is below the resolution of a haptic device (0.055 mm).
-// Newton's method itself is usually exact to the last digit. A smaller value costs most time where surface
-// and tool fit snugly and all points are equally near.
+// Proven accuracy of the nearest distance in metres. It is below the resolution of a haptic device (0.055
+// mm). Newton's method itself is usually exact to the last digit. A smaller value would cost time, above all
+// where surface and tool fit snugly and all points are equally near.
 constexpr double nearest_tolerance_m = 2e-5;
 // Proven accuracy in metres for a solid of unknown concavity. For such a solid, patches must be cut until
 // they are as small as the tolerance.
@@ -142,8 +142,8 @@ Clearance SurfaceCollider::clearance(const Surface& surface, const ToolShape& to
 
 // Returns the depth of a tool inside a closed surface along the normal of the nearest wall, or 0 if the tool
 // is not inside. A sphere is inside if its centre is inside. A convex solid that touches the wall is inside
-// if the centre of its bounds is inside. A solid that does not touch the wall is inside if its point nearest
-// to the wall is inside.
+// if the centre of its bounds is inside; a non-convex solid that touches the wall never counts as inside. A
+// solid that does not touch the wall is inside if its point nearest to the wall is inside.
 double SurfaceCollider::depth_inside(const ToolShape& tool, const SurfaceContact& nearest) const {
   if (tool.kind == ToolShape::Kind::sphere) {
     const bool inside = (tool.centre_m - nearest.point_m).dot(nearest.normal) < 0.0;
@@ -161,8 +161,8 @@ double SurfaceCollider::depth_inside(const ToolShape& tool, const SurfaceContact
   return std::max(depth_behind(tool, nearest.point_m, nearest.normal), -best_.distance_m);
 }
 
-// Offers the coarsest samples, except those of elements that are too far away. The nearest column comes
-// first, because its samples reduce the distance beyond which elements are too far.
+// Compares the best point with the coarsest samples, except those of elements that are too far away. The
+// nearest column comes first, because its samples reduce the distance beyond which elements are too far.
 void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
   const Grid& grid = levels_.nested().grid;
   const int stride = levels_.step(0);
@@ -191,8 +191,8 @@ void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
   }
 }
 
-// Offers the nearest point of the last query. This point is usually still almost the nearest, so that the
-// search can skip most cells.
+// Starts from the nearest point of the last query. This point is usually still almost the nearest, so that
+// the search can skip most cells.
 void SurfaceCollider::offer_last(const Surface& surface, const ToolShape& tool) {
   best_ = {};
   best_.distance_m = std::numeric_limits<double>::infinity();
@@ -261,7 +261,7 @@ void SurfaceCollider::visit_cell(const ToolShape& tool, const LevelCell& cell, d
       cells_.push_back({i, j, cell.level + 1});
     }
   }
-  // Only five of the 3 x 3 samples are new: the corners were offered when the cell was added.
+  // Only five of the 3 x 3 samples are new. The corners were compared when the cell was added.
   constexpr int between[5][2] = {{0, 1}, {1, 0}, {1, 1}, {1, 2}, {2, 1}};
   for (const auto& [in_u, in_v] : between) {
     const int i = cell.i + in_u * half, j = cell.j + in_v * half;
@@ -278,7 +278,7 @@ double SurfaceCollider::enough() const {
   return best >= 0.0 ? std::max(best - tolerance_, -touch_tolerance_m) : best - tolerance_;
 }
 
-// Searches a cell below the finest samples by branch and bound. The cell may still contain a nearer point.
+// Searches a cell of the finest level for a nearer point between its samples, by branch and bound.
 void SurfaceCollider::search_between_samples(const Surface& surface, const ToolShape& tool,
                                              const LevelCell& cell, bool& overflow) {
   if (is_cut(cell)) return search_trimmed_cell(surface, tool, cell);
@@ -400,7 +400,7 @@ void SurfaceCollider::offer_trim_loops(const Surface& surface, const ToolShape& 
   minimise_on_edges(surface, tool, nearest);
 }
 
-// Offers the start and the midpoint of each trim loop edge in the cell.
+// Compares the best point with the start and the midpoint of each trim loop edge in the cell.
 void SurfaceCollider::offer_trim_edges(const Surface& surface, const ToolShape& tool, const LevelCell& cell,
                                        TrimEdges& nearest) {
   const std::span<const TrimmedArea::Edge> edges = trimmed_->edges(cell);
@@ -451,7 +451,7 @@ void SurfaceCollider::minimise_on_edges(const Surface& surface, const ToolShape&
 
 // Searches a cell that trim loops cross. The result is not proven to be the nearest. Newton's method starts
 // from the cell's centre if the centre is not trimmed away and is nearer than all corners, samples and loop
-// points offered before.
+// points compared before.
 void SurfaceCollider::search_trimmed_cell(const Surface& surface, const ToolShape& tool,
                                           const LevelCell& cell) {
   const Patch patch = whole_patch(cell);

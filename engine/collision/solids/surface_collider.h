@@ -1,6 +1,6 @@
-// Contact of a tool with one B-spline surface, which may be trimmed, through levels of detail of its blending
-// matrices (section 4.1 of Pungotra et al. 2013). A sphere around each coarse cell covers its patch; cells
-// whose sphere meets the tool are refined. The nearest point is then polished on the exact surface.
+// Contact of a tool with one B-spline surface, which may be trimmed, through levels of detail of the surface
+// (section 4.1 of Pungotra et al. 2013). A sphere around each coarse cell covers its patch; cells whose
+// sphere meets the tool are refined. Newton's method then finds the nearest point on the exact surface.
 #pragma once
 
 #include <array>
@@ -56,12 +56,13 @@ inline constexpr int surface_cut_limit = 20000;
 
 // Result of SurfaceCollider::collide().
 struct CollisionResult {
-  // True if the surface is within the margin or encloses the tool, with a tolerance of 1e-6 m.
+  // True if the surface is within the margin or encloses the tool. The tolerance is 1e-6 m for a margin of 0,
+  // otherwise 2e-5 m or 5e-5 m, as for `nearest`.
   bool found = false;
   // Deepest contact, valid if `found` is true. No point is deeper by more than 2e-5 m, or 5e-5 m for a
   // non-convex solid of unknown concavity.
   SurfaceContact nearest;
-  // A capacity was exceeded; `nearest` is the best contact in the part that was searched.
+  // True if a capacity was exceeded; `nearest` is then the best contact in the part that was searched.
   bool overflow = false;
   int samples_evaluated = 0;
   int cuts = 0;  // number of patches cut between samples, at most surface_cut_limit
@@ -72,12 +73,12 @@ struct CollisionResult {
 struct Clearance {
   double guaranteed_m = 0.0;
   SurfaceContact nearest;
-  bool overflow = false;  // a capacity was exceeded, and the distance is not guaranteed
+  bool overflow = false;  // true if a capacity was exceeded; the distance is then not guaranteed
 };
 
 // Contact search of one surface with a tool. Reuses evaluated samples until control points move, and starts
-// from the last nearest point. One owner, one thread; allocates only on construction. The grid must outlive
-// it.
+// from the last nearest point. Not thread-safe. Allocates only on construction. The grid must outlive the
+// collider.
 class SurfaceCollider {
  public:
   // The optional `trim` restricts the surface to the trimmed area. Nearest points on trim loops are points of
@@ -86,9 +87,9 @@ class SurfaceCollider {
   explicit SurfaceCollider(const NestedGrid& nested, std::shared_ptr<const TrimmedArea> trim = nullptr);
 
   // Finds the deepest contact within `margin_m`. The surface must have the grid's knots. `closed` is true if
-  // the surface bounds a body, which may contain the tool. The depth is then the distance by which the tool
-  // leaves the body along the normal of the nearest wall. Afterwards, near_samples() returns the samples
-  // within the margin. `samples` are optional, see SurfaceLevels::begin().
+  // the surface bounds a body, which may contain the tool. For a contained tool, the depth is the distance by
+  // which it leaves the body along the normal of the nearest wall. Afterwards, near_samples() returns the
+  // samples within the margin. `samples` are optional, see SurfaceLevels::begin().
   CollisionResult collide(const Surface& surface, const ToolShape& tool, double margin_m, bool closed,
                           const PlanarPoints& samples = {});
 
@@ -105,7 +106,7 @@ class SurfaceCollider {
 
   const std::vector<NearSample>& near_samples() const { return near_; }
 
-  // Returns the levels of the surface. For tests and overlays, after collide().
+  // Returns the levels of detail of the surface in the last collide(). For tests and overlays.
   SurfaceLevels& levels() { return levels_; }
   // Returns the cells that the last search visited, level by level. The children of a refined cell are
   // consecutive, in the order of the refined cells.

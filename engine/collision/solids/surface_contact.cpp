@@ -108,7 +108,7 @@ MinimaxStep minimise_largest(const Planes& planes, int count, const Matrix2d& qu
 
 namespace {
 
-// Fraction of the other derivative's length. A derivative shorter than this has no reliable direction.
+// A derivative shorter than this fraction of the other derivative has no reliable direction.
 constexpr double vanishing_fraction = 1e-9;
 
 }  // namespace
@@ -148,10 +148,10 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
 constexpr int max_contact_steps = 60, max_restarts = 2;
-// Smallest decrease of the distance by a step that is worthwhile, as a fraction of the solid's size.
+// Smallest decrease of the distance for which a step is worthwhile, as a fraction of the solid's size.
 constexpr double least_depth_gain = 1e-12;
-// Distance of the two points of a central difference of the gradient from the point between them: a fraction
-// of the solid's size, and its largest value in metres.
+// Half the distance between the two points of a central difference of the gradient: a fraction of the solid's
+// size, and its largest value in metres.
 constexpr double difference_fraction = 1e-5, longest_difference_m = 1e-5;
 // Largest change of the gradient at which the difference counts as a curvature. At a larger change, an edge
 // of the solid is in between.
@@ -194,8 +194,8 @@ class Descent {
     for (int step = 0, restarts = 0; step < max_contact_steps; ++step) {
       const Step next = find_step();
       if (next.gain < least_depth_gain * size_ || !try_step(next.offset)) {
-        // Expansions from far away may block the step. They are dropped, and the descent may then continue
-        // smoothly.
+        // Expansions at distant parameters may block the step. They are dropped, and the descent may then
+        // continue smoothly.
         if (restarts++ == max_restarts || count_ == 1) break;
         drop_other_faces();
       }
@@ -210,7 +210,7 @@ class Descent {
     double gain;
   };
 
-  // Evaluates the expansion of the face at the parameters and stores it.
+  // Evaluates and stores the expansion of the face of the solid that is nearest at the given parameters.
   void evaluate_face(const Vector2d& at) {
     const SurfacePoint point =
         evaluate(surface_, surface_.u.into_domain(at.x()), surface_.v.into_domain(at.y()));
@@ -278,8 +278,8 @@ class Descent {
     count_ = 1;
   }
 
-  // Returns the weighted mean curvature of the faces, with lengths along du and dv as variables. Negative
-  // eigenvalues are replaced by their absolute values.
+  // Returns the weighted mean of the curvature matrices of the faces, with lengths along du and dv as
+  // variables. Negative eigenvalues are replaced by their absolute values.
   Matrix2d quadratic() const {
     Matrix2d sum = Matrix2d::Zero();
     for (int k = 0; k < count_; ++k) sum += weights_[k] * faces_[k].curvature;
@@ -306,7 +306,7 @@ class Descent {
     for (int k = 0; k < count_; ++k) {
       const ShapeFace& face = faces_[k];
       const Vector2d slope = face.slope + face.curvature * (at_ - face.at);
-      // The expansion of another face is limited to the distance itself. Wherever a minimum can be on an
+      // The expansion of any other face is limited to the current distance. Wherever a minimum can be on an
       // edge, the distance is the maximum over the faces, so no face can exceed it.
       planes[k] = {k == current_ ? 0.0 : std::min(face.value(at_) - here, 0.0), scale.cwiseProduct(slope)};
     }
@@ -325,8 +325,8 @@ class Descent {
     return {fraction * scale.cwiseProduct(found.step), -found.value};
   }
 
-  // Moves by the step, but stays within the domain. Returns false if the distance did not decrease and no new
-  // face was found.
+  // Moves by the step, but stays within the domain. If the distance does not decrease, reduces the length of
+  // later steps instead. Returns false if the domain leaves no room to move or the decrease is negligible.
   bool try_step(const Vector2d& offset) {
     Vector2d there = at_ + offset;
     const KnotVector* knots[2] = {&surface_.u, &surface_.v};

@@ -34,7 +34,7 @@ struct SurfaceContact {
   double u = 0.0, v = 0.0;
   Vector3 point_m = Vector3::Zero();  // point on the surface
   Vector3 normal = Vector3::UnitY();  // unit normal along du x dv
-  double depth_m = 0.0;               // depth of the tool inside the surface; negative if the tool is outside
+  double depth_m = 0.0;               // depth of the contact; negative if the tool and the surface are apart
   Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();  // tangents_across() of the normal
 };
 
@@ -46,7 +46,7 @@ struct ToolContactRegion {
 
 inline constexpr int tool_region_capacity = 64;
 
-// Makes the contact at a spot. Its depth is the negative of the spot's distance.
+// Makes the contact at a point of a surface. Its depth is the negative of the point's distance from the tool.
 SurfaceContact contact_at(const Surface& surface, const SurfaceSpot& spot);
 
 }  // namespace spoonbill

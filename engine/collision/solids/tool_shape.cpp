@@ -24,9 +24,9 @@ CornerValues tangent_at_corners(const DistanceSample& sample, const Vector3& fro
   return values;
 }
 
-// Returns a lower bound from two linear bounds, given by their values at the corners. A mixture of both is a
-// bound, too; its least value at the corners is a concave function of the mixing fraction. Returns the
-// largest such value.
+// Returns a lower bound from two linear lower bounds, each given by its values at four corners. Any mixture
+// of the two is a bound, too. Its least value at the corners is a concave function of the mixing fraction.
+// Returns the largest such value.
 double best_mix(const CornerValues& a, const CornerValues& b) {
   double low = 0.0, high = 1.0;
   const auto mixed = [&](double fraction) {
@@ -46,10 +46,11 @@ double best_mix(const CornerValues& a, const CornerValues& b) {
   return best;
 }
 
-// Returns a lower bound of the distance from a patch's corners to a solid. The distance of a convex solid is
-// nowhere below a tangent or a mixture of two tangents; mixtures matter at the solid's edges. Over the hull
-// of the corners, a tangent is lowest at a corner. For other solids, a tangent is lowered by half the
-// concavity times the squared distance. The distance at the centre minus the radius is always a bound.
+// Returns a lower bound of the distance from the hull of a patch's corners to a solid. The distance to a
+// convex solid is nowhere below a tangent or a mixture of two tangents; mixtures matter at the solid's edges.
+// Over the hull, a tangent is lowest at a corner. For other solids, a tangent is lowered by half the
+// concavity times the squared distance. For any solid, the distance at the hull's centre minus its radius is
+// a bound.
 double solid_bound(const ToolShape& tool, const PatchCorners& corners, double enough) {
   const Vector3 centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
   double radius = 0.0;
@@ -62,7 +63,7 @@ double solid_bound(const ToolShape& tool, const PatchCorners& corners, double en
     at_centre = tangent_at_corners(sample, centre, corners);
     return std::max(ball, least(at_centre) - 0.5 * concavity * radius * radius);
   };
-  // The distance to any bounding plane is cheap and often enough.
+  // The distance to any bounding plane is cheap and often a sufficient bound.
   double bound = bound_by(tool.at_within(centre, -infinity));
   if (bound >= enough || concavity > 0.0) return bound;
   bound = std::max(bound, bound_by(tool.at(centre)));

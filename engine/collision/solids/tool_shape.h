@@ -57,15 +57,16 @@ struct ToolShape {
 
   bool is_solid() const { return kind == Kind::solid; }
 
-  // Returns the signed distance from a point. When the point moves, it changes by at most the distance moved.
-  // The value at the centre of a ball, minus the radius, is therefore a lower bound within the ball.
+  // Returns the signed distance from a point. When the point moves, the distance changes by at most the
+  // distance moved. The value at the centre of a ball, minus the radius, is therefore a lower bound within
+  // the ball.
   double distance(const Vector3& point) const {
     if (is_solid()) return distance_field->at(into_frame(point)).distance_m;
     return kind == Kind::sphere ? (point - centre_m).norm() - radius_m : normal.dot(point - centre_m);
   }
 
-  // Returns the distance if it is less than `enough`; otherwise a lower bound of it that is at least
-  // `enough`.
+  // Returns the distance if it is less than `enough`; otherwise a lower bound of the distance that is at
+  // least `enough`.
   double distance_within(const Vector3& point, double enough) const {
     return is_solid() ? distance_field->at_within(into_frame(point), enough).distance_m : distance(point);
   }

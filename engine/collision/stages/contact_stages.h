@@ -27,12 +27,12 @@ struct HullFacets {
 // the hull. The hull is empty if there are fewer than four points, if all are in one plane or if one is not
 // finite.
 //
-// The time is proportional to points times triangles, up to half a second for the largest control nets. Any
-// thread.
+// The time is proportional to points times triangles, up to half a second for the largest control nets. May
+// be called from any thread.
 HullFacets hull_facets(const std::vector<Vector3>& points_m);
 
-// Finest level of the spheres that are drawn. The grid of a contact search may have fewer levels. Beyond them
-// the search cuts patches into four, as here from level to level.
+// Finest level of the spheres that are drawn. The grid of a contact search may have fewer levels. Beyond
+// these, the search cuts patches into four, as the drawing does from level to level.
 inline constexpr int finest_stage_level = 3;
 
 // Largest number of stored items of each kind. If there are more, ContactStages::overflow is set.
@@ -99,8 +99,8 @@ void append(Item item, std::vector<Item>& items, ContactStages& stages) {
   items.push_back(std::move(item));
 }
 
-// A set of elements of one surface, for drawing their borders. One owner, one thread. The levels must outlive
-// it and have begun a query.
+// A set of elements of one surface, for drawing their borders. Not thread-safe. The levels must outlive the
+// set and have begun a query.
 class ElementMarks {
  public:
   explicit ElementMarks(SurfaceLevels& levels)

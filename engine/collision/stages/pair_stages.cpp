@@ -28,7 +28,8 @@ void PairStages::add(const Surface& first, const Surface& second, double margin_
   query.first_closed = first_closed;
   query.second_closed = second_closed;
   query.reach_m = margin_m;
-  // A new collider does not start from the contacts of an earlier call, so that all stages are passed.
+  // A new collider does not start from the contacts of an earlier call, so that the search passes through all
+  // stages.
   collider_ = std::make_unique<SurfacePairCollider>(*first_, *second_);
   const PairResult result = collider_->collide(first, second, query);
   stages.overflow |= result.overflow;
@@ -60,8 +61,8 @@ void PairStages::add_contacts(const Surface& first, const Surface& second, const
   if (!result.touching) add_both(result.nearest, result.distance_m);
 }
 
-// Adds the spheres of one level's cells. Returns the children of the cells that were kept; for the last level
-// the result is unused.
+// Adds the spheres of the cells that the search visits at one level. Returns the children of the kept cells,
+// which it visits at the next level.
 std::vector<LevelCell> PairStages::add_level(SurfaceLevels& levels, const std::vector<LevelCell>& visited,
                                              const Marks& kept, int surface, bool is_second,
                                              ContactStages& stages) {
@@ -78,8 +79,8 @@ std::vector<LevelCell> PairStages::add_level(SurfaceLevels& levels, const std::v
   return finer;
 }
 
-// Adds the parameter ranges and, level by level, the spheres. Returns the last level whose number of pairs is
-// within the capacity.
+// Adds the parameter ranges and, level by level, the spheres. Returns the finest level whose pairs fit the
+// capacity, at most finest_stage_level.
 int PairStages::add_spheres(double margin_m, int first_surface, ContactStages& stages) {
   SurfaceLevels* const levels[2] = {&collider_->first_levels(), &collider_->second_levels()};
   CellPairs& pairs = collider_->cell_pairs();

@@ -13,14 +13,14 @@
 namespace spoonbill {
 
 // Records the stages of a SurfacePairCollider. The sphere of each visited cell is recorded, but the collider
-// drops cells by their slabs, which are tighter. The spheres of dropped cells may therefore still meet. One
-// owner, one thread. Surfaces given to add() must have the knots of those given to make().
+// drops cells by their slabs, which are tighter. The spheres of dropped cells may therefore still meet. Not
+// thread-safe. Surfaces given to add() must have the same knots as the surfaces given to make().
 class PairStages {
  public:
   static Result<PairStages> make(const Surface& first, const Surface& second);
 
-  // Adds the stages of a contact search up to `margin_m`. `first_closed` and `second_closed` have the meaning
-  // of those in PairQuery.
+  // Adds the stages of a contact search up to `margin_m`. `first_closed` and `second_closed` are true if that
+  // surface bounds a body, with du x dv pointing outward.
   void add(const Surface& first, const Surface& second, double margin_m, bool first_closed,
            bool second_closed, ContactStages& stages);
 

@@ -13,8 +13,8 @@ namespace {
 // Number of times that a triangle is cut into four parts before it counts as within reach.
 constexpr int triangle_cuts = 6;
 
-// Returns false only if no point of the triangle is within reach. Tests balls around the triangle and around
-// its parts.
+// Returns false only if no point of the triangle is within `reach_m` of the tool. Tests balls around the
+// triangle and around its parts.
 bool is_within(const ToolShape& tool, const Triangle& triangle, double reach_m, int cuts) {
   const auto& [a, b, c] = triangle;
   const Vector3 centre = (a + b + c) / 3.0;
@@ -41,7 +41,8 @@ ToolStages::ToolStages(NestedGrid nested) : nested_(std::make_unique<NestedGrid>
 void ToolStages::add(const Surface& surface, const ToolShape& tool, double margin_m, bool closed,
                      ContactStages& stages, std::shared_ptr<const TrimmedArea> trim) {
   SPOONBILL_ASSERT(margin_m >= 0.0);
-  // A new collider does not start from the contact of an earlier call, so that all stages are passed.
+  // A new collider does not start from the contact of an earlier call, so that the search passes through all
+  // stages.
   collider_ = std::make_unique<SurfaceCollider>(*nested_, std::move(trim));
   const CollisionResult result = collider_->collide(surface, tool, margin_m, closed);
   stages.overflow |= result.overflow;
@@ -61,7 +62,8 @@ void ToolStages::add_spheres(int surface, ContactStages& stages) {
     return other.i >= cell.i && other.i < cell.i + step && other.j >= cell.j && other.j < cell.j + step;
   };
   ElementMarks within(levels);
-  // Positions in `visited` of the children of the next refined cell, and in `finest` of the next finest cell.
+  // Position in `visited` of the children of the next refined cell, and position in `finest` of the next
+  // finest cell.
   std::size_t finer = 0, last = 0;
   while (finer < visited.size() && visited[finer].level == 0) ++finer;
   for (const LevelCell& cell : visited) {

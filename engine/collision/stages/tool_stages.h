@@ -9,14 +9,14 @@
 
 namespace spoonbill {
 
-// Records the stages of a SurfaceCollider: its cells, spheres, triangles and contacts. One owner, one thread.
+// Records the stages of a SurfaceCollider: its cells, spheres, triangles and contacts. Not thread-safe.
 // Surfaces given to add() must have the knots that were given to make().
 class ToolStages {
  public:
   static Result<ToolStages> make(const KnotVector& u, const KnotVector& v);
 
-  // Adds the stages of a contact search up to `margin_m`. `closed` and `trim` have the same meaning as for
-  // SurfaceCollider.
+  // Adds the stages of a contact search up to `margin_m`. `closed` is true if the surface bounds a body,
+  // which may contain the tool. `trim` restricts the surface to a trimmed area.
   void add(const Surface& surface, const ToolShape& tool, double margin_m, bool closed, ContactStages& stages,
            std::shared_ptr<const TrimmedArea> trim = nullptr);
 

@@ -13,8 +13,8 @@
 namespace spoonbill {
 namespace {
 
-// Fraction of the radius. If the outward component of a ring's points is smaller, it counts as rounding and
-// the ring as flat.
+// Largest outward component of a ring's points that counts as rounding error, as a fraction of the radius. A
+// ring whose outward component is smaller is flat.
 constexpr double flat_fraction = 1e-9;
 
 Status check_poles(const Surface& surface) {

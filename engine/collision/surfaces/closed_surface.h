@@ -18,8 +18,8 @@ Status check_closed_tube(const Surface& surface);
 // normals.
 Status check_closed(const Surface& surface);
 
-// Triangles between samples of a surface that closes as check_closed() requires; its normals may point in
-// either direction. Points that coincide across a seam or at a pole are one vertex.
+// Triangles between samples of a surface that closes as check_closed() requires. The surface's normals may
+// point in either direction. Points that coincide across a seam or at a pole are one vertex.
 struct ClosedSkin {
   TriangleMesh mesh;
   std::vector<double> u, v;                             // parameters of each vertex; u is arbitrary at a pole

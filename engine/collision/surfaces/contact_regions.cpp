@@ -37,8 +37,8 @@ int ContactRegions::root(int pair) {
   return pair;
 }
 
-// Joins pairs of two cells of the first surface that are equal or neighbours. Two pairs are joined if their
-// cells of the second surface are equal or neighbours, too.
+// Joins the pairs of `cell` with the pairs of `other`, which are equal or neighbouring cells of the first
+// surface. Two pairs are joined if their cells of the second surface are equal or neighbours, too.
 void ContactRegions::join(const std::vector<CellPair>& pairs, const Paired& cell, const Paired& other) {
   const int step = second_->step(pairs[cell.last_pair].second.level);
   const bool same = &cell == &other, whole = !same && !cell.split && !other.split;
@@ -53,8 +53,8 @@ void ContactRegions::join(const std::vector<CellPair>& pairs, const Paired& cell
   }
 }
 
-// Joins the pair with the pairs of half of its cell's neighbours. The other neighbours are joined when they
-// are visited.
+// Joins the pairs of the first cell of `pair` with the pairs of half of that cell's neighbours. The other
+// neighbours are joined when they are visited.
 void ContactRegions::join_neighbours(const std::vector<CellPair>& pairs, int pair) {
   const LevelCell& cell = pairs[pair].first;
   const Grid& grid = first_->nested().grid;

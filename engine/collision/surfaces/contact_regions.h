@@ -15,7 +15,7 @@
 
 namespace spoonbill {
 
-// Union-find over cell pairs. One owner, one thread; allocates only on construction.
+// Groups connected pairs of cells by union-find. Not thread-safe. Allocates only on construction.
 class ContactRegions {
  public:
   ContactRegions(const SurfaceLevels& first, const SurfaceLevels& second);
@@ -53,7 +53,7 @@ class ContactRegions {
   // Number of the second surface's cells around each periodic direction; unlimited for an open direction.
   int around_u_ = 0, around_v_ = 0;
   std::vector<int> parent_;     // union-find parent of each pair, which is an earlier pair or itself
-  std::vector<int> previous_;   // for each pair, the previous pair of the same first cell; -1 for the first
+  std::vector<int> previous_;   // for each pair, the previous pair with the same first cell; -1 for the first
   std::vector<int> cell_;       // for each pair, the cell_index() of its first cell
   std::vector<Paired> paired_;  // indexed by cell_index()
   std::uint32_t group_ = 0;
@@ -142,13 +142,13 @@ struct RegionRanges {
 };
 RegionRanges region_ranges(const RegionCells& cells);
 
-// Returns the deepest of a few pairs of the region, at which the first surface is farthest behind the second.
-// Returns `touch` if none of them is behind. `outside` has the meaning that it has for deepest_pair().
+// Returns the pair at which the first surface is deepest behind the second, among a few pairs of the region.
+// Returns `touch` if the first surface is not behind the second at any of them. `outside` is 1 if the second
+// surface's outward normal is du x dv, -1 if it is opposite.
 PairParameters find_deepest_seed(const RegionCells& cells, const PairParameters& touch, double outside);
 
-// Returns the side of this surface that faces the other surface, as the sign of du x dv: 1 if the two normals
-// oppose each other, -1 if they agree. `normal` is the other surface's outward normal, `own` the du x dv of
-// this surface.
+// Returns the side of a surface that faces another surface: 1 for the side of du x dv, -1 for the opposite
+// side. `normal` is the other surface's outward normal; `own` is the du x dv of the surface itself.
 double facing_side(const Vector3& normal, const Vector3& own);
 
 }  // namespace spoonbill

@@ -18,7 +18,7 @@ constexpr int max_tries = 12;
 constexpr double least_damping = 1e-9;
 // Smallest decrease of the distance, in metres, that is more than rounding.
 constexpr double least_polish_gain_m = 1e-15;
-// Smallest decrease of the distance, in metres, that the quadratic model must predict.
+// Smallest decrease of the distance, in metres, that the quadratic model must predict for a step to be tried.
 constexpr double least_promise_m = 1e-17;
 
 // Returns true if the parameter is at an end of an open domain and the step would leave the domain.
@@ -87,8 +87,8 @@ bool is_spent(const PolishBudget* budget) {
   return budget != nullptr && budget->is_spent();
 }
 
-// Makes one Levenberg-Marquardt step that decreases the value. offer(parameters) returns true if the value
-// decreases there. Returns false if no such step is found.
+// Makes one Levenberg-Marquardt step that decreases the objective. offer(parameters) returns true if the
+// objective decreases there. Returns false if no such step is found.
 template <int size, class Offer>
 bool descend(const Problem<size>& problem, double& damping, const Offer& offer,
              const PolishBudget* budget = nullptr) {
@@ -208,8 +208,8 @@ struct DepthPoint {
   double depth;
 };
 
-// Returns true if the difference is not parallel to the normal, within a tolerance above the error of
-// Newton's method.
+// Returns true if the angle between the difference and the normal is above a tolerance, which is larger than
+// the error of Newton's method.
 bool is_oblique(const Vector3& difference, const Vector3& normal) {
   return difference.cross(normal).norm() > 1e-6 * difference.norm();
 }
@@ -233,7 +233,7 @@ DepthPoint evaluate_depth(const PiecewiseSurface& first, const PiecewiseSurface&
 // Returns the Hessian of the signed distance, see deepest_pair().
 Matrix2 distance_curvature(const DepthPoint& at) {
   const Matrix2 first = first_form(at.b), second = along(at.b, at.normal);
-  Matrix2 motion;  // one column for A_u and one for A_v
+  Matrix2 motion;  // one column for du and one for dv of the first surface
   motion << at.a.du.dot(at.b.du), at.a.dv.dot(at.b.du), at.a.du.dot(at.b.dv), at.a.dv.dot(at.b.dv);
   const double distance = -at.depth;
   const Matrix2 follows = (first - distance * second).inverse() * motion;

@@ -1,6 +1,5 @@
-// Nearest and deepest points of two surfaces, found by Newton's method on the exact surfaces, and the
-// contacts that they describe. The search is local: its result depends on the starting parameters. Allocates
-// nothing.
+// Searches for the nearest and the deepest points of two surfaces, by Newton's method on the exact surfaces.
+// The searches are local: their results depend on the starting parameters. They allocate nothing.
 #pragma once
 
 #include <cstddef>
@@ -28,19 +27,20 @@ struct SurfacePair {
 // stay within the domains.
 SurfacePair nearest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from);
 
-// Number of surface points that the searches of one owner may still evaluate. It bounds the time of a tick. A
-// search that uses it up returns the best point found so far.
+// Number of surface points that the searches of one object may still evaluate. It bounds the time of a tick.
+// A search that uses it up returns the best point found so far.
 struct PolishBudget {
   int evaluations_left;
 
   bool is_spent() const { return evaluations_left <= 0; }
 };
 
-// Largest number of surface points evaluated for one side of a proximity search, which takes about 50 ms.
-// Samples near a smooth body need about five each; those near a crumpled one would need thousands. When the
-// number is used up, each remaining point costs one evaluation.
+// Largest number of surface points that a proximity search evaluates for the points of one surface.
+// Evaluating so many takes about 50 ms. A sample near a smooth body needs about five evaluations; near a
+// crumpled body, it would need thousands. When the number is used up, each remaining sample costs one
+// evaluation.
 inline constexpr int proximity_evaluation_limit = 1 << 17;
-// Largest number of points that a proximity search finds on one side.
+// Largest number of points that a proximity search finds on one surface.
 inline constexpr std::size_t near_point_limit = 4096;
 
 // A point on a surface with its parameters.
@@ -61,8 +61,8 @@ struct DeepestPair {
 };
 
 // Returns the depth, in metres, of a point of the first surface behind the second; negative in front of it.
-// The depth is measured at the second surface's nearest point, which is searched from `from`. `outside` has
-// the meaning that it has for deepest_pair().
+// The depth is measured at the second surface's nearest point, which is searched from `from`. `outside` is 1
+// if the second surface's outward normal is du x dv, -1 if it is opposite.
 double depth_behind(const PiecewiseSurface& first, const PiecewiseSurface& second, const PairParameters& from,
                     double outside);
 
@@ -71,16 +71,18 @@ double depth_behind(const PiecewiseSurface& first, const PiecewiseSurface& secon
 // x dv, -1 if it is opposite to du x dv.
 //
 // The depth is f = -d(A(u, v)), where A is the first surface and d the signed distance from the second
-// surface B(s, t). Its gradient is -(A_u . n, A_v . n). Let I and II be the fundamental forms of B at the
-// nearest point. When u changes, the parameters of the nearest point change by (I - d II)^-1 c per unit of u,
-// with c = (A_u . B_s, A_u . B_t), and n rotates by -II times that. Therefore
+// surface B(s, t). Its gradient is -(A_u . n, A_v . n), with the normal n of B. Let I and II be the
+// fundamental forms of B at the nearest point. When u changes, the parameters of the nearest point change by
+// (I - d II)^-1 c per unit of u, with c = (A_u . B_s, A_u . B_t), and n rotates by -II times that change.
+// Therefore
 //   Hess d = -c^T I^-1 II (I - d II)^-1 c,   f_uu = -(A_uu . n) - Hess d.
 DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from,
                          double outside, double enough_m, PolishBudget* budget = nullptr);
 
 // One region in which two surfaces cross or touch.
 struct PairContact {
-  SurfacePair pair;              // deepest point of each surface
+  // The deepest point of one surface, and the point of the other surface that is nearest to it.
+  SurfacePair pair;
   Vector3 normal;                // unit vector in the direction in which the first surface leaves the second
   double depth_m = 0.0;          // depth along the normal; 0 if the surfaces only touch
   ParameterRange first, second;  // parameter rectangles that contain the region

@@ -36,7 +36,7 @@ struct Simplex {
 };
 
 // Finds the point nearest to the origin on the affine hull of some points of the simplex, given as the bits
-// of `set`. Returns false if that point is not between these points.
+// of `set`. Returns false if the found point is outside the convex hull of these points.
 bool nearest_within(const Simplex& simplex, unsigned set, Vector3& nearest) {
   Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 3> edges(3, 0);
   int first = -1;
@@ -91,8 +91,7 @@ bool hulls_are_apart(const ControlNet& first, const ControlNet& second) {
   double before = std::numeric_limits<double>::infinity();
   for (int step = 0; step < max_separation_steps; ++step) {
     const Vector3 a = farthest(first, -nearest), b = farthest(second, nearest);
-    // The first hull is beyond a plane perpendicular to `nearest`, and the second hull is in front of that
-    // plane.
+    // A value above the noise proves that a plane perpendicular to `nearest` separates the hulls.
     const double noise = rounding * nearest.norm() * (a.norm() + b.norm());
     if (nearest.dot(a - b) > noise) return true;
     simplex.points[simplex.count++] = a - b;
@@ -107,8 +106,8 @@ namespace {
 
 constexpr std::size_t pair_capacity = 1024;
 constexpr int max_depth = 40;
-// Largest number of patches that are split in one query, which takes a few seconds. Surfaces that fit snugly
-// or are crumpled would otherwise be cut everywhere into patches as small as the tolerance.
+// Largest number of patches that are split in one query. Splitting so many takes a few seconds. Surfaces that
+// fit snugly or are crumpled would otherwise be cut everywhere into patches as small as the tolerance.
 constexpr int split_capacity = 1 << 20;
 
 }  // namespace

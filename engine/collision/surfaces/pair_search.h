@@ -16,8 +16,8 @@ namespace spoonbill {
 // Keerthi 1988). Allocates nothing.
 bool hulls_are_apart(const ControlNet& first, const ControlNet& second);
 
-// Decides which pairs of points count. Needed for one surface against itself: Newton's method may converge to
-// the same point for both, whose distance of zero means nothing.
+// Decides which pairs of points count. It is needed when a surface is tested against itself: Newton's method
+// may move both points to the same position, and a distance of zero between them then means nothing.
 class PairJudge {
  public:
   virtual bool counts(const PairParameters& at) const = 0;
@@ -26,7 +26,7 @@ class PairJudge {
   ~PairJudge() = default;
 };
 
-// Branch and bound over two patches. One owner, one thread; allocates only on construction.
+// Branch and bound over two patches. Not thread-safe. Allocates only on construction.
 class PairSearch {
  public:
   // Both arguments may be the same surface if there is a judge. The surfaces and the judge must outlive the
@@ -37,14 +37,15 @@ class PairSearch {
   void begin();
   void forget_best();
 
-  // Polishes the pair `from` by Newton's method and keeps the result if it is nearer than the best pair. If
-  // the judge rejects the polished pair, `from` itself is considered.
+  // Polishes the pair `from` by Newton's method. The result becomes the best pair if its distance is less
+  // than that of the best pair. If the judge rejects the polished pair, `from` itself is considered.
   void offer(const PairParameters& from);
   const SurfacePair& best() const { return best_; }
   double best_distance_m() const { return best_distance_m_; }
 
-  // Searches two cells until nothing in them can be nearer than the best pair by more than `tolerance_m`, or
-  // the best pair is within `enough_m`. Both values are in metres; the tolerance must be positive.
+  // Searches two cells until no pair of points in them can be nearer than the best pair by more than
+  // `tolerance_m`, or the distance of the best pair is at most `enough_m`. Both values are in metres; the
+  // tolerance must be positive.
   void search(const LevelCell& a, const LevelCell& b, double tolerance_m, double enough_m);
 
   // Returns true if the searches since begin() exceeded a capacity and skipped some patches.

@@ -13,10 +13,10 @@ constexpr std::size_t pair_contact_capacity = 64;
 // Tolerance of the nearest distance, as a fraction of the smaller surface's size or of the distance,
 // whichever is larger.
 constexpr double nearest_tolerance = 1e-4;
-// Number of candidates from which Newton's method looks for a touch before the whole region is searched.
+// Number of starting points from which Newton's method looks for a touch before the whole region is searched.
 constexpr std::size_t region_seeds = 8;
 constexpr std::size_t wall_seeds = 8;
-// Number of candidates that determine the centre of a region.
+// Largest number of pairs of cells from which the centre of a region is computed.
 constexpr std::size_t centre_pairs = 64;
 // Number of directions from the region's centre in which starting points are placed.
 constexpr std::size_t seed_directions = 2;
@@ -86,8 +86,9 @@ void SurfacePairCollider::find_contacts(const PairQuery& query) {
   }
 }
 
-// Returns the seed of the last collide() that is within the region, or null. Begins with the seed that has
-// the region's number, because regions usually keep their order, and the ranges of several may overlap.
+// Returns the starting points that the last collide() stored for this region, or null. First tries those of
+// the contact with the same number, because contacts usually keep their order, and the ranges of several
+// regions may overlap.
 const SurfacePairCollider::Seed* SurfacePairCollider::last_seed(const PairContact& contact) const {
   for (std::size_t k = 0; k < last_seeds_.size(); ++k) {
     const Seed& seed = last_seeds_[(contacts_.size() + k) % last_seeds_.size()];
@@ -116,14 +117,14 @@ bool SurfacePairCollider::touches(const RegionCells& cells, const Seed* last) {
   return false;
 }
 
-// Computes the depth of a region; `contact` contains the point where the surfaces touch. Returns the seed
+// Computes the depth of a region; `contact` contains the point where the surfaces touch. Returns the points
 // from which the next collide() starts in this region.
 SurfacePairCollider::Seed SurfacePairCollider::resolve_contact(const RegionCells& cells,
                                                                const PairQuery& query, const Seed* last,
                                                                PairContact& contact) const {
   Seed found{contact.pair.at, {}};
   contact.normal = unit_normal(second_.surface(), found.touch.s, found.touch.t);
-  // An open surface has no inside, so both sides are tried, and the depth is that of the shorter exit. The
+  // An open surface has no inside, so both sides are tried, and the shorter exit determines the depth. The
   // search begins with the side on which the centre of the region is.
   Seeds seeds = find_seeds(cells, last);
   const double first_side = query.second_closed || seeds.centre_depth > 0.0 ? 1.0 : -1.0;
@@ -161,10 +162,10 @@ RegionCentre SurfacePairCollider::find_centre(const RegionCells& cells) const {
   return centre;
 }
 
-// Offers points of a region and keeps the deepest one and the one farthest in front. The points are the
-// centre of the region and others in the directions of a few pairs at which the surfaces cross: at half and
-// at twice the distance of the pair. With a seed from the last call, only one of these other points is
-// offered per call.
+// Returns the starting points for both sides of the second surface: the deepest and the one farthest in front
+// among several points. These are the centre of the region, the deepest points of the last call, and others
+// in the directions of a few pairs at which the surfaces cross: at half and at twice the distance of the
+// pair. If the last call stored points for this region, only one of these others is evaluated per call.
 SurfacePairCollider::Seeds SurfacePairCollider::find_seeds(const RegionCells& cells, const Seed* last) const {
   const RegionCentre centre = find_centre(cells);
   Seeds seeds;
@@ -216,8 +217,8 @@ void SurfacePairCollider::find_inner_touch(const RegionCells& cells, PairContact
 }
 
 // Updates the contact if each surface is deeper behind the other than contact.depth_m. A displacement by the
-// smaller of both depths separates them. Depths beyond `shortest` need not be exact. `from` receives the
-// parameters of the first surface's deepest point.
+// smaller of both depths separates the surfaces. Depths beyond `shortest` need not be exact. `from` receives
+// the parameters of the first surface's deepest point.
 void SurfacePairCollider::deepen_contact(PairContact& contact, PairParameters& from, double outside,
                                          bool first_closed, double shortest) const {
   const PiecewiseSurface first = first_.pieces(), second = second_.pieces();

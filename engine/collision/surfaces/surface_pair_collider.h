@@ -1,6 +1,6 @@
-// Contact of two B-spline surfaces through levels of detail of their blending matrices (section 4.1 of
-// Pungotra et al. 2013). Cells that may meet are found from coarse to fine and grouped into regions, whose
-// contacts are computed on the exact surfaces.
+// Contact of two B-spline surfaces through levels of detail (section 4.1 of Pungotra et al. 2013). Cells that
+// may meet are found from coarse to fine and grouped into regions, whose contacts are computed on the exact
+// surfaces.
 #pragma once
 
 #include <limits>
@@ -30,7 +30,7 @@ struct PairResult {
   bool touching = false;   // true if the surfaces touch, to within touch_tolerance_m
   bool contained = false;  // true if one body is inside the other; the only contact pushes the inner body out
   // Distance of surfaces that do not touch; infinite if it is greater than the reach. It exceeds the true
-  // distance by at most 1e-4 of itself or of the smaller surface's size, whichever is larger.
+  // distance by at most 1e-4 of the distance or of the smaller surface's size, whichever is larger.
   double distance_m = std::numeric_limits<double>::infinity();
   SurfacePair nearest;
   // True if a capacity was exceeded, so that a contact may be missing. Surfaces of fewer elements or a
@@ -40,7 +40,7 @@ struct PairResult {
 };
 
 // Contact search of two surfaces. Reuses evaluated samples until control points move, and starts from the
-// last contacts. One owner, one thread; allocates only on construction. The grids must outlive it.
+// last contacts. Not thread-safe. Allocates only on construction. The grids must outlive the collider.
 class SurfacePairCollider {
  public:
   SurfacePairCollider(const NestedGrid& first, const NestedGrid& second);
@@ -72,7 +72,7 @@ class SurfacePairCollider {
   using Region = ContactRegions::Region;
 
   // Points of a region from which the next collide() starts: the point where the surfaces touched, and the
-  // points where the first surface was deepest, one for each side as in Seeds.
+  // points where the first surface was deepest on either side of the second.
   struct Seed {
     PairParameters touch, deepest[2];
     bool deep[2] = {false, false};
@@ -100,12 +100,13 @@ class SurfacePairCollider {
   ContactRegions regions_;
   PairSearch search_;
   std::vector<PairContact> contacts_;
-  // Seeds of the present contacts, and of those of the previous collide().
+  // Starting points stored by the present collide() and by the previous one.
   std::vector<Seed> seeds_, last_seeds_;
   std::size_t query_ = 0;
-  PairParameters nearest_;  // nearest points of the last two surfaces that did not touch
+  // Nearest points in the last collide() of surfaces that did not touch.
+  PairParameters nearest_;
   bool nearest_known_ = false;
-  // Result of the last collide(); affects the order of the search, not its result.
+  // True if the surfaces met in the last collide(). Affects the order of the search, not its result.
   bool touched_last_ = false;
 };
 

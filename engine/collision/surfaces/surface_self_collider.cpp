@@ -142,7 +142,7 @@ namespace {
 constexpr std::size_t self_contact_capacity = 64;
 // Largest number of pairs at any level except the coarsest. If there are more, a coarser level is used.
 constexpr std::size_t self_pair_capacity = 1 << 17;
-// Number of candidates from which Newton's method looks for a touch before the whole region is searched.
+// Number of starting points from which Newton's method looks for a touch before the whole region is searched.
 constexpr std::size_t self_region_seeds = 8;
 
 bool are_same(const LevelCell& a, const LevelCell& b) {
@@ -159,7 +159,8 @@ SurfaceSelfCollider::SurfaceSelfCollider(const NestedGrid& nested)
       search_(levels_, levels_, &not_joined_),
       regions_(levels_, levels_) {
   pairs_.reserve(cell_pair_capacity);
-  // Each step of a descent leaves at most two node pairs on one stack, or fifteen cell pairs on the other.
+  // Each step of a descent removes one entry from a stack. It adds at most three entries to nodes_, or
+  // sixteen to pending_.
   nodes_.reserve(256);
   pending_.reserve(static_cast<std::size_t>(16 * (2 + nested.levels)));
   contacts_.reserve(self_contact_capacity);

@@ -1,7 +1,6 @@
 // Contact of a B-spline surface, open, periodic or closed, with itself. The search is that of
-// SurfacePairCollider with the same surface on both sides. Cells that are joined (at an edge or a corner,
-// across a seam or at a pole) always meet there. They are split until PatchFolds proves that they meet
-// nowhere else.
+// SurfacePairCollider with the same surface twice. Cells that are joined (at an edge or a corner, across a
+// seam or at a pole) always meet there. They are split until PatchFolds proves that they meet nowhere else.
 #pragma once
 
 #include <array>
@@ -18,16 +17,16 @@
 
 namespace spoonbill {
 
-// Tangent cones of one surface's cells, which prove that patches do not intersect themselves. One owner, one
-// thread; allocates only on construction. The levels must outlive it.
+// Tangent cones of one surface's cells, which prove that patches do not intersect themselves. Not
+// thread-safe. Allocates only on construction. The levels must outlive the object.
 //
 // Over a parameter rectangle, S(p) - S(q) = (u_p - u_q) a + (v_p - v_q) b. Here a and b are the means of S_u
-// and S_v over the path from q to p, so each is in the convex cone that contains its tangents. Let these
-// cones have the axes A and B and the half angles alpha and beta. If the angle between the lines of A and B
-// is more than alpha + beta, a and b are never parallel and the difference never vanishes.
+// and S_v over the path from q to p. Each is therefore in the convex cone that contains the tangents S_u or
+// S_v. Let these cones have the axes A and B and the half angles alpha and beta. If the angle between the
+// lines of A and B is more than alpha + beta, a and b are never parallel and the difference never vanishes.
 //
-// This is stronger than a cone of normals (Volino and Magnenat-Thalmann 1994), which also needs a test of the
-// boundary: a flat spiral has only one normal and may still overlap itself.
+// This test is stronger than a cone of normals (Volino and Magnenat-Thalmann 1994), which also needs a test
+// of the boundary: a flat spiral has only one normal and may still overlap itself.
 class PatchFolds {
  public:
   explicit PatchFolds(SurfaceLevels& levels);
@@ -52,17 +51,19 @@ class PatchFolds {
   void update_mixed_bounds();
 
   SurfaceLevels* levels_;
-  // Largest norm of S_uv over each element, indexed by u and v. SurfaceBounds contains the norms of S_uu and
-  // S_vv.
+  // Upper bound of the norm of S_uv over each element, indexed by u and v. SurfaceBounds contains the bounds
+  // for S_uu and S_vv.
   std::vector<double> mixed_;
   struct Direction {
-    std::vector<int> span, control;  // knot span of each element; control point index of each unrolled index
-    std::vector<double> scale;       // degree / (u_{i+p+1} - u_{i+1}) of the unrolled index i
+    // Knot span of each element, and index of each control point along the direction. In a periodic
+    // direction, the first control points are repeated at the end.
+    std::vector<int> span, control;
+    std::vector<double> scale;  // degree / (u_{i+p+1} - u_{i+1}) for each index i of `control`
     int degree = 0;
   };
   static Direction unroll(const KnotVector& knots);
   Direction u_, v_;
-  // Working memory: norms of the mixed differences of the control points, by unrolled index.
+  // Working memory: norms of the control points of S_uv, with the same repetition as in Direction::control.
   std::vector<double> steps_;
   std::vector<Cones> cones_;  // indexed by SurfaceLevels::cell_index()
   std::vector<std::uint32_t> computed_at_;
@@ -86,11 +87,12 @@ struct SelfResult {
   bool stopped = false;  // true if the progress callback stopped the search; contacts found so far are valid
 };
 
-// Search for contacts of one surface with itself. One owner, one thread; allocates only on construction. The
-// grid must outlive it.
+// Search for contacts of one surface with itself. Not thread-safe. Allocates only on construction. The grid
+// must outlive the search.
 //
-// Joined cells of the finest level are not tested against each other. A loop within two such cells, or the
-// sharp edge of a fold, is therefore not reported as a contact. With more levels, smaller loops are found.
+// Neighbouring cells of the finest level are not tested against each other, and neither are cells that meet
+// across a seam or at a pole. A loop within two such cells, or the sharp edge of a fold, is therefore not
+// reported as a contact. With more levels, smaller loops are found.
 class SurfaceSelfCollider {
  public:
   explicit SurfaceSelfCollider(const NestedGrid& nested);
@@ -106,8 +108,10 @@ class SurfaceSelfCollider {
  private:
   // How cells at the two ends of a direction are joined, apart from the corners that they share in the grid.
   struct Joints {
-    bool seam = false;                         // both ends of the direction are the same curve in space
-    bool low_pole = false, high_pole = false;  // true if that end is a single point
+    // True if both ends of the direction are the same curve in space.
+    bool seam = false;
+    // True if the low or high end of the direction is a single point.
+    bool low_pole = false, high_pole = false;
   };
   // Rejects pairs of points that are in joined cells.
   class NotJoinedJudge final : public PairJudge {
