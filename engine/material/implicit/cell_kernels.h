@@ -31,8 +31,8 @@ struct CellKernels {
   // the cells from `force`, N. Both arrays have entry 3 n + axis for node n. A few Newton steps from the last
   // rotation find the new one.
   void (*compute_forces)(CellBatch* batches, int count, const double* moved, double* force);
-  // Adds `scale` times the product of the plain tangent R P^T K P R^T (see CorotatedCell::respond()) and
-  // `field` to `out`.
+  // Adds `scale` times the product of the cells' tangent and `field` to `out`. The tangent is R P^T K P R^T,
+  // without the contribution of stress (see CorotatedCell::respond()).
   void (*apply)(const CellBatch* batches, int count, double scale, const double* field, double* out);
 };
 

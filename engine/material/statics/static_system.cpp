@@ -18,7 +18,7 @@ Vector3 at_node(const Eigen::VectorXd& all, int node) {
   return all.segment<3>(3 * static_cast<Eigen::Index>(node));
 }
 
-// Adds a quarter of the pressure on the face's vector area to each corner.
+// Adds to each corner of a face a quarter of the pressure's force on the face's vector area.
 void add_pressure(const PressedFace& face, const LatticeMesh& mesh, const Eigen::VectorXd& at,
                   Eigen::VectorXd& forces) {
   const auto corner = [&](std::size_t c) -> Vector3 {
