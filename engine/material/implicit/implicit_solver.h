@@ -138,31 +138,31 @@ class ImplicitSolver {
   // Velocity change of a lattice node per impulse that contacts assume, 1/kg.
   double contact_inverse_mass() const { return contact_inverse_mass_; }
 
-  // Fixes nodes of the lattice, one byte per node. Each node of the block is fixed if the lattice node
-  // nearest to it is. If a fixed lattice node would then follow only free block nodes, the block node with
-  // the largest weight in it is fixed too.
+  // Fixes nodes of the lattice, one byte per node. Each node of the hexahedral block is fixed if the lattice
+  // node nearest to it is. If a fixed lattice node would then follow only free block nodes, the block node
+  // with the largest weight in it is fixed too.
   void fix_nodes(std::span<const std::uint8_t> fixed);
-  // Sets the block's displacements and velocities from those of the lattice.
+  // Sets the displacements and velocities of the hexahedral block from those of the lattice.
   void adopt_shape(const SpringLattice& lattice);
 
-  // Moves the block rigidly, and the lattice that follows it. No node may be fixed.
+  // Moves the hexahedral block rigidly, and the lattice that follows it. No node may be fixed.
   void move_rigidly(const RigidMove& move, SpringLattice& lattice);
 
-  // Call after lattice nodes have been moved permanently without the block, as by SpringLattice::reform().
-  // Sets the rest positions of free lattice nodes so that the nodes stay where they are when they follow the
-  // block.
+  // Call after lattice nodes have been moved permanently without the hexahedral block, as by
+  // SpringLattice::reform(). Sets the rest positions of free lattice nodes so that the nodes stay where they
+  // are when they follow the block.
   void adopt_moved_nodes(const SpringLattice& lattice);
 
-  // Rayleigh quotient (v.Kv) / (v.Mv) of the block's velocities; 0 at rest.
+  // Rayleigh quotient (v.Kv) / (v.Mv) of the hexahedral block's velocities; 0 at rest.
   double rayleigh_quotient() { return body_.rayleigh_quotient(); }
-  // Replaces all forces on the block's nodes by those that the lattice has on `nodes`, N. Forces on fixed
-  // nodes are ignored, because they do not move the block.
+  // Replaces all forces on the hexahedral block's nodes by those that the lattice has on `nodes`, N. Forces
+  // on fixed nodes are ignored, because they do not move the block.
   void set_node_forces(const SpringLattice& lattice, std::span<const int> nodes);
-  // Sets the velocity of the block's nodes that these lattice nodes fix, for the coming steps. `nodes` must
-  // be in ascending order.
+  // For the coming steps, sets the velocity of the nodes of the hexahedral block that these lattice nodes
+  // fix. `nodes` must be in ascending order.
   void move_fixed(std::span<const int> nodes, const Vector3& velocity_m_per_s);
-  // Returns the force of cells, loads and gravity on these fixed nodes of the lattice and on the block nodes
-  // that they fix, at the start of the last step, N.
+  // Returns the force of cells, loads and gravity on these fixed nodes of the lattice and on the nodes of the
+  // hexahedral block that they fix, at the start of the last step, N.
   Vector3 force_on_fixed(const SpringLattice& lattice, std::span<const int> nodes,
                          const Vector3& gravity_m_per_s2) const;
 
@@ -175,13 +175,13 @@ class ImplicitSolver {
   ImplicitReport begin_step(const ImplicitStep& step, SpringLattice& lattice,
                             std::span<GroundContact> on_ground = {});
   // Work of the contacts' impulses since the last response: `assumed_work_j` with the velocity changes that
-  // the contacts assumed, `work_j` with those of the block.
+  // the contacts assumed, `work_j` with those of the hexahedral block.
   struct ContactResponse {
     double assumed_work_j = 0.0, work_j = 0.0;
   };
   ContactResponse find_response(const SpringLattice& lattice);
-  // Applies this fraction of the response that find_response() computed to the block, and updates the
-  // lattice's velocities.
+  // Applies this fraction of the response that find_response() computed to the hexahedral block, and updates
+  // the lattice's velocities.
   void respond(double fraction, SpringLattice& lattice);
   // Ground contacts of the lattice, passed to end_step().
   struct GroundPush {
@@ -210,7 +210,7 @@ class ImplicitSolver {
   double collect_impulses(const SpringLattice& lattice);
   void update_contact_mass(SpringLattice& lattice);
   bool follows_fixed(const GridPoint& follower) const;
-  // Returns whether one of the lattice nodes fixes this node of the block.
+  // Returns whether one of the lattice nodes `nodes` fixes this node of the hexahedral block.
   bool is_fixed_by(int node, std::span<const int> nodes) const;
 
   ImplicitBody body_;
