@@ -24,8 +24,8 @@
 
 namespace spoonbill {
 
-// Part of the samples' displacement that the control net cannot follow, and the parameters (u, v) at which it
-// is largest.
+// Part of the samples' displacement that the control net cannot follow: its largest and its root mean square
+// value, and the parameters (u, v) at which it is largest.
 struct MappingResidual {
   double largest_m = 0.0;
   double root_mean_square_m = 0.0;
@@ -88,7 +88,7 @@ class BodyMapping {
   // Shared pointer, because colliders keep the grid's address when the mapping is moved.
   std::shared_ptr<NestedGrid> nested_;
   std::vector<EmbeddedPoint> embedding_;
-  std::vector<CellWeights> cell_weights_;  // by sample, the same weights as in embedding_
+  std::vector<CellWeights> cell_weights_;  // for each sample, the same weights as in embedding_
   AlignedVector<float> node_moves_;        // displacements of the nodes: x, y, z and 0 for each
   AlignedVector<float> base_moves_;        // displacements of the samples at make(): x, y, z and 0 for each
   AlignedVector<float> sample_[3];         // displacements of the samples by axis, in the layout of the refit
@@ -118,8 +118,9 @@ class MeshMapping {
   EmbeddedPoint vertex(std::uint32_t vertex) const;
   EmbeddedPoint at(const PointOnMesh& point) const;
 
-  // Patch number of each vertex. A patch is an octant of a lattice cell at rest; patches are numbered without
-  // gaps. Constraints denser than half a cell would act on the same nodes twice.
+  // Returns the patch number of each vertex. A patch is an octant of a lattice cell at rest; patches are
+  // numbered without gaps. Each patch gets one contact at most, because contacts denser than half a cell
+  // would act on the same nodes twice.
   const std::vector<int>& patches() const { return patches_; }
 
  private:

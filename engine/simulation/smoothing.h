@@ -57,11 +57,11 @@ class Smoothing {
   std::optional<Curvature> curvature_at(int node, const PositionOf& position_of) const;
   // Returns the change of the curvature since the rest shape.
   std::optional<Curvature> bend_at(const SpringLattice& lattice, int node) const;
-  // Returns the bend of a neighbour along the line that leads to `node`. Lowers `height_factor` to the
-  // neighbour's height factor if the latter is less.
+  // Returns the bend of a neighbour along the line that leads to `node`; nothing if there is no such line or
+  // no curvature. Lowers `height_factor` to the neighbour's height factor if the latter is less.
   std::optional<double> bend_toward(const SpringLattice& lattice, int neighbour, int node,
                                     double& height_factor) const;
-  // Returns the displacement of a shell node from the shape without its bump.
+  // Returns the vector by which a shell node's bump raises the node above the shape without the bump.
   Vector3 measure_bump(const SpringLattice& lattice, int node) const;
   // Position of an inner node relative to its six neighbours.
   struct NeighbourCentre {

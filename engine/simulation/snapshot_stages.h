@@ -1,5 +1,5 @@
-// Contact debug views: the collision stages of every contact in a snapshot. They cover the tool and its
-// mirror image against every body, and every pair of bodies.
+// Contact debug views: the stages of collision detection (ContactStages) for every contact in a snapshot.
+// They cover the tool and its mirror image against every body, and every pair of bodies.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ class SnapshotStages {
   struct StructuredSurface {
     const Surface* surface;
     std::uint64_t structure;
-    bool closed = true;  // whether it encloses a solid, with du x dv outward
+    bool closed = true;  // true if it encloses a solid, with du x dv outward
     std::shared_ptr<const TrimmedArea> trim = {};
   };
 
