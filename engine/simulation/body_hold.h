@@ -17,9 +17,9 @@ class BodyHold {
   // Stores the displacements and the mean pose at the start of a tick.
   void begin(const SpringLattice& lattice);
 
-  // If a node's position or velocity is not finite, or a node is farther than `reach_m` from the centre of
-  // mass, restores the displacements at the start of the tick, with zero velocities, and returns true.
-  // `solver` is null if the springs step the body.
+  // Checks that the positions and velocities of all nodes are finite, and that no node is farther than
+  // `reach_m` from the centre of mass. Otherwise restores the displacements at the start of the tick, with
+  // zero velocities, and returns true. `solver` is null if the springs step the body.
   bool limit(SpringLattice& lattice, ImplicitSolver* solver, double reach_m) const;
 
   // Returns the body to its mean position and orientation at the start of the tick, and removes its linear

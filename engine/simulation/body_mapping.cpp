@@ -144,8 +144,9 @@ void search_cells_around(const LatticeMesh& mesh, int node, const Vector3& point
   }
 }
 
-// Embeds a point in the cell, among those around the nearest node, that contains the point or is nearest to
-// it. Attaches a point farther than one cell from these cells to the nearest node alone.
+// Embeds a point in one of the cells around the node nearest to it: the cell that contains the point, or else
+// the nearest of these cells. If that cell is more than one cell size away, attaches the point to the node
+// alone.
 EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
   int nearest = 0;
   double least = std::numeric_limits<double>::infinity();

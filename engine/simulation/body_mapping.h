@@ -24,8 +24,8 @@
 
 namespace spoonbill {
 
-// Part of the samples' displacement that the control net cannot follow: its largest and its root mean square
-// value, and the parameters (u, v) at which it is largest.
+// Displacements of a surface's samples minus the displacements that the control net can reproduce: the
+// largest and the root mean square difference, and the parameters (u, v) of the largest.
 struct MappingResidual {
   double largest_m = 0.0;
   double root_mean_square_m = 0.0;

@@ -105,8 +105,8 @@ Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& 
                                                            const std::vector<Vector3>& rest_m,
                                                            InstructionSet set);
 
-// Relative error of a lattice's Young's modulus along an axis above which describe_lattice_warning() warns.
-// Cells that are too slender for springs cause such errors.
+// describe_lattice_warning() warns if the relative error of a lattice's Young's modulus along an axis exceeds
+// this value. Cells that are too slender for springs cause such errors.
 inline constexpr double slender_stiffness_limit = 0.25;
 // Returns a warning about a lattice that can be simulated but deviates from its material, with a remedy, in
 // one line. Empty if there is nothing to warn about.

@@ -26,7 +26,7 @@ struct ToolInput {
   Pose pose;
   bool gripping = false;  // true while the button is down; a pull then keeps its grip
   // Stiffness of the spring between hand and tool, N/m; 0 for a hand that holds the tool rigidly. If a body
-  // has an implicit solver, 0 means the default spring of tool_step.cpp.
+  // has an implicit solver, a spring of 1000 N/m replaces a rigid hold.
   double coupling_n_per_m = 0.0;
   // The hand points without touching. The tool does not act until hovering ends and the tool is outside the
   // bodies.

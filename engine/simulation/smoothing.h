@@ -72,8 +72,8 @@ class Smoothing {
   NeighbourCentre neighbour_centre_at(int node, const PositionOf& position_of) const;
   // Returns the displacement of an inner node from its rest position relative to its neighbours.
   Vector3 measure_centre_offset(const SpringLattice& lattice, int node) const;
-  // Sets the pairs of a shell node. Their order makes the cross product of the two directions point out of
-  // the body.
+  // Sets the pairs of a shell node in such an order that the cross product of the two pairs' directions
+  // points out of the body.
   void connect(const LatticeMesh& mesh, int node);
 
   // Returns the neighbours before and after an inner node along an axis, across the seam of a closed block.

@@ -25,8 +25,8 @@ namespace {
 constexpr int sweeps = 60, halvings = 10;
 // The sweeps of unfold() end when no node moves farther than this fraction of the shortest mean edge.
 constexpr double still_fraction = 1e-3;
-// If the smallest determinant of a corner is below this value, unfold() uses a positive d. The determinant is
-// 1 for a box of the mean edges.
+// If the smallest determinant of a corner is below this value, unfold() regularises the terms of all corners.
+// The determinant is 1 for a box of the mean edges.
 constexpr double min_determinant = 1e-2;
 
 // The nodes of a cell, and the corner of the cell at which the moving node is.
