@@ -14,7 +14,7 @@
 namespace spoonbill {
 
 // Material of each cell and friction of each node. They stay with the cells and nodes while the body's shape
-// changes. Plain data, a value.
+// changes. A plain value type.
 struct LatticeMaterials {
   // Creates the materials of a uniform body. An implicit conversion, because most bodies are uniform.
   LatticeMaterials(const Material& own) : materials{own}, frictions{own.friction} {}

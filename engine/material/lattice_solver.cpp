@@ -247,8 +247,8 @@ struct Response {
   double assumed_work_j = 0.0, work_j = 0.0;
   std::array<bool, lattice_capacity> responds{};
 
-  // Returns the fraction of the impulses to apply, at which the energy is least. It is below 1 if the
-  // lattices respond more than the contacts assumed. `tool_work_j` is the work of the impulses on a tool.
+  // Returns the fraction of the impulses that must be applied for the energy to be least. It is below 1 if
+  // the lattices respond more than the contacts assumed. `tool_work_j` is the work of the impulses on a tool.
   double find_best_fraction(double tool_work_j) const {
     const double assumed = assumed_work_j + tool_work_j, work = work_j + tool_work_j;
     return work > assumed ? assumed / work : 1.0;

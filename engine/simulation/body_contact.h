@@ -65,7 +65,7 @@ EmbeddedPoint find_embedding(const BodyMapping& mapping, const NearPoint& near);
 bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::vector<NearPoint>& points,
                      BodyContacts& contacts);
 
-// Contact of two bodies. One owner, the simulation, which rebuilds it with the mapping of either body. find()
+// Contact of two bodies. Owned by the simulation, which rebuilds it with the mapping of either body. find()
 // and add_contacts() allocate nothing.
 class BodyPairContact {
  public:
@@ -93,7 +93,7 @@ class BodyPairContact {
 
 // Contact of a body with itself, where its surface comes near another part of it from outside. A slender body
 // in a box of cells (LatticeMesh::slender) has no self-contact: it is thinner than two cells somewhere, and
-// its far side would be mistaken for a part that has been pressed through the near side. One owner, the
+// its far side would be mistaken for a part that has been pressed through the near side. Owned by the
 // simulation, which rebuilds it with the body's mapping.
 class BodySelfContact {
  public:

@@ -1,5 +1,5 @@
 // Keeps a body in the scene through one tick. Keeps the pose of a body that nothing fixes, and returns a body
-// to its last good shape if its lattice cannot follow. Allocates only on construction; one owner, the body.
+// to its last good shape if its lattice cannot follow. Owned by the body; allocates only on construction.
 #pragma once
 
 #include <vector>

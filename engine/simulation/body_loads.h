@@ -16,7 +16,7 @@
 
 namespace spoonbill {
 
-// Loads of a body, which owns them. Built outside the tick; apply() allocates nothing.
+// Loads of a body, which owns them. They are built outside the tick; apply() allocates nothing.
 class BodyLoads {
  public:
   BodyLoads() = default;

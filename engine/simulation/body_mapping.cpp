@@ -11,9 +11,9 @@
 namespace spoonbill {
 namespace {
 
-// Number of times that elements are halved to get the samples of the refit. One halving gives at least twice
-// as many samples as control points for simple knots, and a well-conditioned refit. Elements between repeated
-// knots have as many control points as the degree and need more samples.
+// Smallest and largest number of times that elements are halved to get the samples of the refit. One halving
+// gives at least twice as many samples as control points for simple knots, and a well-conditioned refit.
+// Elements between repeated knots have as many control points as the degree and need more samples.
 constexpr int refit_levels = 1, max_refit_levels = 4;
 static_assert(1 << max_refit_levels > max_degree);
 constexpr int edge_stations = 512;

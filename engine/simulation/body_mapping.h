@@ -33,7 +33,7 @@ struct MappingResidual {
 };
 
 // Mapping to a B-spline surface: embedded grid samples move with the nodes, and the displacement refit moves
-// the control points with the samples. One owner, the simulation; update() and measure_residual() allocate
+// the control points with the samples. Owned by the simulation. update() and measure_residual() allocate
 // nothing.
 class BodyMapping {
  public:
@@ -101,7 +101,7 @@ class BodyMapping {
   MappingResidual residual_;
 };
 
-// Mapping to triangles, whose vertices are embedded in a box lattice. One owner, the simulation; update()
+// Mapping to triangles, whose vertices are embedded in a box lattice. Owned by the simulation. update()
 // allocates nothing.
 class MeshMapping {
  public:

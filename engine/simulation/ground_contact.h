@@ -15,7 +15,7 @@ namespace spoonbill {
 
 // Heights of a surface above a plane. The height is itself a spline whose coefficients are the heights of the
 // control points. It is sampled four times per element in each direction. Between samples, parabolas through
-// neighbouring samples estimate the lowest height. One owner, one thread; allocates only in make().
+// neighbouring samples estimate the lowest height. Has one owner on one thread. Allocates only in make().
 class SkinHeights {
  public:
   // Makes the memory for the heights of any surface with these knots.
@@ -51,8 +51,8 @@ class SkinHeights {
 // Largest penetration of a resting body's skin into the ground, in lattice cells.
 inline constexpr double ground_depth_limit_cells = 0.01;
 
-// Ground contact of all bodies. One owner, the simulation, which rebuilds it with the mapping of a body.
-// find() allocates nothing.
+// Ground contact of all bodies. Owned by the simulation, which rebuilds it with the mapping of a body. find()
+// allocates nothing.
 class BodyGroundContact {
  public:
   explicit BodyGroundContact(std::span<const BodyState> bodies);

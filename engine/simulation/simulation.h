@@ -1,5 +1,5 @@
-// The simulation: a scene and its state at a tick. One owner. After the start, only the haptic thread or the
-// lock-step loop changes it. All other threads send commands and read snapshots.
+// The simulation: a scene and its state at a tick. It has one owner. After the start, only the haptic thread
+// or the lock-step loop changes it. All other threads send commands and read snapshots.
 #pragma once
 
 #include <cstddef>

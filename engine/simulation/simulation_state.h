@@ -103,7 +103,7 @@ struct ToolKernel {
   bool body_yields = true;
 };
 
-// Returns the kernel of an action; tool_step.cpp defines them.
+// Returns the kernel of an action. tool_step.cpp defines all kernels.
 const ToolKernel& find_kernel(ToolAction action);
 
 ToolHold make_hold(const ToolInput& input);
@@ -145,7 +145,8 @@ struct CommandApplier {
   void set_mappings(std::vector<BodyMapping> mappings);
 };
 
-// Writes bodies and contacts into a snapshot. Allocates only at the first call and after a structural change.
+// Writes bodies and contacts into a snapshot. Allocates only at the first call and after a change of bodies,
+// knots or tool.
 void write_bodies(std::span<const BodyState> bodies, const Scene& scene, std::vector<BodySnapshot>& out);
 void write_contacts(const Simulation::State& state, std::vector<ContactSnapshot>& contacts);
 

@@ -27,7 +27,7 @@ struct SmoothingBrush {
   double reach_m = 0.0;
 };
 
-// Smoothing of one lattice. One owner, the simulation, which rebuilds it with the lattice's mesh. apply()
+// Smoothing of one lattice. Owned by the simulation, which rebuilds it with the lattice's mesh. apply()
 // allocates nothing.
 class Smoothing {
  public:

@@ -19,8 +19,8 @@ namespace spoonbill {
 inline constexpr double stage_margin_m = 1e-4;
 
 // Finds collision stages for drawing. The result depends only on the snapshot, whose control points are
-// floats. Data that depends only on knots and tool is cached between snapshots. One owner, on the drawing
-// thread; allocates.
+// floats. Data that depends only on knots and tool is cached between snapshots. Has one owner, on the drawing
+// thread, and allocates.
 class SnapshotStages {
  public:
   // Finds the stages of a snapshot. Skips bodies whose control net does not fit their knots or is not finite.

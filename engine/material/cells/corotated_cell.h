@@ -13,8 +13,8 @@ namespace spoonbill {
 // a rotation.
 Eigen::Matrix3d nearest_turn(const Eigen::Matrix3d& change);
 
-// A cell that keeps the stiffness of its rest shape and rotates with the body: large rotations, small
-// strains. Plain data, a value.
+// A cell that keeps the stiffness of its rest shape and rotates with the body, for large rotations and small
+// strains. A plain value type.
 class CorotatedCell {
  public:
   CorotatedCell() = default;

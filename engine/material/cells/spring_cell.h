@@ -59,7 +59,7 @@ double shear_modulus(double youngs_modulus_pa, double poissons_ratio);
 AchievedElasticity achieved_elasticity(const CellCorners& corners, const CellSprings& springs,
                                        double bulk_stiffness_pa);
 
-// A cell of springs with a volume force. Plain data, a value.
+// A cell of springs with a volume force. A plain value type.
 class SpringCell {
  public:
   SpringCell() = default;

@@ -1,6 +1,7 @@
 // Kernels for the cells of an implicit body, which process eight cells side by side. The cells are corotated
-// hexahedra (see engine/material/cells/corotated_cell.h). Compiled once for each instruction set, with the
-// same bits. Uses no standard library; engine/bspline/evaluate_kernels.h explains why.
+// hexahedra (see engine/material/cells/corotated_cell.h). They are compiled once for each instruction set and
+// give the same bits on each. This header uses no standard library; engine/bspline/evaluate_kernels.h
+// explains why.
 #pragma once
 
 namespace spoonbill {

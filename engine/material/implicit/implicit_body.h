@@ -33,7 +33,7 @@ struct Overlap {
 // numbers of nodes along the axis, each at least 2.
 std::vector<Overlap> find_overlaps(int block_cell, int block_count, int lattice_count);
 
-// Materials in the cells of an implicit body. Plain data, a value.
+// Materials in the cells of an implicit body. A plain value type.
 struct BlockMaterials {
   // A box in a cell's natural coordinates (see HexahedronPart) and the index of the material that fills it.
   struct Part {
@@ -109,7 +109,7 @@ struct ImplicitReport {
 // A node moves at most half a cell per step, relative to the rigid motion of a free body. Faster motion could
 // crush cells irreversibly.
 //
-// Has one owner. Built outside the tick; allocates nothing afterwards.
+// Has one owner. It is built outside the tick and allocates nothing afterwards.
 class ImplicitBody {
  public:
   // Builds the body at rest, with an inertia scale of 1. With several materials, the damping time is that of

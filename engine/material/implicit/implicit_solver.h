@@ -55,7 +55,7 @@ struct GridPoint {
 // The functions index `points` by nodes of the lattice to which the contacts belong. Points that are attached
 // mostly to fixed nodes do not respond.
 //
-// One owner, the implicit solver of the body; allocates only at construction.
+// Owned by the implicit solver of the body. Allocates only at construction.
 class ImplicitGroundContacts {
  public:
   ImplicitGroundContacts(int points, double mass_kg);
@@ -121,7 +121,7 @@ struct RigidMove {
 // the end of the tick. If the block responds more than the contacts assumed, the impulses of the pass are
 // scaled down. The ground comes last and pushes the block directly.
 //
-// Has one owner, the body. Built outside the tick; allocates nothing afterwards.
+// Owned by the body. It is built outside the tick and allocates nothing afterwards.
 class ImplicitSolver {
  public:
   // Builds the solver of a lattice, unstrained when the lattice's nodes are at `rest_m`.

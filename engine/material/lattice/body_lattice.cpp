@@ -370,7 +370,7 @@ void fill_ring(const Surface& surface, const RingParameters& ring, LatticeMesh& 
   }
 }
 
-// A block of nodes in a tube, and the parameters of its slices and rings.
+// A block of nodes in a tube, with the surface parameters of its slices and of the nodes around them.
 struct TubeBlock {
   LatticeMesh mesh;
   TubeStations stations;

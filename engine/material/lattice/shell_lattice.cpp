@@ -20,7 +20,7 @@ namespace spoonbill {
 namespace {
 
 // Surface of a shell as a function of two fractions of its domain: one around or across the shell, the other
-// along it. One owner; immutable. The surface must outlive it.
+// along it. Immutable. The surface must outlive it.
 class ShellSurface {
  public:
   // Kind of shell, see shell_lattice.h.

@@ -129,7 +129,7 @@ struct Drift {
 // Results of one drift.
 struct Drifted {
   float speed_square = 0.0f;  // largest squared ratio of speed to cap
-  float moved_square = 0.0f;  // largest squared distance from the linearisation, m^2
+  float moved_square = 0.0f;  // largest squared change of `ahead` since the linearisation, m^2
 };
 
 // Results that a linearisation stores: only the spring forces, which suffice if no further substep uses the

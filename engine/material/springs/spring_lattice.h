@@ -113,7 +113,7 @@ class SpringLattice {
   // Sets the force on a node, N; it acts until it is changed.
   void set_node_force(int node, const Vector3& force_n);
 
-  // Returns a view of the state. Its pointers stay valid until the lattice is moved or destroyed.
+  // Returns a view of the state. Its pointers stay valid until the C++ object is moved or destroyed.
   LatticeView view();
   const LatticeKernels& kernels() const { return *kernels_; }
   // masses() returns the masses of all nodes, kg, like mass(). free_mass() is the same, but 0 for fixed

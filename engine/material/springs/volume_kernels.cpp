@@ -92,8 +92,8 @@ inline float volume_rate(const LatticeView& view, const FaceDiagonals& gradient,
 struct BlockCells {
   alignas(64) float x[8][block], y[8][block], z[8][block];
 
-  // Sets the results of cell l at each corner to `scale` times the gradient of its volume by that corner.
-  // `gradient` is the gradient by the face diagonals.
+  // Sets the results of cell l at each corner to `scale` times the gradient of its volume with respect to
+  // that corner. `gradient` is the gradient with respect to the face diagonals.
   void set(int l, float scale, const FaceDiagonals& gradient) {
     const FaceDiagonals g = {scale * gradient.a, scale * gradient.b, scale * gradient.c,
                              scale * gradient.d, scale * gradient.e, scale * gradient.f};

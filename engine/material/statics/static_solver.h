@@ -10,7 +10,7 @@ struct StaticSettings {
   // Largest accepted unbalanced force, relative to the forces of the cells or the loads, whichever are
   // larger.
   double tolerance = 1e-8;
-  int step_limit = 400;  // Newton steps in total
+  int step_limit = 400;  // largest number of Newton steps in total
   // Largest number of multiplications for one factor of the stiffness matrix. A body that needs more is
   // refused beforehand. At the default, a factor takes a few seconds, and a body needs about five factors.
   double work_limit = 1e10;
