@@ -87,7 +87,7 @@ struct BodyState {
   }
 };
 
-// Refuses a body that cannot be simulated; the error names the field.
+// Makes the state of a body at rest. Refuses a body that cannot be simulated; the error names the field.
 Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlane>& planes,
                                   InstructionSet set, const FeatureMapWatch& watch = {});
 
@@ -108,8 +108,8 @@ Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& 
 // describe_lattice_warning() warns if the relative error of a lattice's Young's modulus along an axis exceeds
 // this value. Cells that are too slender for springs cause such errors.
 inline constexpr double slender_stiffness_limit = 0.25;
-// Returns a warning about a lattice that can be simulated but deviates from its material, with a remedy, in
-// one line. Empty if there is nothing to warn about.
+// Returns one line that warns about a lattice that can be simulated but deviates from its material, and
+// states a remedy. Empty if there is nothing to warn about.
 std::string describe_lattice_warning(const BodyState& body);
 
 // Returns one byte per node, 1 for nodes behind a plane.

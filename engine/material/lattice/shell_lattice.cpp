@@ -180,8 +180,8 @@ using Position = ShellSurface::Position;
 // Smallest numbers of parts per direction into which the surface is cut: to measure arc lengths, for the
 // lines over which arc lengths are averaged, and to compute volumes.
 constexpr int length_stations = 200, lines = 16, volume_stations = 48;
-// A point of a bowl's rim counts as farthest from its centre from this fraction of the largest distance, so
-// that the start of the grid does not depend on rounding.
+// A point of a bowl's rim counts as the farthest from the rim's centre if its distance is at least this
+// fraction of the largest distance. The start of the grid thus does not depend on rounding.
 constexpr double farthest_tolerance = 1.0 - 1e-6;
 
 // Returns a table from arc length to the fractions `stations`. The arc length is averaged over the lines at

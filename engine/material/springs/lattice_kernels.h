@@ -103,9 +103,9 @@ struct LatticeView {
   int corner_direction[8] = {};  // spring direction from the first corner to each other corner; [0] is unused
   const float* bulk_stiffness = nullptr;     // K_v V0 of each cell, J; see volume_forces()
   const float* crushed_stiffness = nullptr;  // additional stiffness of a crushed cell, J; see volume_forces()
-  const float* inverse_volume = nullptr;     // 1/V0, 1/m^3
-  // 12 V0 as volume_forces() computes it, so that the rest shape has exactly zero dilation, m^3. Changed by
-  // reform().
+  const float* inverse_volume = nullptr;     // 1 / V0 with the volume V0 at construction, 1/m^3
+  // 12 times the rest volume of each cell, m^3, computed as in volume_forces(), so that the rest shape has
+  // exactly zero dilation. It is 12 V0 until reform() changes it.
   float* rest_volume_sum = nullptr;
   const float* has_cell = nullptr;            // 1 at the first corner of a cell, otherwise 0
   const float* inverse_cell_count = nullptr;  // 1 / the number of cells around a node

@@ -190,7 +190,8 @@ void SpringLattice::measure_fastest_square() {
   }
 }
 
-// Returns a copy in the rest shape at construction, with every node free and an inertia scale of 1.
+// Returns a copy without displacements and velocities, with the rest lengths at construction, every node free
+// and an inertia scale of 1.
 SpringLattice SpringLattice::at_rest() const {
   SpringLattice copy = *this;
   for (Floats* a : {&copy.dx_, &copy.dy_, &copy.dz_, &copy.vx_, &copy.vy_, &copy.vz_}) {

@@ -147,7 +147,8 @@ inline void add_corner_forces(const LatticeView& view, int start, const BlockCel
   }
 }
 
-// Returns J - 1, where J is the volume of a cell divided by its rest volume.
+// Returns the dilation J - 1 of a cell: its volume minus its rest volume, divided by its volume at
+// construction. Only SpringLattice::reform() makes the rest volume differ from the volume at construction.
 inline float cell_dilation(const LatticeView& view, const FaceDiagonals& p, int n) {
   return (volume_sum(p) - view.rest_volume_sum[n]) * (1.0f / 12.0f) * view.inverse_volume[n];
 }
@@ -155,8 +156,8 @@ inline float cell_dilation(const LatticeView& view, const FaceDiagonals& p, int 
 // Dilation below which a cell is crushed.
 constexpr float crushed_dilation = -0.7f;
 
-// Returns the derivative of a cell's pressure with respect to J, times its rest volume. If the bulk stiffness
-// is negative, the derivative is that at J = 1, where its magnitude is largest.
+// Returns the derivative of a cell's pressure with respect to J, times the cell's volume at construction. If
+// the bulk stiffness is negative, the derivative is that at J = 1, where its magnitude is largest.
 inline float volume_tangent(const LatticeView& view, const FaceDiagonals& p, int n) {
   const float crushed = view.crushed_stiffness[n];  // read unconditionally, so that the loop vectorises
   return view.bulk_stiffness[n] + (cell_dilation(view, p, n) < crushed_dilation ? crushed : 0.0f);
