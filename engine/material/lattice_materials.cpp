@@ -9,8 +9,8 @@
 namespace spoonbill {
 namespace {
 
-// Prefixes the message of an error with the region's index; keeps its code and field. `separator` is "." if
-// the message begins with a field of the region, ": " otherwise.
+// Prefixes the message of an error with the region's index. The error's code and field do not change.
+// `separator` is "." if the message begins with a field of the region, ": " otherwise.
 Error in_region(std::size_t region, const std::string& separator, const Error& error) {
   return {error.code, "regions[" + std::to_string(region) + "]" + separator + error.message, error.field};
 }

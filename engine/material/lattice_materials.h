@@ -14,7 +14,7 @@
 namespace spoonbill {
 
 // Material of each cell and friction of each node. They stay with the cells and nodes while the body's shape
-// changes. Plain data, a value.
+// changes. A plain value type.
 struct LatticeMaterials {
   // Creates the materials of a uniform body. An implicit conversion, because most bodies are uniform.
   LatticeMaterials(const Material& own) : materials{own}, frictions{own.friction} {}
@@ -46,9 +46,10 @@ struct LatticeMaterials {
 };
 
 // Returns the materials and frictions of a body with regions. A cell gets the material of the last region
-// that has a material and contains the cell's centre (see find_cell_coordinates()). A surface node gets the
-// friction of the last region that contains it. Fails where check_material_region() does. Also fails if a
-// region with a material contains no cell centre, or if a region with a friction contains no surface node.
+// that has a material and contains the cell's centre (see find_cell_coordinates()). A node gets the friction
+// of the last region that contains it, which defaults to that of the region's material. Fails where
+// check_material_region() does. Also fails if a region with a material contains no centre of a filled cell,
+// or if a region with a friction of its own contains no surface node.
 Result<LatticeMaterials> lattice_materials(const LatticeMesh& mesh, const Material& own,
                                            std::span<const MaterialRegion> regions);
 

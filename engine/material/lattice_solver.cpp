@@ -27,10 +27,10 @@ Vector3 support_velocity(const SupportedNodes& support, double time_s) {
   return (support.end_m - support.start_m) / time_s;
 }
 
-// Shortens the displacements of supports that would outrun the lattice. `reach_m` is the distance that a node
-// may move relative to another in the tick. If one support fixes all fixed nodes, the whole lattice moves
-// with it. This support may move by `reach_m` or twice its largest_step_m, whichever is more, so that it can
-// catch up after an undone stroke. Returns whether any displacement was shortened.
+// Shortens displacements of supports that are too long for one tick. `reach_m` is the distance that the speed
+// cap allows in the tick. If one support fixes all fixed nodes, the whole lattice moves with it. This support
+// may move by `reach_m` or twice its largest_step_m, whichever is more, so that it can catch up after a
+// stroke is undone. Returns true if a displacement was shortened.
 bool limit_support_motion(std::span<SupportedNodes> supports, const SpringLattice& lattice, double reach_m) {
   SPOONBILL_ASSERT(reach_m >= 0.0);
   const SupportedNodes* const common = find_common_support(supports, lattice);
@@ -55,8 +55,8 @@ Vector3 common_support_velocity(std::span<const SupportedNodes> supports, const 
   return common ? support_velocity(*common, time_s) : Vector3::Zero();
 }
 
-// Sets the velocities of supported nodes. Call after the kick, which sets the velocities of fixed nodes to
-// zero.
+// Sets the velocities of supported nodes. Call after the kick, which sets the velocities of all fixed nodes
+// to zero.
 void set_support_velocities(std::span<const SupportedNodes> supports, const LatticeView& view,
                             double time_s) {
   SPOONBILL_ASSERT_DEBUG(time_s > 0.0);
@@ -67,8 +67,8 @@ void set_support_velocities(std::span<const SupportedNodes> supports, const Latt
   }
 }
 
-// Adds the reaction of the supports over a substep of h_s to their impulses. Call after the forces are
-// computed.
+// Adds the impulse of each support on the body in a substep of h_s to the support's impulse_ns. Call after
+// the forces are computed.
 void add_support_impulses(std::span<SupportedNodes> supports, const LatticeView& view, double h_s) {
   for (SupportedNodes& support : supports) {
     Vector3 force = Vector3::Zero();
@@ -77,8 +77,8 @@ void add_support_impulses(std::span<SupportedNodes> supports, const LatticeView&
   }
 }
 
-// Moves supported nodes to `fraction` of their displacement in the tick. Call after the drift. Returns the
-// largest squared distance of a node from the linearisation, m^2.
+// Moves supported nodes to `fraction` of the support's displacement in the tick. Call after the drift.
+// Returns the largest squared change of an extrapolated node displacement since the linearisation, m^2.
 float move_supported_nodes(std::span<const SupportedNodes> supports, const LatticeView& view, double fraction,
                            float damping_time_s) {
   float moved_square = 0.0f;
@@ -143,14 +143,14 @@ void linearise_and_follow(SpringLattice& lattice, const LatticeView& view, Linea
   if (square > 0.0f && std::isfinite(square)) lattice.set_fastest_square(static_cast<double>(square));
 }
 
-// Returns the speed cap (see speed_cap_cells) for substeps of `h` seconds, m/s.
+// Returns the speed cap in m/s (see speed_cap_cells) for substeps of `h` seconds.
 float speed_cap(const SpringLattice& lattice, float h) {
   const auto longest = static_cast<float>(2.0 / lattice.fastest_frequency());
   return static_cast<float>(speed_cap_cells) * lattice.cell_size_m() /
          std::max({h, longest, lattice.damping_time_s()});
 }
 
-// Caps speeds relative to the frame velocity and moves the nodes.
+// Limits the nodes' speeds relative to the velocity `frame` and moves the nodes.
 Drifted drift(const SpringLattice& lattice, const LatticeView& view, float h, float cap,
               const Vector3& frame) {
   Drift drift;
@@ -163,7 +163,8 @@ Drifted drift(const SpringLattice& lattice, const LatticeView& view, float h, fl
   return lattice.kernels().drift(view, drift);
 }
 
-// Computes all forces. `moved_square` is the largest squared distance of a node from the linearisation.
+// Computes all forces on the nodes. Linearises the springs again if `moved_square` is too large.
+// `moved_square` is the largest squared change of an extrapolated node displacement since the linearisation.
 void compute_forces(const SpringLattice& lattice, const LatticeView& view, float moved_square,
                     const Vector3& gravity_m_per_s2) {
   const LatticeKernels& kernels = lattice.kernels();
@@ -198,12 +199,13 @@ struct Substep {
   float h;
 };
 
-// Most substeps of a tick in which weights act. In a shorter substep, the rounding of a falling node's
-// velocity would swallow part of the velocity change.
+// Largest number of substeps of a tick in which gravity acts. In a shorter substep, rounding would swallow
+// part of the change of a falling node's velocity.
 constexpr int most_weighted_substeps = 64;
 
-// Returns the number of substeps whose weight acts in this one: 1 for a moderate number of substeps. The
-// numbers of all substeps sum to the number of substeps.
+// Returns the factor by which gravity is multiplied in a substep. It is 1 in a tick of at most
+// most_weighted_substeps substeps. In a tick of more, gravity acts in every n-th substep only, n times as
+// strongly. The factors of a tick add up to its number of substeps.
 int count_weights(const Substep& substep) {
   const int stride = (substep.count + most_weighted_substeps - 1) / most_weighted_substeps;
   return substep.index % stride == 0 ? std::min(stride, substep.count - substep.index) : 0;
@@ -225,7 +227,8 @@ void kick(Relaxation& relaxation, const Substep& substep) {
   }
 }
 
-// Returns whether a tool has constraints on lattices that are stepped by springs, or on the others.
+// Returns true if the tool has a constraint on a lattice of the given kind: one that springs step if
+// `springs` is true, otherwise one that an implicit solver steps.
 bool touches(const Relaxation& relaxation, const TouchingTool& tool, bool springs) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (relaxation.has_springs(at) == springs && tool.contacts->has_constraint_on(static_cast<int>(at))) {
@@ -235,16 +238,17 @@ bool touches(const Relaxation& relaxation, const TouchingTool& tool, bool spring
   return false;
 }
 
-// Passes over the contacts with implicitly stepped lattices in a tick.
+// Number of passes over the contacts of implicitly stepped lattices in a tick.
 constexpr int solver_passes = 2;
 
-// Response of the implicitly stepped lattices to the impulses of contacts.
+// Response of the implicitly stepped lattices to the impulses of contacts: the work of the impulses as the
+// contacts assumed it, and as the lattices respond.
 struct Response {
   double assumed_work_j = 0.0, work_j = 0.0;
   std::array<bool, lattice_capacity> responds{};
 
-  // Returns the fraction of the impulses that has the least energy. It is below 1 if the lattices respond
-  // more than the contacts assumed. `tool_work_j` is the work of the impulses on a tool.
+  // Returns the fraction of the impulses that must be applied for the energy to be least. It is below 1 if
+  // the lattices respond more than the contacts assumed. `tool_work_j` is the work of the impulses on a tool.
   double find_best_fraction(double tool_work_j) const {
     const double assumed = assumed_work_j + tool_work_j, work = work_j + tool_work_j;
     return work > assumed ? assumed / work : 1.0;
@@ -270,7 +274,7 @@ void respond(const Relaxation& relaxation, const Response& response, double frac
   }
 }
 
-// Solves the contacts of a tool with implicitly stepped lattices.
+// Solves the contacts of a tool with implicitly stepped lattices; does nothing if there are none.
 void solve_with_solvers(const Relaxation& relaxation, const TouchingTool& tool, std::span<const float> caps) {
   if (!touches(relaxation, tool, false)) return;
   const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
@@ -283,7 +287,8 @@ void solve_with_solvers(const Relaxation& relaxation, const TouchingTool& tool, 
   }
 }
 
-// Solves the contacts between implicitly stepped lattices. The forces of the last tick act in full, so that
+// Solves the contacts between implicitly stepped lattices. Only the changes of the forces since the last tick
+// may be scaled down. The forces of the last tick act in full (BodyContacts::visit_known_impulses()), so that
 // an error of the assumed contact mass does not amplify them.
 void solve_with_solvers(const Relaxation& relaxation, BodyContacts& between, std::span<const float> caps) {
   if (!between.has_constraint_between_solvers()) return;
@@ -297,7 +302,8 @@ void solve_with_solvers(const Relaxation& relaxation, BodyContacts& between, std
   }
 }
 
-// Solves the contacts of a tool: those with springs in each substep, those with implicit solvers once a tick.
+// Solves the contacts of a tool. Contacts with spring-stepped lattices are solved in each substep, contacts
+// with implicitly stepped lattices once a tick.
 void solve_tool(const Relaxation& relaxation, const TouchingTool& tool, const Substep& substep,
                 std::span<const float> caps) {
   const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
@@ -332,8 +338,8 @@ void solve_contacts(const Relaxation& relaxation, const Substep& substep, std::s
   }
 }
 
-// Applies the forces on carried nodes to the tool, and restores the nodes' velocities, which the kick has set
-// to zero.
+// Passes the forces on the nodes fixed to a tool (CarriedNodes) to the tool's contacts. Gives these nodes the
+// tool's velocity, because the kick has set their velocities to zero.
 void collect_carried_forces(const Relaxation& relaxation, std::span<const TouchingTool> tools) {
   for (const TouchingTool& tool : tools) {
     const CarriedNodes& carried = tool.motion.carried;
@@ -348,7 +354,7 @@ void collect_carried_forces(const Relaxation& relaxation, std::span<const Touchi
   }
 }
 
-// Moves carried nodes to the tool's present pose.
+// Moves the nodes fixed to a tool (CarriedNodes) to the tool's present pose.
 void move_carried_nodes(Relaxation& relaxation, std::span<const TouchingTool> tools) {
   for (const TouchingTool& tool : tools) {
     const CarriedNodes& carried = tool.motion.carried;
@@ -366,7 +372,7 @@ void move_carried_nodes(Relaxation& relaxation, std::span<const TouchingTool> to
   }
 }
 
-// Moves supported nodes to `fraction` of their displacement in the tick.
+// Moves the supported nodes of all lattices to `fraction` of their supports' displacements in the tick.
 void move_supported_nodes(Relaxation& relaxation, double fraction) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const float square = move_supported_nodes(relaxation.lattices[at].supports, relaxation.view[at], fraction,
@@ -375,7 +381,8 @@ void move_supported_nodes(Relaxation& relaxation, double fraction) {
   }
 }
 
-// Returns whether the motion of a support was limited.
+// Limits the motions of the supports and sets the velocities of their nodes. Returns true if a motion was
+// limited.
 bool begin_supports(Relaxation& relaxation) {
   bool limited = false;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
@@ -394,7 +401,7 @@ bool is_carried(std::size_t at, std::span<const TouchingTool> tools) {
   });
 }
 
-// Returns the velocity to which the speed cap of a lattice is relative, m/s.
+// Returns the velocity of the frame in which the speeds of a lattice's nodes are capped, m/s.
 Vector3 frame_velocity(const Relaxation& relaxation, std::size_t at, std::span<const TouchingTool> tools) {
   for (const TouchingTool& tool : tools) {
     if (tool.motion.carried.body == static_cast<int>(at)) return tool.state->velocity_m_per_s;
@@ -431,7 +438,7 @@ void drift_with_solver(const LatticeView& view, float h) {
   }
 }
 
-// Returns whether a node reached the speed cap.
+// Moves the nodes of all lattices. Returns true if a node reached the speed cap.
 bool drift(Relaxation& relaxation, float h, std::span<const TouchingTool> tools) {
   bool capped = false;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
@@ -470,15 +477,16 @@ void stabilise_strained_nodes(Relaxation& relaxation, float h) {
   }
 }
 
-// Returns whether a tick of `substeps` substeps needs the spring tangents of the linearisation or only its
-// forces.
+// Chooses what the linearisation at the start of a tick stores. The spring tangents are needed by later
+// substeps, by critical damping and by LatticeKernels::damp_further(); otherwise the spring forces suffice.
 Linearised choose_linearisation(const SpringLattice& lattice, const RelaxSettings& settings, int substeps) {
   return substeps == 1 && !settings.is_critically_damped && !lattice.is_damped_further()
              ? Linearised::forces
              : Linearised::tangents;
 }
 
-// Linearises all springs at the start of a tick and chooses its substeps.
+// Linearises all springs at the start of a tick and returns the substeps that the tick needs. If `follows` is
+// true, also tracks the fastest frequencies.
 Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, bool follows) {
   const int expected = choose_substeps(relaxation, settings).count;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
@@ -630,8 +638,8 @@ double rayleigh_quotient(const SpringLattice& lattice, const LatticeView& view) 
     along.power_y[n] = view.vy[n] * view.free_node[n];
     along.power_z[n] = view.vz[n] * view.free_node[n];
   }
-  // For the nodes' velocities v, the stiffness K and the inertia M, the power step sets w = M^-1 K v / |M^-1
-  // K v| and returns |M^-1 K v| / |v|.
+  // For the nodes' velocities v, the stiffness K and the inertia M, the power step sets
+  // w = M^-1 K v / |M^-1 K v| and returns |M^-1 K v| / |v|.
   const double growth = static_cast<double>(lattice.kernels().power_step(along, lattice.free_mass()));
   double with_image = 0.0, motion_square = 0.0, image_square = 0.0;
   for (int n = 0; n < view.padded_count; ++n) {

@@ -1,5 +1,5 @@
-// Steps lattices through one tick together, in symplectic Euler substeps. The constraints of tools and
-// between bodies act in each substep. Allocates nothing.
+// Advances all lattices of a scene by one tick. Springs are stepped by the symplectic Euler method in several
+// substeps; an implicit solver takes one step. Contacts are solved within the substeps. Does not allocate.
 #pragma once
 
 #include <cstdint>
@@ -24,42 +24,43 @@ struct SupportedNodes {
   bool moves = false;
   Vector3 start_m = Vector3::Zero();  // displacement of the support at the start of the tick
   Vector3 end_m = Vector3::Zero();
-  // Largest displacement of the support in a tick by its own motion, without catching up.
+  // Longest distance that the prescribed motion covers in a tick. A support that catches up may move farther.
   double largest_step_m = 0.0;
-  Vector3 impulse_ns = Vector3::Zero();  // impulse on the body in the tick, N s
+  Vector3 impulse_ns = Vector3::Zero();  // impulse of the support on the body in the tick, N s
 };
 
-// Largest factor by which strain may raise the number of substeps. If it requires more, the inertia of the
-// strained nodes is raised just enough for stability. These nodes respond more slowly, which hardly shows in
-// a damped, quasi-static body.
+// Largest factor by which strain may raise the number of substeps. If strain requires more substeps, the
+// inertia of the strained nodes is raised just enough for stability. These nodes respond more slowly, which
+// hardly shows in a damped, quasi-static body.
 inline constexpr int substep_ceiling = 4;
 
-// Fraction of the measured stability limit that a substep uses. The running estimate of the fastest
-// frequency lags a sudden contact by tens of ticks.
+// Longest substep, as a fraction of the measured stability limit. The reserve is needed because the running
+// estimate of the fastest frequency lags a sudden contact by tens of ticks.
 inline constexpr double stability_fraction = 0.85;
 
-// Sets the speed cap: a node moves at most this distance, in cells, in the longest of three times. They are
-// the substep, the damping time (by which damping extrapolates the node's motion), and 2 / w, the longest
-// undamped step that is stable for the lattice, whose fastest angular frequency is w. Speeds are relative to
-// the tool or support that carries the whole body, or to the mean velocity of a body without fixed nodes.
+// Distance in cells that defines the speed cap: a node moves at most this far in the longest of three times.
+// They are the substep, the damping time (by which damping extrapolates the node's motion), and 2 / w, the
+// longest undamped step that is stable for the lattice, whose fastest angular frequency is w. Speeds are
+// relative to the tool or support that carries the whole body, or to the mean velocity of a body without
+// fixed nodes.
 //
 // Waves cross a cell in about 2 / w, so nodes stay below about a tenth of the wave speed. An impact strains
 // even a soft, undamped body by no more than its springs can restore.
 inline constexpr double speed_cap_cells = 0.1;
 
-// Largest motion of a node since the linearisation, in cells, before the springs are linearised again within
-// the tick. The first-order error of a spring's strain is then below half the square of the strain. A
-// sculpting hand moves nodes by about a hundredth of a cell per tick.
+// Longest motion of a node since the linearisation, in cells, before the springs are linearised again within
+// the tick. The linearised strain of a spring has an error of about half the square of the angle by which the
+// spring has rotated since. A sculpting hand moves nodes by about a hundredth of a cell per tick.
 inline constexpr double linear_cells = 0.1;
 
-// Settings of relax(). Tracking the fastest frequency and plastic flow each cost about as much as a substep.
-// The two alternate: even ticks track the frequency, odd ticks flow for the time of two ticks.
+// Settings of relax(). Tracking the fastest frequency costs about as much as a substep, and so does plastic
+// flow. The two alternate: even ticks track the frequency, and odd ticks compute the flow of two ticks.
 struct RelaxSettings {
-  std::uint64_t tick = 0;             // tick number
-  int substeps = 1;                   // number at rest; strain may multiply it by up to substep_ceiling
-  double time_s = 1e-3;               // duration of the tick
-  double drag_per_s = 0.0;            // mass-proportional drag; the minimum if `is_critically_damped`
-  bool is_critically_damped = false;  // true: each body is critically damped, see critical_damping_per_s()
+  std::uint64_t tick = 0;
+  int substeps = 1;         // number of substeps at rest; strain may multiply it by up to substep_ceiling
+  double time_s = 1e-3;     // duration of the tick
+  double drag_per_s = 0.0;  // mass-proportional drag; the least drag if `is_critically_damped`
+  bool is_critically_damped = false;  // true if each body is critically damped, see critical_damping_per_s()
 };
 
 // A lattice that relax() advances, with its solver, supports and gravity. Pointers must stay valid during the
@@ -75,7 +76,7 @@ struct RelaxedLattice {
 // Results of relax() for one tick.
 struct RelaxReport {
   int substeps = 0;           // number of substeps in the tick
-  bool nodes_slowed = false;  // true if the substep ceiling was reached
+  bool nodes_slowed = false;  // true if strain required more substeps than the ceiling allows
   bool speed_capped = false;
 };
 
@@ -88,9 +89,9 @@ struct TouchingTool {
 };
 
 // Advances at most lattice_capacity lattices by one tick, in as many substeps as the stiffest one needs. A
-// lattice with an implicit solver takes one implicit step per tick. Its velocities are computed before the
-// contacts, move it from substep to substep, and respond to the contacts at the end. If all lattices have
-// implicit solvers, a tick takes one substep.
+// lattice with an implicit solver takes one implicit step per tick. Its velocities at the end of the tick are
+// computed before the contacts. They move the lattice in each substep and change in response to the contacts.
+// If all lattices have implicit solvers, a tick takes one substep.
 //
 // In each substep the tools act in their order, then bodies on each other, then the ground. A tool that
 // touches only implicitly stepped lattices acts once, at the start of the tick. The caller must flush
@@ -103,10 +104,10 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
 // do not carry the body past its rest shape.
 inline constexpr double critical_damping_fraction = 1.1;
 
-// Returns the mass-proportional damping, 1/s, that brings a motion to rest soonest. `rayleigh_quotient` is
-// (v.Kv) / (v.Mv) for the velocities v, the stiffness K and the mass M: the square of a frequency. Damping
-// adapts as in dynamic relaxation (Underwood 1983): fast modes decay first, then the slow modes at their
-// smaller critical damping.
+// Returns critical_damping_fraction times the critical damping of a motion, mass-proportional, 1/s. Critical
+// damping brings the motion to rest soonest. `rayleigh_quotient` is (v.Kv) / (v.Mv) for the velocities v, the
+// stiffness K and the mass M: the square of the motion's angular frequency. Damping adapts as in dynamic
+// relaxation (Underwood 1983): fast modes decay first, then the slow modes at their smaller critical damping.
 double critical_damping_per_s(double rayleigh_quotient);
 
 // Returns the Rayleigh quotient (see critical_damping_per_s()) of a lattice's velocities; 0 at rest. The

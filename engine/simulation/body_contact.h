@@ -18,8 +18,9 @@
 
 namespace spoonbill {
 
-// Returns how much closer than the shell's surface the touched face of the shell is, m. `push` is the unit
-// vector along which the contact pushes the shell, `normal` the surface's unit normal. Exact for flat shells.
+// Returns the gap of a shell's surface minus the gap of the face that a contact touches, m: 0 for the surface
+// itself, the thickness for a far face that is pushed straight outward. `push` is the unit vector along which
+// the contact pushes the shell, `normal` the surface's unit normal. Exact for flat shells.
 double far_face_offset_m(double thickness_m, const Vector3& normal, const Vector3& push);
 
 // Finds the gap from a point to the near face of a shell, and the outward normal of that face. (u, v) is the
@@ -33,8 +34,8 @@ struct ShellOrSolid {
   const Surface* surface;
   double thickness_m;
 };
-// Corrects the gap and normal of `near`, a point of `of` near `other`, for the thickness of both. Returns
-// false if the gap exceeds the margin. Allocates nothing.
+// Corrects the gap and normal of `near`, a point of the body `of` near the body `other`, for the thickness of
+// both. Returns false if the gap exceeds the margin. Allocates nothing.
 bool resolve_shell_gap(const ShellOrSolid& of, const ShellOrSolid& other, double margin_m, NearPoint& near);
 
 // Largest penetration of two bodies pressed together at up to 60 mm/s, in lattice cells of the coarser body.
@@ -56,7 +57,7 @@ struct IndexedBody {
   const BodyState* state;
 };
 
-// Expresses a near point of a body's surface by the nodes of the body's lattice.
+// Returns a near point of a body's surface as a weighted sum of the nodes of the body's lattice.
 EmbeddedPoint find_embedding(const BodyMapping& mapping, const NearPoint& near);
 
 // Adds a constraint for each point of `from` that is near `to`, which may be the same body. Returns false if
@@ -64,7 +65,7 @@ EmbeddedPoint find_embedding(const BodyMapping& mapping, const NearPoint& near);
 bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::vector<NearPoint>& points,
                      BodyContacts& contacts);
 
-// Contact of two bodies. One owner, the simulation, which rebuilds it with the mapping of either body. find()
+// Contact of two bodies. Owned by the simulation, which rebuilds it with the mapping of either body. find()
 // and add_contacts() allocate nothing.
 class BodyPairContact {
  public:
@@ -86,14 +87,14 @@ class BodyPairContact {
   bool add_contacts(const IndexedBody& first, const IndexedBody& second, BodyContacts& contacts) const;
 
  private:
-  // Pointers, because the proximities cannot move.
+  // On the heap, because a proximity search cannot be moved.
   std::variant<std::unique_ptr<SurfaceProximity>, std::unique_ptr<MeshProximity>> proximity_;
 };
 
 // Contact of a body with itself, where its surface comes near another part of it from outside. A slender body
 // in a box of cells (LatticeMesh::slender) has no self-contact: it is thinner than two cells somewhere, and
-// its far side would look like its near side pressed through. One owner, the simulation, which rebuilds it
-// with the body's mapping.
+// its far side would be mistaken for a part that has been pressed through the near side. Owned by the
+// simulation, which rebuilds it with the body's mapping.
 class BodySelfContact {
  public:
   explicit BodySelfContact(const BodyState& body);

@@ -10,8 +10,8 @@
 namespace spoonbill {
 namespace {
 
-// Least extent of a body in its second direction, as a fraction of the first, at which its orientation is
-// defined.
+// Smallest extent of a body in its second direction, as a fraction of the first, at which its orientation is
+// defined. The extents are the singular values in BodyHold::measure().
 constexpr double least_second_extent = 1e-6;
 // Largest turn of an intact body in a tick, rad. A larger turn means that the shape has lost its orientation,
 // for instance by turning inside out, and the turn is ignored.

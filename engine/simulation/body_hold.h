@@ -1,5 +1,5 @@
 // Keeps a body in the scene through one tick. Keeps the pose of a body that nothing fixes, and returns a body
-// to its last good shape if its lattice cannot follow. Allocates only on construction; one owner, the body.
+// to its last good shape if its lattice cannot follow. Owned by the body; allocates only on construction.
 #pragma once
 
 #include <vector>
@@ -17,9 +17,9 @@ class BodyHold {
   // Stores the displacements and the mean pose at the start of a tick.
   void begin(const SpringLattice& lattice);
 
-  // Restores the displacements at the start of the tick, with zero velocities, if a node's position or
-  // velocity is not finite or a node is farther than `reach_m` from the centre of mass. Returns whether it
-  // did. `solver` is null if the springs step the body.
+  // Checks that the positions and velocities of all nodes are finite, and that no node is farther than
+  // `reach_m` from the centre of mass. Otherwise restores the displacements at the start of the tick, with
+  // zero velocities, and returns true. `solver` is null if the springs step the body.
   bool limit(SpringLattice& lattice, ImplicitSolver* solver, double reach_m) const;
 
   // Returns the body to its mean position and orientation at the start of the tick, and removes its linear
@@ -32,7 +32,7 @@ class BodyHold {
   struct MeanPose {
     Vector3 centre_m = Vector3::Zero();
     Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-    bool has_turn = false;  // false for a body without extent in two directions
+    bool has_turn = false;  // false if the body extends in one direction only
   };
   static MeanPose measure(const SpringLattice& lattice);
 

@@ -10,7 +10,8 @@
 namespace spoonbill {
 namespace {
 
-// Returns the volume of each node: an eighth of the volume of each cell around it.
+// Returns the volume of the body that each node represents: an eighth of the filled volume of each cell
+// around it.
 std::vector<double> compute_node_volumes(const LatticeMesh& mesh) {
   std::vector<double> volumes(mesh.nodes.size(), 0.0);
   for (int i = 0; i + 1 < mesh.count[0]; ++i) {
@@ -180,7 +181,8 @@ void BodyLoads::apply(SpringLattice& lattice, ImplicitSolver* solver) {
 
 namespace {
 
-// Sets the support's displacement to that of its first node. A support without nodes keeps its displacement.
+// Sets the support's displacement from the displacement of its first node. A support without nodes keeps its
+// displacement.
 void measure_displacement(const SpringLattice& lattice, SupportedNodes& support) {
   if (support.nodes.empty()) return;
   support.end_m = lattice.displacement(support.nodes.front()) - support.base_m.front();

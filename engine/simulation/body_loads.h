@@ -16,7 +16,7 @@
 
 namespace spoonbill {
 
-// Loads of a body, which owns them. Built outside the tick; apply() allocates nothing.
+// Loads of a body, which owns them. They are built outside the tick; apply() allocates nothing.
 class BodyLoads {
  public:
   BodyLoads() = default;
@@ -45,8 +45,8 @@ class BodyLoads {
   std::vector<Vector3> force_n_;  // working memory: force on each node of the lattice
 };
 
-// Supports of a body, which owns them. A support's displacement is that of its nodes. begin_tick() allocates
-// nothing.
+// Supports of a body, which owns them. The displacement of a support is that of its nodes beyond
+// SupportedNodes::base_m. begin_tick() allocates nothing.
 class BodySupports {
  public:
   BodySupports() = default;
@@ -61,7 +61,8 @@ class BodySupports {
   // that of `after`.
   void rebase(const SpringLattice& before, const SpringLattice& after);
 
-  // Updates the motions of the supports for a tick of `tick_s` that ends at `end_s`.
+  // Updates the motions of the supports for a tick of `tick_s` that ends at `end_s`, and sets their impulses
+  // to zero.
   std::span<SupportedNodes> begin_tick(const SpringLattice& lattice, double end_s, double tick_s);
 
   std::span<const SupportedNodes> supports() const { return supported_; }

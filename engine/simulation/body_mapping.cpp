@@ -11,9 +11,9 @@
 namespace spoonbill {
 namespace {
 
-// Number of times that elements are halved to get the samples of the refit. One halving gives at least twice
-// as many samples as control points for simple knots, and a well-conditioned refit. Elements between repeated
-// knots have as many control points as the degree and need more samples.
+// Smallest and largest number of times that elements are halved to get the samples of the refit. One halving
+// gives at least twice as many samples as control points for simple knots, and a well-conditioned refit.
+// Elements between repeated knots have as many control points as the degree and need more samples.
 constexpr int refit_levels = 1, max_refit_levels = 4;
 static_assert(1 << max_refit_levels > max_degree);
 constexpr int edge_stations = 512;
@@ -30,7 +30,8 @@ bool is_ring_behind(const Surface& surface, const FixingPlane& plane, double v) 
   return true;
 }
 
-// Returns the fraction of the v domain, from one end, over which the surface is wholly behind the plane.
+// Returns the fraction of the v domain, from its start or its end, over which the surface is wholly behind
+// the plane.
 double find_fraction_behind(const Surface& surface, const FixingPlane& plane, bool from_end) {
   const double start = surface.v.domain_start(), end = surface.v.domain_end();
   const auto behind = [&](double fraction) {
@@ -96,7 +97,7 @@ Result<Surface> halve_element(const Surface& surface, double u, double v) {
   return insert_knot(finer.value(), Direction::v, find_element_midpoint(surface.v, v), 1);
 }
 
-// Returns one byte per column of control points: 1 if its basis function is nonzero in a fixed stretch.
+// Returns one byte per column of control points: 1 if its basis function is nonzero in a fixed stretch of v.
 std::vector<std::uint8_t> find_fixed_columns(const KnotVector& v, const FixedStretch& fixed) {
   const std::vector<double>& knots = v.extended_knots();
   std::vector<std::uint8_t> fixed_columns(static_cast<std::size_t>(v.control_point_count()), 0);
@@ -110,7 +111,7 @@ std::vector<std::uint8_t> find_fixed_columns(const KnotVector& v, const FixedStr
 
 // Returns whether the surface is a single point at an end of v.
 bool is_pole(const Surface& surface, bool at_end) {
-  constexpr double tolerance = 1e-6;  // fraction of the net's extent
+  constexpr double tolerance = 1e-6;  // as a fraction of the control net's extent
   if (!surface.u.is_periodic() || surface.v.is_periodic()) return false;
   const double v = at_end ? surface.v.domain_end() : surface.v.domain_start();
   const double start = surface.u.domain_start(), length = surface.u.domain_end() - start;
@@ -143,8 +144,9 @@ void search_cells_around(const LatticeMesh& mesh, int node, const Vector3& point
   }
 }
 
-// Embeds a point in a cell around the node nearest to it: in the cell that contains the point or is nearest
-// to it.
+// Embeds a point in one of the cells around the node nearest to it: the cell that contains the point, or else
+// the nearest of these cells. If that cell is more than one cell size away, attaches the point to the node
+// alone.
 EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
   int nearest = 0;
   double least = std::numeric_limits<double>::infinity();
@@ -181,7 +183,7 @@ struct SampledRefit {
   DisplacementRefit refit;
 };
 
-// Makes the refit on the coarsest grid of samples that determines the control points.
+// Makes the refit on the coarsest grid of samples from which the control points can be determined.
 Result<SampledRefit> make_sampled_refit(const Surface& surface, const RefitConstraints& constraints,
                                         InstructionSet set) {
   for (int levels = refit_levels;; ++levels) {

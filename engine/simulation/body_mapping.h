@@ -24,8 +24,8 @@
 
 namespace spoonbill {
 
-// Part of the samples' displacement that the control net cannot follow, and the parameters (u, v) at which it
-// is largest.
+// Displacements of a surface's samples minus the displacements that the control net can reproduce: the
+// largest and the root mean square difference, and the parameters (u, v) of the largest.
 struct MappingResidual {
   double largest_m = 0.0;
   double root_mean_square_m = 0.0;
@@ -33,7 +33,7 @@ struct MappingResidual {
 };
 
 // Mapping to a B-spline surface: embedded grid samples move with the nodes, and the displacement refit moves
-// the control points with the samples. One owner, the simulation; update() and measure_residual() allocate
+// the control points with the samples. Owned by the simulation. update() and measure_residual() allocate
 // nothing.
 class BodyMapping {
  public:
@@ -88,7 +88,7 @@ class BodyMapping {
   // Shared pointer, because colliders keep the grid's address when the mapping is moved.
   std::shared_ptr<NestedGrid> nested_;
   std::vector<EmbeddedPoint> embedding_;
-  std::vector<CellWeights> cell_weights_;  // by sample, the same weights as in embedding_
+  std::vector<CellWeights> cell_weights_;  // for each sample, the same weights as in embedding_
   AlignedVector<float> node_moves_;        // displacements of the nodes: x, y, z and 0 for each
   AlignedVector<float> base_moves_;        // displacements of the samples at make(): x, y, z and 0 for each
   AlignedVector<float> sample_[3];         // displacements of the samples by axis, in the layout of the refit
@@ -101,7 +101,7 @@ class BodyMapping {
   MappingResidual residual_;
 };
 
-// Mapping to triangles, whose vertices are embedded in a box lattice. One owner, the simulation; update()
+// Mapping to triangles, whose vertices are embedded in a box lattice. Owned by the simulation. update()
 // allocates nothing.
 class MeshMapping {
  public:
@@ -118,8 +118,9 @@ class MeshMapping {
   EmbeddedPoint vertex(std::uint32_t vertex) const;
   EmbeddedPoint at(const PointOnMesh& point) const;
 
-  // Patch number of each vertex. A patch is an octant of a lattice cell at rest; patches are numbered without
-  // gaps. Constraints denser than half a cell would act on the same nodes twice.
+  // Returns the patch number of each vertex. A patch is an octant of a lattice cell at rest; patches are
+  // numbered without gaps. Each patch gets one contact at most, because contacts denser than half a cell
+  // would act on the same nodes twice.
   const std::vector<int>& patches() const { return patches_; }
 
  private:

@@ -24,21 +24,21 @@
 
 namespace spoonbill {
 
-// Plain data with one owner, the simulation.
+// State of one body. Plain data with one owner, the simulation.
 struct BodyState {
   SpringLattice lattice;
   std::variant<BodyMapping, MeshMapping> skin;
   Smoothing smoothing;
   std::vector<std::uint8_t> fixed, touched;            // one byte per node: 1 if fixed, 1 if touched
   std::optional<ImplicitSolver> implicit_solver = {};  // for materials too stiff for the lattice's springs
-  // make_body_state() sets the number of nodes.
+  // Initially for a single node; make_body_state() replaces it.
   BodyHold hold = BodyHold(1);
   BodyLoads loads = {};
   BodySupports supports = {};
   double shell_thickness_m = 0.0;                // 0 for a solid
   std::shared_ptr<const TrimmedArea> trim = {};  // area within the trims; null without trims
 
-  // Fixes the nodes behind the planes, then the nodes of the supports.
+  // Fixes the nodes behind the planes, then the nodes of the supports; frees all others.
   void fix_nodes_behind(const std::vector<FixingPlane>& planes);
   // Sets the fixed nodes, one byte per node.
   void fix(std::vector<std::uint8_t> nodes) {
@@ -87,7 +87,7 @@ struct BodyState {
   }
 };
 
-// Refuses a body that cannot be simulated; the error names the field.
+// Makes the state of a body at rest. Refuses a body that cannot be simulated; the error names the field.
 Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlane>& planes,
                                   InstructionSet set, const FeatureMapWatch& watch = {});
 
@@ -96,19 +96,20 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
 // dented, which requires the finer lattice and its springs.
 inline constexpr double stiff_youngs_modulus_pa = 1e6;
 
-// Makes the implicit solver of a lattice, unstrained when its nodes are at `rest_m`. It steps bodies whose
-// materials are all linear elastic, if the stiffest has at least stiff_youngs_modulus_pa. It also steps
-// elastic shells, which a single layer of springs would make twice too stiff in bending. Empty for bodies
-// that are stepped by their springs.
+// Makes the implicit solver of a lattice, unstrained when its nodes are at `rest_m`. Only bodies whose
+// materials are all linear elastic have one, for any of three reasons: the stiffest material has at least
+// stiff_youngs_modulus_pa; a Poisson's ratio is below min_spring_poissons_ratio; or the body is a shell,
+// which a single layer of springs would make twice too stiff in bending. Empty for bodies that are stepped by
+// their springs.
 Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& lattice,
                                                            const std::vector<Vector3>& rest_m,
                                                            InstructionSet set);
 
-// Relative error of a lattice's Young's modulus along an axis above which describe_lattice_warning() warns.
-// Cells that are too slender for springs cause such errors.
+// describe_lattice_warning() warns if the relative error of a lattice's Young's modulus along an axis exceeds
+// this value. Cells that are too slender for springs cause such errors.
 inline constexpr double slender_stiffness_limit = 0.25;
-// Returns a warning about a lattice that can be simulated but deviates from its material, with a remedy, in
-// one line. Empty if there is nothing to warn about.
+// Returns one line that warns about a lattice that can be simulated but deviates from its material, and
+// states a remedy. Empty if there is nothing to warn about.
 std::string describe_lattice_warning(const BodyState& body);
 
 // Returns one byte per node, 1 for nodes behind a plane.

@@ -105,8 +105,8 @@ Status CommandApplier::operator()(const SetMaterial& command) {
   Result<SpringLattice> lattice = SpringLattice::make(body.lattice.mesh(), materials, state.set);
   if (!lattice.ok()) return lattice.error();
   lattice->set_shape(body.lattice.shape());
-  // The solver's rest shape: a body that becomes stiff takes its current shape; a body that was stiff keeps
-  // its rest shape.
+  // Rest shape of the new solver: the present shape if the body had no solver, otherwise the rest shape of
+  // the old solver.
   Result<std::optional<ImplicitSolver>> solver = make_implicit_solver(
       lattice.value(), body.implicit_solver ? body.implicit_solver->rest_m() : body.lattice.positions(),
       state.set);
@@ -214,7 +214,7 @@ void CommandApplier::set_mappings(std::vector<BodyMapping> mappings) {
   make_contacts();
 }
 
-// Replaces the last tool's model, and the tool's soft body at the end of the list of bodies.
+// Replaces the model of the last solid tool, and its soft body at the end of the list of bodies.
 void CommandApplier::adopt_model(ToolModel model) {
   while (state.bodies.size() > state.scene.bodies.size()) state.bodies.pop_back();
   if (model.soft) state.bodies.push_back(*std::move(model.soft));

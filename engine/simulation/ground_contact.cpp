@@ -117,12 +117,12 @@ double SkinHeights::lowest_m(int row, int column) const {
 
 namespace {
 
-// Distance added to the movement of a tick when contacts are searched, in lattice cells.
+// Gap in lattice cells that is added to the movement of a tick when contacts are searched.
 constexpr double ground_margin_cells = 0.25;
 
-// Time constant of the filter on the height of a footing's skin. It applies at an inertia scale of 1 and is
-// longer than a round body takes to roll over. Without the filter a node would push its neighbours' skin at
-// once, and round bodies would roll for ever.
+// Time constant of the filter on a footing's skin height (Footing::skin_m). It applies at an inertia scale of
+// 1 and is longer than a round body takes to roll over. Without the filter a node would push its neighbours'
+// skin at once, and round bodies would roll for ever.
 constexpr double skin_time_constant_s = 0.07;
 
 bool on_shell(const LatticeMesh& mesh, int node) {

@@ -15,7 +15,7 @@ namespace spoonbill {
 
 // Heights of a surface above a plane. The height is itself a spline whose coefficients are the heights of the
 // control points. It is sampled four times per element in each direction. Between samples, parabolas through
-// neighbouring samples estimate its lowest value. One owner, one thread; allocates only in make().
+// neighbouring samples estimate the lowest height. Has one owner on one thread. Allocates only in make().
 class SkinHeights {
  public:
   // Makes the memory for the heights of any surface with these knots.
@@ -51,13 +51,14 @@ class SkinHeights {
 // Largest penetration of a resting body's skin into the ground, in lattice cells.
 inline constexpr double ground_depth_limit_cells = 0.01;
 
-// Ground contact of all bodies. One owner, the simulation, which rebuilds it with the mapping of a body.
-// find() allocates nothing.
+// Ground contact of all bodies. Owned by the simulation, which rebuilds it with the mapping of a body. find()
+// allocates nothing.
 class BodyGroundContact {
  public:
   explicit BodyGroundContact(std::span<const BodyState> bodies);
 
-  // Adds a constraint for each footing that can reach the ground in the coming tick of `time_s`.
+  // Adds a constraint for each node whose attached samples (see Footing) can reach the ground in the coming
+  // tick of `time_s`.
   void find(std::span<const BodyState> bodies, const Ground& ground, const Vector3& gravity_m_per_s2,
             double time_s);
 
@@ -77,9 +78,9 @@ class BodyGroundContact {
 
  private:
   // A node together with the samples attached to it. "Followed" samples of the mapping move exactly with the
-  // lattice; samples of the skin lie on the surface of the control net, which differs slightly. The node is
-  // on the surface or, in a box of cells, any node with attached skin samples. A node without followed
-  // samples gets those nearest to its skin samples.
+  // lattice; samples of the skin are on the surface of the control net, which differs slightly. The node is
+  // on the surface or, in a box of cells, any node with attached skin samples. In a box, a node without
+  // followed samples of its own gets those nearest to its skin samples.
   struct Footing {
     int node = 0;
     int first_followed = 0, followed_count = 0;  // range in BodyFootings::followed
@@ -106,8 +107,8 @@ class BodyGroundContact {
   static std::vector<AttachedSamples> attach_samples(const BodyState& body, const SkinHeights& heights);
   static BodyFootings make_footings(const BodyState& body);
   void find(int index, const BodyState& body, const Ground& ground, double reach_m, double time_s);
-  // Filters the height of the skin above the followed samples. `inertia_scale` is the inertia scale of the
-  // body.
+  // Updates Footing::skin_m, the filtered height of the skin above the followed samples. `followed_m` is the
+  // height of the lowest followed sample. `inertia_scale` is the inertia scale of the body.
   void update_skin_offset(const BodyFootings& body, double followed_m, double time_s, double inertia_scale,
                           Footing& footing) const;
 

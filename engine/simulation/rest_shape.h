@@ -14,7 +14,7 @@ struct RestShape {
   Surface surface;  // deformed surface
   int fixed_nodes = 0;
   Vector3 load_n = Vector3::Zero();      // sum of gravity and loads on the deformed body
-  Vector3 reaction_n = Vector3::Zero();  // sum over all fixed nodes
+  Vector3 reaction_n = Vector3::Zero();  // sum of the reactions at all fixed nodes
   int furthest_node = 0;                 // index of the node with the largest displacement
   // Principal Green-Lagrange strain of the largest magnitude at the centres of the cells' faces.
   double largest_strain = 0.0;

@@ -176,7 +176,7 @@ void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
                     s.scene.ground ? &s.ground_contact.contacts() : nullptr);
 }
 
-// Largest distance of a node from its body's centre of mass, as a fraction of the scene's size.
+// Largest allowed distance of a node from its body's centre of mass, as a fraction of the scene's size.
 constexpr double reach_fraction = 1.0;
 
 // Keeps the bodies in the scene. Call after everything else has moved them; BodyHold::begin() must have been

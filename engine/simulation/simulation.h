@@ -1,5 +1,5 @@
-// The simulation: a scene and its state at a tick. One owner. After the start, only the haptic thread or the
-// lock-step loop changes it. All other threads send commands and read snapshots.
+// The simulation: a scene and its state at a tick. It has one owner. After the start, only the haptic thread
+// or the lock-step loop changes it. All other threads send commands and read snapshots.
 #pragma once
 
 #include <cstddef>
@@ -24,8 +24,9 @@ inline constexpr double tick_s = 1e-3;
 // Input of the hand in one tick.
 struct ToolInput {
   Pose pose;
-  bool gripping = false;  // the button is down, so a pull keeps its grip
-  // Stiffness of the spring between hand and tool, N/m; 0 if the hand holds the tool rigidly.
+  bool gripping = false;  // true while the button is down; a pull then keeps its grip
+  // Stiffness of the spring between hand and tool, N/m; 0 for a hand that holds the tool rigidly. If a body
+  // has an implicit solver, a spring of 1000 N/m replaces a rigid hold.
   double coupling_n_per_m = 0.0;
   // The hand points without touching. The tool does not act until hovering ends and the tool is outside the
   // bodies.
@@ -37,12 +38,12 @@ struct Reaction {
   Vector3 force_n = Vector3::Zero();  // force on the tool, averaged over the tick
   Pose proxy;                         // pose at which the material stops the tool
   bool touching = false;
-  bool mirror_touching = false;  // whether the mirrored tool touches; its force does not reach the hand
+  bool mirror_touching = false;  // true if the mirrored tool touches; its force does not reach the hand
   std::uint32_t flags = tick_flag_none;
 };
 
-// State that a stroke can change and that undo restores bit for bit: the lattices' displacements, velocities,
-// rest lengths and volumes. The control points follow from it.
+// State that a stroke can change and that undo restores bit for bit: the displacements, velocities, rest
+// lengths, rest volumes and creep strains of the lattices. The control points follow from it.
 struct ShapeState {
   std::vector<std::vector<float>> lattices;  // shape of each body's lattice
   friend bool operator==(const ShapeState&, const ShapeState&) = default;
@@ -97,10 +98,11 @@ class Simulation {
   // contacts, then lattices, then control points. Allocates nothing, never throws.
   Reaction advance(const ToolInput& input);
 
-  // Returns the scene as it was set. Its surfaces date from the last structural change; surface() returns the
-  // current surfaces.
+  // Returns the scene as it was set. Its surfaces date from the last change of knots, fixing planes or rest
+  // shapes; surface() returns the current surfaces.
   const Scene& scene() const;
-  // Writes the scene with current surfaces, for saving. Allocates only if the structure of `scene` differs.
+  // Writes the scene with current surfaces, for saving. Allocates only if `scene` has other bodies or other
+  // numbers of control points.
   void write_scene(Scene& scene) const;
   std::uint64_t tick() const;
 
@@ -122,8 +124,8 @@ class Simulation {
   // Lattice and current surface of a body of the scene, for studies and tests.
   const SpringLattice& lattice(int body = 0) const;
   const Surface& surface(int body = 0) const;
-  // inertia_scale() returns the inertia scale of a body. substeps() returns the substeps of a tick at rest,
-  // real_time_substeps() those that an inertia scale of 1 would need.
+  // inertia_scale() returns the inertia scale of a body. substeps() returns the number of substeps of a tick
+  // at rest, real_time_substeps() the number that an inertia scale of 1 would need.
   double inertia_scale(int body = 0) const { return lattice(body).inertia_scale(); }
   int substeps() const;
   int real_time_substeps() const;

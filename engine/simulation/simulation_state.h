@@ -24,8 +24,8 @@ struct HeldTool {
   Pose hand{};  // pose of the hand in the last tick
   ToolState state{};
   bool placed = false;
-  // touch_m is the position of the hand when a soft tool last began to touch; touched is true while it
-  // touches.
+  // touch_m is the position of the hand when a soft tool last began to touch a body; touched is true while it
+  // touches one.
   Vector3 touch_m = Vector3::Zero();
   bool touched = false;
 
@@ -40,7 +40,7 @@ struct HeldTool {
 struct Simulation::State {
   Scene scene;
   InstructionSet set;
-  std::vector<BodyState> bodies;  // bodies of the scene in its order, then a soft tool
+  std::vector<BodyState> bodies;  // bodies of the scene in its order, then the tool if it is soft
   ToolModel model;                // model of the last solid tool
   HeldTool tool;
   HeldTool mirrored;
@@ -49,16 +49,16 @@ struct Simulation::State {
   std::vector<BodySelfContact> self;   // self-contact of each body
   BodyGroundContact ground_contact;    // contacts of the scene's bodies; empty without a ground
   bool pairs_overflow = false;
-  double tool_gap_m = 0.0;      // smallest gap between a soft tool and a body; infinite if not near
+  double tool_gap_m = 0.0;      // smallest gap between a soft tool and a body; infinite if none is near
   double scene_size_m = 0.0;    // diagonal of the box around the bodies at rest
-  bool bodies_limited = false;  // true if a lattice could not follow in the last tick
-  // Bodies and triangles of replaced tools. They are kept, because snapshots share them and no tick may free
-  // the last reference.
+  bool bodies_limited = false;  // true if BodyHold::limit() restored a body in the last tick
+  // Bodies of all solid tools so far, the last one included, and triangles of replaced soft tools. They are
+  // kept, because snapshots share them and no tick may free the last reference.
   std::vector<std::shared_ptr<const ToolBody>> retired_bodies;
   std::vector<std::shared_ptr<const std::vector<TriangleCorners>>> retired_triangles;
   std::uint64_t tick = 0;
-  int substeps = 1;            // substeps of a tick at rest
-  int real_time_substeps = 1;  // substeps of a tick at rest with an inertia scale of 1
+  int substeps = 1;            // number of substeps of a tick at rest
+  int real_time_substeps = 1;  // number of substeps at rest with an inertia scale of 1
   RelaxReport relaxed{};
   Reaction reaction{};
 
@@ -75,27 +75,27 @@ struct Simulation::State {
 
 std::vector<BodyPairContact> make_pairs(const std::vector<BodyState>& bodies);
 std::vector<BodySelfContact> make_self_contacts(const std::vector<BodyState>& bodies);
-// Makes the memory for the constraints of all bodies.
+// Makes the memory for the constraints between all bodies.
 BodyContacts make_contact_buffer();
 
-// Chooses the substeps of a tick and the inertia scale of each body. A body that something fixes has its own
-// scale, or 1 if it is stepped implicitly. All other bodies share the largest of their scales, so that
+// Chooses the substeps of a tick and the inertia scale of each body. A body with fixed nodes has its own
+// scale, which is 1 if it is stepped implicitly. All other bodies share the largest of their scales, so that
 // momentum is exchanged correctly and all fall alike. Call after a change of bodies, fixed nodes, tool or
 // settings; may allocate.
 void update_inertia(Simulation::State& state);
 
-// Contact of a tool that acts in this tick, as the kernel of its action receives it.
+// Bodies and tool in a tick, as ToolKernel::constrain() receives them.
 struct ToolTouch {
   std::span<const BodyState> bodies;
   const ToolHold& hold;
-  bool inside = false;  // whether the tool is inside a body
+  bool inside = false;  // true if the tool is inside a body
 };
 
 // Kernel of a tool action. Each tick calls constrain() for the tool and its mirror image, moves the bodies,
 // then calls reform() for both tools. Kernels run in the haptic thread: they must not allocate, lock, read a
 // clock or throw.
 struct ToolKernel {
-  // Adds the constraints of this tick.
+  // Adds the constraints of this tick to `contact`.
   void (*constrain)(ToolContact& contact, const ToolTouch& touch) = nullptr;
   // Changes the shape of the bodies under the tool; null if the action only adds constraints.
   void (*reform)(Simulation::State& state, const HeldTool& held) = nullptr;
@@ -103,7 +103,7 @@ struct ToolKernel {
   bool body_yields = true;
 };
 
-// Returns the kernel of an action; tool_step.cpp defines them.
+// Returns the kernel of an action. tool_step.cpp defines all kernels.
 const ToolKernel& find_kernel(ToolAction action);
 
 ToolHold make_hold(const ToolInput& input);
@@ -136,8 +136,8 @@ struct CommandApplier {
  private:
   void release();
   Status check_body(int body) const;
-  // Checks a tool, except for a body that has already been modelled. Checking a B-spline body takes as long
-  // as modelling it.
+  // Checks a tool, but not a body that has already been modelled, because checking a B-spline body takes as
+  // long as modelling it.
   Status check_changes(const Tool& tool) const;
   void adopt_model(ToolModel model);
   void make_contacts();
@@ -145,7 +145,8 @@ struct CommandApplier {
   void set_mappings(std::vector<BodyMapping> mappings);
 };
 
-// Writes bodies and contacts into a snapshot. Allocates only at the first call and after a structural change.
+// Writes bodies and contacts into a snapshot. Allocates only at the first call and after a change of bodies,
+// knots or tool.
 void write_bodies(std::span<const BodyState> bodies, const Scene& scene, std::vector<BodySnapshot>& out);
 void write_contacts(const Simulation::State& state, std::vector<ContactSnapshot>& contacts);
 

@@ -10,7 +10,7 @@
 namespace spoonbill {
 namespace {
 
-// Number of nodes that are smoothed in a tick.
+// Largest number of nodes that are smoothed in a tick.
 constexpr std::size_t nodes_per_tick = 24;
 
 // Fraction of a bump that is removed in one step. The largest eigenvalue of the smoothing flow is 8, 4 for
@@ -140,7 +140,7 @@ Vector3 Smoothing::measure_bump(const SpringLattice& lattice, int node) const {
   double height = 0.0;
   for (std::size_t p = 0; p < 2; ++p) {
     const auto [a, b] = shell.pairs[p];
-    // The least height factor of the three nodes, for stability with uneven cells.
+    // Uses the least height factor of the three nodes, for stability with uneven cells.
     double height_factor = own->height_factor[p];
     const auto at_a = bend_toward(lattice, a, node, height_factor);
     const auto at_b = bend_toward(lattice, b, node, height_factor);

@@ -27,7 +27,7 @@ struct SmoothingBrush {
   double reach_m = 0.0;
 };
 
-// Smoothing of one lattice. One owner, the simulation, which rebuilds it with the lattice's mesh. apply()
+// Smoothing of one lattice. Owned by the simulation, which rebuilds it with the lattice's mesh. apply()
 // allocates nothing.
 class Smoothing {
  public:
@@ -57,11 +57,11 @@ class Smoothing {
   std::optional<Curvature> curvature_at(int node, const PositionOf& position_of) const;
   // Returns the change of the curvature since the rest shape.
   std::optional<Curvature> bend_at(const SpringLattice& lattice, int node) const;
-  // Returns the bend of a neighbour along the line that leads to `node`. Lowers `height_factor` to the
-  // neighbour's height factor if the latter is less.
+  // Returns the bend of a neighbour along the line that leads to `node`; nothing if there is no such line or
+  // no curvature. Lowers `height_factor` to the neighbour's height factor if the latter is less.
   std::optional<double> bend_toward(const SpringLattice& lattice, int neighbour, int node,
                                     double& height_factor) const;
-  // Returns the displacement of a shell node from the shape without its bump.
+  // Returns the vector by which a shell node's bump raises the node above the shape without the bump.
   Vector3 measure_bump(const SpringLattice& lattice, int node) const;
   // Position of an inner node relative to its six neighbours.
   struct NeighbourCentre {
@@ -72,8 +72,8 @@ class Smoothing {
   NeighbourCentre neighbour_centre_at(int node, const PositionOf& position_of) const;
   // Returns the displacement of an inner node from its rest position relative to its neighbours.
   Vector3 measure_centre_offset(const SpringLattice& lattice, int node) const;
-  // Sets the pairs of a shell node. Their order makes the cross product of the two directions point out of
-  // the body.
+  // Sets the pairs of a shell node in such an order that the cross product of the two pairs' directions
+  // points out of the body.
   void connect(const LatticeMesh& mesh, int node);
 
   // Returns the neighbours before and after an inner node along an axis, across the seam of a closed block.

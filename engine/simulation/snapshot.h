@@ -30,8 +30,8 @@ struct MeshSnapshot {
   std::vector<float> x, y, z;  // vertices in metres
 };
 
-// Nodes of a body's lattice. Node (i, j, k) is at (i * count[1] + j) * count[2] + k, with k along the body.
-// Edges join neighbours in each of the three directions.
+// Nodes of a body's lattice. Node (i, j, k) has the index (i * count[1] + j) * count[2] + k, with k along the
+// body. Edges join neighbours in each of the three directions.
 struct LatticeSnapshot {
   int count[3] = {0, 0, 0};
   std::vector<float> x, y, z;          // positions in metres
@@ -45,9 +45,9 @@ struct LatticeSnapshot {
 struct ToolSnapshot {
   ToolKind kind = ToolKind::sphere;
   ToolAction action = ToolAction::push;
-  int substeps = 0;  // substeps of a tick at rest
+  int substeps = 0;  // number of substeps at rest that the tool requests
   double radius_m = 0.0;
-  std::shared_ptr<const ToolBody> body;  // body of a rigid solid; a soft tool is drawn as the last body
+  std::shared_ptr<const ToolBody> body;  // body of a solid tool; a soft one is drawn as the last body
   Pose device;                           // pose of the hand
   Pose proxy;                            // pose at which the material stops the tool; the tool is drawn there
   bool button = false;
@@ -64,26 +64,26 @@ struct ContactSnapshot {
   int body = 0;                       // index of the body in Snapshot::bodies
   Vector3 point_m = Vector3::Zero();  // point of the body's surface, as the tick found it
   Vector3 normal = Vector3::UnitY();  // unit normal, outward from the body
-  Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();  // from tangents_across() the normal
-  double depth_m = 0.0;                                                // negative before the surfaces touch
+  Vector3 tangent_u = Vector3::UnitX(), tangent_v = Vector3::UnitZ();  // unit tangents, see tangents_across()
+  double depth_m = 0.0;  // depth of the penetration; negative for a gap
   double u = 0.0, v = 0.0;
-  EmbeddedPoint nodes;  // nodes of the body's lattice on which a push at the point acts
+  EmbeddedPoint nodes;  // nodes of the body's lattice that a push at the point moves
 };
 
 struct MaterialSnapshot {
   std::string name;
   double youngs_modulus_pa = 0.0;
   double inertia_scale = 1.0;  // r: the body responds sqrt(r) times slower than the real one
-  int implicit_nodes = 0;      // nodes of the implicit solver; 0: springs step the body explicitly
+  int implicit_nodes = 0;      // number of nodes of the implicit solver; 0 if springs step the body
   double poissons_ratio = 0.0;
   double density_kg_per_m3 = 0.0;
   double drag_per_s = 0.0;  // mass-proportional drag
   bool plastic = false;
-  double lattice_mass_kg = 0.0;  // mass of the whole surface if the body has trims
+  double lattice_mass_kg = 0.0;  // mass of the lattice, which ignores the trims of the body
 };
 
-// Part of the lattice's displacement that a body's surface does not follow. Counted since its knots or fixing
-// planes last changed.
+// Part of the lattice's displacement that a body's surface does not follow. It is counted since the body's
+// knots, fixing planes or rest shape last changed.
 struct ResidualSnapshot {
   double largest_m = 0.0;
   double root_mean_square_m = 0.0;
@@ -120,7 +120,7 @@ enum TickFlag : std::uint32_t {
 
 struct Snapshot {
   std::uint64_t tick = 0;
-  std::vector<BodySnapshot> bodies;  // bodies of the scene, then a soft tool
+  std::vector<BodySnapshot> bodies;  // bodies of the scene, then the tool if it is soft
   ToolSnapshot tool;
   std::vector<PlaneSnapshot> planes;
   bool symmetric = false;  // true if a second tool mirrors the first
@@ -129,8 +129,8 @@ struct Snapshot {
   std::vector<ContactSnapshot> contacts;
   Vector3 force_n = Vector3::Zero();  // force on the hand, after force scale and limit
   DeviceSnapshot device;
-  int substeps = 0;            // substeps of the last tick
-  int real_time_substeps = 0;  // substeps of a tick at rest with an inertia scale of 1
+  int substeps = 0;            // number of substeps of the last tick
+  int real_time_substeps = 0;  // number of substeps at rest with an inertia scale of 1
   std::uint32_t flags = tick_flag_none;
 
   double time_s() const { return static_cast<double>(tick) * 1e-3; }

@@ -9,9 +9,9 @@
 namespace spoonbill {
 namespace {
 
-// Number of cached entries at which the cache is cleared. A session rarely needs as many.
+// A cache of stages is cleared when it has this number of entries. A session rarely needs as many.
 constexpr std::size_t max_cached_structures = 32;
-// Stands for the tool where a fingerprint of knots is expected.
+// Represents the tool in the keys of pair_stages_, in place of a fingerprint of knots.
 constexpr std::uint64_t tool_structure = 0;
 
 std::optional<Surface> make_surface_of(const SurfaceSnapshot& snapshot) {
@@ -27,7 +27,7 @@ std::optional<Surface> make_surface_of(const SurfaceSnapshot& snapshot) {
   return std::move(surface).value();
 }
 
-// Returns whether the tool is soft, and so one of the snapshot's bodies.
+// Returns true if the tool is soft; it is then one of the snapshot's bodies.
 bool is_soft_body(const ToolSnapshot& tool) {
   return tool.kind == ToolKind::solid && (!tool.body || tool.body->soft);
 }

@@ -1,5 +1,5 @@
-// Contact debug views: the collision stages of every contact in a snapshot. They cover the tool and its
-// mirror image against every body, and every pair of bodies.
+// Contact debug views: the stages of collision detection (ContactStages) for every contact in a snapshot.
+// They cover the tool and its mirror image against every body, and every pair of bodies.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ namespace spoonbill {
 inline constexpr double stage_margin_m = 1e-4;
 
 // Finds collision stages for drawing. The result depends only on the snapshot, whose control points are
-// floats. Data that depends only on knots and tool is cached between snapshots. One owner, on the drawing
-// thread; allocates.
+// floats. Data that depends only on knots and tool is cached between snapshots. Has one owner, on the drawing
+// thread, and allocates.
 class SnapshotStages {
  public:
   // Finds the stages of a snapshot. Skips bodies whose control net does not fit their knots or is not finite.
@@ -36,7 +36,7 @@ class SnapshotStages {
   struct StructuredSurface {
     const Surface* surface;
     std::uint64_t structure;
-    bool closed = true;  // whether it encloses a solid, with du x dv outward
+    bool closed = true;  // true if it encloses a solid, with du x dv outward
     std::shared_ptr<const TrimmedArea> trim = {};
   };
 

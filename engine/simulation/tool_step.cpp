@@ -88,7 +88,7 @@ void place_soft_tool(BodyState& tool, const Pose& pose) {
   tool.update_skin();
 }
 
-// Returns the largest movement of any part of the tool in this tick, in metres.
+// Returns an upper bound of the movement of any part of the tool in this tick, in metres.
 double measure_reach(const Simulation::State& s, const HeldTool& held, const Pose& hand) {
   const double distance_m =
       std::max((hand.position_m - held.hand.position_m).norm(), tick_s * held.state.velocity_m_per_s.norm());

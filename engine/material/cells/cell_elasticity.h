@@ -21,12 +21,12 @@ using CellMoves = std::array<Vector3, 8>;
 // Energy, forces and tangent of a deformed cell.
 struct CellResponse {
   double energy_j = 0.0;
-  CellVector force_n;  // gradient of the energy: the forces that keep the cell in its shape
+  CellVector force_n;  // gradient of the energy: external forces that hold the cell in its deformed shape
   CellMatrix tangent;  // derivative of the forces, N/m
 };
 
-// Selects whether a tangent includes the contribution of the present stress. Newton's method is fastest with
-// it. Without it, stress cannot make the tangent indefinite.
+// Selects whether a tangent includes the contribution of the present stress. Newton's method converges
+// fastest with `stressed`. With `plain`, stress cannot make the tangent indefinite.
 enum class Tangent : std::uint8_t { stressed, plain };
 
 // Elasticity that a cell achieves along x, y and z. Plain data.

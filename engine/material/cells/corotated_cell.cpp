@@ -48,15 +48,14 @@ CellMatrix rotate_blocks(const CellMatrix& matrix, const Eigen::Matrix3d& rotati
   return result;
 }
 
-// Returns R - 1 = 2 w [v] + 2 [v]^2 for the unit quaternion w + v, where [v] is the cross-product matrix of
-// v.
+// Returns R - 1 = 2 w [v] + 2 [v]^2 for the unit quaternion w + v. [v] is the cross-product matrix of v.
 Eigen::Matrix3d turn_from(const Eigen::Quaterniond& quaternion) {
   const Eigen::Quaterniond unit = quaternion.normalized();
   const Eigen::Matrix3d v = cross_matrix(unit.vec());
   return 2.0 * unit.w() * v + 2.0 * v * v;
 }
 
-// Returns the vector a whose cross-product matrix is [a] = A - A^T.
+// Returns the vector whose cross-product matrix is A - A^T, for the matrix A = `a`.
 Vector3 axial(const Eigen::Matrix3d& a) {
   return {a(2, 1) - a(1, 2), a(0, 2) - a(2, 0), a(1, 0) - a(0, 1)};
 }
@@ -74,8 +73,8 @@ Eigen::Matrix3d nearest_turn(const Eigen::Matrix3d& change) {
   Eigen::Matrix3d left = svd.matrixU();
   if ((left * svd.matrixV().transpose()).determinant() < 0.0) left.col(2) *= -1.0;
   const Eigen::Quaterniond near(Eigen::Matrix3d(left * svd.matrixV().transpose()));
-  // The quaternion `near` is accurate to the rounding of 1. The residual skew part of S = R^T F, computed
-  // from small numbers alone, corrects it: [w] S + S [w] = S - S^T.
+  // The quaternion `near` is accurate to the rounding of 1. It is corrected by the residual skew part of
+  // S = R^T F, which is computed from small numbers alone: [w] S + S [w] = S - S^T.
   const Eigen::Matrix3d turn = turn_from(near);
   const Eigen::Matrix3d stretch_change = turn.transpose() + change + turn.transpose() * change;
   const Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity() + stretch_change;

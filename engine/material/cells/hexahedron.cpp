@@ -41,8 +41,8 @@ Eigen::Matrix3d jacobian(const CellCorners& corners, const CellGradients& gradie
   return sum;
 }
 
-// Returns the engineering strains xx, yy, zz, xy, yz, zx of a displacement whose shape function has this
-// gradient.
+// Returns the matrix from a displacement to the engineering strains xx, yy, zz, xy, yz, zx. The displacement
+// is the coefficient of a shape function with the gradient `g`.
 StrainRows strain_rows(const Vector3& g) {
   StrainRows rows;
   rows << g.x(), 0, 0, 0, g.y(), 0, 0, 0, g.z(), g.y(), g.x(), 0, 0, g.z(), g.y(), g.z(), 0, g.x();
@@ -64,7 +64,8 @@ struct CentreJacobian {
   double determinant;
 };
 
-// Gradients of the inner modes 1 - r^2, 1 - s^2 and 1 - t^2, with zero mean over the cell.
+// Returns the gradients of the internal modes 1 - r^2, 1 - s^2 and 1 - t^2 in the natural coordinates r, s,
+// t. They are scaled so that each has zero mean over the cell.
 std::array<Vector3, 3> inner_gradients(const Vector3& at, const CentreJacobian& centre, double determinant) {
   std::array<Vector3, 3> gradients;
   for (int mode = 0; mode < 3; ++mode) {
@@ -99,7 +100,7 @@ struct Sums {
   InnerMatrix inner = InnerMatrix::Zero();
 };
 
-// Visits the Gauss points of a part with their weights in natural volume.
+// Calls visit(point, weight) for the Gauss points of a part. Both are in natural coordinates.
 template <class Visit>
 void visit_points(const Vector3& low, const Vector3& high, const Visit& visit) {
   const Vector3 centre = 0.5 * (low + high), half = 0.5 * (high - low);

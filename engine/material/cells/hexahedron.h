@@ -12,19 +12,19 @@
 namespace spoonbill {
 
 // Returns the stiffness of a cell: the matrix that maps small displacements, m, to forces, N, in the axes of
-// the rest shape. It is symmetric, and the six rigid motions are its only null space.
+// the rest shape. It is symmetric, and the six rigid motions span its null space.
 //
-// The element is trilinear with three quadratic displacements per axis that are internal to the cell and
-// condensed out. A plain trilinear cell shears in bending and is too stiff: by half if a beam of L/H = 10 has
-// a single cell through its height. It also locks near nu = 1/2 (Wilson et al. 1973).
+// The element is trilinear, with three quadratic displacement modes per axis that are internal to the cell
+// and condensed out. A plain trilinear cell shears in bending and is too stiff: by half if a beam of L/H = 10
+// has a single cell through its height. It also locks near nu = 1/2 (Wilson et al. 1973).
 //
 // The gradients of the internal modes use the Jacobian at the cell's centre, so that distorted cells pass the
 // patch test (Taylor, Beresford and Wilson 1976). The integral uses two Gauss points per axis. The cell must
 // not be folded; -1 < nu < 1/2.
 CellMatrix hexahedron_stiffness(const CellCorners& corners, double youngs_modulus_pa, double poissons_ratio);
 
-// Part of a cell with its own elasticity: a box in the cell's natural coordinates, each -1 to 1 along i, j,
-// k.
+// Part of a cell with its own elasticity: a box in the cell's natural coordinates, which run from -1 to 1
+// along i, j and k.
 struct HexahedronPart {
   Vector3 low = -Vector3::Ones(), high = Vector3::Ones();
   double youngs_modulus_pa = 0.0, poissons_ratio = 0.0;
@@ -34,7 +34,7 @@ struct HexahedronPart {
 // layers bend as a composite does.
 CellMatrix hexahedron_stiffness(const CellCorners& corners, std::span<const HexahedronPart> parts);
 
-// Returns the volume of a part of a cell, m^3, divided among the corners to which its mass is assigned.
+// Returns the volume of a part of a cell, m^3, divided among the cell's corners as its mass is.
 std::array<double, 8> part_volumes(const CellCorners& corners, const Vector3& low, const Vector3& high);
 
 // Returns Young's modulus and Poisson's ratio of a cell with this stiffness along x, y and z, for uniform

@@ -73,8 +73,8 @@ Components isotropic_components(double shear_modulus_pa) {
   return result;
 }
 
-// Returns the stiffnesses of a cube's springs in one cell; four cells share an edge, two share a face
-// diagonal.
+// Returns the stiffnesses that one cell contributes to the springs of a lattice of cubes. Four cells share an
+// edge, and two share a face diagonal.
 Stiffnesses cube_stiffnesses(double edge_m, double shear_modulus_pa) {
   const double youngs_modulus_pa = 2.5 * shear_modulus_pa;
   const double body = 0.4 * 0.3 * youngs_modulus_pa * edge_m;
@@ -96,13 +96,14 @@ ComponentMatrix spring_components(const CellCorners& corners, double volume) {
   return matrix;
 }
 
-// Smallest stiffness of a spring relative to that of a cube. A corner whose diagonals vanish can snap through
-// the plane of its neighbours, and a cell without diagonals has zero-energy modes.
+// Smallest stiffness of a spring, relative to the same spring in a cube of equal volume. A corner whose
+// diagonals vanish can snap through the plane of its neighbours, and a cell without diagonals has zero-energy
+// modes.
 constexpr double min_spring_fraction = 0.1;
 
-// Returns the stiffnesses closest to `start` that satisfy `matrix * k = target`. If some are below their
-// minimum, fixes them there and solves again for the others, until none is below. A negligible multiple of
-// the identity keeps the normal matrix regular where springs of a distorted cell are dependent.
+// Returns the stiffnesses k closest to `start` that satisfy `matrix * k = target`. If some are below their
+// minimum, fixes these at the minimum and solves for the others, until none is below. A negligible multiple
+// of the identity keeps the normal matrix regular where springs of a distorted cell are dependent.
 Stiffnesses nearest_admissible(const ComponentMatrix& matrix, const Components& target,
                                const Stiffnesses& start) {
   Stiffnesses weight = start, from = start;

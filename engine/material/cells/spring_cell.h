@@ -17,11 +17,11 @@ inline constexpr int cell_spring_count = 28;
 extern const std::array<std::array<int, 2>, cell_spring_count> cell_spring_corners;
 
 struct CellSprings {
-  std::array<double, cell_spring_count> stiffness_n_per_m{};  // all positive
+  std::array<double, cell_spring_count> stiffness_n_per_m{};  // stiffness of each spring; all positive
   double volume_m3 = 0.0;
   // Relative error of the springs' elasticity tensor: |achieved - target| / |target|, as norms of its 15
-  // components. It is 0 for a cube and for bricks up to an aspect of about 1.5, and above 0 where springs of
-  // at least a tenth of a cube's stiffness cannot reach the target.
+  // components. It is 0 for a cube and for bricks up to an aspect ratio of about 1.5, and above 0 where
+  // springs of at least a tenth of a cube's stiffness cannot reach the target.
   double misfit = 0.0;
 };
 
@@ -40,9 +40,9 @@ struct CellSprings {
 CellSprings cell_springs(const CellCorners& corners, double shear_modulus_pa);
 
 // Returns the springs of a cell of a material: those of cell_springs() for the material's shear modulus. If
-// they miss the elasticity of a distorted cell, all are scaled by one factor, so that the cell with its
-// volume force has the material's Young's modulus in tension along k. Cells that need a larger correction
-// than max_spring_correction are too slender and are not scaled.
+// these springs cannot reach the elasticity (CellSprings::misfit), all are scaled by one factor, so that the
+// cell with its volume force has the material's Young's modulus in tension along k. Cells that need a larger
+// correction than max_spring_correction are too slender and are not scaled.
 CellSprings material_springs(const CellCorners& corners, double youngs_modulus_pa, double poissons_ratio);
 inline constexpr double max_spring_correction = 0.2;
 
@@ -59,7 +59,7 @@ double shear_modulus(double youngs_modulus_pa, double poissons_ratio);
 AchievedElasticity achieved_elasticity(const CellCorners& corners, const CellSprings& springs,
                                        double bulk_stiffness_pa);
 
-// A cell of springs with a volume force. Plain data, a value.
+// A cell of springs with a volume force. A plain value type.
 class SpringCell {
  public:
   SpringCell() = default;
@@ -67,8 +67,8 @@ class SpringCell {
   // body.
   SpringCell(const CellCorners& rest, const CellSprings& springs, double bulk_stiffness_pa, double fraction);
 
-  // Computes energy, forces and tangent. The energy is 1/2 k (L - L0)^2 for each spring plus 1/2 K_v (J -
-  // 1)^2 V0 with J = V / V0.
+  // Computes energy, forces and tangent. The energy is 1/2 k (L - L0)^2 for each spring plus
+  // 1/2 K_v (J - 1)^2 V0 with J = V / V0.
   CellResponse respond(const CellMoves& moves, Tangent tangent) const;
   double energy_j(const CellMoves& moves) const;
 

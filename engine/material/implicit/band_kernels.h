@@ -1,5 +1,6 @@
-// Cholesky factorisation of a band matrix in double precision, compiled once for each instruction set with
-// the same bits. Uses no standard library; engine/bspline/evaluate_kernels.h explains why.
+// Cholesky factorisation of a band matrix in double precision. The kernels are compiled once for each
+// instruction set and give the same bits on each. This header uses no standard library;
+// engine/bspline/evaluate_kernels.h explains why.
 #pragma once
 
 namespace spoonbill {

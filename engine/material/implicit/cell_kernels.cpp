@@ -13,7 +13,7 @@ inline double magnitude(double a) {
   return a < 0.0 ? -a : a;
 }
 
-// Gathers a nodal field relative to the mean of the corners.
+// Copies a nodal field at the corners of each cell to `to`, relative to its mean over the cell's corners.
 inline void gather(const CellBatch& b, const double* from, Field& to) {
   for (int c = 0; c < 8; ++c) {
     for (int l = 0; l < lanes; ++l) {
@@ -35,7 +35,8 @@ inline void gather(const CellBatch& b, const double* from, Field& to) {
   }
 }
 
-// Rotates the field by R = 1 + turn, scales it and adds it to the nodes.
+// Rotates the corner vectors `from` of each cell by R = 1 + turn, scales them and adds them to the nodal
+// field `to`.
 inline void scatter(const CellBatch& b, const Field& from, double scale, double* to) {
   for (int c = 0; c < 8; ++c) {
     Lanes x, y, z;
@@ -85,8 +86,7 @@ inline void compute_gradient(const CellBatch& b, const Field& moved, Matrix& cha
   }
 }
 
-// Computes R - 1 = 2 w [v] + 2 [v]^2 from the unit quaternion w + v, where [v] is the cross-product matrix of
-// v.
+// Computes R - 1 = 2 w [v] + 2 [v]^2 from the unit quaternion w + v. [v] is the cross-product matrix of v.
 inline void compute_turn(CellBatch& b) {
   for (int l = 0; l < lanes; ++l) {
     const double w = b.quaternion[0][l], x = b.quaternion[1][l], y = b.quaternion[2][l],
@@ -117,8 +117,8 @@ inline void compute_stretch(const CellBatch& b, const Matrix& h, Matrix& stretch
   }
 }
 
-// Computes (tr S - S)^-1 for the symmetric part of the stretch S. A crushed cell, whose matrix has no
-// inverse, gets the inverse of an unstrained cell.
+// Computes the inverse of tr S - S for the symmetric part of the stretch S. For a crushed cell, whose matrix
+// is nearly singular, sets the inverse for an unstrained cell.
 inline void compute_spin_map(CellBatch& b, const Matrix& s) {
   for (int l = 0; l < lanes; ++l) {
     const double xx = 1.0 + s.at[0][l], yy = 1.0 + s.at[4][l], zz = 1.0 + s.at[8][l];

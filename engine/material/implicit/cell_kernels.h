@@ -1,6 +1,7 @@
 // Kernels for the cells of an implicit body, which process eight cells side by side. The cells are corotated
-// hexahedra (see engine/material/cells/corotated_cell.h). Compiled once for each instruction set, with the
-// same bits. Uses no standard library; engine/bspline/evaluate_kernels.h explains why.
+// hexahedra (see engine/material/cells/corotated_cell.h). They are compiled once for each instruction set and
+// give the same bits on each. This header uses no standard library; engine/bspline/evaluate_kernels.h
+// explains why.
 #pragma once
 
 namespace spoonbill {
@@ -31,8 +32,8 @@ struct CellKernels {
   // the cells from `force`, N. Both arrays have entry 3 n + axis for node n. A few Newton steps from the last
   // rotation find the new one.
   void (*compute_forces)(CellBatch* batches, int count, const double* moved, double* force);
-  // Adds `scale` times the product of the plain tangent R P^T K P R^T (see CorotatedCell::respond()) and
-  // `field` to `out`.
+  // Adds `scale` times the product of the cells' tangent and `field` to `out`. The tangent is R P^T K P R^T,
+  // without the contribution of stress (see CorotatedCell::respond()).
   void (*apply)(const CellBatch* batches, int count, double scale, const double* field, double* out);
 };
 

@@ -43,7 +43,7 @@ void add_part(const Part& part, std::vector<Part>& parts) {
   parts.push_back(part);
 }
 
-// Merges the parts of a cell that have the same material.
+// Returns a single part if all parts of a cell have the same material; otherwise returns the parts unchanged.
 std::vector<Part> merge_parts(std::vector<Part> parts) {
   const bool alike = std::all_of(parts.begin(), parts.end(),
                                  [&](const Part& part) { return part.material == parts[0].material; });
@@ -305,9 +305,9 @@ void ImplicitBody::apply_fixed_motion(double stiffness, double h) {
   for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) force_[n] -= image_[n] / h;
 }
 
-// Scales the velocities at the start of the step by the best factor between 0 and 1 and computes the
-// residual. Without this, conjugate gradients that stop early could leave velocities larger than the forces
-// allow.
+// Scales the velocities at the start of the step by the factor between 0 and 1 that minimises the quadratic
+// form of the step, and computes the residual. Without this, conjugate gradients that stop early could leave
+// velocities larger than the forces allow.
 void ImplicitBody::begin_solve(double inertia, double stiffness, double h) {
   apply_matrix(inertia, stiffness, velocity_, image_);
   for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) {
@@ -380,7 +380,7 @@ ImplicitBody::RigidMotion ImplicitBody::rigid_motion() const {
   return motion;
 }
 
-// Caps the speeds relative to the rigid motion. Returns whether any was capped.
+// Caps the speeds relative to the rigid motion. Returns whether any speed was capped.
 bool ImplicitBody::cap_speeds(const RigidMotion& motion, double cap_m_per_s) {
   bool capped = false;
   for (int n = 0; n < node_count(); ++n) {

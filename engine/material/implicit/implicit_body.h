@@ -20,12 +20,12 @@
 
 namespace spoonbill {
 
-// Overlap of a cell of the coarse grid with a cell of the lattice, along one axis.
+// Overlap of a cell of the implicit solver's coarse grid with a cell of the lattice, along one axis.
 struct Overlap {
-  int cell;          // index in the lattice
+  int cell;          // index of the lattice's cell along the axis
   double low, high;  // ends of the overlap in the coarse cell, from -1 to 1
 
-  // Fraction of the coarse cell, 0 to 1.
+  // Returns the fraction of the coarse cell that the overlap covers, 0 to 1.
   double fraction() const { return 0.5 * (high - low); }
 };
 
@@ -33,7 +33,7 @@ struct Overlap {
 // numbers of nodes along the axis, each at least 2.
 std::vector<Overlap> find_overlaps(int block_cell, int block_count, int lattice_count);
 
-// Materials in the cells of an implicit body. Plain data, a value.
+// Materials in the cells of an implicit body. A plain value type.
 struct BlockMaterials {
   // A box in a cell's natural coordinates (see HexahedronPart) and the index of the material that fills it.
   struct Part {
@@ -50,8 +50,8 @@ struct BlockMaterials {
   std::vector<std::vector<Part>> parts_by_cell;
 };
 
-// Returns the materials of a coarser grid over the same body. Each cell of the grid consists of the parts of
-// the lattice's cells that overlap it, in its natural coordinates.
+// Returns the materials of a coarser grid over the body of a lattice. Each cell of the coarse grid gets a
+// part for each cell of the lattice that overlaps it; adjacent parts of the same material may be merged.
 BlockMaterials make_block_materials(const LatticeMaterials& of, const std::array<int, 3>& lattice_count,
                                     const std::array<int, 3>& block_count);
 
@@ -92,27 +92,29 @@ struct ImplicitReport {
 //   (r M + (h^2 + h t) K) w = r M v / (1 + h a) + h (f - f_el(x)),  x <- x + h w,
 //
 // with the inertia scale r, the masses M, the old velocities v, the drag a, the damping time t, the applied
-// forces f and the elastic forces f_el. Drag acts only on the old velocity, so that a body at rest balances
-// its true forces. This is one step of Newton's method. K is the plain tangent at the positions x, which is
-// never indefinite, so the matrix is positive definite. The method itself damps every mode like an additional
-// damping time of h. Unlike the damping of springs, t also damps changes of volume.
+// forces f and the elastic forces f_el. Drag acts only on the old velocity, so that it does not change the
+// equilibrium of a body at rest. This is one step of Newton's method. K is the tangent at the positions x
+// without the contribution of stress (Tangent::plain). It is never indefinite, so the matrix is positive
+// definite. The method itself damps every mode like an additional damping time of h. Unlike the damping of
+// springs, t also damps changes of volume.
 //
-// The conjugate gradients may stop early: at every iteration the quadratic form that they minimise is at most
-// its value at w = 0. Their preconditioner is the Cholesky factor of the same matrix a few ticks earlier,
-// updated in parts. Bodies are long and their nodes are numbered along them, so the matrix is a narrow band.
+// The system is solved by conjugate gradients, which may stop early: at every iteration the quadratic form
+// that they minimise is at most its value at w = 0. Their preconditioner is the Cholesky factor of the same
+// matrix a few ticks earlier, updated in parts. Bodies are long and their nodes are numbered along them, so
+// the matrix is a narrow band.
 //
-// Fixed nodes may move at prescribed velocities. The forces that they thereby exert on free nodes are on the
-// right-hand side.
+// Fixed nodes may move at prescribed velocities. The forces that they thereby exert on free nodes are added
+// to the right-hand side.
 //
-// A node moves at most half a cell per step, relative to the rigid motion of a free body. Faster motion
-// could crush cells irreversibly.
+// A node moves at most half a cell per step, relative to the rigid motion of a free body. Faster motion could
+// crush cells irreversibly.
 //
-// One owner; built outside the tick, allocates nothing afterwards.
+// Has one owner. It is built outside the tick and allocates nothing afterwards.
 class ImplicitBody {
  public:
   // Builds the body at rest, with an inertia scale of 1. With several materials, the damping time is that of
-  // the stiffest one; all other properties apply by part. Fails on fewer than 2 nodes in a direction, folded
-  // cells and materials outside their ranges.
+  // the stiffest one; each part of a cell has all other properties of its own material. Fails on fewer than 2
+  // nodes in a direction, folded cells and materials outside their ranges.
   static Result<ImplicitBody> make(const LatticeMesh& mesh, const BlockMaterials& materials,
                                    InstructionSet set);
   ImplicitBody(ImplicitBody&&) = default;
@@ -129,7 +131,7 @@ class ImplicitBody {
   void set_inertia_scale(double scale);
   const LatticeReport& report() const { return report_; }
 
-  // Fixes the nodes whose byte is 1, one byte per node, and discards the Cholesky factor.
+  // Fixes the nodes whose byte is 1 and frees all others, one byte per node. Discards the Cholesky factor.
   void fix_nodes(std::span<const std::uint8_t> fixed);
   bool is_fixed(int node) const { return free_[3 * static_cast<std::size_t>(mesh_.joined(node))] == 0.0; }
 
@@ -158,10 +160,10 @@ class ImplicitBody {
   double rayleigh_quotient();
 
   // Parts of a step, to be called in order. solve_velocities() computes the velocities at the end of the
-  // step; `known_ns` are contact impulses, N s, by coordinate, and those on two joined nodes belong to the
-  // first. respond_to() computes the velocity changes of the whole body due to further impulses and returns
-  // the sum of their products with the impulses, J. apply_response() adds `fraction` of these changes to the
-  // velocities. move() advances the nodes and returns whether one reached the speed cap.
+  // step; `known_ns` are contact impulses, N s, by coordinate, and those on joined nodes must be at the first
+  // of the two nodes. respond_to() computes the velocity changes of the whole body due to further impulses
+  // and returns the sum of their products with the impulses, J. apply_response() adds `fraction` of these
+  // changes to the velocities. move() advances the nodes and returns whether one reached the speed cap.
   ImplicitReport solve_velocities(const ImplicitStep& step, std::span<const double> known_ns = {});
   double respond_to(const std::vector<double>& impulses);
   void apply_response(double fraction);
@@ -173,7 +175,7 @@ class ImplicitBody {
     return report;
   }
 
-  // Visits everything that the next step depends on.
+  // Visits the state that the next step starts from.
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
     for (const Doubles* a : {&moved_, &velocity_, &applied_}) visit(a->data(), a->size());

@@ -13,7 +13,7 @@ namespace spoonbill {
 namespace {
 
 // Largest number of iterations for the ground contacts in a tick. Each costs one solve with the Cholesky
-// factor, as much as an iteration of the conjugate gradients.
+// factor, as much as an iteration of the conjugate gradients in ImplicitBody.
 constexpr int step_limit = 4;
 // Velocity error below which the ground contacts of a tick count as solved: a nanometre per second.
 constexpr double accepted_error_m_per_s = 1e-9;
@@ -31,7 +31,8 @@ double free_fraction(const GridPoint& point, const ImplicitBody& body) {
   return fraction;
 }
 
-// Projects an impulse onto the friction cone.
+// Limits an impulse to the friction cone: its normal part to 0 or more, then its tangential part to
+// `friction` times the normal part.
 Vector3 project_onto_cone(const Vector3& impulse, const Vector3& normal, double friction) {
   const double push = std::max(0.0, impulse.dot(normal));
   const Vector3 along = impulse - impulse.dot(normal) * normal;
@@ -125,7 +126,7 @@ constexpr int min_budget = 30;
 // largest value.
 constexpr double initial_lightness = 8.0, max_lightness = 1e5;
 
-// Position of a node of one grid in another over the same body, along one axis.
+// Position of a node of one grid in another grid over the same body, along one axis.
 struct GridPosition {
   int first;
   double fraction;  // fraction of the step to the next node
@@ -406,7 +407,8 @@ void ImplicitSolver::write_velocities(SpringLattice& lattice) {
   }
 }
 
-// Collects the contact impulses. Returns the sum of their squares over the nodes.
+// Collects in `impulse_` the contact impulses since the last response, from the velocity changes of the
+// lattice's nodes. Returns the sum of the squares of the nodal impulses.
 double ImplicitSolver::collect_impulses(const SpringLattice& lattice) {
   std::fill(impulse_.begin(), impulse_.end(), 0.0);
   double squares = 0.0;

@@ -1,5 +1,5 @@
-// Implicit solver of a lattice whose material is too stiff for its springs, and its contacts with the
-// ground.
+// Implicit solver of a lattice whose material is too stiff to be stepped by springs, and the solver's
+// contacts with the ground.
 #pragma once
 
 #include <array>
@@ -55,19 +55,20 @@ struct GridPoint {
 // The functions index `points` by nodes of the lattice to which the contacts belong. Points that are attached
 // mostly to fixed nodes do not respond.
 //
-// One owner, the implicit solver of the body; allocates only at construction.
+// Owned by the implicit solver of the body. Allocates only at construction.
 class ImplicitGroundContacts {
  public:
   ImplicitGroundContacts(int points, double mass_kg);
-  // Adapts to a body whose inertia has changed by this factor.
+  // Scales the spectral mass and its bounds by `factor`. Call after the body's inertia has changed by this
+  // factor.
   void scale_inertia(double factor);
 
-  // Sets the impulses of the contacts to those of the last tick, from which the step starts, and adds them to
-  // the sums by coordinate of the body, N s.
+  // Sets the impulse of each contact to that of its force in the last tick over `time_s`. The step starts
+  // from these impulses. Adds them to `impulses_ns`, one entry per coordinate of the body.
   void restore_last_impulses(std::span<GroundContact> contacts, std::span<const GridPoint> points,
                              double time_s, std::vector<double>& impulses_ns);
-  // Solves the contacts after everything else that pushes the body. Changes the impulses and the body's
-  // velocities. Overwrites `impulses_ns`, one entry per coordinate of the body.
+  // Solves the contacts. Call after everything else has pushed the body. Changes the impulses of the contacts
+  // and the body's velocities. Overwrites `impulses_ns`, one entry per coordinate of the body.
   void solve(const GroundContacts& ground, std::span<GroundContact> contacts,
              std::span<const GridPoint> points, double time_s, double push_speed_cap_m_per_s,
              ImplicitBody& body, std::vector<double>& impulses_ns);
@@ -78,7 +79,8 @@ class ImplicitGroundContacts {
   }
 
  private:
-  // Computes the velocity errors of the points, m/s.
+  // Computes the velocity of each contact's point minus its target velocity, m/s; 0 for a point that does not
+  // respond.
   void compute_velocity_errors(std::span<const GroundContact> contacts, std::span<const GridPoint> points,
                                const ImplicitBody& body);
   // Computes the changes of the impulses for one step, with `mass_` as the impulse per velocity error.
@@ -87,12 +89,13 @@ class ImplicitGroundContacts {
 
   double mass_, min_mass_, max_mass_;
   Vector3 normal_ = Vector3::UnitY();
-  std::vector<double> target_;                              // smallest speed along the normal by contact, m/s
+  std::vector<double> target_;  // for each contact: smallest speed along the normal, m/s
   std::vector<Vector3> velocity_errors_, impulse_changes_;  // for each contact, m/s and N s
 };
 
-// Node budget of the hexahedral block: the largest number that a tick can solve for a long body with a narrow
-// band. Compact bodies get fewer nodes. A body needs few hexahedra, since each can bend.
+// Node budget of the coarse grid of hexahedra in an implicit solver: as many nodes as a tick can solve for a
+// long body, whose matrix has a narrow band. Compact bodies get fewer nodes. A body needs few hexahedra,
+// since each can bend.
 inline constexpr int implicit_node_budget = 500;
 
 // An instantaneous rigid displacement of a body, which also subtracts a rigid motion from the body's
@@ -100,7 +103,8 @@ inline constexpr int implicit_node_budget = 500;
 struct RigidMove {
   Vector3 from_m = Vector3::Zero(), to_m = Vector3::Zero();  // centre before and after the move
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();        // rotation about the centre
-  Vector3 velocity_m_per_s = Vector3::Zero(), spin_rad_per_s = Vector3::Zero();  // subtracted before the turn
+  // Rigid motion that is subtracted from the velocities before the rotation.
+  Vector3 velocity_m_per_s = Vector3::Zero(), spin_rad_per_s = Vector3::Zero();
 
   Vector3 moved(const Vector3& position_m) const { return to_m + turn * (position_m - from_m); }
   // Returns the new velocity of a point that was at `position_m` and had the velocity `before`.
@@ -113,11 +117,11 @@ struct RigidMove {
 // Drawing, contacts and supports use the lattice.
 //
 // Contacts push the lattice's nodes as if each were free, with an inverse mass that matches the block's
-// response to the last contacts. The block then responds as a whole, after each pass over the contacts of a
-// tool and at the end of the tick. If the block responds more than the contacts assumed, the impulses of the
-// pass are scaled down. The ground comes last and pushes the block directly.
+// response to the last contacts. The block then responds as a whole, after each pass over the contacts and at
+// the end of the tick. If the block responds more than the contacts assumed, the impulses of the pass are
+// scaled down. The ground comes last and pushes the block directly.
 //
-// One owner, the body; built outside the tick, allocates nothing afterwards.
+// Owned by the body. It is built outside the tick and allocates nothing afterwards.
 class ImplicitSolver {
  public:
   // Builds the solver of a lattice, unstrained when the lattice's nodes are at `rest_m`.
@@ -134,50 +138,52 @@ class ImplicitSolver {
   // Velocity change of a lattice node per impulse that contacts assume, 1/kg.
   double contact_inverse_mass() const { return contact_inverse_mass_; }
 
-  // Fixes nodes of the lattice, one byte per node. Each node of the block is fixed if the lattice node
-  // nearest to it is. If a fixed lattice node would then follow only free block nodes, the block node with
-  // the largest weight in it is fixed too.
+  // Fixes nodes of the lattice, one byte per node. Each node of the hexahedral block is fixed if the lattice
+  // node nearest to it is. If a fixed lattice node would then follow only free block nodes, the block node
+  // with the largest weight in it is fixed too.
   void fix_nodes(std::span<const std::uint8_t> fixed);
-  // Sets displacements and velocities from the lattice.
+  // Sets the displacements and velocities of the hexahedral block from those of the lattice.
   void adopt_shape(const SpringLattice& lattice);
 
-  // Moves the block rigidly, and the lattice that follows it. No node may be fixed.
+  // Moves the hexahedral block rigidly, and the lattice that follows it. No node may be fixed.
   void move_rigidly(const RigidMove& move, SpringLattice& lattice);
 
-  // Adopts the positions of lattice nodes that were moved permanently without the block, as
-  // SpringLattice::reform() does: they become the rest positions relative to the block.
+  // Call after lattice nodes have been moved permanently without the hexahedral block, as by
+  // SpringLattice::reform(). Sets the rest positions of free lattice nodes so that the nodes stay where they
+  // are when they follow the block.
   void adopt_moved_nodes(const SpringLattice& lattice);
 
-  // Rayleigh quotient (v.Kv) / (v.Mv) of the block's velocities; 0 at rest.
+  // Rayleigh quotient (v.Kv) / (v.Mv) of the hexahedral block's velocities; 0 at rest.
   double rayleigh_quotient() { return body_.rayleigh_quotient(); }
-  // Replaces all node forces by those that the lattice has on `nodes`, N. Fixed nodes bear their forces
-  // directly.
+  // Replaces all forces on the hexahedral block's nodes by those that the lattice has on `nodes`, N. Forces
+  // on fixed nodes are ignored, because they do not move the block.
   void set_node_forces(const SpringLattice& lattice, std::span<const int> nodes);
-  // For the coming step, sets the velocity of the block's nodes that these lattice nodes fix. `nodes` are in
-  // ascending order.
+  // For the coming steps, sets the velocity of the nodes of the hexahedral block that these lattice nodes
+  // fix. `nodes` must be in ascending order.
   void move_fixed(std::span<const int> nodes, const Vector3& velocity_m_per_s);
-  // Force of cells, loads and gravity on these fixed nodes of the lattice and on the block nodes that they
-  // fix, at the start of the last step, N.
+  // Returns the force of cells, loads and gravity on these fixed nodes of the lattice and on the nodes of the
+  // hexahedral block that they fix, at the start of the last step, N.
   Vector3 force_on_fixed(const SpringLattice& lattice, std::span<const int> nodes,
                          const Vector3& gravity_m_per_s2) const;
 
-  // Adds an impulse on a lattice node to those that the next step starts from, N s. It acts in full, while
-  // those that contacts add later are estimated.
+  // Adds an impulse on a lattice node to the known impulses of the next step, N s. Known impulses act in
+  // full, while impulses that contacts add later may be scaled down.
   void add_known_impulse(const SpringLattice& lattice, int node, const Vector3& impulse_ns);
-  // Sets the lattice's velocities to those at the end of a step with the known impulses and the ground
-  // contacts' impulses of the last tick and without other contacts. Contacts then change the velocities.
+  // Computes the velocities at the end of a step and sets them in the lattice. The step includes the known
+  // impulses and the impulses of the ground contacts in the last tick, but no other contacts. Contacts then
+  // change the velocities.
   ImplicitReport begin_step(const ImplicitStep& step, SpringLattice& lattice,
                             std::span<GroundContact> on_ground = {});
-  // Work of the contacts' impulses since the last response: with the velocity changes that the contacts
-  // assumed, and with those of the block.
+  // Work of the contacts' impulses since the last response: `assumed_work_j` with the velocity changes that
+  // the contacts assumed, `work_j` with those of the hexahedral block.
   struct ContactResponse {
     double assumed_work_j = 0.0, work_j = 0.0;
   };
   ContactResponse find_response(const SpringLattice& lattice);
-  // Applies this fraction of the response that find_response() computed to the block, and updates the
-  // lattice's velocities.
+  // Applies this fraction of the response that find_response() computed to the hexahedral block, and updates
+  // the lattice's velocities.
   void respond(double fraction, SpringLattice& lattice);
-  // Ground contacts of the lattice, as end_step() needs them.
+  // Ground contacts of the lattice, passed to end_step().
   struct GroundPush {
     const GroundContacts* ground = nullptr;
     std::span<GroundContact> contacts;
@@ -204,21 +210,21 @@ class ImplicitSolver {
   double collect_impulses(const SpringLattice& lattice);
   void update_contact_mass(SpringLattice& lattice);
   bool follows_fixed(const GridPoint& follower) const;
-  // Returns whether one of the lattice nodes fixes this node of the block.
+  // Returns whether one of the lattice nodes `nodes` fixes this node of the hexahedral block.
   bool is_fixed_by(int node, std::span<const int> nodes) const;
 
   ImplicitBody body_;
   std::vector<Vector3> rest_m_;       // rest positions of the lattice's nodes
   std::vector<GridPoint> followers_;  // each lattice node as a weighted sum of block nodes
-  std::vector<int> nearest_;          // for each block node: nearest lattice node in the grid
+  std::vector<int> nearest_;          // for each block node: the lattice node nearest in grid coordinates
   std::vector<int> fixing_node_;      // for each block node: lattice node that fixes it, or -1 if none
-  // Velocities of the lattice's nodes before contacts.
+  // Velocities of the lattice's nodes as last written, before contacts change them.
   std::vector<std::array<float, 3>> velocity_;
   std::vector<double> known_;    // known impulses of the next step, by coordinate of the block, N s
   std::vector<double> impulse_;  // working memory: impulses by coordinate of the block, N s
   ImplicitGroundContacts ground_contacts_;
   double step_s_ = 0.0;
-  // Inverse mass in the first response of the tick, 1/kg; 0 without a response.
+  // Inverse mass measured in the first response of the tick, 1/kg; 0 without a response.
   double measured_inverse_mass_ = 0.0;
   double inertia_scale_ = 1.0;
   double contact_inverse_mass_ = 0.0, min_inverse_mass_ = 0.0;  // 1/kg, with the scaled inertia

@@ -102,7 +102,7 @@ void RollingFactor::factorise_columns(const MatrixParts& parts, int count) {
   const int layers = std::min(all_layers, (to - 1) / slice_columns_ + 1);
   for (; next_.layers < layers; ++next_.layers) add_layer(parts, next_.layers);
   // If K is positive semidefinite, no pivot of D + K is below the corresponding entry of the diagonal matrix
-  // D, except for rounding. The second node of a seam pair has no mass.
+  // D, except for rounding. The second node of a seam pair has no mass and is skipped.
   double lightest = std::numeric_limits<double>::max();
   for (const double* mass = parts.mass; mass != parts.mass + next_.band.size / 3; ++mass) {
     if (*mass > 0.0) lightest = std::min(lightest, *mass);

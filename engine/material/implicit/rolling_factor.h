@@ -11,10 +11,10 @@
 
 namespace spoonbill {
 
-// Cells of a body in batches, layer by layer along it.
+// Cells of a body in batches, layer by layer along the body.
 struct CellBlock {
   std::vector<CellBatch> batches;
-  std::vector<int> layers;  // index of the first batch of each layer, and the number of batches
+  std::vector<int> layers;  // index of the first batch of each layer; at the end the number of batches
   int layer_cells = 0;      // cells per layer; the last batch of a layer may have unused lanes
 };
 
@@ -31,7 +31,7 @@ struct MatrixParts {
 int node_reach(const LatticeMesh& mesh);
 
 // Factor of the matrix that MatrixParts describes. Coordinates are 3 n + axis, and nodes are numbered along
-// the body, so the matrix is a band. One owner; allocates only at construction.
+// the body, so the matrix is a band. Has one owner and allocates only at construction.
 class RollingFactor {
  public:
   using Doubles = AlignedVector<double>;

@@ -81,8 +81,8 @@ class Hull {
   std::size_t last_ = 0;  // index of the triangle nearest to the previous point
 };
 
-// Returns the distance of a node from the centre line of the block in its grid: 0 on the line, 1 on the hull.
-// Shells have no centre line; the distance is 1.
+// Returns the distance of a node from the centre line of the block, measured in grid indices: 0 on the line,
+// 1 on the hull. Shells have no centre line; the distance is 1.
 double distance_from_centre_line(const LatticeMesh& mesh, int node) {
   if (mesh.thin) return 1.0;
   const std::array<int, 3> at = mesh.grid_index(node);
@@ -90,7 +90,7 @@ double distance_from_centre_line(const LatticeMesh& mesh, int node) {
   return std::max(std::abs(s), std::abs(t));
 }
 
-// Returns the faces of the block that are faces of the body. A closed block has no faces at its seam.
+// Returns the outer faces of the block. A closed block has no faces at its seam.
 Hull make_hull(const LatticeMesh& mesh) {
   std::vector<Triangle> faces;
   for (std::size_t axis = mesh.closed ? 1 : 0; axis < 3; ++axis) add_faces(mesh, axis, faces);

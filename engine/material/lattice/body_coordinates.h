@@ -1,4 +1,5 @@
-// Body coordinates of a lattice's nodes, cells and faces: along, around and depth.
+// Body coordinates of a lattice's nodes, cells and faces: position along the body, position around it, and
+// depth below its surface.
 #pragma once
 
 #include <array>
@@ -11,16 +12,17 @@
 namespace spoonbill {
 
 // Returns the body coordinates of each node at rest. The depth is the distance to the hull of the block; in a
-// box about a surface it is the distance to the surface. Nodes outside the body are in no region. In a block
-// that is not a tube, `along` is measured along the block and `around` is 0.
+// box about a surface it is the distance to the surface. Nodes outside the body have NaN coordinates and are
+// in no region. `along` is the fraction of the block's length along k, except in a box about a surface.
+// `around` is 0 if LatticeMesh::turns is empty.
 std::vector<BodyCoordinates> find_node_coordinates(const LatticeMesh& mesh);
 
-// Returns the mean body coordinates of some nodes, given those of all nodes: the mean of `along`, and the
-// mean of `around`, weighted by the distance from the centre line. `around` is 0 if the nodes surround the
-// axis. The depth is not set.
+// Returns the mean body coordinates of the nodes `selected`; `nodes` has the coordinates of all nodes. The
+// mean of `around` is weighted by the nodes' distances from the centre line, and is 0 if the nodes surround
+// that line. The depth is not set.
 //
 // Uses sums only: the C library's trigonometric functions differ between processors, and the assignment of
-// cells to regions must not.
+// cells to regions must not differ.
 BodyCoordinates mean_coordinates(const LatticeMesh& mesh, const std::vector<BodyCoordinates>& nodes,
                                  std::span<const int> selected);
 
@@ -35,7 +37,8 @@ using ShellFace = std::array<int, 4>;
 // are measured on them; a body in a box of cells has a BodySkin instead.
 std::vector<ShellFace> shell_faces(const LatticeMesh& mesh);
 
-// Returns the faces whose mean_coordinates() are in the region. `coordinates` are those of all nodes.
+// Returns the faces whose mean_coordinates() are in the region. `coordinates` are those of all nodes of the
+// lattice.
 std::vector<ShellFace> find_faces_in(const BodyRegion& region, const LatticeMesh& mesh,
                                      const std::vector<ShellFace>& faces,
                                      const std::vector<BodyCoordinates>& coordinates);

@@ -23,9 +23,10 @@ namespace spoonbill {
 namespace {
 
 constexpr int sweeps = 60, halvings = 10;
-// The sweeps of unfold() end when no node moves farther than this, relative to the mean edges.
+// The sweeps of unfold() end when no node moves farther than this fraction of the shortest mean edge.
 constexpr double still_fraction = 1e-3;
-// Determinant below which unfold() regularises a corner by its d, relative to a box of the mean edges.
+// If the smallest determinant of a corner is below this value, unfold() regularises the terms of all corners.
+// The determinant is 1 for a box of the mean edges.
 constexpr double min_determinant = 1e-2;
 
 // The nodes of a cell, and the corner of the cell at which the moving node is.
@@ -72,8 +73,9 @@ Vector3 mean_edges(const LatticeMesh& mesh) {
   return sums.cwiseQuotient(edges);
 }
 
-// A corner of a cell: its edges, each divided by the mean edge of its axis. The derivatives of the edges with
-// respect to the moving node are 0 or +-1 divided by that mean edge.
+// A corner of a cell: its edges, each divided by the mean edge of its axis. `follows` contains the
+// derivatives of the edges with respect to the position of the moving node, 0 or +-1 divided by the mean
+// edge.
 struct Corner {
   std::array<Vector3, 3> edges;
   Vector3 follows;
@@ -146,7 +148,7 @@ class Around {
   }
 
  private:
-  // `moving` is the mask of the axes whose edges follow the node.
+  // `moving` is a bit mask of the axes whose edge at the corner `at` ends at the moving node.
   Corner corner(const CellAround& cell, int at, int moving) const {
     const auto node = [&](int corner) -> const Vector3& {
       return mesh_->nodes[static_cast<std::size_t>(cell.nodes[static_cast<std::size_t>(corner)])];
@@ -180,7 +182,8 @@ Vector3 newton_step(const Sum& sum) {
   return -sum.gradient / size;
 }
 
-// Moves a node so that the sum decreases. Returns the distance.
+// Moves a node so that the sum of the terms around it decreases. Returns the distance moved, or 0 if no step
+// decreases the sum.
 double move_node(const Around& around, double lift_square, Vector3& node) {
   const Sum sum = around.sum(lift_square);
   if (!std::isfinite(sum.value)) return 0.0;
@@ -203,8 +206,8 @@ void fill_from_hull(LatticeMesh& mesh) {
     const std::array<int, 3> at = mesh.grid_index(n);
     if (mesh.node_location(at[0], at[1], at[2]) != NodeLocation::in_body) continue;
     Vector3 point = Vector3::Zero();
-    // The Boolean sum adds faces, subtracts edges and adds corners, which are at an end of one, two or three
-    // axes.
+    // The Boolean sum adds faces, subtracts edges and adds corners, which are at an end of one, two and three
+    // axes, respectively.
     for (int ends = 1; ends < 27; ++ends) {
       const std::array<int, 3> end = {ends / 9, ends / 3 % 3, ends % 3};  // 0: not at an end of this axis
       if (mesh.closed && end[0] != 0) continue;
@@ -222,14 +225,14 @@ void fill_from_hull(LatticeMesh& mesh) {
   }
 }
 
-// Moves the nodes of `movable`, one at a time in sweeps, to minimise the sum over the corners of |S|^3 /
-// (3^1.5 h(det S)). S has the corner's edges as columns, each divided by the block's mean edge in its
+// Moves the nodes of `movable`, one at a time in sweeps, to minimise the sum over the corners of
+// |S|^3 / (3^1.5 h(det S)). S has the corner's edges as columns, each divided by the block's mean edge in its
 // direction. h(x) = (x + sqrt(x^2 + 4 d^2)) / 2 keeps the sum finite while cells are folded (Escobar et al.
 // 2003; Knupp 2001 for the measure).
 //
-// For d = 0 a corner's term is convex in the position of a node, since det S is affine in it. `movable`
-// must contain representatives of joined nodes only. The result is deterministic; the caller checks for
-// remaining folds.
+// For d = 0 a corner's term is convex in the position of a node, since det S is affine in it. `movable` must
+// contain representatives of joined nodes only (LatticeMesh::joined()). The result is deterministic; the
+// caller checks for remaining folds.
 void unfold(LatticeMesh& mesh, const std::vector<int>& movable) {
   const Vector3 mean_edge = mean_edges(mesh);
   std::vector<Around> around;
@@ -271,11 +274,12 @@ double smallest_mesh_jacobian_ratio(const LatticeMesh& mesh) {
   return smallest;
 }
 
-// Smallest ratio of thickness to width: cells of flatter bodies have no spring that keeps them open.
+// Smallest ratio of a tube's thickness to its width at half its length. The cells of a flatter body could
+// collapse, because no spring would resist it.
 constexpr double min_thickness_ratio = 1e-4;
 
-// Position of a node in its slice: the direction from the slice's centre, as the parameter u of a point of
-// the ring (arbitrary at the centre), and the distance from the centre, 0 to 1 at the ring.
+// Position of a node in its slice, in polar form. The direction from the slice's centre is given as the
+// surface parameter u, arbitrary at the centre. The radius is 0 at the centre and 1 on the surface.
 struct Outward {
   double u = 0.0;
   double radius = 0.0;
@@ -292,15 +296,15 @@ Outward find_outward(const Surface& surface, const RingParameters& ring, const L
   return {ring_parameter_at(surface, ring, ring_position(on_s, on_t, ni, nj)), radius};
 }
 
-// Returns the influence of a slice's narrow side at a fraction of the slice's width. The influence is linear.
-// In a bent section, the centre of a narrow side is at the rim of the bend, higher than the side's corners;
-// the influence is then concentrated near the side.
+// Returns the weight of a slice's narrow side in fill_slice(), at a fraction of the slice's width from this
+// side. The weight is linear, except in a bent section. There the centre of a narrow side is at the rim of
+// the bend, higher than the side's corners, so the weight is concentrated near the side.
 double side_influence(double fraction, bool bent) {
   const double rest = 1.0 - fraction;
   return bent ? rest * rest * rest * rest : rest;
 }
 
-// Fills a slice from its ring by transfinite (Coons) interpolation.
+// Fills the inside of a slice from the nodes around it by transfinite (Coons) interpolation.
 void fill_slice(LatticeMesh& mesh, int k, bool bent) {
   const int ni = mesh.count[0], nj = mesh.count[1];
   const auto at = [&](int i, int j) -> const Vector3& { return mesh.nodes[mesh.index(i, j, k)]; };
@@ -329,7 +333,8 @@ void set_turns(const Surface& surface, const RingParameters& ring, LatticeMesh& 
   }
 }
 
-// Fills an end slice: its ring, and the cap inside by polar coordinates about the pole.
+// Sets all nodes of an end slice on the cap of the tube, by polar coordinates about the pole. The cap ends at
+// `rim_v`.
 void fill_cap(const Surface& surface, const RingParameters& ring, LatticeMesh& mesh, int k, double pole_v,
               double rim_v) {
   const int ni = mesh.count[0], nj = mesh.count[1];
@@ -365,7 +370,7 @@ void fill_ring(const Surface& surface, const RingParameters& ring, LatticeMesh& 
   }
 }
 
-// A block of nodes in a tube, and the parameters of its slices and rings.
+// A block of nodes in a tube, with the surface parameters of its slices and of the nodes around them.
 struct TubeBlock {
   LatticeMesh mesh;
   TubeStations stations;
@@ -379,7 +384,8 @@ Result<TubeBlock> make_block(const Surface& surface, const Profile& profile, con
   const double first_distance = profile.distance[rims.first], last_distance = profile.distance[rims.last];
   const double centre_v = LinearTable{profile.distance, profile.v}.at(0.5 * (first_distance + last_distance));
   const Ring centre_ring = sample_ring(surface, centre_v);
-  // Uses the direction at the centre, not from rim to rim, because the ends of a coil may be anywhere.
+  // The section is perpendicular to the tube's direction at its centre, not to the line between its ends,
+  // because the ends of a coil may be anywhere.
   if (!(centre_ring.along.norm() > 0.0)) {
     return Error{ErrorCode::degenerate,
                  "surface: its rings coincide along v at half its length; spread its control points there",
@@ -427,10 +433,10 @@ std::vector<int> nodes_inside(const LatticeMesh& mesh) {
   return inside;
 }
 
-// Builds a block for a body whose block folds when it is filled slice by slice. The caps reach to the
-// shoulders, and the interior is filled from the whole hull. First tries caps up to the near rims or the
-// shoulders, whichever are further from the end, then up to the shoulders. The near rim of a narrow nose may
-// be on a flank as steep as the side. Returns nothing if both blocks fold.
+// Builds a block for a body whose cells fold if the block is filled slice by slice. The interior is filled
+// from the whole hull and unfolded. The first attempt uses caps up to the near rims or the shoulders (see
+// Rims), whichever are farther from the pole; the second uses caps up to the shoulders. The near rim of a
+// narrow nose may be on a flank as steep as the side. Returns nothing if both blocks fold.
 std::optional<TubeBlock> make_unfolded_block(const Surface& surface, const Profile& profile,
                                              const LatticeRequest& request) {
   const Rims shoulders = shoulder_rims(profile);

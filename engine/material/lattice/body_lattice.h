@@ -1,4 +1,5 @@
-// Lattices of bodies: shells, and solids as one block of cells bent into a tube or as a box of cells.
+// Lattices of bodies. A shell consists of layers of cells, a solid of one block of cells bent into a tube or
+// of a box of cells.
 #pragma once
 
 #include "engine/base/result.h"
@@ -11,22 +12,23 @@
 namespace spoonbill {
 
 // Returns the lattice of a body of a scene at rest, solid or shell. Fails where solid_lattice() or
-// shell_lattice() does. `watch` receives the progress of a feature map.
+// shell_lattice() does. `watch` receives the progress of order_by_feature_map(), if the body requests it.
 Result<LatticeMesh> make_body_lattice(const Body& body, const FeatureMapWatch& watch = {});
 
 // Returns the lattice of a closed body: that of tube_lattice() if the body is a tube and no cell folds,
 // otherwise that of surface_in_box(). Fails where check_closed() does, on bodies too flat for cells, and on
-// counts below 2. `watch` receives the progress of a feature map.
+// counts below 2. `watch` receives the progress of order_by_feature_map().
 Result<LatticeMesh> solid_lattice(const Surface& surface, const LatticeRequest& request,
                                   const FeatureMapWatch& watch = {});
 
-// Returns the lattice of a closed tube-like or box-like body. Slices are at constant v, evenly spaced along
-// the body. The nodes of a ring are spaced by arc length; spacing by angle would give slender cells and twice
-// as many substeps. The two end slices are on the caps.
+// Returns the lattice of a closed tube-like or box-like body. Slices of nodes are at constant v, evenly
+// spaced along the body. The nodes around a slice are spaced by arc length; spacing by angle would give
+// slender cells and twice as many substeps. The nodes of the two end slices are on the caps of the tube.
 //
-// If cells fold, as in a body that is hollow at a pole, the caps reach to the shoulders, and the interior
-// nodes follow the whole hull and are unfolded. Fails on a surface that is not a closed tube, counts below
-// 2, and cells that remain folded. `watch` receives the progress of a feature map.
+// If cells fold, as in a body that is hollow at a pole, a second attempt uses larger caps, which reach to the
+// shoulders (shoulder_rims()). It interpolates the interior nodes from the whole hull and then unfolds the
+// cells. Fails on a surface that is not a closed tube, counts below 2, and cells that remain folded. `watch`
+// receives the progress of order_by_feature_map().
 Result<LatticeMesh> tube_lattice(const Surface& surface, const LatticeRequest& request,
                                  const FeatureMapWatch& watch = {});
 

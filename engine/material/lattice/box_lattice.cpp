@@ -59,8 +59,8 @@ double inside_fraction(const ShellDistance& solid, const CellCorners& corners) {
   return static_cast<double>(inside_count) / (samples_a_side * samples_a_side * samples_a_side);
 }
 
-// Sets LatticeMesh::node_locations. Corners of filled cells are in the body; those that also touch a void
-// cell or a side of the box are on the shell.
+// Sets LatticeMesh::node_locations. A node is in the body if all eight cells around it are filled, on the
+// shell if only some of them are filled or exist, and outside the body if none is filled.
 void set_node_locations(LatticeMesh& box) {
   box.node_locations.assign(static_cast<std::size_t>(box.node_count()), NodeLocation::outside_body);
   for (int n = 0; n < box.node_count(); ++n) {
@@ -191,12 +191,12 @@ ClosedSkin coarse_skin(const Surface& surface, double longest_m) {
   return sample_skin(surface, thin_out(u, longest_m, over_u), thin_out(v, longest_m, over_v));
 }
 
-// Returns the skin of a body in a box of cells. Its points are samples of make_skin(), with at least eight
-// steps per direction. Where the samples are dense enough, the points are at most two thirds of a cell's
-// shortest edge apart. A round body loses only thin slivers of its volume.
+// Returns the skin of a body in a box of cells. Its points are among the samples of make_skin(), with at
+// least eight steps per direction. Where the samples are dense enough, the points are at most two thirds of a
+// cell's shortest edge apart. A round body loses only thin slivers of its volume.
 //
-// `coordinates_at` returns the body coordinates of (u, v). Points of the skin are in filled cells if
-// the samples are.
+// `coordinates_at` returns the body coordinates of (u, v). The points are in filled cells if all samples of
+// make_skin() are.
 BodySkin make_body_skin(const Surface& surface, const LatticeMesh& box,
                         const std::function<BodyCoordinates(double u, double v)>& coordinates_at) {
   SPOONBILL_ASSERT(static_cast<bool>(coordinates_at));
@@ -282,8 +282,8 @@ void set_node_coordinates(const SurfaceCoordinates& coordinates, LatticeMesh& bo
   }
 }
 
-// Sets the body coordinates of all cells' centres. Void cells get the body coordinates of the nearest surface
-// point, so that they do not stiffen softer material around them.
+// Sets the body coordinates of all cells' centres. A void cell also gets those of the nearest surface sample.
+// It thus has the material of the body beside it and does not stiffen softer material.
 void set_cell_coordinates(const SurfaceCoordinates& coordinates, LatticeMesh& box) {
   box.cell_centres.resize(box.cell_count());
   for (int k = 0; k + 1 < box.count[2]; ++k) {

@@ -16,12 +16,12 @@
 
 namespace spoonbill {
 
-// Smallest fraction of a filled cell (LatticeMesh::filled), before all fractions are scaled to the volume of
-// the body. Nodes of smaller slivers would be so light and weakly attached that a contact on their surface
-// would sink in.
+// Smallest fraction (LatticeMesh::cell_fractions) of a filled cell, before all fractions are scaled to the
+// volume of the body. Nodes of smaller slivers would be so light and weakly attached that a contact on their
+// surface would sink in.
 //
-// Mass and stiffness of a cell scale alike, so no fraction makes the lattice faster: the fastest frequency
-// of an assembly is at most that of its fastest part (Irons and Treharne 1971).
+// Mass and stiffness of a cell scale alike, so no fraction makes the lattice faster: the fastest frequency of
+// an assembly is at most that of its fastest part (Irons and Treharne 1971).
 inline constexpr double min_filled_fraction = 0.1;
 
 // Fraction of a void cell: too small to move anything, but enough to keep its nodes together. Void cells
@@ -30,18 +30,19 @@ inline constexpr double void_fraction = 1e-3;
 
 // Builds a box of nodes over the bounds of a solid, with edges along x, y and z. Fractions of cells are
 // sampled from `inside` at 5 x 5 x 5 points per cell and scaled by one factor, so that the lattice's volume
-// is `volume_m3`. `skin_m` are points of the surface that will be embedded. Fails on a box too flat for
-// cells.
+// is `volume_m3`. `skin_m` are points of the surface; the cells that contain them count as filled. Fails on a
+// box too flat for cells.
 Result<LatticeMesh> box_lattice(const ShellDistance& inside, double volume_m3,
                                 std::span<const Vector3> skin_m, std::array<int, 3> counts);
 
-// Expresses a point by the nodes of the cell that contains it, or of the nearest cell, in a box at rest.
+// point_in_box() and embed_in_box() return a point as a weighted sum of the nodes of the cell that contains
+// it, or of the nearest cell, in an undeformed box.
 CellPoint point_in_box(const LatticeMesh& box, const Vector3& point_m);
 EmbeddedPoint embed_in_box(const LatticeMesh& box, const Vector3& point_m);
 
 // Builds a box of cells about a closed surface. The fraction of a cell is its part inside the surface. Parts
-// thinner than a cell are too stiff in bending. Counts are along x, y and z. Nodes and cells get body
-// coordinates from the nearest sample of the surface, and their depth. A feature map in the request is
+// of the body thinner than a cell are too stiff in bending. Counts are along x, y and z. Nodes and cells get
+// body coordinates from the nearest sample of the surface, and their depth. A feature map in the request is
 // ignored.
 //
 // Fails on counts below 2, and on a body whose volume divided by half its area is below a ten-thousandth of

@@ -28,7 +28,8 @@ struct EmbeddedPoint {
   // Velocity change of the point per impulse, 1/kg; 0 if all of its nodes are fixed.
   double compliance(const SpringLattice& lattice) const;
   double compliance(const LatticeView& lattice) const;
-  // Returns the weighted mean of the nodes' friction, within the range of their values.
+  // Returns the weighted mean of the nodes' friction coefficients, limited to the range of these
+  // coefficients.
   double friction(const SpringLattice& lattice) const;
   Vector3 displacement_m(const LatticeView& lattice) const;
   Vector3 velocity_m_per_s(const LatticeView& lattice) const;
@@ -42,7 +43,7 @@ struct EmbeddedPoint {
       visit(node[at], Vector3(static_cast<double>(weight[at]) * impulse));
     }
   }
-  // Sets to 1 the bytes of nodes with a significant weight.
+  // Sets touched[n] to 1 for each node n with a significant weight.
   void mark(std::uint8_t* touched) const;
 };
 

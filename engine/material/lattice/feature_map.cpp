@@ -13,8 +13,8 @@ namespace spoonbill {
 namespace {
 
 constexpr int draws_per_report = 4096;
-// Radius of the neighbourhood that is updated, relative to its width. Nodes beyond it would move by less than
-// a ninetieth of the nearest node's move.
+// Radius of the neighbourhood that is updated, relative to the width of its Gaussian. Nodes beyond it would
+// move by less than a ninetieth of the nearest node's move.
 constexpr double neighbourhood_reach = 3.0;
 // Number of halvings of a node's move before it is rejected, and number of passes over all nodes.
 constexpr int grid_halvings = 4, passes = 3;
@@ -41,7 +41,7 @@ class Draws {
 
   struct Draw {
     Vector3 point;
-    int near;  // a node of the cell that contained the point initially
+    int near;  // a node of the cell from which the point was drawn
   };
   Draw next() {
     const double target = uniform() * volumes_.back();

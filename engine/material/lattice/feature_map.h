@@ -20,7 +20,8 @@ CellQuality measure_cell_quality(const LatticeMesh& mesh);
 
 struct FeatureMapReport {
   CellQuality before, after;
-  // Fraction of the map's moves that was applied, limited so that the worst cell gets no worse.
+  // Fraction of the displacements wanted by the map that was applied. Displacements are shortened so that the
+  // worst cell gets no worse.
   double applied_fraction = 0.0;
 };
 

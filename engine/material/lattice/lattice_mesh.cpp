@@ -160,7 +160,7 @@ using Counts = std::array<int, 3>;
 Counts near_cubic_counts(const Vector3& size, int budget, const Counts& min_cells) {
   double edge = std::cbrt(size.x() * size.y() * size.z() / budget);
   for (;; edge *= 1.01) {
-    // The budget itself bounds each count, so extreme sizes do not overflow.
+    // Each axis gets at most `budget` cells, so that extreme sizes do not overflow an int.
     const auto count = [&](int axis) {
       const double cells = std::min(size[axis] / edge, 1.0 * budget);
       return std::max(min_cells[static_cast<std::size_t>(axis)], static_cast<int>(std::lround(cells))) + 1;

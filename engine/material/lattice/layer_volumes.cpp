@@ -11,14 +11,14 @@ namespace spoonbill {
 namespace {
 
 constexpr double min_layer_factor = 0.5, max_layer_factor = 2.0;
-// Number of triangles between an outer edge of a slice and the arc of the ring over it.
+// Number of steps along the surface's curve over an outer edge of a slice.
 constexpr int arc_steps = 16;
 
 double tetrahedron_volume(const Vector3& a, const Vector3& b, const Vector3& c) {
   return a.dot(b.cross(c)) / 6.0;
 }
 
-// Returns the nodes around the rim of a slice, in the order of RingParameters::u.
+// Returns the nodes around a slice, in the order of RingParameters::u.
 std::vector<int> rim_nodes(const LatticeMesh& mesh, int k) {
   const int last_i = mesh.count[0] - 1, last_j = mesh.count[1] - 1;
   std::vector<int> nodes;
@@ -29,8 +29,8 @@ std::vector<int> rim_nodes(const LatticeMesh& mesh, int k) {
   return nodes;
 }
 
-// Returns the volume between the apex and the cell faces of a slice. It is positive where the faces look away
-// from the apex along k.
+// Returns the volume between the apex and the cell faces of a slice. It is positive where the direction of
+// increasing k points away from the apex.
 double slice_volume(const LatticeMesh& mesh, int k, const Vector3& apex_m) {
   double volume = 0.0;
   for (int i = 0; i + 1 < mesh.count[0]; ++i) {
@@ -44,7 +44,8 @@ double slice_volume(const LatticeMesh& mesh, int k, const Vector3& apex_m) {
   return volume;
 }
 
-// Returns the volume of the cone from the apex to the ribbon between the rim of a slice and the ring at v.
+// Returns the volume between the apex and the ribbon that joins the outer edges of slice k to the surface's
+// curve at v.
 double ribbon_volume(const Surface& surface, const RingParameters& ring, double v, const LatticeMesh& mesh,
                      int k, const Vector3& apex_m) {
   const std::vector<int> nodes = rim_nodes(mesh, k);
@@ -96,7 +97,7 @@ void scale_layers_to(std::span<const double> wanted_m3, LatticeMesh& mesh) {
   const double wanted_sum = std::accumulate(wanted_m3.begin(), wanted_m3.end(), 0.0);
   const double now_sum = std::accumulate(now_m3.begin(), now_m3.end(), 0.0);
   SPOONBILL_ASSERT(now_sum > 0.0);
-  // A surface that crosses itself may enclose nothing in total.
+  // A surface that crosses itself may enclose no volume in total.
   if (!(wanted_sum > 0.0)) return;
   if (mesh.cell_fractions.empty()) mesh.cell_fractions.assign(mesh.cell_count(), 1.0);
   std::vector<double> factors;

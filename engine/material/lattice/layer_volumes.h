@@ -1,5 +1,5 @@
-// Volumes of the layers of a lattice, which are between nodes of consecutive k, and cell fractions that
-// correct these volumes.
+// Volumes of the layers of a lattice, and cell fractions that correct these volumes. A layer consists of the
+// cells between the nodes of two consecutive k.
 #pragma once
 
 #include <array>
@@ -16,23 +16,24 @@ namespace spoonbill {
 std::vector<double> layer_volumes_m3(const LatticeMesh& mesh);
 
 // Scales the cell fractions so that each layer has its wanted volume, m^3. If a layer's factor would be
-// beyond 1/2 to 2, scales all cells alike to the wanted sum.
+// beyond 1/2 to 2, scales all cells alike to the wanted sum. Does nothing if the sum is not positive.
 void scale_layers_to(std::span<const double> wanted_m3, LatticeMesh& mesh);
 
-// Divides the volumes of the layers of one lattice among `layers` layers of equal thickness along k of
-// another over the same body.
+// Distributes the layer volumes of one lattice over the layers of another lattice of the same body, which has
+// `layers` layers along k. The layers of each lattice are taken to be equally thick.
 std::vector<double> redistribute_layers(std::span<const double> volumes_m3, int layers);
 
-// Stations of a lattice in a tube: the parameters v between its layers, and the parameters u of its rings.
-// The first and the last value of `v` are the poles, because the volume between a pole and the nearest slice
-// belongs to the outermost layer.
+// Surface parameters of the slices of a lattice in a tube: v of each slice, and u of the nodes around it. The
+// first and the last value of `v` are those of the poles, because the volume between a pole and the nearest
+// slice belongs to the outermost layer.
 struct TubeStations {
   std::vector<double> v;
   RingParameters ring;
 };
 
-// Returns the volume of a closed tube between consecutive slices of its lattice, m^3. Their sum is the volume
-// of the tube. Triangles between the outer edges of a slice and the ring extend it to the surface.
+// Returns the volumes of a closed tube between consecutive slices of its lattice, m^3. Their sum is the
+// volume of the tube. Each slice is extended to the surface by triangles between its outer edges and the
+// surface's curve of constant v.
 std::vector<double> tube_layer_volumes_m3(const Surface& surface, const TubeStations& stations,
                                           const LatticeMesh& mesh);
 

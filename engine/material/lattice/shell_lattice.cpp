@@ -20,7 +20,7 @@ namespace spoonbill {
 namespace {
 
 // Surface of a shell as a function of two fractions of its domain: one around or across the shell, the other
-// along it. One owner; immutable. The surface must outlive it.
+// along it. Immutable. The surface must outlive it.
 class ShellSurface {
  public:
   // Kind of shell, see shell_lattice.h.
@@ -39,8 +39,8 @@ class ShellSurface {
   // Returns 1 if normal, across and along form a right-handed frame in this order, -1 otherwise.
   double handedness() const { return (swapped_ ? -1.0 : 1.0) * (pole_at_end_ ? -1.0 : 1.0); }
 
-  // Returns fractions that cut every polynomial piece into the same number of parts, at least `least` in
-  // total, with both ends included.
+  // Returns fractions from 0 to 1, both included, that cut every polynomial piece into the same number of
+  // parts. There are at least `least` parts in total.
   std::vector<double> across_fractions(int least) const;
   std::vector<double> along_fractions(int least) const;
 
@@ -177,12 +177,15 @@ std::vector<double> ShellSurface::along_fractions(int least) const {
 
 using Position = ShellSurface::Position;
 
-// Resolution of lengths and volumes: number of chords per direction.
+// Smallest numbers of parts per direction into which the surface is cut: to measure arc lengths, for the
+// lines over which arc lengths are averaged, and to compute volumes.
 constexpr int length_stations = 200, lines = 16, volume_stations = 48;
-// Relative tolerance for the farthest point, so that the start of a ring does not depend on rounding.
+// A point of a bowl's rim counts as the farthest from the rim's centre if its distance is at least this
+// fraction of the largest distance. The start of the grid thus does not depend on rounding.
 constexpr double farthest_tolerance = 1.0 - 1e-6;
 
-// Returns a table from arc length to the stations. The arc length is averaged over the lines `over`.
+// Returns a table from arc length to the fractions `stations`. The arc length is averaged over the lines at
+// the fractions `over`.
 template <class PositionAt>
 LinearTable length_to_fraction(const ShellSurface& face, const std::vector<double>& stations,
                                const std::vector<double>& over, const PositionAt& position_at) {
@@ -240,7 +243,7 @@ class Spread {
   // Extents along i and k, m.
   const std::array<double, 2>& size_m() const { return size_; }
 
-  // Returns the face location of a node; `s` and `t` run from 0 to 1 over i and k.
+  // Returns the surface location of a node; `s` and `t` run from 0 to 1 over i and k.
   Position at(double s, double t) const {
     if (face_->form() == ShellSurface::Form::bowl) return in_bowl(2.0 * s - 1.0, 2.0 * t - 1.0);
     const double across = face_->handedness() > 0.0 ? s : 1.0 - s;
@@ -289,7 +292,8 @@ class Spread {
   double start_m_ = 0.0;
 };
 
-// Points and normals of the surface under the nodes of a layer, by i and k.
+// Points of the surface from which the nodes are offset, by i and k, with the surface's normals and the
+// positions around the shell.
 struct FaceNodes {
   int rows, columns;
   std::vector<Vector3> points, normals;
@@ -316,7 +320,7 @@ FaceNodes face_nodes(const ShellSurface& face, const Spread& spread, int rows, i
   return nodes;
 }
 
-// Returns the thickness at which an edge of the offset face would vanish, m.
+// Returns the smallest thickness at which an edge of the offset face would vanish, m.
 double thickness_limit_m(const FaceNodes& nodes) {
   double limit = std::numeric_limits<double>::infinity();
   const auto limit_by_edge = [&](std::size_t a, std::size_t b) {
@@ -405,7 +409,7 @@ LatticeMesh make_mesh(const FaceNodes& nodes, double thickness_m, const std::arr
   return mesh;
 }
 
-// Scales the cell fractions so that the lattice has the given volume.
+// Gives all cells the same fraction, so that the lattice has the given volume.
 void set_cell_fractions(double volume_m3, LatticeMesh& mesh) {
   double cell_volume_sum = 0.0;
   for (int k = 0; k + 1 < mesh.count[2]; ++k) {

@@ -20,7 +20,7 @@ namespace spoonbill {
 //
 // Cells have straight edges; their fractions correct the volume of the lattice to that between the surface
 // and its offset. Fails on a thickness out of range or beyond the radius of curvature, surfaces periodic in
-// both directions or with more than one pole, and counts below 2.
+// both directions or with more than one pole, a requested feature map, and counts below 2.
 Result<LatticeMesh> shell_lattice(const Surface& surface, double thickness_m, const LatticeRequest& request);
 
 }  // namespace spoonbill

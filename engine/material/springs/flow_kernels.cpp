@@ -87,8 +87,8 @@ inline void flow_block(const float* __restrict square, const float* __restrict r
   }
 }
 
-// Returns whether any spring of a block may be strained beyond yield. Uses no roots or quotients; the margin
-// far exceeds the rounding of this test and of the exact strain.
+// Returns whether any spring of a block may be strained beyond yield. Uses no roots or quotients. The margin
+// of 1e-5 far exceeds the rounding errors of this test and of the strain in flow_block().
 template <class Rule>
 inline bool may_flow(const float* __restrict square, const float* __restrict root,
                      const float* __restrict root_far, const float* __restrict stiffness,
@@ -116,7 +116,7 @@ void compute_dilation_roots(const LatticeView& view, float* __restrict root) {
   for (int i = 0; i < view.padded_count; ++i) root[i] = cube_root(dilation[i]);
 }
 
-// Flows the springs of one direction. `rule_at` returns the rule of the block that starts at a node.
+// Flows the springs of one direction. `rule_at` returns the rule of the block whose first node it receives.
 template <class RuleAt>
 inline void flow_springs(const LatticeView& view, const SpringArrays& s, const RuleAt& rule_at) {
   const float* const root = view.fx;

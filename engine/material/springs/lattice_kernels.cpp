@@ -43,21 +43,22 @@ void clear(float* x, float* y, float* z, int count) {
   for (int i = 0; i < count; ++i) x[i] = y[i] = z[i] = 0.0f;
 }
 
-// Variants of the spring law. The springs of one block and direction add their forces to their near ends
-// and subtract them from their far ends.
+// Variants of the spring law. The springs of one block and direction add their forces to their near ends and
+// subtract them from their far ends.
 //
-// With n the rest vector, a = n + e the present one and s = |a|^2 - L0^2 = e.(n + a) + (|n|^2 - L0^2), the
-// force is k (L - L0) a / L = k s / (L^2 + L0 L) a. This form keeps all digits of a small extension.
+// For the rest vector n, the difference e of the ends' displacements and the present vector a = n + e, let
+// s = |a|^2 - L0^2 = e.(n + a) + (|n|^2 - L0^2). The force is k (L - L0) a / L = k s / (L^2 + L0 L) a. This
+// form keeps all digits of a small extension.
 //
-// Its derivative is transverse I + axial a a^T with transverse = k (L - L0) / L and axial = k L0 / L^3. The
-// transverse stiffness is bounded at that of a spring compressed to half its length.
+// The derivative of the force is transverse I + axial a a^T with transverse = k (L - L0) / L and axial = k L0
+// / L^3. `transverse` is limited to -k or more, its value for a spring compressed to half its length.
 enum class Springs { linear, stiffening, softening, mixed };
 
 struct Stiffened {
   float secant, tangent;  // stiffness relative to that of a linear spring
 };
 
-// Computes the stiffening factors; `by` is b e^2 for the stiffening b and the strain e.
+// Returns the stiffening factors; `by` is b e^2 for the stiffening b and the strain e.
 template <Springs springs>
 inline Stiffened stiffened(float by) {
   const Stiffened more = {1.0f + min(by, 1.0f), by < 1.0f ? 1.0f + 3.0f * by : 2.0f};

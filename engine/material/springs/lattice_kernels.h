@@ -1,11 +1,12 @@
 // Inner loops of the spring lattice, compiled once for each instruction set and chosen at start. Every set
-// gives the same bits: lanes run over nodes, sums run in a fixed order, and products are never fused with
-// sums. This header and its sources use no standard library; engine/bspline/evaluate_kernels.h explains why.
+// gives the same bits: SIMD lanes run over nodes, sums run in a fixed order, and products are never fused
+// with sums. This header and its sources use no standard library; engine/bspline/evaluate_kernels.h explains
+// why.
 //
-// Data are structures of arrays over nodes in the mesh's order. They are padded with zeros so that every
-// loop runs over whole blocks and every neighbour offset stays inside. A spring is stored at its first
-// node, once for each of the 13 directions of a regular lattice; a cell is stored at its first corner.
-// Entries without a spring or cell have zero stiffness.
+// Data are structures of arrays over nodes in the mesh's order. They are padded with zeros, so that every
+// loop runs over whole blocks and the neighbours of every node are within the arrays. A spring is stored at
+// its first node, once for each of the 13 directions of a regular lattice; a cell is stored at its first
+// corner. Entries without a spring or cell have zero stiffness.
 #pragma once
 
 namespace spoonbill {
@@ -13,25 +14,27 @@ namespace spoonbill {
 inline constexpr int lattice_block = 64;  // nodes per block; fixed, because the order of sums depends on it
 inline constexpr int lattice_direction_count = 13;
 
-// Number of floats that a linearisation stores per spring. With a the vector from a node to its neighbour at
-// the reference, a spring pulls its node by transverse * m + axial * (a.m) a when its ends move apart by m.
-// Each block stores five runs: the x, y and z components of a in m, axial in N/m^3 and transverse in N/m.
+// Number of floats that a linearisation stores per spring. Let a be the vector from a node to its neighbour
+// at the linearisation. When the ends of the spring move apart by m, the spring's pull on the node grows by
+// transverse * m + axial * (a.m) a. Each block of nodes stores five arrays: the x, y and z components of a in
+// m, axial in N/m^3 and transverse in N/m.
 inline constexpr int tangent_runs = 5;
 
 // Springs of one direction, one entry per node.
 struct SpringArrays {
-  int offset = 0;                 // from a node to its neighbour, in entries; positive
+  int offset = 0;                 // index of the neighbour minus index of the node; positive
   const float* rest_x = nullptr;  // vector to the neighbour in the rest shape, m
   const float* rest_y = nullptr;
   const float* rest_z = nullptr;
   const float* stiffness = nullptr;    // N/m
-  float* rest_length = nullptr;        // m; changed by flow, creep and reforming
+  float* rest_length = nullptr;        // m; changed by flow, creep and reform()
   float* square_difference = nullptr;  // |rest vector|^2 - rest_length^2, m^2; exactly 0 in a new lattice
   const float* first_rest_length = nullptr;  // rest length at construction, m
   float* crept = nullptr;                    // strain of the rest length due to creep()
   float* tangent = nullptr;                  // linearisation, see tangent_runs
-  // Per-spring properties, where the materials of the lattice differ in them; null otherwise. The flow rate
-  // is 0 for springs that do not flow, relaxing_fraction is 0 for springs that do not creep.
+  // Properties of each spring in which the materials of the lattice differ; null for properties in which they
+  // do not. The flow rate is 0 for springs that do not flow, and relaxing_fraction is 0 for springs that do
+  // not creep.
   const float* stiffening = nullptr;
   const float* further_damping = nullptr;  // N s/m, see damp_further()
   const float* yield = nullptr;
@@ -42,8 +45,9 @@ struct SpringArrays {
 };
 
 // Plastic flow of rest lengths: each step removes the fraction `rate_step` of the strain beyond the yield
-// strain. The yield strain grows with the strain already yielded. Where springs differ, each has its own
-// yield strain and hardening, and its rate step is its flow rate times `time_s`.
+// strain. The yield strain grows with the strain already yielded. If the materials differ, each spring has
+// its own yield strain and hardening, and its rate step is its flow rate times `time_s`, at most
+// largest_flow_step.
 struct FlowRule {
   float yield = 0.0f;
   float hardening = 0.0f;  // added yield strain per |L0 / first L0 - 1|
@@ -55,8 +59,8 @@ struct FlowRule {
 inline constexpr double largest_flow_step = 0.5;
 
 // Creep of rest lengths: the creep strain approaches `fraction` times the strain, and each step reduces the
-// difference by the fraction `rate_step`. If springs differ, each has its own fraction and relaxation time,
-// and its rate step follows from `time_s`.
+// difference by the fraction `rate_step`. If the materials differ, each spring has its own fraction and
+// relaxation time, and its rate step follows from `time_s`.
 struct CreepRule {
   float fraction = 0.0f;
   float rate_step = 0.0f;  // 1 / (1 + relaxation time / time_s)
@@ -71,8 +75,9 @@ struct LatticeView {
   float *dx = nullptr, *dy = nullptr, *dz = nullptr;  // displacement from the rest shape, m
   float *vx = nullptr, *vy = nullptr, *vz = nullptr;  // m/s
   float *fx = nullptr, *fy = nullptr, *fz = nullptr;  // N
-  // Node displacements extrapolated by the damping time at the present velocity: d + tau v, m. Spring forces
-  // evaluated there are damped: f(x + tau v) is f(x) + tau df/dt, a Voigt element for each spring.
+  // Node displacements extrapolated by the damping time tau at the present velocity: d + tau v, m. Spring
+  // forces evaluated there are damped: f(x + tau v) is f(x) + tau df/dt to first order, as in a Kelvin-Voigt
+  // element.
   float *ahead_x = nullptr, *ahead_y = nullptr, *ahead_z = nullptr;
   // Extrapolated displacements at the linearisation, m.
   float *reference_x = nullptr, *reference_y = nullptr, *reference_z = nullptr;
@@ -85,8 +90,8 @@ struct LatticeView {
   // h^2 K + 2 h tau K limits the stable substep of damped springs.
   float spring_weight = 1.0f;
   const float* free_node = nullptr;  // 1 for free nodes, 0 for fixed nodes and padding
-  // Pairs of nodes that coincide (LatticeMesh::closed). The first of a pair is the representative. Forces
-  // on either act on both, and both move together.
+  // Pairs of nodes that coincide (LatticeMesh::closed). The first of a pair is the representative. A force on
+  // one node of a pair acts on both, and both move together.
   const int* seam = nullptr;
   int seam_count = 0;
   // Per block: 0 if no spring or cell that starts in the block has a free node. Force kernels skip such
@@ -98,9 +103,9 @@ struct LatticeView {
   int corner_direction[8] = {};  // spring direction from the first corner to each other corner; [0] is unused
   const float* bulk_stiffness = nullptr;     // K_v V0 of each cell, J; see volume_forces()
   const float* crushed_stiffness = nullptr;  // additional stiffness of a crushed cell, J; see volume_forces()
-  const float* inverse_volume = nullptr;     // 1/V0, 1/m^3
-  // 12 V0 as volume_forces() computes it, so that the rest shape has exactly zero strain. Changed by
-  // reforming.
+  const float* inverse_volume = nullptr;     // 1 / V0 with the volume V0 at construction, 1/m^3
+  // 12 times the rest volume of each cell, m^3, computed as in volume_forces(), so that the rest shape has
+  // exactly zero dilation. It is 12 V0 until reform() changes it.
   float* rest_volume_sum = nullptr;
   const float* has_cell = nullptr;            // 1 at the first corner of a cell, otherwise 0
   const float* inverse_cell_count = nullptr;  // 1 / the number of cells around a node
@@ -108,7 +113,7 @@ struct LatticeView {
   float* power_x = nullptr;                   // vector of the power iteration
   float* power_y = nullptr;
   float* power_z = nullptr;
-  // Added to the vector at each step so that no mode vanishes from it.
+  // Added to the vector of the power iteration at each step, so that no mode vanishes from it.
   const float* power_noise = nullptr;
 };
 
@@ -124,7 +129,7 @@ struct Drift {
 // Results of one drift.
 struct Drifted {
   float speed_square = 0.0f;  // largest squared ratio of speed to cap
-  float moved_square = 0.0f;  // largest squared distance from the linearisation, m^2
+  float moved_square = 0.0f;  // largest squared change of `ahead` since the linearisation, m^2
 };
 
 // Results that a linearisation stores: only the spring forces, which suffice if no further substep uses the
@@ -134,10 +139,11 @@ enum class Linearised { forces, tangents };
 struct LatticeKernels {
   // Extrapolates all nodes by the damping time tau.
   void (*look_ahead)(const LatticeView&, float tau_s);
-  // Linearises the springs at the present extrapolated positions: F = k (L - L0) s n for every spring, and
-  // its derivative. s depends on the strain e = L / L0 - 1 and the stiffening b: s = 1 + b e^2, at most 2,
-  // for b > 0; s = (1 - b e^2)^(-1/2) for b < 0; and s = 1 for b = 0. A softening spring's force still grows
-  // with its length, so no lattice snaps through.
+  // Linearises the springs at the present extrapolated positions: the force F = k (L - L0) s n of every
+  // spring with the direction n, and its derivative. s depends on the strain e = L / L0 - 1 and the
+  // stiffening b:
+  // s = 1 + b e^2, at most 2, for b > 0; s = (1 - b e^2)^(-1/2) for b < 0; and s = 1 for b = 0. A softening
+  // spring's force still grows with its length, so no lattice snaps through.
   //
   // Eq. 7 of Pungotra et al. 2013 damps the whole velocity, rotations included. Here rotations are not
   // damped, because the extrapolation of a rotating body is the same body rotated further.
@@ -149,40 +155,44 @@ struct LatticeKernels {
   void (*spring_forces)(const LatticeView&);
   // Adds the force f = -p dV/dx of each cell's pressure p on its corners x, with the exact volume V of the
   // trilinear cell. The pressure is p = K_v q for the dilation q = J - 1. Changes of volume are not damped:
-  // damping these fast modes would need ten times the substeps. For Poisson's ratios below 1/4, K_v is
-  // negative and the energy would be unbounded below. There p = K_v q / (1 + (q / 0.1)^2), which the springs
-  // outweigh. A cell below 0.3 of its volume also pushes back with crushed_stiffness, because springs cannot
-  // tell an inverted cell from a regular one.
+  // damping these fast modes would need ten times the substeps.
+  //
+  // For Poisson's ratios below 1/4, K_v is negative, and this pressure would make the energy unbounded below.
+  // The pressure is then p = K_v q / (1 + (q / 0.1)^2), which the springs outweigh. A cell below 0.3 of its
+  // rest volume also pushes back with crushed_stiffness, because springs cannot tell an inverted cell from a
+  // regular one.
   void (*volume_forces)(const LatticeView&);
   // Adds the damping of springs beyond the damping time of look_ahead(). A spring with the further damping c,
   // the direction n at the linearisation and the end velocities v and v' gets the force c ((v' - v).n) n.
   void (*damp_further)(const LatticeView&);
   // Sets v = v * decay + h f / m, after adding the forces of each seam pair. The decay does not apply to the
-  // new impulse h f / m, so that a body at rest balances its true forces.
+  // new impulse h f / m, so that drag does not change the equilibrium of a body at rest.
   void (*kick)(const LatticeView&, float h_s, float decay);
-  // Caps speeds relative to the mean velocity, sets d += h v and extrapolates the positions by the damping
-  // time. The second node of a seam pair gets the velocity of the first.
+  // Caps speeds relative to the mean velocity of `Drift`, sets d += h v and extrapolates the displacements by
+  // the damping time. The second node of a seam pair gets the velocity of the first.
   Drifted (*drift)(const LatticeView&, const Drift&);
   // Computes mass-weighted sums of velocity over free nodes: sum = {x, y, z, mass}. `mass` must be 0 for
   // fixed nodes.
   void (*momentum)(const LatticeView&, const float* mass, float sum[4]);
-  // Flows the springs: sets L0 += rate_step * (|e| - yield) sign(e) L0 where the strain e = L / (L0 J^(1/3))
-  // - 1 is beyond yield. L0 stays within 1/2 to 2 of its initial value. Springs at a node whose cells are
-  // crushed or torn (J outside 0.3 to 3) do not flow.
+  // Flows the springs: sets L0 += rate_step * (|e| - yield) sign(e) L0 where the strain
+  // e = L / (L0 J^(1/3)) - 1 is beyond yield. J is the mean volume ratio of the cells around the spring's
+  // ends. L0 changes by at most a tenth in a step and stays within 1/2 to 2 of its initial value. Springs at
+  // a node whose cells are crushed or torn (J outside 0.3 to 3) do not flow.
   void (*flow)(const LatticeView&, const FlowRule&);
   // Creeps the springs of one direction: sets q += rate_step * (fraction * e - q) for the creep strain q in
   // the rest length L0 = L00 (1 + q). The strain is e = L / (L00 J^(1/3)) - 1, and L0 and J are bounded as in
   // flow(). At constant strain the stress falls by `fraction` of itself, as in a standard linear solid.
   void (*creep)(const LatticeView&, int direction, const CreepRule&);
-  // Computes Gershgorin's row sums of the weighted stiffness by node. A spring adds 2 k. A cell adds K_v/V0
-  // |g_i| sum |g_j| at corner i, with the gradients g of its volume. The largest sum bounds the largest
-  // eigenvalue from above; for a whole lattice it is 1.4 to 1.9 times as large.
+  // Computes Gershgorin's row sums of the weighted stiffness by node. A spring adds 2 k times its weight, or
+  // 8 k if springs stiffen. A cell adds K_v/V0 |g_i| sum |g_j| at corner i, with the gradients g of its
+  // volume. The largest sum bounds the largest eigenvalue from above; for a whole lattice it is 1.4 to 1.9
+  // times as large.
   void (*row_sums)(const LatticeView&, float* sum_n_per_m);
   // Sets rest_volume_sum from the present shape.
   void (*measure_rest_volumes)(const LatticeView&);
   // Performs one normalised step w <- M^-1 K w of the power iteration. K is the linearised stiffness, in
   // which the springs count spring_weight times, and M is the inertia. Returns |M^-1 K w| / |w| in the norm
-  // of `mass`, an estimate of the largest omega^2. Overwrites the forces.
+  // of `mass`, an estimate of the square of the largest angular frequency. Overwrites the forces.
   float (*power_step)(const LatticeView&, const float* mass);
   // Performs linearise_springs() and then power_step() in one pass over the springs, with the same results.
   float (*linearise_with_power_step)(const LatticeView&, Linearised stored, const float* mass);

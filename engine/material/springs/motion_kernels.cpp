@@ -51,8 +51,8 @@ void kick(const LatticeView& view, float h, float decay) {
 
 namespace {
 
-// Moves a block along one axis, extrapolates it and adds the squared distances from the linearisation's
-// reference to `squares`.
+// Moves a block of nodes along one axis, extrapolates the displacements and adds the squares of their changes
+// since the linearisation to `squares`.
 inline void drift_along(float* __restrict d, const float* __restrict v, const float* __restrict reference,
                         float* __restrict ahead, float* __restrict moved, float* __restrict squares, float h,
                         float tau) {
@@ -64,7 +64,7 @@ inline void drift_along(float* __restrict d, const float* __restrict v, const fl
   }
 }
 
-// Computes the squared ratios of speed to cap of a block.
+// Computes the squared ratio of speed to cap for each node of a block.
 inline void speed_ratios(const float* __restrict vx, const float* __restrict vy, const float* __restrict vz,
                          const float* __restrict free, float* __restrict ratio, const Drift& drift,
                          float inverse_square) {
@@ -74,7 +74,7 @@ inline void speed_ratios(const float* __restrict vx, const float* __restrict vy,
   }
 }
 
-// Caps the speeds of a block. Velocities below the cap stay the same to the last bit.
+// Caps the speeds of a block of nodes. Velocities below the cap stay the same to the last bit.
 inline void cap_speeds(float* __restrict v, const float* __restrict ratio, float mean) {
   for (int l = 0; l < block; ++l) {
     const float scale = 1.0f / __builtin_sqrtf(max(ratio[l], 1.0f));

@@ -15,8 +15,8 @@
 namespace spoonbill {
 namespace {
 
-// Steps in i, j, k along the 13 spring directions of a regular lattice, each with a positive offset in
-// memory.
+// Steps in i, j, k along the 13 spring directions of a regular lattice. A step in any of them increases the
+// node index.
 constexpr int direction_step[lattice_direction_count][3] = {
     {0, 1, 0}, {1, 0, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0}, {0, 1, 1},   {0, -1, 1},
     {1, 0, 1}, {-1, 0, 1}, {1, 1, 1}, {1, -1, 1}, {-1, 1, 1}, {-1, -1, 1},
@@ -55,8 +55,8 @@ const float* data_or_null(const AlignedVector<float>& values) {
 
 constexpr int frequency_steps = 300;
 
-// Stiffness of a crushed cell against a change of volume, divided by its shear modulus. The value is that of
-// a material with Poisson's ratio 0.45.
+// Volume stiffness K_v that a crushed cell gets in addition, divided by its shear modulus. A material with
+// Poisson's ratio 0.45 has this ratio.
 constexpr double crushed_ratio = 8.0;
 constexpr float noise_fraction = 1e-4f;
 
@@ -69,8 +69,8 @@ bool differ(const LatticeMaterials& materials, const Property& property) {
 
 }  // namespace
 
-// The lattice's totals by node and by spring, in double precision, before they are stored in single
-// precision.
+// Sums over the cells of the lattice, by node and by spring, in double precision, before they are stored in
+// single precision.
 struct SpringLattice::Assembly {
   // One value per node for each direction; it belongs to the spring that starts at the node.
   using BySpring = std::array<std::vector<double>, lattice_direction_count>;
@@ -190,7 +190,8 @@ void SpringLattice::measure_fastest_square() {
   }
 }
 
-// Returns a copy in the rest shape at construction, with every node free and an inertia scale of 1.
+// Returns a copy without displacements and velocities, with the rest lengths at construction, every node free
+// and an inertia scale of 1.
 SpringLattice SpringLattice::at_rest() const {
   SpringLattice copy = *this;
   for (Floats* a : {&copy.dx_, &copy.dy_, &copy.dz_, &copy.vx_, &copy.vy_, &copy.vz_}) {
@@ -229,7 +230,7 @@ double SpringLattice::find_inertia_scale(double step_s) {
 double SpringLattice::find_real_time_step_s(double longest_s) {
   SPOONBILL_ASSERT(longest_s > 0.0);
   // With damping, the squared frequency grows with the number of substeps, so several attempts may be
-  // necessary. Each attempt assumes that it does not grow, and so never takes more substeps than necessary.
+  // necessary. Each attempt assumes no growth, and so never takes more substeps than necessary.
   constexpr double most_substeps = 1e9;
   double count = 1.0;
   while (count < most_substeps) {
@@ -490,7 +491,7 @@ void SpringLattice::add_cell(int i, int j, int k, Assembly& sum) {
   report_.worst_jacobian = std::min(report_.worst_jacobian, smallest_jacobian_ratio(corners));
 }
 
-// Gives the first node of each seam pair the mass of both.
+// Gives the first node of each seam pair the mass and the cells of both.
 void SpringLattice::join_nodes(Assembly& sum) {
   for (std::size_t s = 0; s < seam_.size(); s += 2) {
     const auto first = static_cast<std::size_t>(seam_[s]), second = static_cast<std::size_t>(seam_[s + 1]);
@@ -564,7 +565,7 @@ void SpringLattice::store_flow_and_creep(const Assembly& sum) {
     const std::size_t size = stiffness_[d].size();
     if (own_flow) {
       for (Floats* a : {&yield_[d], &hardening_[d], &flow_rate_[d]}) a->assign(size, 0.0f);
-      // Springs that do not flow never reach this yield strain.
+      // For springs that do not flow, a large yield strain lets may_flow() skip their blocks.
       std::fill(yield_[d].begin(), yield_[d].end(), 1.0f);
     }
     if (own_creep) {
@@ -737,7 +738,7 @@ bool SpringLattice::reform_cells(int node, const Vector3& move, Reforming& next)
 }
 
 bool SpringLattice::reform(int node, const Vector3& move_m) {
-  // Measures the move between the stored positions, which are rounded to single precision.
+  // Uses the move between the stored positions, which are rounded to single precision.
   const Vector3 before = displacement(node);
   const Vector3 move = (before + move_m).cast<float>().cast<double>() - before;
   const int twin = mesh_.twin(node);

@@ -1,6 +1,6 @@
-// Spring lattice of one body: masses, springs and volume forces on a LatticeMesh, with their state. Built
-// outside the tick; allocates nothing afterwards. One owner, one thread; stepped by relax()
-// (lattice_solver.h).
+// Spring lattice of one body: masses, springs and volume forces on a LatticeMesh, with their state. It is
+// built outside the tick and stepped by relax() (lattice_solver.h), which does not allocate. A lattice has
+// one owner and is used on one thread at a time.
 #pragma once
 
 #include <cstdint>
@@ -19,17 +19,17 @@
 
 namespace spoonbill {
 
-// Fraction of the stability limit that a substep uses at rest. Strain and flow raise the fastest frequency by
-// a factor of 1.2 to 1.6; a tick then takes more substeps.
+// Substep of an undeformed lattice, as a fraction of the stability limit. Strain and flow raise the fastest
+// frequency by a factor of 1.2 to 1.6; a tick then takes more substeps.
 inline constexpr double rest_stability_fraction = 0.75;
 
 class SpringLattice {
  public:
-  // Builds the lattice at rest with an inertia scale of 1: the inertia of each node is its mass. Fails on
-  // fewer than 2 nodes in a direction, folded cells and materials outside their ranges.
+  // Builds the lattice at rest with an inertia scale of 1, at which the inertia of each node is its mass.
+  // Fails on fewer than 2 nodes in a direction, folded cells and materials outside their ranges.
   //
-  // Cells that share a spring add their stiffness, damping and stiffening to it. The spring flows and
-  // creeps as the material that contributes most of its stiffness does.
+  // Cells that share a spring add their stiffness, damping and stiffening to it. If their materials differ,
+  // the spring flows and creeps like the material that contributes most of its stiffness.
   static Result<SpringLattice> make(const LatticeMesh& mesh, const LatticeMaterials& materials,
                                     InstructionSet set);
 
@@ -44,13 +44,13 @@ class SpringLattice {
   // At rest, every force is the true one; a motion takes sqrt(scale) times as long as the real one ("mass
   // scaling" in explicit finite element codes, see Olovsson et al. 2005).
   double inertia_scale() const { return inertia_scale_; }
-  // Sets the inertia scale for substeps of about step_s. Allocates if step_s changes.
+  // Sets the inertia scale for substeps of about step_s. May allocate if step_s changes.
   void set_inertia(double scale, double step_s);
-  // Returns the smallest inertia scale with which a substep of step_s is stable at rest, with a reserve
-  // (rest_stability_fraction). Allocates.
+  // Returns the smallest inertia scale with which a substep of step_s is stable at rest, with the reserve of
+  // rest_stability_fraction. Allocates.
   double find_inertia_scale(double step_s);
-  // Returns the largest longest_s / n, with a whole n, that is stable at an inertia scale of 1, with the same
-  // reserve as find_inertia_scale(). Allocates.
+  // Returns the longest of the substeps longest_s, longest_s / 2, longest_s / 3 and so on that is stable at
+  // rest and at an inertia scale of 1, with the reserve of rest_stability_fraction. Allocates.
   double find_real_time_step_s(double longest_s);
 
   // Square of the largest angular frequency, rad^2/s^2, of the lattice with its inertia scale and with its
@@ -63,17 +63,17 @@ class SpringLattice {
   // Returns the largest stable substep, s, at the present strain; `fraction` is the fraction of the stability
   // limit to use.
   double stable_step_s(double fraction) const;
-  // Weight of the springs in power steps and row sums for substeps of step_s (see
+  // Weight of the springs' stiffness in power steps and row sums for substeps of step_s (see
   // LatticeView::spring_weight).
   double spring_weight(double step_s) const {
     return 1.0 + 2.0 * static_cast<double>(step_damping_time_) / step_s;
   }
-  // Damping time that all springs have, s. In a body of several materials it is the shortest of their times;
-  // LatticeKernels::damp_further() adds the rest.
+  // Damping time that all springs have at least, s: the shortest damping time of the body's materials.
+  // LatticeKernels::damp_further() adds the damping of materials with a longer time.
   float damping_time_s() const { return damping_time_; }
   bool is_damped_further() const { return is_damped_further_; }
   const LatticeMaterials& materials() const { return materials_; }
-  // Returns the body's own material, without its regions.
+  // Returns the material of the body outside its regions.
   const Material& material() const { return materials_.own(); }
   double friction(int node) const { return materials_.friction(node); }
   bool flows() const { return flows_; }
@@ -84,7 +84,8 @@ class SpringLattice {
   // solver moves. 0 restores each node's own inertia.
   void set_contact_inverse_mass(double inverse_mass_per_kg);
   bool moved_by_solver() const { return contact_inverse_mass_ > 0.0f; }
-  // Fixes the nodes whose byte is 1 at their present displacements; one byte per node.
+  // Fixes the nodes whose byte is not 0 at their present displacements and frees all others; one byte per
+  // node. The twin of a fixed node at the seam is fixed too.
   void fix_nodes(std::span<const std::uint8_t> fixed);
   bool is_fixed(int node) const { return inverse_mass_[node] == 0.0f; }
   bool has_fixed_nodes() const { return fixed_count_ > 0; }
@@ -104,14 +105,15 @@ class SpringLattice {
   // Sets the displacement of a node and of its twin at the seam, m.
   void set_displacement(int node, const Vector3& d);
   void set_velocity(int node, const Vector3& v);
-  // Moves a node and its twin permanently: springs and cells adopt their new lengths and volumes as rest
-  // values, so that no strain changes. Returns false and changes nothing if a spring would leave 0.5 to 2
-  // times its initial rest length, as in flow, or a cell 0.25 to 4 times its initial volume.
+  // Moves a node and its twin permanently. Rest lengths and rest volumes change by as much as the lengths of
+  // springs and the volumes of cells do, so that no spring is extended further. Returns false and changes
+  // nothing if a rest length would be outside 0.5 to 2 times its initial value, as in flow, or a rest volume
+  // outside 0.25 to 4 times.
   bool reform(int node, const Vector3& move_m);
   // Sets the force on a node, N; it acts until it is changed.
   void set_node_force(int node, const Vector3& force_n);
 
-  // Returns a view of the state. Its pointers stay valid until the lattice is moved or destroyed.
+  // Returns a view of the state. Its pointers stay valid until the C++ object is moved or destroyed.
   LatticeView view();
   const LatticeKernels& kernels() const { return *kernels_; }
   // masses() returns the masses of all nodes, kg, like mass(). free_mass() is the same, but 0 for fixed
@@ -125,8 +127,8 @@ class SpringLattice {
   const float* applied_force(int axis) const { return applied_[axis].data(); }
   bool has_applied_force() const { return has_applied_force_; }
 
-  // Calls visit(const float*, count) for each array of the shape: displacements, velocities, rest lengths,
-  // rest volumes and creep strains.
+  // Calls visit(const float*, count) for each array that describes the shape: displacements, velocities, rest
+  // lengths, rest volumes and creep strains.
   template <class Visitor>
   void visit_shape(Visitor&& visit) const {
     for (const auto* a : {&dx_, &dy_, &dz_, &vx_, &vy_, &vz_}) visit(a->data(), a->size());
@@ -135,7 +137,7 @@ class SpringLattice {
     for (const auto& a : crept_) visit(a.data(), a.size());
     visit(rest_volume_sum_.data(), rest_volume_sum_.size());
   }
-  // Visits the shape and everything else that the next step depends on.
+  // Visits the shape, the vector of the power iteration, the fastest square and the inertia scale.
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
     visit_shape(visit);
@@ -167,7 +169,7 @@ class SpringLattice {
   SpringLattice at_rest() const;
   void find_active_blocks();
   float free_inverse_mass(int node) const;
-  // Rest lengths and volumes around a node that reform() is about to set.
+  // New rest lengths and volumes around a node that reform() is about to move.
   struct Reforming;
   bool reform_springs(int node, const Vector3& move, Reforming& next) const;
   bool reform_cells(int node, const Vector3& move, Reforming& next) const;
@@ -185,7 +187,8 @@ class SpringLattice {
   float damping_time_ = 0.0f, step_damping_time_ = 0.0f;
   float contact_inverse_mass_ = 0.0f;
   bool has_applied_force_ = false, flows_ = false, creeps_ = false, is_damped_further_ = false;
-  // Pairs of a spring weight and the fastest square at rest for it, at an inertia scale of 1.
+  // Cache of rest_square(): pairs of a spring weight and the fastest_square() of the lattice at rest for that
+  // weight, at an inertia scale of 1.
   std::vector<std::pair<double, double>> rest_squares_;
   int fixed_count_ = 0, padded_count_ = 0;
   std::vector<int> seam_;  // pairs of joined nodes, see LatticeView::seam
@@ -200,8 +203,7 @@ class SpringLattice {
   Floats stiffness_[lattice_direction_count], rest_length_[lattice_direction_count];
   Floats square_difference_[lattice_direction_count], first_rest_length_[lattice_direction_count];
   Floats crept_[lattice_direction_count], tangent_[lattice_direction_count];
-  // Arrays by spring of the properties in which the materials of the body differ; empty if they do not
-  // differ.
+  // Properties of each spring in which the materials of the body differ; empty if they do not differ.
   Floats stiffening_[lattice_direction_count], further_damping_[lattice_direction_count];
   Floats yield_[lattice_direction_count], hardening_[lattice_direction_count];
   Floats flow_rate_[lattice_direction_count], relaxing_fraction_[lattice_direction_count];
@@ -218,8 +220,8 @@ inline void set_velocity(const LatticeView& view, int n, const Vector3& velocity
   view.vz[n] = static_cast<float>(velocity.z());
 }
 
-// Sets a node's displacement and its extrapolated position as drift() would. Returns the square of its
-// distance from the reference of the linearisation, m^2.
+// Sets a node's displacement and its extrapolated displacement, as drift() does. `tau` is the damping time.
+// Returns the squared change of the extrapolated displacement since the linearisation, m^2.
 inline float set_node_displacement(const LatticeView& view, int n, const Vector3& displacement, float tau) {
   float* const d[3] = {view.dx, view.dy, view.dz};
   float* const ahead[3] = {view.ahead_x, view.ahead_y, view.ahead_z};

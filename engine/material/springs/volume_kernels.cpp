@@ -24,8 +24,8 @@ inline float dot(Vector a, Vector b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-// Face diagonals that determine the volume of a trilinear cell (corner bits: 1 = k, 2 = j, 4 = i). 12 V =
-// (a + b).(c x d) + (c + e).(f x b) + (f + d).(a x e), the mean of the two triangulations of each face
+// Face diagonals that determine the volume V of a trilinear cell (corner bits: 1 = k, 2 = j, 4 = i).
+// 12 V = (a + b).(c x d) + (c + e).(f x b) + (f + d).(a x e), the mean of the two triangulations of each face
 // (Grandy, "Efficient computation of volume of hexahedral cells", UCRL-ID-128886, 1997).
 struct FaceDiagonals {
   Vector a;  // from corner 4 to 7
@@ -53,7 +53,8 @@ inline Vector rest_vector(const SpringArrays& s, int n) {
   return {s.rest_x[n], s.rest_y[n], s.rest_z[n]};
 }
 
-// Returns the present face diagonals of the cell at node n, computed from the springs along them.
+// Returns the present face diagonals of the cell at node n, from the rest vectors of the springs along them
+// and the nodes' displacements.
 inline FaceDiagonals present_diagonals(const LatticeView& view, int n) {
   const SpringArrays& jk = view.springs[view.corner_direction[3]];
   const SpringArrays& ik = view.springs[view.corner_direction[5]];
@@ -91,7 +92,8 @@ inline float volume_rate(const LatticeView& view, const FaceDiagonals& gradient,
 struct BlockCells {
   alignas(64) float x[8][block], y[8][block], z[8][block];
 
-  // Sets the results at each corner to `scale` times the gradient.
+  // Sets the results of cell l at each corner to `scale` times the gradient of its volume with respect to
+  // that corner. `gradient` is the gradient with respect to the face diagonals.
   void set(int l, float scale, const FaceDiagonals& gradient) {
     const FaceDiagonals g = {scale * gradient.a, scale * gradient.b, scale * gradient.c,
                              scale * gradient.d, scale * gradient.e, scale * gradient.f};
@@ -145,7 +147,8 @@ inline void add_corner_forces(const LatticeView& view, int start, const BlockCel
   }
 }
 
-// Returns J - 1, where J is the volume of a cell divided by its rest volume.
+// Returns the dilation J - 1 of a cell: its volume minus its rest volume, divided by its volume at
+// construction. Only SpringLattice::reform() makes the rest volume differ from the volume at construction.
 inline float cell_dilation(const LatticeView& view, const FaceDiagonals& p, int n) {
   return (volume_sum(p) - view.rest_volume_sum[n]) * (1.0f / 12.0f) * view.inverse_volume[n];
 }
@@ -153,8 +156,8 @@ inline float cell_dilation(const LatticeView& view, const FaceDiagonals& p, int 
 // Dilation below which a cell is crushed.
 constexpr float crushed_dilation = -0.7f;
 
-// Returns the derivative of a cell's pressure with respect to J, times its rest volume. For a negative bulk
-// stiffness it is the derivative at J = 1, the largest in size.
+// Returns the derivative of a cell's pressure with respect to J, times the cell's volume at construction. If
+// the bulk stiffness is negative, the derivative is that at J = 1, where its magnitude is largest.
 inline float volume_tangent(const LatticeView& view, const FaceDiagonals& p, int n) {
   const float crushed = view.crushed_stiffness[n];  // read unconditionally, so that the loop vectorises
   return view.bulk_stiffness[n] + (cell_dilation(view, p, n) < crushed_dilation ? crushed : 0.0f);

@@ -16,9 +16,9 @@
 
 namespace spoonbill {
 
-// Pressure on the skin of a body in a box of cells. Each triangle bears its pressure times its deformed
-// area, a third at each corner. The corners distribute it to the nodes that they follow, so the work equals
-// that of the pressure on the enclosed volume. One owner.
+// Pressure on the skin of a body in a box of cells. The force on a triangle is its pressure times its
+// deformed area, a third at each corner. A corner's force is distributed to the lattice nodes that the corner
+// follows, so the forces do the same work as the pressure on the enclosed volume. Has one owner.
 class PressedSkin {
  public:
   bool empty() const { return triangles_.empty(); }
@@ -59,8 +59,8 @@ class PressedSkin {
 };
 
 enum class CellKind : std::uint8_t {
-  springs,    // springs as in sculpting; Poisson's ratio at least 1/4
-  hexahedra,  // far fewer cells for the same error in bending; any Poisson's ratio
+  springs,    // springs as in sculpting; Poisson's ratio must be at least 1/4
+  hexahedra,  // hexahedra: far fewer cells for the same error in bending; any Poisson's ratio
 };
 
 struct NodeForce {
@@ -92,8 +92,7 @@ struct FixedAxis {
 // Fixes all three coordinates of a node.
 void fix_node(int node, const Vector3& displacement_m, std::vector<FixedAxis>& fixed);
 
-// Cells of a lattice and the masses of its nodes. Immutable; one owner. Built for a study, never in the
-// tick.
+// Cells of a lattice and the masses of its nodes. Immutable. It is built for a study, never within a tick.
 class StaticBody {
  public:
   // Builds the body of a study. Fails on materials outside their ranges, folded cells, and springs below a

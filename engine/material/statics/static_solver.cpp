@@ -14,15 +14,16 @@ namespace {
 
 using Coordinates = StaticSystem::Coordinates;
 
-// Smallest pivot relative to the largest; below it, a rigid motion is free.
+// Smallest pivot of a fixed body's stiffness, relative to the largest pivot. A smaller pivot means that a
+// rigid motion is free.
 constexpr double min_pivot = 1e-13;
 constexpr double min_load_step = 1e-3;
 // Largest number of Newton steps for one load step.
 constexpr int steps_per_load = 40;
 constexpr int step_halvings = 12;
-// Accepted decrease of the energy, relative to the decrease that the slope predicts.
+// Smallest accepted decrease of the energy, relative to the decrease that the slope predicts.
 constexpr double min_decrease = 1e-4;
-// Relative rounding error of an energy that is a sum over cells.
+// Relative rounding error of the energy, which is a sum over cells.
 constexpr double rounding = 1e-13;
 
 class Equilibrium {
@@ -34,13 +35,15 @@ class Equilibrium {
 
   double work() const { return factors_.work(); }
 
-  // Returns whether the supports prevent every rigid motion of the rest shape. False if cancelled().
+  // Returns whether the supports prevent every rigid motion of the rest shape. Also returns false if
+  // cancelled().
   bool is_fixed() {
     system_->respond(system_->rest(), Tangent::plain);
     return factor() && factors_.has_pivots_above(min_pivot);
   }
 
-  // Finds the equilibrium under this fraction of the loads, starting from `at`.
+  // Finds the equilibrium under this fraction of the loads, starting from `at`. Returns false if it finds
+  // none.
   bool solve(double fraction, Coordinates& at) {
     double first = 0.0;
     for (int step = 0; step < steps_per_load && steps_ < settings_->step_limit; ++step) {
@@ -65,7 +68,7 @@ class Equilibrium {
 
  private:
   // Sets the progress to the orders of magnitude by which the unbalanced force has fallen, divided by the
-  // orders required. Newton's method gains more orders with each step.
+  // required orders, times the fraction of the loads. Newton's method gains more orders with each step.
   void set_done(double fraction, double unbalanced, double first) {
     const double orders = std::log(first / settings_->tolerance);
     done_ = orders > 0.0 ? fraction * std::log(first / unbalanced) / orders : 0.0;
@@ -132,8 +135,9 @@ Status check_fixed(const StaticBody& body, const std::vector<FixedAxis>& fixed) 
   return {};
 }
 
-// Suggests a number of nodes at which the body needs no more than the limit. If a lattice is refined equally
-// in all directions, the work grows with the number of nodes to the power of at most 7/3, as in a band.
+// Returns an error that suggests a number of nodes with which a factorisation needs no more multiplications
+// than the limit. If a lattice is refined equally in all directions, the work grows with the number of nodes
+// to the power of at most 7/3, as for a band matrix.
 Error too_large(int nodes, double work, double limit) {
   constexpr double reserve = 0.9, exponent = 3.0 / 7.0;
   const int enough = static_cast<int>(reserve * nodes * std::pow(limit / work, exponent)) / 100 * 100;

@@ -7,9 +7,10 @@
 namespace spoonbill {
 
 struct StaticSettings {
-  // Largest accepted unbalanced force, relative to the forces of the cells on the nodes.
+  // Largest accepted unbalanced force, relative to the forces of the cells or the loads, whichever are
+  // larger.
   double tolerance = 1e-8;
-  int step_limit = 400;  // Newton steps in total
+  int step_limit = 400;  // largest number of Newton steps in total
   // Largest number of multiplications for one factor of the stiffness matrix. A body that needs more is
   // refused beforehand. At the default, a factor takes a few seconds, and a body needs about five factors.
   double work_limit = 1e10;
@@ -20,7 +21,7 @@ struct StaticSettings {
 
 struct StaticResult {
   std::vector<Vector3> displacement_m;  // displacement of each node
-  std::vector<Vector3> reaction_n;      // reaction of the fixed axes of each node; 0 for free nodes
+  std::vector<Vector3> reaction_n;      // reaction at the fixed axes of each node; 0 for free nodes
   double energy_j = 0.0;                // energy stored in the cells
   int newton_steps = 0;
   bool is_fixed_everywhere = false;  // true if no node is free to move

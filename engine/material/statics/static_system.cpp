@@ -18,7 +18,7 @@ Vector3 at_node(const Eigen::VectorXd& all, int node) {
   return all.segment<3>(3 * static_cast<Eigen::Index>(node));
 }
 
-// Adds a quarter of the pressure on the face's vector area to each corner.
+// Adds to each corner of a face a quarter of the pressure's force on the face's vector area.
 void add_pressure(const PressedFace& face, const LatticeMesh& mesh, const Eigen::VectorXd& at,
                   Eigen::VectorXd& forces) {
   const auto corner = [&](std::size_t c) -> Vector3 {
@@ -42,7 +42,7 @@ StaticSystem::StaticSystem(const StaticBody& body, const std::vector<FixedAxis>&
   }
   for (const FixedAxis& axis : fixed_) free_[static_cast<std::size_t>(3 * axis.node + axis.axis)] = -1;
   for (std::size_t c = 0; c < free_.size(); ++c) {
-    const int node = static_cast<int>(c / 3), joined = mesh.joined(node);  // never larger than `node`
+    const int node = static_cast<int>(c / 3), joined = mesh.joined(node);  // `joined` <= `node`
     if (free_[c] != 0) continue;
     free_[c] = joined == node ? free_count_++ : free_[3 * static_cast<std::size_t>(joined) + c % 3];
   }

@@ -7,8 +7,8 @@
 
 namespace spoonbill {
 
-// Coordinates are displacements from the rest shape, m; 3 n + axis belongs to node n. One owner; the body
-// must outlive it.
+// Coordinates are displacements from the rest shape, m; 3 n + axis belongs to node n. Has one owner. The body
+// must outlive the system.
 class StaticSystem {
  public:
   // Sets up the equations; `fixed` may contain a coordinate at most once.
@@ -22,7 +22,7 @@ class StaticSystem {
   bool is_fixed_everywhere() const { return free_count_ == 0; }
 
   Coordinates rest() const { return Coordinates::Zero(static_cast<Eigen::Index>(free_.size())); }
-  // Sets the fixed coordinates to this fraction of their displacements.
+  // Sets the fixed coordinates to this fraction of their prescribed displacements.
   void set_fixed(double fraction, Coordinates& at) const;
   void move(const Coordinates& free_step, double fraction, Coordinates& at) const;
 
@@ -32,7 +32,7 @@ class StaticSystem {
     Coordinates restoring;
     double size = 0.0;
   };
-  // Computes the forces and the tangent for stiffness().
+  // Computes the restoring forces, and the tangent that stiffness() then returns.
   Forces respond(const Coordinates& at, Tangent tangent);
   const Stiffness& stiffness() const { return stiffness_; }
   Coordinates loads(const StaticLoads& loads, const Coordinates& at) const;

@@ -13,7 +13,7 @@ constexpr double work_between_calls = 5e6;
 
 }  // namespace
 
-// Working memory for the next row of L.
+// Working memory for the next row of the factor L.
 struct StiffnessFactors::Workspace {
   explicit Workspace(int size)
       : values(static_cast<std::size_t>(size)),

@@ -9,7 +9,7 @@
 namespace spoonbill {
 
 // Factors L D L^T of the lower half of a sparse symmetric matrix. Call analyzePattern() once, then factor()
-// for each matrix of that pattern, then solve(). One owner.
+// for each matrix of that pattern, then solve(). Has one owner.
 class StiffnessFactors : public Eigen::SimplicialLDLT<StaticSystem::Stiffness> {
  public:
   // Returns the number of multiplications of a factorisation. Valid after analyzePattern().
