@@ -26,9 +26,10 @@ struct CadSurface {
   // Thickness of the material behind the surface, 0 for a surface without a shell. Exported meshes include
   // the walls of the shell, CAD files do not.
   double shell_thickness_m = 0.0;
-  // Largest distance from the edges in the file, of the trims or of the sides of an untrimmed surface.
+  // Largest distance between the file's edges and the trim loops. For an untrimmed surface, between the
+  // file's edges and the sides of the surface.
   double trim_deviation_m = 0.0;
-  std::string solid = {};  // name of the solid of several faces that the surface belongs to; empty: none
+  std::string solid = {};  // name of the solid with several faces that has this surface; otherwise empty
 };
 
 struct CadModel {
