@@ -21,9 +21,9 @@ struct PartFaces {
   bool was_cut = false;  // true if the surface was divided into two parts; `faces` has the faces of both
 };
 
-// Builds the faces of the part of a surface that its trim loops enclose. Each loop is divided into edges at
-// its corners. A surface that closes and has only holes is divided into two parts, because CAD systems do not
-// support a face between poles without an outer edge. Fails for the same reasons as build_body_shape().
+// Builds the faces of the part of a surface that remains after trimming. Each trim loop is divided into edges
+// at its corners. A surface that closes and has only holes is divided into two parts, because CAD systems do
+// not support a face between poles without an outer edge. Fails for the same reasons as build_body_shape().
 Result<PartFaces> build_faces(const CadSurface& part);
 
 // Returns a shell of one face.
