@@ -75,8 +75,8 @@ double agreement(const Vector3& normal_a, const Vector3& normal_b, const Vector3
   return normal_a.dot(normal_b - 2.0 / square * normal_b.dot(chord) * chord);
 }
 
-// Minimum spanning trees of the graph's components. The sign of each node's normal follows from that of its
-// predecessor in the tree.
+// Minimum spanning trees of the graph's components. Whether a node's normal is flipped follows from the
+// normal of its predecessor in the tree.
 class SpanningForest {
  public:
   SpanningForest(const PointGraph& graph, const std::vector<Vector3>& normals)
@@ -161,7 +161,7 @@ namespace {
 constexpr double most_thickness = 0.15;
 constexpr double most_opposed = 0.2;
 
-// Returns the node and its neighbours within two steps, sorted by index.
+// Returns the node and the nodes within two edges of it, sorted by index.
 std::vector<std::uint32_t> neighbourhood(const PointGraph& graph, std::uint32_t node) {
   std::vector<std::uint32_t> near{node};
   for (const std::uint32_t other : graph.adjacent(node)) {
