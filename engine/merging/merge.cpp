@@ -217,7 +217,7 @@ std::vector<ChosenEdges> edges_to_join(const std::vector<Surface>& patches, cons
   return pairs;
 }
 
-// Adds a match of the two ends of a row of tubes that are still free, if they touch.
+// If exactly two ends of a row of tubes are still free, and these two touch, adds a match of them.
 void add_closing_ends(const std::vector<Surface>& tubes, double touching_m, std::vector<EdgeMatch>& matches) {
   std::vector<PatchEdge> free;
   for (int p = 0; p < static_cast<int>(tubes.size()); ++p) {
