@@ -65,9 +65,10 @@ struct CadSolid {
   std::string name;
   // Indices, into CadModel::surfaces, of the faces of this solid and of its cavities; ascending.
   std::vector<std::size_t> surface_indices;
-  TriangleMesh mesh;           // watertight; normals out of the material
-  double chord_error_m = 0.0;  // largest distance of samples of faces and edges from their triangles
-  double gap_m = 0.0;          // widest gap between two faces that share an edge
+  TriangleMesh mesh;  // watertight; normals out of the material
+  // Largest distance between a sample of a face or an edge and the mesh triangle that replaces it.
+  double chord_error_m = 0.0;
+  double gap_m = 0.0;  // widest gap between two faces that share an edge
   double volume_m3 = 0.0, area_m2 = 0.0;
   Vector3 centre_m = Vector3::Zero();  // centre of mass at constant density
 };

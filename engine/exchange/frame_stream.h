@@ -19,7 +19,7 @@
 namespace spoonbill {
 
 enum class FrameKind : std::uint64_t {
-  progress = 0x676f72706c6e7073,  // "spnlprog" in little-endian order: finished thousandths, as text
+  progress = 0x676f72706c6e7073,  // "spnlprog" in little-endian order: thousandths done, as text
   surface = 0x667275736c6e7073,   // "spnlsurf": a surface of a CAD model (cad_stream.h)
   file = 0x656c69666c6e7073,      // "spnlfile": the text of a CAD file
   solid = 0x646c6f736c6e7073,     // "spnlsold": a joined solid (cad_stream.h)

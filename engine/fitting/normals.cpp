@@ -18,7 +18,8 @@ namespace {
 // Number of neighbours of a node. It is large enough to reach all around the node even if nodes coincide in
 // pairs with opposite normals.
 constexpr std::size_t normal_neighbours = 12;
-constexpr double longest_pair = 3.0;  // longer pairs are ignored; relative to the median length
+// Largest length of a pair of neighbours, relative to the median length. Longer pairs are ignored.
+constexpr double longest_pair = 3.0;
 constexpr double opposite_cosine = -0.5;
 // Largest height of a neighbour above a node's tangent plane, relative to its distance, at which it counts as
 // being on the same face. A greater height means that the neighbour is on the other face of a wall.

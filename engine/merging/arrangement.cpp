@@ -140,7 +140,8 @@ RingFit fit_best(const EdgeRing& a, const EdgeRing& b, std::optional<bool> reque
 // Returns the best fit of two rings. Coincident rings are compared where they are, which is exact for
 // identical rings. Other rings are compared after ring b is rotated to face ring a.
 RingFit fit_best_rotated(const PreparedEdge& a, const PreparedEdge& b, std::optional<bool> requested) {
-  constexpr double coincidence_fraction = 0.02;  // fraction of the ring's radius
+  // Largest distance between coincident rings, as a fraction of the ring's radius.
+  constexpr double coincidence_fraction = 0.02;
   const EdgeRing ring_a(a);
   EdgeRing ring_b(b);
   const RingFit unrotated = fit_best(ring_a, ring_b, requested);

@@ -389,7 +389,8 @@ Result<BridgeLength> even_speed_length(const Surface& before, const Surface& aft
 // Form of a bridge between two rings. Further columns of control points are added between the two ends if the
 // bridge bends, or if it is long. In a long bridge, irregular patch ends would grow into folds.
 struct BridgeForm {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  // rotates the ring after the gap to the ring before it
+  // Rotation that makes the ring after the gap face the ring before it.
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   bool bends = false, has_columns_between = false;
 };
 
@@ -428,8 +429,8 @@ Result<BridgeLength> bridge_length(const Surface& before, const Surface& after, 
   return Error(
       ErrorCode::self_intersecting,
       "the gap of " + short_length_text(length.chord_m) +
-          " cannot be bridged without a fold: its edges run into each other, or their parameters are "
-          "oblique; cut a piece off, or allow a larger tolerance");
+          " cannot be bridged without a fold: its edges run into each other, or the parameter lines cross it "
+          "at a slant; cut a piece off, or allow a larger tolerance");
 }
 
 Result<Surface> bridge(const Surface& before, const Surface& after, int continuity) {

@@ -304,7 +304,7 @@ Result<Surface> elevate(const Surface& patch, int degree_u, int degree_v) {
 }
 
 // Fractions of the tolerance: the largest distance between edges that count as shared, and the largest error
-// that different parameters of shared edges may leave.
+// that may remain where shared edges have different parameters.
 constexpr double distance_fraction = 0.75, matching_fraction = 0.25;
 
 // Returns true if the two edges are one curve in space but have different parameters.
@@ -354,8 +354,9 @@ Result<CompatiblePatches> make_compatible(std::vector<Surface> patches, const Jo
   for (std::size_t p = 0; p < patches.size(); ++p) {
     if (patches[p].u.is_periodic() != patches[0].u.is_periodic()) {
       return Error(ErrorCode::mismatch,
-                   patch_name(p) + (patches[p].u.is_periodic() ? " is closed around" : " is open around") +
-                       " and the first is not; open or close one of them");
+                   patch_name(p) +
+                       (patches[p].u.is_periodic() ? " has a closed ring as its edge" : " has an open edge") +
+                       " and the first has not; open or close one of them");
     }
     auto stretched = match_domain(patches[0], patches[p]);
     if (!stretched) return stretched.error();

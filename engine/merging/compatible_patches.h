@@ -20,8 +20,8 @@ struct JoinRequest {
   double twist = 0.0;              // rotation of each ring from its best fit, as a fraction of a turn
   int largest_count = 200;         // largest number of control points in each direction
   bool shared_parameters = false;  // edges are known to have equal parameters; seams are not searched
-  bool bridges_may_fold = false;  // for edges that the user has paired in a direction other than the best fit
-  Progress progress = {};         // progress of the whole request
+  bool bridges_may_fold = false;   // true if the user has chosen the relative direction of edges
+  Progress progress = {};          // progress of the whole request
 };
 
 // Largest distance of knots that are snapped together, as a fraction of the domain. They are snapped only if

@@ -134,7 +134,7 @@ LinesFromLoop::LinesFromLoop(const Surface& body, const std::vector<Eigen::Vecto
     shortest = std::min(shortest, length);
   }
   bend_ = to_circle / (to_circle + 1.0 - circle_);
-  // Limit on the speed relative to the shortest line, which would otherwise turn back.
+  // Largest speed of the lines, relative to the length of the shortest line, which would otherwise turn back.
   constexpr double most_shortest_ratio = 1.5;
   speed_at_bend_ = std::min(to_circle, most_shortest_ratio * shortest) / bend_;
   start_speed_m_ = most_shortest_ratio * shortest_m;

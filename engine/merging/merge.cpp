@@ -314,7 +314,7 @@ Status check_left_open(const Arrangement& arrangement, const std::vector<ChosenE
 
 Error cannot_close(const OpenEdges& edges) {
   return Error(ErrorCode::mismatch, edge_name(edges.a) + " and " + edge_name(edges.b) +
-                                        " cannot be joined to close the surface around: " + edges.reason);
+                                        " cannot be joined to close the surface: " + edges.reason);
 }
 
 constexpr int most_patches = 64;

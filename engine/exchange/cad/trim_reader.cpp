@@ -193,7 +193,7 @@ void add_passages(const CubicPiece& piece, int axis, double level, std::vector<d
   const double a = d0 - 2.0 * d1 + d2, b = d1 - d0, c = d0;
   std::vector<double> turns{0.0, 1.0};
   const double root = std::sqrt(std::max(b * b - a * c, 0.0));
-  // This form of the solution divides by no small difference.
+  // This form of the quadratic formula avoids the cancellation of nearly equal numbers.
   const double q = -(b + std::copysign(root, b));
   for (const double turn : {q / a, c / q}) {
     if (turn > 0.0 && turn < 1.0) turns.push_back(turn);
