@@ -242,8 +242,8 @@ std::vector<Vector3> estimate_normals(const FitPoints& points, const Surface& su
 namespace {
 
 constexpr int orientation_samples = 32;
-// Fraction of a sheet's area below which its net outward area is too small to show which side is hollow. Such
-// a sheet counts as flat, for example a cap whose height is below a sixtieth of its width.
+// A sheet counts as flat if its outward area is below this fraction of the largest possible one. It then does
+// not show clearly which side is hollow. An example is a cap whose height is below a sixtieth of its width.
 constexpr double flat_cap_fraction = 0.05;
 // Fraction of the mean normal's length below which a component of the mean normal counts as zero.
 constexpr double upright_fraction = 0.1;

@@ -279,7 +279,7 @@ constexpr double face_fraction = 0.2;  // largest depth of points on a face, rel
 // points may belong to a single noisy face.
 constexpr double between_fraction = 0.25;
 constexpr double covered_fraction = 0.85;
-constexpr int least_cell_points = 2;  // smallest number of points for a cell to count
+constexpr int least_cell_points = 2;  // smallest number of points in a filled cell
 constexpr int dilation = 2;           // number of cells by which filled cells are dilated
 // Distance from the axis below which a column of cells is near the axis, as a fraction of the raster's width.
 constexpr double near_axis_fraction = 0.05;

@@ -278,7 +278,7 @@ struct GridCell {
 constexpr bool both[] = {false, true};
 
 // Returns the orientation of a patch that moves its side `side` to `target` and reverses the direction of
-// that edge if `reversed`; nothing if no such edge exists.
+// that side's edge if `reversed` is true; nothing if there is no such orientation.
 std::optional<Orientation> facing(Side side, Side target, bool reversed) {
   for (const bool exchange : both) {
     for (const bool reverse_u : both) {

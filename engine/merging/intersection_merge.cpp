@@ -342,7 +342,8 @@ std::vector<double> find_starts_along(const CrossingPatches& patches,
   return starts;
 }
 
-// Returns the differences between consecutive starts, wrapped into half a period around 0.
+// Returns the differences between consecutive starts. If there is a period, the differences are wrapped to at
+// most half of it.
 std::vector<double> steps_between(std::vector<double> starts, bool closed, double period) {
   if (closed && !starts.empty()) starts.push_back(starts.front());
   std::vector<double> steps;

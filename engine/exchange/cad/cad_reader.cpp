@@ -349,7 +349,7 @@ Status convert_faces(const std::vector<NamedFace>& faces, double scale, const Ca
   for (std::size_t k = 0; k < faces.size(); ++k) {
     auto found = convert_near_face(faces[k].face, scale, reading.tolerance_m);
     if (found) {
-      // The deviation of an approximated surface may add to that of its edges.
+      // The deviation of an approximated surface may add to the deviation of its edges.
       if (found->trim_deviation_m > reading.tolerance_m + found->deviation_m) {
         const std::string place = face_place_text(faces[k].face, scale);
         bent.push_back("'" + faces[k].name + "'" + (place.empty() ? "" : " at " + place) + " is up to " +
