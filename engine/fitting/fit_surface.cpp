@@ -756,8 +756,8 @@ Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisatio
   SPOONBILL_ASSERT(settings.tolerance_m >= 0.0);
   struct Trial {
     double agreement, fairness_factor;
-    std::size_t cusps;      // the result is accepted only with at most this many cusps and without folds
-    double error_fraction;  // the result is accepted only with a smaller error; as a fraction of the size
+    std::size_t cusps;      // largest number of cusps of an accepted result, which has no folds
+    double error_fraction;  // limit for the error of an accepted result, relative to the size
   };
   constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
   constexpr std::array trials{Trial{0.0, 1.0, 0, 0.005}, Trial{-0.3, 1.0, 0, 0.005},

@@ -219,8 +219,8 @@ void add_fairness(const SurfaceStructure& structure, double weight, std::span<co
   }
 }
 
-// Returns the non-elliptic part of a ring, S_u + S_uuu / (2 pi)^2 divided by 2 pi, at two Gauss points of
-// each span of u. The values are factors of the control points.
+// Returns the non-elliptic part of a ring, (S_u + S_uuu / (2 pi)^2) / (2 pi), at two Gauss points of each
+// span of u. The values are factors of the control points.
 std::vector<PieceBasis::Values> ring_bases(const PieceBasis& u_basis) {
   constexpr double turn = 2.0 * std::numbers::pi;
   const std::vector<double> breaks = u_basis.knots().breakpoints();

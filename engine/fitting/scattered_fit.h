@@ -22,7 +22,8 @@ struct SurfaceStructure {
 // Points to fit, with parameters and weights of the same length. Points with a NaN parameter are skipped.
 //
 // The fit minimises the weighted squared distances at the parameters plus the thin-plate energy of each span:
-//   sum w |S(u, v) - p|^2 + mean(w) sum over spans f (|S_uu| du^2)^2 + 2 (|S_uv| du dv)^2 + (|S_vv| dv^2)^2
+//   sum w |S(u, v) - p|^2
+//     + mean(w) sum over spans f [(|S_uu| du^2)^2 + 2 (|S_uv| du dv)^2 + (|S_vv| dv^2)^2]
 // Here mean(w) is the mean weight of the points of a span, and du and dv are the sides of the span. The
 // fairness f has one value for each pair of spans; the span of v varies fastest. Normal equations are
 // accurate enough for scans; they stay definite if f is above 1e-9.

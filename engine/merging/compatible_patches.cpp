@@ -183,7 +183,8 @@ Result<Surface> align_seam(const Surface& before, const Surface& patch, const Jo
 // measuring.
 constexpr int fitted_per_piece = 5, checked_per_piece = 10, measured_per_piece = 40;
 
-// Returns evenly spaced parameters in each piece. In a periodic direction, the end of the period is omitted.
+// Returns parameters that are evenly spaced in each polynomial piece. In a periodic direction, the end of the
+// period is omitted.
 std::vector<double> dense_parameters(const KnotVector& knots, int per_piece) {
   std::vector<double> dense = nested_parameters(knots, per_piece, 0).parameters;
   if (knots.is_periodic()) dense.pop_back();

@@ -101,7 +101,7 @@ ControlMatrix control_lines(const Surface& surface, Direction direction) {
   return lines;
 }
 
-// Returns the surface with its knots and control points along the direction replaced.
+// Returns the surface `like` with other knots and control points along `direction`.
 Surface replace_controls(const Surface& like, Direction direction, const KnotVector& knots,
                          const ControlMatrix& lines) {
   const bool along_u = direction == Direction::u;
