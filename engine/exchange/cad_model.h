@@ -26,9 +26,10 @@ struct CadSurface {
   // Thickness of the material behind the surface, 0 for a surface without a shell. Exported meshes include
   // the walls of the shell, CAD files do not.
   double shell_thickness_m = 0.0;
-  // Largest distance from the edges in the file, of the trims or of the sides of an untrimmed surface.
+  // Largest distance between the file's edges and the trim loops. For an untrimmed surface, between the
+  // file's edges and the sides of the surface.
   double trim_deviation_m = 0.0;
-  std::string solid = {};  // name of the solid of several faces that the surface belongs to; empty: none
+  std::string solid = {};  // name of the solid with several faces that has this surface; otherwise empty
 };
 
 struct CadModel {
@@ -64,9 +65,10 @@ struct CadSolid {
   std::string name;
   // Indices, into CadModel::surfaces, of the faces of this solid and of its cavities; ascending.
   std::vector<std::size_t> surface_indices;
-  TriangleMesh mesh;           // watertight; normals out of the material
-  double chord_error_m = 0.0;  // largest distance of samples of faces and edges from their triangles
-  double gap_m = 0.0;          // widest gap between two faces that share an edge
+  TriangleMesh mesh;  // watertight; normals out of the material
+  // Largest distance between a sample of a face or an edge and the mesh triangle that replaces it.
+  double chord_error_m = 0.0;
+  double gap_m = 0.0;  // widest gap between two faces that share an edge
   double volume_m3 = 0.0, area_m2 = 0.0;
   Vector3 centre_m = Vector3::Zero();  // centre of mass at constant density
 };

@@ -277,7 +277,7 @@ Status write_document(const Document& document, const std::filesystem::path& fil
   if (!read_back.ok()) return read_back.error();
   auto checked = document_from_json(read_back.value(), file.string() + ": not saved");
   if (!checked.ok()) return checked.error();
-  // A pipe or device that a person named is written directly.
+  // A pipe or device that a person named is written to directly; a file must not replace it.
   std::error_code ignored;
   const auto status = std::filesystem::status(file, ignored);
   const bool is_special = std::filesystem::is_fifo(status) || std::filesystem::is_character_file(status);

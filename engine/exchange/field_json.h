@@ -15,7 +15,8 @@
 
 namespace spoonbill {
 
-// Returns true if the field is to be read: it is required, or it is optional and present.
+// Returns true if the field must be read. A field with a partner is read if its partner is present, an
+// optional field if it is present itself, and any other field always.
 bool is_field_expected(const FieldReader& reader, const FieldForm& form);
 
 // Each read_value() reads one value. A problem is stored in the reader.
@@ -75,7 +76,7 @@ void add_fields(const Object& object, Json& json) {
   }
 }
 
-// Returns the default value of the variant's alternative at an index into kind_names.
+// Returns the variant's alternative with the index `index` in kind_names, with default values.
 template <class Variant>
 Variant make_kind(std::size_t index) {
   return [&]<std::size_t... indices>(std::index_sequence<indices...>) {

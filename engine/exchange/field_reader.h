@@ -24,8 +24,8 @@
 
 namespace spoonbill {
 
-// Reader of one object. The JSON must outlive the reader. Readers of inner objects report problems to the
-// outermost reader; copies share its status.
+// Reader of one JSON object, which must outlive the reader. Copies of a reader, and the readers of inner
+// objects, share the stored problem.
 class FieldReader {
  public:
   // `source` names the file (and line) in messages.
@@ -38,7 +38,8 @@ class FieldReader {
   void version(std::string_view field, int known);
   int version(std::string_view field, Range<int> known);
 
-  // Each read returns the field's value, or a harmless one after a problem. A missing field is a problem.
+  // Each of these functions returns the field's value, or a harmless value after a problem. A missing field
+  // is a problem.
   std::string text(std::string_view field);  // at most 200 bytes, no control characters
   bool boolean(std::string_view field);
   double number(std::string_view field, Range<double> range);
@@ -58,8 +59,8 @@ class FieldReader {
   template <class Choice>
   Choice choice(std::string_view field, std::initializer_list<std::pair<const char*, Choice>> choices);
 
-  // inner() returns the reader of a field that is an object, element() that of an object in a list. Call
-  // finish() on each.
+  // inner() returns the reader of a field that is an object; element() returns the reader of an object in a
+  // list. Call finish() on each reader.
   FieldReader inner(std::string_view field);
   FieldReader element(const Json& json, std::string_view list_field, std::size_t index);
 

@@ -1,7 +1,7 @@
 // Protocol between the program and the child processes that read and write foreign files, on one machine. A
-// frame is eight letters that name its kind, its length in 64 bits, and that many bytes. A child sends any
-// number of progress frames, then its results, and finally one frame of kind ending, mesh, cloud, faces or
-// failure.
+// frame consists of eight letters that name its kind, the length of its content as a 64-bit number, and the
+// content. A child sends any number of progress frames, then its results, and finally one frame of kind
+// ending, mesh, cloud, faces or failure.
 #pragma once
 
 #include <cstddef>
@@ -19,14 +19,14 @@
 namespace spoonbill {
 
 enum class FrameKind : std::uint64_t {
-  progress = 0x676f72706c6e7073,  // "spnlprog" in little-endian order: finished thousandths, as text
+  progress = 0x676f72706c6e7073,  // "spnlprog" in little-endian order: thousandths done, as text
   surface = 0x667275736c6e7073,   // "spnlsurf": a surface of a CAD model (cad_stream.h)
   file = 0x656c69666c6e7073,      // "spnlfile": the text of a CAD file
   solid = 0x646c6f736c6e7073,     // "spnlsold": a joined solid (cad_stream.h)
   ending = 0x20646e656c6e7073,    // "spnlend ": facts about all surfaces together, as JSON
   mesh = 0x6873656d6c6e7073,      // "spnlmesh": MeshCounts, then vertices and triangles as in TriangleMesh
   cloud = 0x64756c636c6e7073,     // "spnlclud": CloudCounts, then points and normals as in PointCloud
-  faces = 0x656361666c6e7073,     // "spnlface": an empty frame: the OBJ file is a mesh instead of a cloud
+  faces = 0x656361666c6e7073,     // "spnlface": empty; the OBJ file contains a mesh instead of a cloud
   failure = 0x6c6961666c6e7073    // "spnlfail": one line, an error's message with an optional code before it
 };
 

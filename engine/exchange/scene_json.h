@@ -1,7 +1,6 @@
 // Conversion between JSON and the parts of a scene that no table of fields describes completely, for
-// documents and commands. Parts with a table use field_json.h. Each read_ function reads the fields that it
-// names and stores the first problem in the reader. Each add_ or _to_json function is the inverse of a read_
-// function.
+// documents and commands. Parts with a table use field_json.h. Each read_ function stores the first problem
+// in its reader. Each add_ or _to_json function is the inverse of a read_ function.
 #pragma once
 
 #include <vector>

@@ -65,8 +65,8 @@ void append_simple_loops(const std::vector<std::uint32_t>& path, const PointGrap
   append_ring(std::move(open), graph, boundary_loops);
 }
 
-// Returns the widest angle around a node, in radians, in which the node has no neighbours within two steps.
-// The angle is measured in the plane of the neighbours. Returns 0 with fewer than three neighbours.
+// Returns the widest angle around a node, in radians, that contains no node within two edges of it. The angle
+// is measured in the plane of these neighbours. Returns 0 with fewer than three neighbours.
 double widest_gap(const PointGraph& graph, std::uint32_t node) {
   std::set<std::uint32_t> near;
   for (const std::uint32_t other : graph.adjacent(node)) {
@@ -234,7 +234,9 @@ std::vector<BoundaryLoop> find_mesh_boundaries(const std::vector<TriangleCorners
                                                const PointGraph& graph) {
   SPOONBILL_ASSERT_DEBUG(std::all_of(node_index.begin(), node_index.end(),
                                      [&](std::uint32_t node) { return node < graph.size(); }));
-  std::map<NodePair, int> sides;  // for each directed edge: its uses minus those of the opposite direction
+  // For each directed edge: the number of triangles that use it, minus the number that use it in the opposite
+  // direction.
+  std::map<NodePair, int> sides;
   for (const TriangleCorners& t : triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = node_index[t[k]], b = node_index[t[(k + 1) % 3]];
@@ -254,7 +256,7 @@ std::vector<BoundaryLoop> find_mesh_boundaries(const std::vector<TriangleCorners
       path.push_back(step->second);
       next.erase(step);
     }
-    // The cap's triangles are on the other side of the edges and use them in the opposite direction.
+    // The path is reversed, because the triangles of a cap use the edges in the opposite direction.
     std::reverse(path.begin(), path.end());
     append_simple_loops(path, graph, boundary_loops);
   }
@@ -295,7 +297,7 @@ std::vector<BoundaryLoop> find_cloud_boundaries(const PointGraph& graph) {
 }
 
 Cap cap_hole(const PointGraph& graph, const BoundaryLoop& loop, std::uint32_t first) {
-  // The nodes of the loop come first, then the nodes added by splitting edges.
+  // `points` has the nodes of the loop first, then the nodes that are added by splitting edges.
   std::vector<Vector3> points;
   for (const std::uint32_t node : loop.nodes) points.push_back(graph.points_m[node]);
   std::vector<TriangleCorners> triangles = least_area_triangles(points);

@@ -29,9 +29,9 @@ std::vector<BoundaryLoop> find_cloud_boundaries(const PointGraph& graph);
 // Surface over a hole: the triangulation of the hole's loop with the least area (Barequet and Sharir 1995),
 // refined to the spacing of the graph's nodes.
 struct Cap {
-  std::vector<Vector3> points_m;  // positions of the added nodes, whose numbers begin at `first`
+  std::vector<Vector3> points_m;  // positions of the added nodes, numbered from `first` of cap_hole()
   std::vector<Vector3> normals;   // unit normals of the added nodes, oriented by the loop's sense of rotation
-  std::vector<NodePair> pairs;    // edges between added nodes, and between these and nodes of the loop
+  std::vector<NodePair> pairs;    // edges of the cap's triangles, as numbers of nodes
   double area_m2 = 0.0;
 };
 Cap cap_hole(const PointGraph& graph, const BoundaryLoop& loop, std::uint32_t first);

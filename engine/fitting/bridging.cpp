@@ -110,7 +110,7 @@ class RingSteps {
   double reach_;
 };
 
-// Sorts the nodes of the ring by their directions from the ring's centroid on a plane.
+// Returns the nodes of the ring, sorted by their directions from the ring's centroid on a plane.
 std::vector<std::uint32_t> sort_by_angle(const std::vector<std::uint32_t>& ring,
                                          const std::vector<Vector2>& flat) {
   Vector2 centre = Vector2::Zero();
@@ -167,10 +167,10 @@ bool runs_counterclockwise(const FitPoints& points, const std::vector<std::uint3
 // Cuts out the nodes whose path from `node` is shorter than opening_fraction of the component's size, and
 // assigns their points to the nearest remaining nodes. The loop is the shortest closed path found through the
 // boundary nodes; steps count as longer where the normals turn. The search starts from the order of the nodes
-// in several planes: two views, and the plane onto which the surface is unrolled along shortest paths
-// (Schmidt, Grimm and Wyvill 2006). Where the boundary runs over the edge of a thin wall, every view shows
-// the boundary folded onto itself, and only the unrolled surface shows its order. `towards` replaces the
-// normal of a component without normals.
+// in three planes. The nodes are projected onto two of them; the surface is unrolled along shortest paths
+// onto the third (Schmidt, Grimm and Wyvill 2006). Where the boundary runs over the edge of a thin wall,
+// every projection folds the boundary onto itself, and only the unrolled surface shows its order. `towards`
+// replaces the normal of a component without normals.
 Opening cut_opening(const FitPoints& whole, std::uint32_t node, const Vector3& towards) {
   SPOONBILL_ASSERT(node < whole.graph.size());
   const double reach = opening_fraction * bounding_diagonal_m(whole.graph.points_m);
@@ -337,8 +337,8 @@ Result<FitPoints> join_at(const FitPoints& a, const FitPoints& b, const NearestP
   return both;
 }
 
-// Returns true if more than a third of a loop's nodes are far from all other components. Far is more than a
-// quarter of the loop's diameter, a distance that facing ends of one body do not have.
+// Returns true if more than a third of a loop's nodes are far from all other components: farther than a
+// quarter of the loop's diameter. The ends on both sides of a gap in one body are nearer to each other.
 bool is_free_end(const FitPoints& island, const BoundaryLoop& loop, const NearestPoints& others) {
   constexpr double most_distance_ratio = 0.25, most_node_fraction = 1.0 / 3.0;
   const double far = most_distance_ratio * loop.length_m / M_PI;

@@ -8,14 +8,14 @@
 
 namespace spoonbill {
 
-// Joins all components into one. Holes are spanned, each component is opened where it is nearest to the
-// others, and straight tubes of nodes span the gaps. The first component must be the largest, and every other
-// component is joined to the component nearest to it. Other open ends are capped. Fails if a component is too
+// Joins all components into one. Holes are spanned, components are opened where they are nearest to each
+// other, and straight tubes of nodes span the gaps. Starting with the first component, which must be the
+// largest, the nearest of the others is joined next. Other open ends are capped. Fails if a component is too
 // small to be opened.
 Result<FitPoints> bridge_islands(std::vector<FitPoints> islands);
 
-// Returns the number of components that have an open end away from the gaps, which are sheets or open tubes.
-// bridge_islands() caps such ends.
+// Returns the number of components that are sheets or open tubes and have an open end away from all other
+// components. bridge_islands() caps such ends.
 std::size_t count_open_islands(const std::vector<FitPoints>& islands);
 
 }  // namespace spoonbill

@@ -77,8 +77,8 @@ void refine(Scan& scan) {
   split_long_edges(scan.points_m, scan.triangles, longest, 3 * fitted_point_limit);
 }
 
-// Computes area-weighted vertex normals and returns a third of the adjacent areas as weights. Vertices
-// without triangles get zeros.
+// Computes area-weighted vertex normals. Returns the weight of each vertex, a third of the area of its
+// triangles. Vertices without triangles get zeros.
 std::vector<double> compute_vertex_normals(Scan& scan) {
   std::vector<double> weights(scan.points_m.size(), 0.0);
   scan.normals.assign(scan.points_m.size(), Vector3::Zero());
@@ -98,8 +98,8 @@ std::vector<double> compute_vertex_normals(Scan& scan) {
 }
 
 // Reduces the number of points to the limit by voxels and sums the weights of merged points. In a cloud, a
-// weight is a number of points. A triangle whose corners are in two or three voxels leaves edges between the
-// voxels' points.
+// weight is a number of points. Triangles remain, as edges between the points of voxels, unless all their
+// corners are in one voxel.
 void thin(Scan& scan, std::vector<double>& weights, std::vector<std::uint32_t>& representative) {
   if (scan.points_m.size() <= fitted_point_limit + fitted_point_limit / 4) return;
   const VoxelGroups groups = group_by_voxels(scan, voxel_side_for(scan, fitted_point_limit));
@@ -169,8 +169,8 @@ std::vector<NodePair> cloud_pairs(const Scan& nodes) {
   return pairs;
 }
 
-// Groups the points into nodes. In a cloud there are at least three points per node on average, because the
-// nodes are then spaced more evenly than the points.
+// Groups the points into nodes. In a cloud there are at least three points per node on average, so that the
+// nodes are spaced more evenly than the points.
 VoxelGroups groups_for_nodes(const Scan& scan) {
   const std::size_t count = scan.points_m.size();
   const std::size_t target = scan.triangles.empty() ? std::min(node_target, count / 3) : 4 * node_target;

@@ -71,8 +71,8 @@ ClosestPoint ClosestParameters::project_from(const Vector3& point, const Vector2
     const Vector3 away = at.position_m - point;
     const double a = at.du.squaredNorm(), b = at.du.dot(at.dv), c = at.dv.squaredNorm();
     const double p = at.du.dot(away), q = at.dv.dot(away);
-    // Uses the matrix of Newton's method where it is positive definite, otherwise that of the Gauss-Newton
-    // method.
+    // Uses the matrix of Newton's method where it is positive definite, otherwise the matrix of the
+    // Gauss-Newton method.
     double m = a + at.duu.dot(away), n = b + at.duv.dot(away), o = c + at.dvv.dot(away);
     if (!(m > 0.1 * a && o > 0.1 * c && m * o - n * n > 0.1 * (a * c - b * b))) m = a, n = b, o = c;
     const double ridge = 1e-9 * (m + o) + 1e-300;
@@ -110,7 +110,8 @@ namespace {
 constexpr int samples_per_span = 4, cusp_samples_per_span = 12;
 constexpr double cusp_cosine = -0.5;
 
-// Unit normals at cell centres, which are never at a pole or a seam.
+// Unit normals at the centres of equal cells, into which the knot spans are divided. The centres are never at
+// a pole or a seam.
 struct NormalGrid {
   std::size_t rows = 0, columns = 0;
   std::vector<Vector2> uv;
@@ -149,8 +150,8 @@ bool turns_at(const NormalGrid& grid, bool u_closes, double cosine, std::size_t 
   return in_u || (j + 1 < grid.columns && normal.dot(grid.normals[i * grid.columns + j + 1]) < cosine);
 }
 
-// Search structure for the normals of the data by position in (u, v), measured in spans. Normals near a
-// periodic seam are stored on both sides of it.
+// Search structure for the normals of the data by position in (u, v), in units of a mean knot span. Normals
+// near a periodic seam are stored on both sides of it.
 class DataNormals {
  public:
   DataNormals(const Surface& surface, const NormalsAtParameters& data)
@@ -232,12 +233,12 @@ namespace {
 constexpr int distance_steps = 4;
 constexpr int error_samples_per_span = 4;
 constexpr std::size_t plane_points = 10;
-// Largest distance from a surface sample to the nearest data point, in mean spacings, at which the sample
-// counts as scanned. At a boundary, the limit is one mean spacing.
+// Largest distance along the surface, in mean spacings, from a surface sample to the nearest data point at
+// which the sample counts as scanned. If that point is at a boundary, the limit is one mean spacing in space.
 constexpr double seen_spacings = 3.0;
 
-// Returns true if errors are measured at the fitted points instead of the given ones: the given vertices of a
-// mesh that was refined may be just the few corners of large triangles.
+// Returns true if errors are measured at the fitted points instead of the given ones. This is so for a
+// refined mesh, because its given vertices may be just the few corners of large triangles.
 bool measures_fitted_points(const FitPoints& points) {
   return points.is_mesh && points.scan.points_m.size() > points.given_m.size();
 }

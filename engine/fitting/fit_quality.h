@@ -27,8 +27,9 @@ class ClosestParameters {
   ClosestParameters(const ClosestParameters&) = delete;
   ClosestParameters& operator=(const ClosestParameters&) = delete;
 
-  // Returns the point at which Gauss-Newton steps from `start` become stationary. Each step is shortened
-  // until it reduces the distance and is never longer than 0.75 of a mean span.
+  // Searches the closest point by at most `steps` Newton steps from the parameters `start`. Each step is
+  // shortened until it reduces the distance, and is never longer than 0.75 of a mean knot span. The search
+  // ends early if a step hardly reduces the distance.
   ClosestPoint project_from(const Vector3& point, const Vector2& start, int steps) const;
 
   // Makes the same search as project_from(), starting from the surface sample nearest to the point.
@@ -47,7 +48,7 @@ class ClosestParameters {
 
 struct FoldCheck {
   std::size_t samples = 0, folds = 0, cusps = 0;
-  std::vector<bool> span_folds, span_cusps;  // one flag for each pair of spans, u-major
+  std::vector<bool> span_folds, span_cusps;  // one flag for each pair of spans; v varies fastest
 
   bool is_clean() const { return folds + cusps == 0; }
   bool is_better_than(const FoldCheck& other) const {
@@ -63,10 +64,10 @@ struct NormalsAtParameters {
   bool are_estimated = false;
 };
 
-// Counts folds and cusps.
+// Counts folds and cusps. A span here is a rectangle of (u, v) between successive knots.
 //
 // Folds: each span has 4 x 4 samples at cell centres, away from poles and seams. A sample folds if its normal
-// opposes those of the six data points nearest in (u, v), the nearest of them being less than a span away.
+// opposes those of all six data points nearest in (u, v), the nearest of them being less than a span away.
 // Distances in space would be misleading on thin walls. Six points are needed because normals vary from point
 // to point at sharp rims. Without data normals, or with estimated ones, a sample also folds if its normal
 // opposes that of the next sample.

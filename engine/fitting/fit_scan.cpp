@@ -35,8 +35,8 @@ Result<FittedBody> fit_body(FitPoints island, const Parameterisation& start, Fit
   return body;
 }
 
-// Returns true if the points belong to a real wall. Its two faces then fit the points much more closely than
-// a single surface between the faces does.
+// Returns true if the points belong to a thin wall with two faces. A fit to both faces then has a much
+// smaller error than a fit of one surface between them.
 bool is_closer_as_wall(const FittedBody& wall, const FittedBody& face) {
   constexpr double fraction = 0.8;
   return wall.errors.data_to_surface.p95_m < fraction * face.errors.data_to_surface.p95_m;

@@ -22,10 +22,11 @@ namespace spoonbill {
 namespace {
 
 inline constexpr int projection_steps = 3;
-// Lower bound of the fairness, low enough for a surface to follow noise-free data closely.
+// Smallest fairness (weight of the smoothing term), low enough for a surface to follow noise-free data
+// closely.
 inline constexpr double least_fairness = 3e-4;
 
-// Data of one stage of the fit. A first stage fits the nodes, a later one all points.
+// Data of one stage of the fit. The first stage fits the nodes of the graph, the second all points.
 struct FittedData {
   std::span<const Vector3> points_m;
   std::span<const double> weights;
@@ -111,7 +112,7 @@ class SurfaceFitter {
   ShapeKind kind_;
   double least_agreement_, fairness_factor_, chosen_fairness_;
   SurfaceStructure structure_;
-  std::vector<double> fairness_;  // fairness of each pair of spans, u-major
+  std::vector<double> fairness_;  // fairness of each pair of spans; v varies fastest
   std::vector<double> node_weights_, all_weights_;
   std::vector<Vector3> all_points_m_, all_normals_;
   FittedData nodes_, all_;
@@ -129,7 +130,7 @@ constexpr int point_round_count = 3;
 // Weight of a node that spans a hole, relative to the mean weight. It is small, because the position of such
 // a node is a guess.
 constexpr double spanning_weight = 0.15;
-constexpr double pole_weight = 0.5;  // weight of a pole, relative to the points of one span
+constexpr double pole_weight = 0.5;  // weight of a pole, relative to all points of a span
 
 const ClosestPoint& nearer(const ClosestPoint& one, const ClosestPoint& other) {
   return other.distance_m < one.distance_m ? other : one;
@@ -205,7 +206,8 @@ Status SurfaceFitter::solve(FittedData& data) {
   return {};
 }
 
-// Fixes the poles at their initial positions, so that the surface does not extend beyond the points.
+// Adds the initial positions of the poles to the data of each solution, so that the surface does not extend
+// beyond the points.
 void SurfaceFitter::add_poles() {
   constexpr double near = 0.02;
   for (const double v : {0.0, 1.0}) {
@@ -307,9 +309,9 @@ bool SurfaceFitter::add_control_points() {
   return true;
 }
 
-// Returns true if the surface normals oppose those of the scan at most nodes, not counting spanning nodes.
-// Without normals, the sign of the enclosed volume decides for a closed shape, and is_inside_out() for an
-// open one.
+// Returns true if the surface normals, on average over the nodes, oppose those of the scan. Spanning nodes do
+// not count. Without normals, the sign of the enclosed volume decides for a closed shape, and is_inside_out()
+// for an open one.
 bool SurfaceFitter::has_inward_normals() const {
   double along = 0.0;
   for (std::size_t n = 0; n + points_->spanning_nodes < nodes_.uv.size(); ++n) {
@@ -535,7 +537,7 @@ void SurfaceFitter::update_trust(FittedData& data) const {
 }
 
 // Returns the distance of a point from the surface. A point slightly beyond an open edge should pull the edge
-// outwards, so its distance is only that from the tangent plane.
+// outwards, so only its distance from the tangent plane counts.
 double SurfaceFitter::off_surface_distance(const FittedData& data, std::size_t point) const {
   const Vector2& uv = data.uv[point];
   const auto is_end = [](double parameter) { return parameter <= 0.0 || parameter >= 1.0; };
@@ -595,7 +597,8 @@ constexpr double most_fairness = 10.0;
 constexpr double most_smoothing_ratio = 1.2;
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-// Returns the spans with folds or, if no span has folds, the spans with cusps, which are a lesser fault.
+// Returns a flag for each span, true for spans with folds. If no span has folds, the flags are true for spans
+// with cusps, which are a lesser fault.
 const std::vector<bool>& SurfaceFitter::faulty_spans() const {
   return folds_.folds > 0 ? folds_.span_folds : folds_.span_cusps;
 }
@@ -671,7 +674,7 @@ bool SurfaceFitter::is_in_faulty_span(const Vector2& uv) const {
   return false;
 }
 
-// Wraps u into [0, 1) if it is periodic. Otherwise clamps u, and always v, to [0, 1].
+// Clamps v to [0, 1]. Wraps u into [0, 1) if it is periodic, and otherwise clamps it too.
 Vector2 SurfaceFitter::clamp_to_domain(Vector2 uv) const {
   uv.y() = std::clamp(uv.y(), 0.0, 1.0);
   uv.x() = periodic() ? uv.x() - std::floor(uv.x()) : std::clamp(uv.x(), 0.0, 1.0);
@@ -753,8 +756,8 @@ Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisatio
   SPOONBILL_ASSERT(settings.tolerance_m >= 0.0);
   struct Trial {
     double agreement, fairness_factor;
-    std::size_t cusps;      // the result is accepted only with at most this many cusps and without folds
-    double error_fraction;  // the result is accepted only with a smaller error; as a fraction of the size
+    std::size_t cusps;      // largest number of cusps of an accepted result, which has no folds
+    double error_fraction;  // limit for the error of an accepted result, relative to the size
   };
   constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
   constexpr std::array trials{Trial{0.0, 1.0, 0, 0.005}, Trial{-0.3, 1.0, 0, 0.005},

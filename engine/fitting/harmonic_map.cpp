@@ -122,8 +122,8 @@ std::optional<std::vector<double>> compute_v(const PointGraph& graph, const Shap
   return v;
 }
 
-// Returns the local surface normal, of either sign: the direction in which the neighbours within two steps
-// spread least.
+// Returns the local surface normal, of either sign: the direction in which the nodes within two edges spread
+// least.
 Vector3 estimate_local_normal(const PointGraph& graph, std::uint32_t node) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   Vector3 mean = graph.points_m[node];

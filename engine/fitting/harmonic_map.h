@@ -17,9 +17,10 @@ struct ShapeEnds {
   std::vector<std::uint32_t> start, end;
 };
 
-// Returns (u, v) in [0, 1] for each node of a connected graph, periodic in u. The path length from start to
-// end determines v; a harmonic function determines u. Near poles u is NaN, because the nodes are too coarse
-// to resolve it there. Fails if the ends touch or u does not close.
+// Returns (u, v) in [0, 1] for each node of a connected graph, periodic in u. Both are harmonic functions. v
+// is then rescaled to follow the path length from start to end. Near poles u is NaN, because the nodes are
+// too coarse to resolve it there. Fails if the graph is not connected from end to end, or if u does not
+// increase by 1 on a path around the shape, for example because the ends touch.
 Result<std::vector<Vector2>> harmonic_tube_map(const PointGraph& graph, const ShapeEnds& ends);
 
 // Maps a disc onto the unit square by Tutte's embedding. The nodes of `loop`, in order, map to the sides of

@@ -13,10 +13,10 @@
 namespace spoonbill {
 namespace {
 
-// Factor on the median length. A longer pair does not connect direct neighbours and may bridge a gap.
+// Ratio of the length of a pair of nodes to the median length, above which the pair may bridge a gap.
 constexpr double doubtful_length = 1.5;
-// Least ratio of a gap to the widest step between the points of a node. Random points within one surface have
-// no gap as wide as this.
+// Smallest ratio of the width of a gap to the widest step between the points of a node, which is the longest
+// edge of their minimum spanning tree. Random points within one surface have no gap as wide as this.
 constexpr double gap_steps = 3.0;
 // Smallest cosine of the angle between the gap and the normals on both sides (45 degrees).
 constexpr double facing_fraction = 0.7;
@@ -103,7 +103,8 @@ std::vector<double> pair_lengths(const std::vector<Vector3>& nodes_m, const std:
 }
 
 // Returns the body to which each component belongs. A component that is dust belongs to the body to which its
-// shortest pair leads, or to no_point if no pair leads to a body. Any other component is a body itself.
+// shortest pair of nodes leads, or to no_point if no pair leads to a body. Any other component is a body
+// itself.
 std::vector<std::uint32_t> assign_bodies(const ConnectedComponents& parts,
                                          const std::vector<std::size_t>& component_points,
                                          const std::vector<NodePair>& pairs,

@@ -18,7 +18,8 @@ namespace {
 // Number of neighbours of a node. It is large enough to reach all around the node even if nodes coincide in
 // pairs with opposite normals.
 constexpr std::size_t normal_neighbours = 12;
-constexpr double longest_pair = 3.0;  // longer pairs are ignored; relative to the median length
+// Largest length of a pair of neighbours, relative to the median length. Longer pairs are ignored.
+constexpr double longest_pair = 3.0;
 constexpr double opposite_cosine = -0.5;
 // Largest height of a neighbour above a node's tangent plane, relative to its distance, at which it counts as
 // being on the same face. A greater height means that the neighbour is on the other face of a wall.
@@ -75,8 +76,8 @@ double agreement(const Vector3& normal_a, const Vector3& normal_b, const Vector3
   return normal_a.dot(normal_b - 2.0 / square * normal_b.dot(chord) * chord);
 }
 
-// Minimum spanning trees of the graph's components. The sign of each node's normal follows from that of its
-// predecessor in the tree.
+// Minimum spanning trees of the graph's components. Whether a node's normal is flipped follows from the
+// normal of its predecessor in the tree.
 class SpanningForest {
  public:
   SpanningForest(const PointGraph& graph, const std::vector<Vector3>& normals)
@@ -161,7 +162,7 @@ namespace {
 constexpr double most_thickness = 0.15;
 constexpr double most_opposed = 0.2;
 
-// Returns the node and its neighbours within two steps, sorted by index.
+// Returns the node and the nodes within two edges of it, sorted by index.
 std::vector<std::uint32_t> neighbourhood(const PointGraph& graph, std::uint32_t node) {
   std::vector<std::uint32_t> near{node};
   for (const std::uint32_t other : graph.adjacent(node)) {
@@ -241,8 +242,8 @@ std::vector<Vector3> estimate_normals(const FitPoints& points, const Surface& su
 namespace {
 
 constexpr int orientation_samples = 32;
-// Fraction of a sheet's area below which its net outward area is too small to show which side is hollow. Such
-// a sheet counts as flat, for example a cap whose height is below a sixtieth of its width.
+// A sheet counts as flat if its outward area is below this fraction of the largest possible one. It then does
+// not show clearly which side is hollow. An example is a cap whose height is below a sixtieth of its width.
 constexpr double flat_cap_fraction = 0.05;
 // Fraction of the mean normal's length below which a component of the mean normal counts as zero.
 constexpr double upright_fraction = 0.1;

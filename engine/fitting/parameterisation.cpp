@@ -17,9 +17,9 @@ namespace spoonbill {
 namespace {
 
 constexpr double sheet_fraction = 0.12;
-// Smallest ratio of the loop's area to the total area at which a surface with outward normals counts as a
-// sheet. The ratio is larger than sheet_fraction, because the underside of a closed body may not have been
-// scanned.
+// Smallest ratio of the area within the longest boundary loop to the area of the surface at which a surface
+// with outward normals counts as a sheet. It is larger than sheet_fraction, because the underside of a closed
+// body may not have been scanned.
 constexpr double outward_sheet_fraction = 0.3;
 constexpr double tube_fraction = 0.75;
 constexpr double roundness = 0.12;
@@ -82,8 +82,8 @@ void span_holes(FitPoints& island, std::size_t first_loop) {
   }
 }
 
-// Returns nodes at which the distance from the axis is a local minimum. They are at least 0.4 of the largest
-// radius apart.
+// Returns the nodes near the axis at which the distance from it is a local minimum. They are at least 0.4 of
+// the largest radius apart.
 std::vector<std::uint32_t> find_axis_nodes(const PointGraph& graph, const Vector3& centre,
                                            const Vector3& axis) {
   std::vector<double> radius(graph.size());
@@ -140,7 +140,6 @@ bool faces_outwards(const FitPoints& island) {
   return volume >= 0.0;  // the sum is zero without normals
 }
 
-// Flips all normals of a scan that is inside out.
 void flip_normals(FitPoints& island) {
   for (Vector3& normal : island.scan.normals) normal = -normal;
   for (Vector3& normal : island.node_normals) normal = -normal;
@@ -272,17 +271,18 @@ constexpr double axis_roundness = 0.1;
 // raster cells, at which its two faces can be separated.
 constexpr double thin_fraction = 0.1;
 constexpr double separable_cells = 3.0;
-// Mean number of points per raster cell for which the cell size is chosen. It assumes that the profile is
-// three times as long as the size.
+// Mean number of points per raster cell for which the cell size is chosen. The choice assumes that the
+// profile is three times as long as the shape is large.
 constexpr double points_per_cell = 12.0;
 constexpr double face_fraction = 0.2;  // largest depth of points on a face, relative to the wall's thickness
-// Fraction of the wall's thickness. If half of the points are deeper than this, all points may belong to a
-// single noisy face.
+// Depth below the outline, as a fraction of the wall's thickness. If half of the points are deeper, all
+// points may belong to a single noisy face.
 constexpr double between_fraction = 0.25;
 constexpr double covered_fraction = 0.85;
-constexpr int least_cell_points = 2;         // smallest number of points for a cell to count
-constexpr int dilation = 2;                  // number of cells by which filled cells are dilated
-constexpr double near_axis_fraction = 0.05;  // fraction of the largest distance from the axis
+constexpr int least_cell_points = 2;  // smallest number of points in a filled cell
+constexpr int dilation = 2;           // number of cells by which filled cells are dilated
+// Distance from the axis below which a column of cells is near the axis, as a fraction of the raster's width.
+constexpr double near_axis_fraction = 0.05;
 
 struct Axis {
   Vector3 centre = Vector3::Zero(), along = Vector3::UnitZ(), first = Vector3::UnitX();
@@ -404,8 +404,8 @@ class ProfileRaster {
 };
 
 std::vector<Vector2> ProfileRaster::outline() const {
-  // The row and column of a corner are those of the cell above it on its right. The path keeps filled cells
-  // on its right and starts at the top filled cell on the axis.
+  // A corner has the row and the column of the cell above it on its right. The path keeps filled cells on its
+  // right and starts at the top filled cell on the axis.
   int row = rows_;
   while (row > 0 && !inside(0, row - 1)) --row;
   if (row == 0) return {};
@@ -466,8 +466,8 @@ double path_length(const std::vector<Vector2>& path) {
 }
 
 // Divides the domain of (u, v) into cells and returns the fraction of cells that have a point no deeper than
-// `reach` below the outline. The fraction is small for wavy sheets, which fill the profile only because all
-// sides are projected onto it together.
+// `reach` below the outline. The fraction is small for wavy sheets, which fill the profile only because
+// points from all sides of the axis are projected onto it.
 double face_coverage(const std::vector<Vector2>& uv, const std::vector<double>& depths, double reach) {
   constexpr int sectors = 8, lengths = 16;
   std::array<bool, sectors * lengths> seen{};

@@ -25,8 +25,9 @@ struct Parameterisation {
   std::vector<Vector2> uv;  // parameters of each point, in [0, 1]; NaN where unknown
 };
 
-// Detects the kind of shape from its boundary loops. A shape with a loop around much of its area is a sheet.
-// A shape with two loops as long as its girth is a tube. Smaller loops are holes of a closed shape.
+// Detects the kind of shape from its boundary loops. A shape whose longest loop encloses an area similar to
+// its own is a sheet. A shape with two loops as long as its girth is a tube. Smaller loops are holes of a
+// closed shape.
 ShapeKind classify_shape(const FitPoints& island);
 
 // Adds nodes over all holes and open ends, and clears the boundary loops.

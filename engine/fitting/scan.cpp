@@ -380,7 +380,7 @@ class EdgeSplitter {
       for (std::size_t k = 0; k < 3; ++k) pieces.push_back({t[k], midpoint[k], midpoint[(k + 2) % 3]});
     }
     if (split_count != 1 && split_count != 2) return;
-    // Starts at the split edge if there is only one, otherwise behind the one edge that is not split.
+    // Starts at the split edge if there is only one, otherwise at the edge after the one that is not split.
     std::size_t k = 0;
     while (split_count == 1 ? !is_split[k] : is_split[(k + 2) % 3]) ++k;
     const std::uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3], m = midpoint[k];

@@ -28,7 +28,8 @@ constexpr int round_pole_spans = 3;
 
 // Normal equations of the fit. For each control point they hold the products of its basis function with the
 // basis functions of all control points up to `degree` away, so that adding needs no search. The indices of
-// an entry are (control, du + degree, dv + degree).
+// an entry are (control, du + degree, dv + degree), where du and dv are the index differences between the two
+// control points.
 class NormalEquations {
  public:
   NormalEquations(const SurfaceStructure& structure)
@@ -107,7 +108,7 @@ void NormalEquations::add_smooth_pole(const SurfaceStructure& structure, const s
   const double period = structure.u.domain_length();
   std::vector<std::pair<int, double>> terms{{unknown[index(0, pole)], -1.0}};
   for (int i = 0; i < rows_; ++i) terms.emplace_back(unknown[index(i, ring)], 0.0);
-  // Basis function k of the direction is nonzero between extended[k] and extended[k + degree + 1].
+  // Basis function k is nonzero between knots[k] and knots[k + degree + 1].
   for (int k = 0; k < rows_; ++k) {
     const auto first = static_cast<std::size_t>(k), last = first + static_cast<std::size_t>(pu_) + 1;
     const int control = structure.u.control_index(k + pu_, 0);
@@ -218,8 +219,8 @@ void add_fairness(const SurfaceStructure& structure, double weight, std::span<co
   }
 }
 
-// Returns the non-elliptic part of a ring, S_u + S_uuu / (2 pi)^2 divided by 2 pi, at two Gauss points of
-// each span of u. The values are factors of the control points.
+// Returns the non-elliptic part of a ring, (S_u + S_uuu / (2 pi)^2) / (2 pi), at two Gauss points of each
+// span of u. The values are factors of the control points.
 std::vector<PieceBasis::Values> ring_bases(const PieceBasis& u_basis) {
   constexpr double turn = 2.0 * std::numbers::pi;
   const std::vector<double> breaks = u_basis.knots().breakpoints();
@@ -369,8 +370,8 @@ KnotVector refine_knots(const KnotVector& knots, int direction, int count, std::
     };
     const auto most = std::max_element(spans.begin(), spans.end(),
                                        [&](const Span& a, const Span& b) { return worth(a) < worth(b); });
-    // Each half gets a quarter of the error, because the error of a cubic piece falls steeply with its
-    // length.
+    // Each half gets a quarter of the error, because the error of a cubic falls steeply with the length of
+    // its span.
     const Span whole = *most;
     const double midpoint = 0.5 * (whole.begin + whole.end);
     *most = {whole.begin, midpoint, 0.25 * whole.error};

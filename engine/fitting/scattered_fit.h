@@ -22,10 +22,11 @@ struct SurfaceStructure {
 // Points to fit, with parameters and weights of the same length. Points with a NaN parameter are skipped.
 //
 // The fit minimises the weighted squared distances at the parameters plus the thin-plate energy of each span:
-//   sum w |S(u, v) - p|^2 + mean(w) sum over spans f (|S_uu| du^2)^2 + 2 (|S_uv| du dv)^2 + (|S_vv| dv^2)^2
+//   sum w |S(u, v) - p|^2
+//     + mean(w) sum over spans f [(|S_uu| du^2)^2 + 2 (|S_uv| du dv)^2 + (|S_vv| dv^2)^2]
 // Here mean(w) is the mean weight of the points of a span, and du and dv are the sides of the span. The
-// fairness f has one value for each pair of spans, u-major. Normal equations are accurate enough for scans;
-// they stay definite if f is above 1e-9.
+// fairness f has one value for each pair of spans; the span of v varies fastest. Normal equations are
+// accurate enough for scans; they stay definite if f is above 1e-9.
 //
 // Each pole is pulled to the mean of the ring of control points next to it, and the rings around it are
 // pulled to ellipses, as on a surface with a tangent plane at the pole. An elliptic ring satisfies
@@ -51,9 +52,9 @@ Result<std::vector<Surface>> fit_scattered_family(const SurfaceStructure& struct
 std::size_t span_count(const KnotVector& knots);
 
 // Inserts knots in one direction (0: u, 1: v) until there are `count` control points, each time halving the
-// span with the largest sum of weighted squared errors. Each half gets a quarter of the span's sum. Part of
-// the mean sum is added to every span, so that uniform errors lead to even refinement. Spans shorter than a
-// quarter of the mean are not halved.
+// span with the largest sum of weighted squared errors. Each half gets a quarter of the span's sum. At first,
+// 30 % of the total error is added to the sums, in proportion to the lengths of the spans, so that uniform
+// errors lead to even refinement. Spans shorter than a quarter of the mean are not halved.
 KnotVector refine_knots(const KnotVector& knots, int direction, int count, std::span<const Vector2> uv,
                         std::span<const double> weighted_squares);
 

@@ -96,8 +96,8 @@ double misfit(const EdgeRing& a, const EdgeRing& b, double seam, bool backwards)
   return sum;
 }
 
-// Makes one Gauss-Newton step and returns the improved seam. For identical rings the steps converge up to
-// rounding.
+// Returns the seam of ring b after one Gauss-Newton step that reduces misfit(). For identical rings the steps
+// converge up to rounding.
 double improve_seam(const EdgeRing& a, const EdgeRing& b, double seam, bool backwards) {
   double along = 0.0, squared = 0.0;
   for (int k = 0; k < rotation_samples; ++k) {
@@ -138,9 +138,10 @@ RingFit fit_best(const EdgeRing& a, const EdgeRing& b, std::optional<bool> reque
 }
 
 // Returns the best fit of two rings. Coincident rings are compared where they are, which is exact for
-// identical rings. Other rings are compared after one is rotated.
+// identical rings. Other rings are compared after ring b is rotated to face ring a.
 RingFit fit_best_rotated(const PreparedEdge& a, const PreparedEdge& b, std::optional<bool> requested) {
-  constexpr double coincidence_fraction = 0.02;  // fraction of the ring's radius
+  // Largest distance between coincident rings, as a fraction of the ring's radius.
+  constexpr double coincidence_fraction = 0.02;
   const EdgeRing ring_a(a);
   EdgeRing ring_b(b);
   const RingFit unrotated = fit_best(ring_a, ring_b, requested);
@@ -188,7 +189,7 @@ std::vector<PatchEdge> joinable_edges(const std::vector<Surface>& patches) {
   return edges;
 }
 
-// Sets of patches that matches connect.
+// Sets of patches that are connected by matches.
 class Groups {
  public:
   explicit Groups(std::size_t count) : group_(count) { std::iota(group_.begin(), group_.end(), 0); }
@@ -277,7 +278,7 @@ struct GridCell {
 constexpr bool both[] = {false, true};
 
 // Returns the orientation of a patch that moves its side `side` to `target` and reverses the direction of
-// that edge if `reversed`; nothing if no such edge exists.
+// that side's edge if `reversed` is true; nothing if there is no such orientation.
 std::optional<Orientation> facing(Side side, Side target, bool reversed) {
   for (const bool exchange : both) {
     for (const bool reverse_u : both) {
@@ -354,8 +355,8 @@ void sort_closing_matches(const std::vector<std::optional<GridCell>>& cells,
   open_unless_all(arrangement.closing_v, arrangement.rows);
 }
 
-// Wraps the cells of closed directions so that the first patch, which is at 0, comes directly after the seam.
-// Returns true if there are closed directions.
+// Wraps the cells of closed directions so that the first patch, which is in cell 0, comes directly after the
+// seam. Returns true if there are closed directions.
 bool start_rings_at_first(const Arrangement& arrangement, std::vector<std::optional<GridCell>>& cells) {
   const auto wrapped = [](int cell, int count) { return (cell % count + count) % count; };
   for (std::optional<GridCell>& cell : cells) {

@@ -1,4 +1,5 @@
-// Matching of patch edges, and the layout of patches in a grid. Pure functions, outside the tick; any thread.
+// Matching of patch edges, and the layout of patches in a grid. The functions have no side effects, may run
+// on any thread, and are too slow for a tick.
 #pragma once
 
 #include <optional>
@@ -60,7 +61,7 @@ struct Arrangement {
   // closing_v joins the last column to the first, with one match for each row. Empty if the grid is not a
   // ring in that direction.
   std::vector<EdgeMatch> closing_u, closing_v;
-  // Matches between patches that are not neighbours in the grid, which are not joined.
+  // Matches that neither connect neighbours in the grid nor close it. Their edges are not joined.
   std::vector<EdgeMatch> left_open;
 
   int cell(int a, int b) const { return a * columns + b; }

@@ -367,7 +367,8 @@ Result<Surface> make_strip(const Surface& before, const Surface& after, const Br
   return bridge(before, moved.value(), continuity);
 }
 
-// Returns the length of a bridge that crosses the gap at the mean speed that the patches have at the gap.
+// Returns the length of a bridge over which the mean derivative along v is that of `before` at the gap.
+// `after` is stretched to have the same derivative there.
 Result<BridgeLength> even_speed_length(const Surface& before, const Surface& after) {
   double chord = 0.0, speed_before = 0.0, speed_after = 0.0;
   const std::vector<double> parameters = uniform_parameters_without_seam(before.u, 64);
@@ -388,7 +389,8 @@ Result<BridgeLength> even_speed_length(const Surface& before, const Surface& aft
 // Form of a bridge between two rings. Further columns of control points are added between the two ends if the
 // bridge bends, or if it is long. In a long bridge, irregular patch ends would grow into folds.
 struct BridgeForm {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  // rotates the ring after the gap to the ring before it
+  // Rotation that makes the ring after the gap face the ring before it.
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   bool bends = false, has_columns_between = false;
 };
 
@@ -427,8 +429,8 @@ Result<BridgeLength> bridge_length(const Surface& before, const Surface& after, 
   return Error(
       ErrorCode::self_intersecting,
       "the gap of " + short_length_text(length.chord_m) +
-          " cannot be bridged without a fold: its edges run into each other, or their parameters are "
-          "oblique; cut a piece off, or allow a larger tolerance");
+          " cannot be bridged without a fold: its edges run into each other, or the parameter lines cross it "
+          "at a slant; cut a piece off, or allow a larger tolerance");
 }
 
 Result<Surface> bridge(const Surface& before, const Surface& after, int continuity) {
@@ -436,7 +438,7 @@ Result<Surface> bridge(const Surface& before, const Surface& after, int continui
   SPOONBILL_ASSERT(before.u.control_point_count() == after.u.control_point_count() &&
                    before.v.degree() == after.v.degree());
   const int degree = before.v.degree();
-  // The order of continuity is higher than requested if the degree permits that without further pieces.
+  // The order of continuity is at least half of the degree, which needs no more than two polynomial pieces.
   const int order = std::max(continuity, degree / 2);
   const BridgeForm form = choose_form(before, after);
   const int between = form.has_columns_between ? columns_between : 0;

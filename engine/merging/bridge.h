@@ -1,5 +1,5 @@
 // Joints between consecutive patches of a row: measures of their edges, a search for folds, and bridges over
-// gaps. Pure functions, outside the tick; any thread.
+// gaps. The functions have no side effects, may run on any thread, and are too slow for a tick.
 #pragma once
 
 #include <optional>
@@ -24,16 +24,16 @@ double mean_gap_m(const JointEdges& edges);
 // patches at the joint. It is negative where the patches overlap.
 double mean_advance_m(const JointEdges& edges);
 
-// Largest deviation that counts as rounding.
+// Largest deviation in metres that counts as rounding.
 inline constexpr double rounding_m = 1e-12;
 
 // Returns true if the patches continue straight ahead, neither sideways nor backwards, across every gap wider
 // than `touching_m`.
 bool continues_ahead(const JointEdges& edges, double touching_m);
 
-// Returns the stretch s that minimises the sum of |before' - after' / s|^2 over the derivatives across the
-// joint. It is exact if the derivatives differ by a constant factor. If they point in different directions,
-// it is the ratio of their lengths.
+// Returns the stretch s that minimises the sum of |after' - s before'|^2 over the derivatives across the
+// joint. It is exact if the derivatives differ by a constant factor. If they point in very different
+// directions, it is the ratio of their lengths.
 double stretch_at_edge(const JointEdges& edges);
 
 // Returns true if the derivatives of both patches agree up to order `continuity`, so that no blend is needed.
@@ -54,16 +54,17 @@ double mean_length_m(const Surface& surface, double start, double end);
 // compared, because the surface may bend there by any angle.
 std::optional<Vector3> find_fold(const Surface& surface);
 
-// Finds folds in the strip from v = `start` to v = `end`. Finds sudden turns of the normal, as find_fold()
-// does, and slow ones in two forms: normals that oppose the normals at both edges although these agree, and
-// neighbouring lines that oppose each other although they agree at both edges.
+// Returns a position of a fold in the strip from v = `start` to v = `end`; nothing if there is no fold. A
+// fold is a sudden turn of the normal, as for find_fold(), or a slow turn in one of two forms: a normal
+// opposes the normals at both edges of the strip, although these agree with each other; or the normals on two
+// neighbouring lines of constant u oppose each other, although they agree at both edges.
 std::optional<Vector3> find_fold_between(const Surface& surface, double start, double end);
 
-// Length of a bridge. At its ends the bridge has the same speed relative to each patch; the speed follows
-// from the chords between the edges and the mean derivatives there. The parameter length is reduced until the
-// bridge does not fold. Between rings it is also reduced, to about a quarter at most, until the bridge is
-// nowhere narrower than the narrower ring. Fails for edges at which the derivatives along v vanish, and for
-// bridges that fold at any length unless `may_fold` is set.
+// Length of a bridge along v. It follows from the mean distance between the edges and the mean derivative of
+// the first patch along v there; the second patch is stretched to have the same derivative. The length is
+// reduced until the bridge does not fold. Between rings it is also reduced, to about a quarter at most, until
+// the bridge is nowhere narrower than the narrower ring. Fails for edges at which the derivatives along v
+// vanish, and for bridges that fold at any length unless `may_fold` is set.
 struct BridgeLength {
   double parameter = 0.0;
   double stretch_of_after = 1.0;

@@ -35,8 +35,8 @@ double nearest_to(const std::vector<double>& sorted, double knot) {
   return std::abs(*after - knot) < std::abs(after[-1] - knot) ? *after : after[-1];
 }
 
-// Returns pairs of knots: an inner knot of `from`, and the knot of `to` that it nearly equals. Knots of
-// `from` are omitted if another knot of `from` is nearer to that knot of `to`.
+// Returns pairs of knots: an inner knot of `from`, and the knot of `to` that it nearly equals. A knot of
+// `from` is omitted if another knot of `from` is nearer to the same knot of `to`.
 std::vector<std::pair<double, double>> find_moves(const KnotVector& from, const KnotVector& to) {
   const std::vector<double> own = from.breakpoints(), targets = to.breakpoints();
   const double reach = snap_fraction * from.domain_length();
@@ -97,8 +97,8 @@ std::string patch_name(std::size_t patch) {
   return "patch " + std::to_string(patch + 1) + " of the row";
 }
 
-// Changes the patch's u domain to that of the first patch. A domain that is already equal is not changed,
-// which avoids rounding errors.
+// Changes the patch's u domain to the u domain of the first patch. A domain that is already equal is not
+// changed, which avoids rounding errors.
 Result<Surface> match_domain(const Surface& first, const Surface& patch) {
   const double start = first.u.domain_start(), end = first.u.domain_end();
   if (patch.u.domain_start() == start && patch.u.domain_end() == end) return patch;
@@ -119,8 +119,8 @@ double nearest_parameter(const EdgeCurve& curve, const Vector3& point, double gu
   return t;
 }
 
-// Returns the parameters of b's points nearest to a's points. The search starts from points at equal
-// fractions of the length. Both curves must be open or have seams close to each other.
+// Returns, for each parameter of `a` in `along`, the parameter of the nearest point of `b`. The search starts
+// from points at equal fractions of the length. Both curves must be open or have seams close to each other.
 std::vector<double> corresponding_parameters(const EdgeCurve& a, const EdgeCurve& b,
                                              const std::vector<double>& along) {
   constexpr int steps = 129;
@@ -166,9 +166,9 @@ Result<Surface> align_seam(const Surface& before, const Surface& patch, const Jo
   const EdgeCurve a = edge_curve(before, Side::v_end), b = edge_curve(patch, Side::v_start);
   const Vector3 seam_point = position(a, a.knots.domain_start());
   const double nearest = nearest_on_ring(b, seam_point);
-  // If the point of this ring nearest to the previous ring's seam is close enough to that seam, it becomes
-  // the seam instead of the best fit. Close enough is the tolerance for rings that do not touch, and this
-  // fraction of the tolerance for rings that touch. The point and the best fit differ if the parameters
+  // Let p be the point of this ring that is nearest to the previous ring's seam. If p is close enough to that
+  // seam, p becomes the seam instead of the best fit. The limit is the tolerance for rings that do not touch,
+  // and this fraction of the tolerance for rings that touch. p differs from the best fit if the parameters
   // differ or, by rounding, for identical rings with corners.
   constexpr double coincidence_fraction = 1e-6;
   const double near_m =
@@ -183,7 +183,8 @@ Result<Surface> align_seam(const Surface& before, const Surface& patch, const Jo
 // measuring.
 constexpr int fitted_per_piece = 5, checked_per_piece = 10, measured_per_piece = 40;
 
-// Returns evenly spaced parameters in each piece. In a periodic direction, the end of the period is omitted.
+// Returns parameters that are evenly spaced in each polynomial piece. In a periodic direction, the end of the
+// period is omitted.
 std::vector<double> dense_parameters(const KnotVector& knots, int per_piece) {
   std::vector<double> dense = nested_parameters(knots, per_piece, 0).parameters;
   if (knots.is_periodic()) dense.pop_back();
@@ -304,7 +305,7 @@ Result<Surface> elevate(const Surface& patch, int degree_u, int degree_v) {
 }
 
 // Fractions of the tolerance: the largest distance between edges that count as shared, and the largest error
-// that different parameters of shared edges may leave.
+// that may remain where shared edges have different parameters.
 constexpr double distance_fraction = 0.75, matching_fraction = 0.25;
 
 // Returns true if the two edges are one curve in space but have different parameters.
@@ -354,8 +355,9 @@ Result<CompatiblePatches> make_compatible(std::vector<Surface> patches, const Jo
   for (std::size_t p = 0; p < patches.size(); ++p) {
     if (patches[p].u.is_periodic() != patches[0].u.is_periodic()) {
       return Error(ErrorCode::mismatch,
-                   patch_name(p) + (patches[p].u.is_periodic() ? " is closed around" : " is open around") +
-                       " and the first is not; open or close one of them");
+                   patch_name(p) +
+                       (patches[p].u.is_periodic() ? " has a closed ring as its edge" : " has an open edge") +
+                       " and the first has not; open or close one of them");
     }
     auto stretched = match_domain(patches[0], patches[p]);
     if (!stretched) return stretched.error();

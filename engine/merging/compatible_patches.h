@@ -1,5 +1,6 @@
 // Makes consecutive patches of a row compatible along u: one degree, domain and knot vector, adjacent seams,
-// equal parameters on shared edges. Pure functions, outside the tick; any thread.
+// equal parameters on shared edges. The functions have no side effects, may run on any thread, and are too
+// slow for a tick.
 #pragma once
 
 #include <vector>
@@ -19,17 +20,17 @@ struct JoinRequest {
   double twist = 0.0;              // rotation of each ring from its best fit, as a fraction of a turn
   int largest_count = 200;         // largest number of control points in each direction
   bool shared_parameters = false;  // edges are known to have equal parameters; seams are not searched
-  bool bridges_may_fold = false;  // for edges that the user has paired in a direction other than the best fit
-  Progress progress = {};         // progress of the whole request
+  bool bridges_may_fold = false;   // true if the user has chosen the relative direction of edges
+  Progress progress = {};          // progress of the whole request
 };
 
 // Largest distance of knots that are snapped together, as a fraction of the domain. They are snapped only if
 // that changes the surface little.
 inline constexpr double snap_fraction = 1e-5;
 
-// Returns the seam, moved by at most `snap_fraction` of the period so that a knot of the second ring
-// coincides with the first ring's seam. If there is no such knot, the closest pair of knots is made to
-// coincide. Both periods must have the same length.
+// Returns the seam of the second ring, moved by at most `snap_fraction` of the period so that a knot of the
+// second ring coincides with the first ring's seam. If there is no such knot, the closest pair of knots is
+// made to coincide. Both periods must have the same length.
 double align_seam_to_knots(const KnotVector& first, const KnotVector& second, double seam);
 
 struct SnappedKnots {
@@ -37,9 +38,9 @@ struct SnappedKnots {
   double deviation_m = 0.0;  // deviation from the original surface at equal parameters
 };
 
-// Snaps the surface's knots along u to those of `knots` that they nearly equal. Both must have the same
-// domain. Returns the surface unchanged if the deviation would exceed `most_m`. Knots at the ends are not
-// moved, nor are knots with an exact counterpart nearby.
+// Snaps the surface's knots along u to the knots in `knots` that they nearly equal. Both must have the same
+// domain. Returns the surface unchanged if the deviation would exceed `most_m`. The first and the last knot
+// are not moved.
 SnappedKnots snap_knots(const Surface& surface, const KnotVector& knots, double most_m);
 
 struct CompatiblePatches {

@@ -77,13 +77,13 @@ struct CornerLine {
   std::optional<Vector3> centre_m;  // centre of the rolling ball; empty for a sharp edge
 };
 
-// Stores corner lines, because fits evaluate the same lines repeatedly. One owner.
+// Cache of corner lines, because fits evaluate the same lines repeatedly. Not safe for concurrent use.
 class CornerLines {
  public:
   // `patches` must outlive this object. A radius of 0 gives a sharp edge.
   CornerLines(const CrossingPatches& patches, double fillet_m);
 
-  // Returns nothing if the line does not cross the second patch or no ball fits.
+  // Returns the corner line at u; nothing if the line does not cross the second patch or no ball fits.
   const std::optional<CornerLine>& at(double u);
 
   // Returns the points (u, v) on the second patch at which its lines start, enough of them to resolve the
@@ -103,8 +103,9 @@ class CornerLines {
 
 using std::numbers::pi;
 
-// Radius of the circle, relative to the distance of the loop's farthest point from the pole. The circle
-// covers at most the second fraction of the remaining distance to the far pole.
+// The circle at which the lines become lines of constant u has a radius of circle_ratio times the distance of
+// the loop's farthest point from the near pole. It covers at most most_rest_fraction of the rest of the way
+// to the far pole.
 constexpr double circle_ratio = 1.3, most_rest_fraction = 0.5;
 
 Eigen::Vector2d polar(double radius, double angle) {
@@ -133,7 +134,7 @@ LinesFromLoop::LinesFromLoop(const Surface& body, const std::vector<Eigen::Vecto
     shortest = std::min(shortest, length);
   }
   bend_ = to_circle / (to_circle + 1.0 - circle_);
-  // Limit on the speed relative to the shortest line, which would otherwise turn back.
+  // Largest speed of the lines, relative to the length of the shortest line, which would otherwise turn back.
   constexpr double most_shortest_ratio = 1.5;
   speed_at_bend_ = std::min(to_circle, most_shortest_ratio * shortest) / bend_;
   start_speed_m_ = most_shortest_ratio * shortest_m;
@@ -181,8 +182,7 @@ double LinesFromLoop::metres_per_step(const Eigen::Vector2d& point, const Eigen:
 }
 
 constexpr int lines_checked = 24;
-// Number of lines in the finer search. It looks for positions, between the lines that were checked first,
-// where a body leaves the other one.
+// Number of lines in the finer search for positions where the first body leaves the other one again.
 constexpr int lines_searched = 8 * lines_checked;
 
 Surface run_along_v(const Surface& patch) {
@@ -327,8 +327,8 @@ Surface start_at_nearer_pole(const Surface& body, const std::vector<LineCrossing
   return sum > centre * static_cast<double>(crossings.size()) ? reverse_along_v(body) : body;
 }
 
-// Returns, for each crossing line of the first patch, where it starts along the second patch. This is the u
-// of the second patch or, beside a pole, the angle about the loop in turns.
+// Returns, for each line of the first patch that crosses the second, where it starts along the second patch.
+// This is the u of the second patch or, beside a pole, the angle about the loop in turns.
 std::vector<double> find_starts_along(const CrossingPatches& patches,
                                       const std::vector<LineCrossing>& crossings) {
   std::vector<double> starts;
@@ -342,7 +342,8 @@ std::vector<double> find_starts_along(const CrossingPatches& patches,
   return starts;
 }
 
-// Returns the differences between consecutive starts, wrapped into half a period around 0.
+// Returns the differences between consecutive starts. If there is a period, the differences are wrapped to at
+// most half of it.
 std::vector<double> steps_between(std::vector<double> starts, bool closed, double period) {
   if (closed && !starts.empty()) starts.push_back(starts.front());
   std::vector<double> steps;

@@ -1,6 +1,6 @@
 // Merges two intersecting patches at an edge or a fillet. A single B-spline patch cannot represent such a
 // corner exactly, so both patches are resampled along lines of constant u that meet on the intersection, then
-// fitted and joined. Pure function, outside the tick.
+// fitted and joined. The function has no side effects and is too slow for a tick.
 #pragma once
 
 #include "engine/merging/join_row.h"

@@ -72,8 +72,9 @@ JointState joint_state(const std::vector<PreparedRow>& rows, std::size_t joint, 
 }
 
 // Limits of blends at small gaps where the patches do not continue straight ahead, so that a bridge as long
-// as the gap would make a step or fold. A blend is as long as one polynomial piece, limited to a length
-// between these multiples of the gap. At most this fraction of each patch is cut off.
+// as the gap would make a step or fold. A blend is as long as the shortest polynomial piece beside the joint,
+// but at least least_gap_ratio and at most most_gap_ratio times the gap. At most most_cut_fraction of each
+// patch is cut off.
 constexpr double least_gap_ratio = 10.0, most_gap_ratio = 40.0, most_cut_fraction = 0.25;
 // Largest overlap, relative to the gap, that is bridged without cutting if the patches are too short to be
 // cut.
@@ -327,8 +328,8 @@ Result<double> measured_deviation_m(const Surface& merged, const std::vector<Sur
   return largest;
 }
 
-// Returns the tolerance that remains for fitting the joints. At a joint that is not bridged, each edge moves
-// by half the gap.
+// Returns the tolerance that remains for fitting the joints, at least 5 % of the whole. At a joint that is
+// not bridged, each edge moves by half the gap.
 double tolerance_left_m(const PreparedRow& row, const JoinRequest& request) {
   double gap_m = 0.0;
   for (const JointMeasure& joint : row.joints) gap_m = std::max(gap_m, joint.bridged ? 0.0 : joint.gap_m);

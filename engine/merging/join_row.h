@@ -1,5 +1,6 @@
 // Joins patches that follow each other along v. Rows are first prepared: made compatible, cut back for
-// blends, and measured at their joints. Pure functions, outside the tick; any thread.
+// blends, and measured at their joints. The functions have no side effects, may run on any thread, and are
+// too slow for a tick.
 #pragma once
 
 #include <vector>
@@ -32,8 +33,8 @@ struct PreparedRow {
 // first row, and are cut back and joined at the same parameters. They are cut back in two cases: for a
 // requested blend if the joint lacks the continuity, and at small gaps where the patches do not continue
 // straight ahead, far enough to avoid a step. Fails if a joint touches in one row and is open in another
-// without a blend, or if a blend takes more than half of a patch. Also fails where make_compatible() and
-// bridge_length() fail.
+// without a blend, if a blend takes more than half of a patch, or if make_compatible() or bridge_length()
+// fails.
 Result<std::vector<PreparedRow>> prepare_rows(std::vector<std::vector<Surface>> rows,
                                               const JoinRequest& request);
 

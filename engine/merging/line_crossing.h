@@ -17,16 +17,17 @@ struct LineCrossing {
 };
 
 // Finds where lines cross a surface. A triangle mesh gives start values; it is fine enough for all crossings
-// steeper than a few degrees. The results are exact on the surface, except for rounding. Immutable; any
-// thread.
+// steeper than a few degrees. The results are exact on the surface, except for rounding. The object does not
+// change and may be used by several threads.
 class CrossingFinder {
  public:
   explicit CrossingFinder(const Surface& other);
 
-  // Returns the crossings in order of v. A line that only touches the surface may be missed.
+  // Returns the crossings of a line of constant u of `surface`, in order of v. A line that only touches the
+  // surface may be missed.
   std::vector<LineCrossing> intersect_line(const Surface& surface, double u) const;
 
-  // Returns the crossings in order of distance, up to `length_m` along the unit direction.
+  // Returns the crossings of a straight line in order of distance, up to `length_m` along the unit direction.
   std::vector<LineCrossing> intersect_ray(const Vector3& from_m, const Vector3& direction,
                                           double length_m) const;
 

@@ -217,7 +217,7 @@ std::vector<ChosenEdges> edges_to_join(const std::vector<Surface>& patches, cons
   return pairs;
 }
 
-// Adds a match of the two ends of a row of tubes that are still free, if they touch.
+// If exactly two ends of a row of tubes are still free, and these two touch, adds a match of them.
 void add_closing_ends(const std::vector<Surface>& tubes, double touching_m, std::vector<EdgeMatch>& matches) {
   std::vector<PatchEdge> free;
   for (int p = 0; p < static_cast<int>(tubes.size()); ++p) {
@@ -314,7 +314,7 @@ Status check_left_open(const Arrangement& arrangement, const std::vector<ChosenE
 
 Error cannot_close(const OpenEdges& edges) {
   return Error(ErrorCode::mismatch, edge_name(edges.a) + " and " + edge_name(edges.b) +
-                                        " cannot be joined to close the surface around: " + edges.reason);
+                                        " cannot be joined to close the surface: " + edges.reason);
 }
 
 constexpr int most_patches = 64;

@@ -1,5 +1,5 @@
-// Merges patches into one surface: lays them out in a grid, then joins them along v and along u. Pure
-// functions, outside the tick; any thread.
+// Merges patches into one surface: lays them out in a grid, then joins them along v and along u. The
+// functions have no side effects, may run on any thread, and are too slow for a tick.
 #pragma once
 
 #include <optional>
@@ -43,11 +43,11 @@ struct Merged {
 };
 
 // Merges patches. A row or grid whose last edges meet its first becomes periodic with the requested
-// continuity, or stays open if that fails. Poles are cut off, and a bridge joins the tubes, if they were
-// chosen or are the nearest ends of tubes that do not touch. Bridges may fold only if some chosen pair has a
-// given direction. A single patch is returned unchanged. Fails for no patches, more than 64, or two identical
-// ones; for contradicting chosen edges; for patches that do not fill a grid; if join_row() fails; or for a
-// deviation above the tolerance. Can be stopped.
+// continuity, or stays open if that fails. Poles that are chosen edges, or the nearest ends of two tubes, are
+// cut off, and a bridge joins the tubes. Bridges may fold only if some chosen pair has a given direction. A
+// single patch is returned unchanged. Fails for no patches, more than 64, or two identical ones; for
+// contradicting chosen edges; for patches that do not fill a grid; if join_row() fails; or for a deviation
+// above the tolerance. Can be stopped.
 Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& request);
 
 }  // namespace spoonbill

@@ -1,4 +1,5 @@
-// Edges of patches, and the rings at the ends of tubes. Pure functions, outside the tick; any thread.
+// Edges of patches, and the rings at the ends of tubes. The functions have no side effects, may run on any
+// thread, and are too slow for a tick.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,8 +15,8 @@ enum class Side { u_start, u_end, v_start, v_end };
 
 inline constexpr Side all_sides[] = {Side::u_start, Side::u_end, Side::v_start, Side::v_end};
 
-// across() returns the parameter direction that leads across the side, and is constant along its edge.
-// is_start() returns whether the side is at the start of that direction.
+// across() returns the direction whose parameter is constant along the edge of the side. is_start() returns
+// true if the side is at the start of that direction.
 Direction across(Side side);
 bool is_start(Side side);
 Side opposite(Side side);
@@ -80,8 +81,8 @@ double bend_stretch(const Eigen::Matrix3d& turn);
 // case above 45 degrees.
 bool is_bend(const Eigen::Matrix3d& turn);
 
-// Fills the columns of a net between two rings along a bend. The bend leaves the first ring in the direction
-// `outward`. `turn` rotates the last ring back to the first.
+// Fills the columns of a net between the ring in column `first` and the ring in column `last`, along a bend.
+// The bend leaves the first ring in the direction `outward`. `turn` rotates the last ring back to the first.
 void fill_bend(ControlNet& net, int first, int last, const Vector3& outward, const Eigen::Matrix3d& turn);
 
 }  // namespace spoonbill

@@ -1,4 +1,5 @@
-// Resampling of trimmed patches as patches without trims. Pure functions, outside the tick.
+// Resampling of trimmed patches as patches without trims. The functions have no side effects and are too slow
+// for a tick.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,5 +1,6 @@
 // Ends of tubes: closing seams, capping open rings, and opening poles so that another tube can be joined. A
-// tube is periodic in one direction and open in the other. Pure functions, outside the tick; any thread.
+// tube is periodic in one direction and open in the other. The functions have no side effects, may run on any
+// thread, and are too slow for a tick.
 #pragma once
 
 #include <utility>

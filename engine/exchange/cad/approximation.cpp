@@ -22,7 +22,7 @@
 namespace spoonbill {
 namespace {
 
-// Boundary between two smooth pieces, across which derivatives up to order `continuity` agree.
+// Parameter at which two smooth parts of a patch meet. Derivatives up to order `continuity` agree across it.
 struct PatchBreak {
   double parameter;
   int continuity;
@@ -30,7 +30,8 @@ struct PatchBreak {
 
 struct PatchDirection {
   std::vector<PatchBreak> breaks;  // increasing, both ends of the domain included
-  // True if the end meets the start with the continuity of the first break; the result is then periodic.
+  // True if the end of the patch meets its start, with the continuity of the first break. The approximation
+  // is then periodic.
   bool closed = false;
 };
 
@@ -42,15 +43,17 @@ struct Patch {
 using PointRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr int checks_per_piece = 8;
-// Fraction of the tolerance that checks may use, so that points between two checks are within it too.
+// Largest deviation at a checked point, as a fraction of the tolerance. It is below 1, so that points between
+// two checks are within the tolerance too.
 constexpr double allowed_fraction = 0.8;
 
-// Number of equal pieces into which each smooth piece of a direction is divided.
+// Number of equal knot spans between each two successive breaks of a direction.
 using Pieces = std::vector<int>;
 
 Pieces initial_pieces(const PatchDirection& direction, int degree) {
   const std::size_t count = direction.breaks.size() - 1;
-  // Interpolation over a period with fewer pieces than the degree is badly conditioned.
+  // Interpolation over a period with few knot spans is badly conditioned. A period therefore gets more than
+  // twice as many spans as the degree.
   const int smallest =
       direction.closed ? (2 * degree + static_cast<int>(count)) / static_cast<int>(count) : 1;
   return Pieces(count, smallest);
@@ -145,7 +148,8 @@ Eigen::MatrixXd distances(const Patch& patch, const Surface& surface, const std:
   return result;
 }
 
-// Returns the largest distance within each piece along the rows of `distances`.
+// Returns the largest distance within each knot span. Successive rows of `distances` are for increasing
+// parameters, checks_per_piece for each span.
 std::vector<double> piece_errors(const Eigen::MatrixXd& distances, std::size_t pieces) {
   std::vector<double> errors(pieces, 0.0);
   for (std::size_t k = 0; k < pieces; ++k) {
@@ -155,7 +159,7 @@ std::vector<double> piece_errors(const Eigen::MatrixXd& distances, std::size_t p
   return errors;
 }
 
-// Divides each smooth piece whose error is too large into more parts. Returns true if any piece was divided.
+// Adds knot spans between two breaks where the error is too large. Returns true if any were added.
 bool refine(const std::vector<double>& errors, double allowed_m, int degree, Pieces& pieces) {
   bool refined = false;
   std::size_t piece = 0;
@@ -163,7 +167,7 @@ bool refine(const std::vector<double>& errors, double allowed_m, int degree, Pie
     double largest = 0.0;
     for (int i = 0; i < count; ++i) largest = std::max(largest, errors[piece++]);
     if (largest <= allowed_m) continue;
-    // On a smooth patch, the error falls with the power degree + 1 of the length of a piece.
+    // On a smooth patch, the error is proportional to the length of a knot span to the power of degree + 1.
     const double factor = std::pow(largest / allowed_m, 1.0 / (degree + 1));
     count = std::max(count + 1, static_cast<int>(std::ceil(count * std::clamp(factor, 1.1, 2.0))));
     refined = true;
@@ -176,8 +180,8 @@ int count_control_points(const PatchDirection& direction, const Pieces& pieces, 
   return knots ? knots->control_point_count() : control_point_count_range.high + 1;
 }
 
-// Approximates the patch with one degree. Returns nullopt if too many control points would be needed, and an
-// error if the patch is not finite.
+// Approximates the patch by a surface of the given degree. Returns nullopt if too many control points would
+// be needed, and an error if the patch is not finite.
 Result<std::optional<PatchFit>> approximate_with_degree(const Patch& patch, double tolerance_m, int degree) {
   Pieces u_pieces = initial_pieces(patch.u, degree), v_pieces = initial_pieces(patch.v, degree);
   const double allowed_m = allowed_fraction * tolerance_m;

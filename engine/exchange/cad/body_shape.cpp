@@ -310,7 +310,8 @@ bool is_closed_surface(const Surface& surface) {
 }
 
 // Moves the seams of periodic directions to where no loop crosses them. A surface that closes and has only
-// holes is divided into two parts. Refused: loops that leave no such position.
+// holes is divided into two parts. Refused: loops that leave no such position for a seam, and holes that
+// leave no room for the cut.
 Result<std::vector<TrimmedSurface>> open_surface(const Surface& surface, const std::vector<TrimLoop>& trims) {
   TrimmedSurface part{surface, trims};
   for (const Direction direction : {Direction::u, Direction::v}) {
@@ -322,8 +323,9 @@ Result<std::vector<TrimmedSurface>> open_surface(const Surface& surface, const s
   return divide(part, surface.u.is_periodic() ? Direction::u : Direction::v);
 }
 
-// Makes a face for each outer loop, or one for the whole surface with its holes. `geometry` is the surface of
-// the part. It is open, and no loop leaves its domain.
+// Makes a face for each outer loop, with the holes in it. If there are only holes or no loops, makes one face
+// of the whole surface with the holes. `geometry` is the surface of the part; it is not periodic, and no loop
+// may leave its domain.
 Result<std::vector<TopoDS_Face>> make_faces(const SplineGeometry& geometry, const TrimmedSurface& part) {
   const auto outlines = make_outlines(geometry, part);
   if (!outlines) return outlines.error();
@@ -362,8 +364,8 @@ TopoDS_Shape make_compound(const std::vector<TopoDS_Face>& faces) {
   return compound;
 }
 
-// Sews the faces of a divided surface into one shell with shared edges. Returns a null shape if the faces do
-// not meet.
+// Sews the faces of a divided surface into one shell with shared edges. Returns a null shape if this does not
+// result in a valid shell with all faces.
 TopoDS_Shape sew(const std::vector<TopoDS_Face>& faces) {
   BRepBuilderAPI_Sewing sewing(sewing_tolerance_mm);
   for (const TopoDS_Face& face : faces) sewing.Add(face);

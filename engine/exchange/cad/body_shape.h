@@ -18,25 +18,25 @@ struct BodyShape {
 
 struct PartFaces {
   std::vector<TopoDS_Face> faces;  // with the normals of the surface
-  bool was_cut = false;  // true if the surface was divided into two parts; `faces` are those of both
+  bool was_cut = false;  // true if the surface was divided into two parts; `faces` has the faces of both
 };
 
-// Builds the faces of the part of a surface that its trims keep. A face's edge ends at each corner of its
-// loop. A surface that closes and has only holes is divided into two parts, because CAD systems do not
-// support a face between poles without an outer edge. Fails where build_body_shape() does.
+// Builds the faces of the part of a surface that remains after trimming. Each trim loop is divided into edges
+// at its corners. A surface that closes and has only holes is divided into two parts, because CAD systems do
+// not support a face between poles without an outer edge. Fails for the same reasons as build_body_shape().
 Result<PartFaces> build_faces(const CadSurface& part);
 
 // Returns a shell of one face.
 TopoDS_Shell make_shell(const TopoDS_Face& face);
 
 // Builds a solid from a surface that closes, otherwise an open shell. A trimmed surface becomes one shell, or
-// a compound of a shell for each connected component.
+// a compound with one shell for each connected component.
 //
 // A side whose control points coincide is a pole of the body; two opposite sides that coincide are its seam.
 // The surface closes if every side is a pole or part of a seam. Faces of a surface that closes, trimmed or
-// not, face outwards, whatever the direction of the surface's normals. A face of a solid becomes a shell and
-// keeps its orientation. Refused: a surface or trim loops from which OpenCASCADE cannot build a valid shape,
-// and loops that leave no position for a seam.
+// not, have outward normals, whatever the direction of the surface's normals. A face of a solid becomes a
+// shell and keeps its orientation. Refused: a surface or trim loops from which OpenCASCADE cannot build a
+// valid shape, and loops that leave no position for a seam.
 Result<BodyShape> build_body_shape(const CadSurface& part);
 
 }  // namespace spoonbill

@@ -17,8 +17,8 @@ namespace spoonbill {
 // Makes OpenCASCADE print nothing, compute in millimetres, and keep geometry as it is. Call once.
 void prepare_occt();
 
-// set_step_schema() and set_file_unit() set options of OpenCASCADE for later files; write_cad() calls both.
-// `unit` is mm, cm, m or in.
+// set_step_schema() and set_file_unit() set options of OpenCASCADE for files that are written later;
+// write_cad() calls both. `unit` is mm, cm, m or in.
 void set_step_schema(StepSchema schema);
 void set_file_unit(std::string_view unit);
 
@@ -46,8 +46,9 @@ Result<CadFileContent> write_cad(const CadModel& model, const CadWriting& writin
                                  const Progress& progress = {});
 
 // Joins the surfaces that have the same CadSurface::solid into solids, as write_cad() does, and meshes these
-// solids. All other surfaces are loose. Surfaces that OpenCASCADE cannot join are loose too, as are those of
-// a solid without a watertight mesh; a note reports them. Refused: more triangles than the limit.
+// solids. All other surfaces are returned as loose. So are surfaces that OpenCASCADE cannot join, and the
+// surfaces of a solid without a watertight mesh; a note reports these two. Refused: more triangles than the
+// limit.
 Result<CadSolids> mesh_solids(const CadModel& model, const SolidMeshing& meshing,
                               const Progress& progress = {});
 

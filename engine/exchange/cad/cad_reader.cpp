@@ -221,7 +221,7 @@ Result<Content> read_iges(const std::filesystem::path& file, const Progress& pro
   return content;
 }
 
-// Stores the unit, and adds a note if none is known.
+// Stores the file's unit of length. Adds a note if neither the file nor the caller states a known unit.
 void add_unit(const FileUnit& unit, const CadReading& reading, CadModel& model) {
   model.unit = unit.name;
   model.unit_declared = unit.declared;
@@ -275,7 +275,8 @@ void add_loss_notes(const Content& content, CadModel& model) {
   }
 }
 
-// Adds a note about solids, whose faces become one body each. States how many of the faces were converted.
+// Adds a note about solids, because each of their faces becomes a body. The note states how many of the faces
+// were converted.
 void add_solid_notes(const std::vector<NamedFace>& faces, const std::vector<bool>& converted,
                      CadModel& model) {
   std::set<std::string> solids;
@@ -295,14 +296,15 @@ void add_solid_notes(const std::vector<NamedFace>& faces, const std::vector<bool
                         "; on export they are joined again where they still close");
 }
 
-// Returns the length in metres of one unit of OpenCASCADE's numbers, which are millimetres. A unit that the
-// file does not declare counts as 1 mm, unless the caller gives it.
+// Returns the factor from OpenCASCADE's coordinates to metres. OpenCASCADE has multiplied the file's numbers
+// by `unit.millimetres`. The factor undoes this if the caller states another unit, or if the file declares
+// none; the file's unit is then 1 mm.
 double find_scale(const FileUnit& unit, const CadReading& reading) {
   if (reading.unit_m > 0.0) return reading.unit_m / unit.millimetres;
   return unit.declared ? 1e-3 : 1e-3 / unit.millimetres;
 }
 
-// Largest deviation that is reported. Larger deviations are reported as this value.
+// Largest deviation of trim loops that is reported. Larger deviations are reported as this value.
 constexpr double trim_deviation_limit_m = 1e6;
 
 CadSurface make_cad_surface(const NamedFace& face, FaceSurface found) {
@@ -337,8 +339,8 @@ Result<FaceSurface> convert_near_face(const TopoDS_Face& face, double scale, dou
   return found;
 }
 
-// Passes the surfaces of all faces to the sink. Notes report solids and faces that cannot be converted. Fails
-// if no face can be converted.
+// Passes the surfaces of all faces to the sink. Adds notes about solids, about faces that deviate from their
+// edges in the file, and about faces that cannot be converted. Fails if no face can be converted.
 Status convert_faces(const std::vector<NamedFace>& faces, double scale, const CadReading& reading,
                      const SurfaceSink& sink, const Progress& progress, CadModel& model) {
   std::optional<Error> first;
@@ -347,7 +349,7 @@ Status convert_faces(const std::vector<NamedFace>& faces, double scale, const Ca
   for (std::size_t k = 0; k < faces.size(); ++k) {
     auto found = convert_near_face(faces[k].face, scale, reading.tolerance_m);
     if (found) {
-      // The deviation of an approximated surface may add to that of its edges.
+      // The deviation of an approximated surface may add to the deviation of its edges.
       if (found->trim_deviation_m > reading.tolerance_m + found->deviation_m) {
         const std::string place = face_place_text(faces[k].face, scale);
         bent.push_back("'" + faces[k].name + "'" + (place.empty() ? "" : " at " + place) + " is up to " +

@@ -69,7 +69,8 @@ struct Character {
   std::size_t bytes;
 };
 
-// Returns the character at `start` of valid UTF-8 beyond ASCII. A line break within a character is skipped.
+// Decodes the non-ASCII character that begins at `start` in valid UTF-8. A line break within the character is
+// skipped.
 Character character_at(std::string_view text, std::size_t start) {
   const auto byte = [&](std::size_t k) {
     return static_cast<std::uint32_t>(static_cast<unsigned char>(text[k]));
@@ -115,7 +116,7 @@ std::string to_step_ascii(std::string_view text) {
   return ascii;
 }
 
-// Displacement below which a closed surface counts as unchanged.
+// Largest displacement of control points by which a surface can be closed without a note.
 constexpr double smallest_move_m = 1e-9;
 
 int face_count(const TopoDS_Shape& shape) {

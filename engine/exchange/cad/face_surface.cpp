@@ -36,8 +36,9 @@ namespace spoonbill {
 namespace {
 
 constexpr int samples_per_edge = 16;
-// Largest distance from the side of a box at which an edge counts as being on that side, as a fraction of the
-// box's length. Files store curves less exactly than surfaces.
+// Largest distance in (u, v) between an edge and a side of the parameter box at which the edge counts as
+// being on that side. It is a fraction of the box's length in the same direction. Files store curves less
+// exactly than surfaces.
 constexpr double side_fraction = 1e-5;
 
 // Returns the projections of a point onto the four sides of a box.
@@ -51,8 +52,9 @@ gp_Pnt2d clamp_into(const gp_Pnt2d& point, const ParameterBox& box) {
   return {std::clamp(point.X(), box.u_start, box.u_end), std::clamp(point.Y(), box.v_start, box.v_end)};
 }
 
-// Returns true if all samples of the edge are on the same side of the box. A sample outside the box counts as
-// on a side if it is beyond that side by at most `tolerance` or the edge's own tolerance.
+// Returns true if all samples of the edge are on the same side of the box. A sample is on a side if its
+// distance from the side in space is at most `tolerance` or the edge's own tolerance, and its distance in (u,
+// v), if it is inside the box, is at most side_fraction.
 bool is_on_side(const TopoDS_Edge& edge, const TopoDS_Face& face, const ParameterBox& box, double tolerance) {
   double first = 0.0, last = 0.0;
   const auto curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
@@ -78,8 +80,8 @@ bool is_on_side(const TopoDS_Edge& edge, const TopoDS_Face& face, const Paramete
   return std::any_of(is_near.begin(), is_near.end(), [](bool near) { return near; });
 }
 
-// Returns true if an edge of the face is on none of the four sides of its box, within `tolerance` (in the
-// face's unit) or the edge's own tolerance.
+// Returns true if an edge of the face is on none of the four sides of the parameter box, within `tolerance`
+// (in the face's unit) or the edge's own tolerance.
 bool is_trimmed(const TopoDS_Face& face, const ParameterBox& box, double tolerance) {
   for (TopExp_Explorer edges(face, TopAbs_EDGE); edges.More(); edges.Next()) {
     const TopoDS_Edge& edge = TopoDS::Edge(edges.Current());
@@ -158,7 +160,7 @@ bool is_polynomial(const opencascade::handle<Geom_Curve>& curve) {
   return !opencascade::handle<Geom_Line>::DownCast(curve).IsNull();
 }
 
-// Returns true if OpenCASCADE converts the surface to a B-spline surface exactly.
+// Returns true if OpenCASCADE converts the surface exactly to a B-spline surface that is not rational.
 bool is_polynomial(const Geometry& surface) {
   if (const auto spline = opencascade::handle<Geom_BSplineSurface>::DownCast(surface)) {
     return !spline->IsURational() && !spline->IsVRational();
@@ -179,8 +181,8 @@ bool is_whole(const Geometry& surface, const ParameterBox& box) {
          box.v_end == full.v_end;
 }
 
-// Returns the whole domain of a spline, because the loops of the face trim it. If the face crosses the
-// spline's seam, or for any other surface, returns the box.
+// Returns the whole domain of a B-spline surface that is not rational, because the loops of the face trim it.
+// If the face crosses the surface's seam, or for any other surface, returns the box.
 ParameterBox widen_to_spline(const Geometry& surface, const ParameterBox& box) {
   ParameterBox full;
   surface->Bounds(full.u_start, full.u_end, full.v_start, full.v_end);

@@ -60,7 +60,7 @@ opencascade::handle<StepRepr_GlobalUnitAssignedContext> get_unit_context(
   return opencascade::handle<StepRepr_GlobalUnitAssignedContext>::DownCast(entity);
 }
 
-// Returns true if the context lists units and none of them is null, as units of a damaged file can be.
+// Returns true if the context lists units and none of them is null. Units of a damaged file can be null.
 bool has_all_units(const opencascade::handle<StepRepr_GlobalUnitAssignedContext>& context) {
   if (context.IsNull() || context->Units().IsNull()) return false;
   for (int k = 1; k <= context->NbUnits(); ++k) {
@@ -71,11 +71,11 @@ bool has_all_units(const opencascade::handle<StepRepr_GlobalUnitAssignedContext>
 
 using Entity = opencascade::handle<Standard_Transient>;
 
-// Types of faces: bounded surface, trimmed surface, face of a solid (IGES 5.3, section 4).
+// IGES entity types of faces: bounded surface, trimmed surface, face of a solid (IGES 5.3, section 4).
 constexpr std::array iges_faces{143, 144, 510};
-// Types of surfaces, which are faces unless another entity uses them.
+// IGES entity types of surfaces. A surface is a face unless another entity uses it.
 constexpr std::array iges_surfaces{108, 114, 118, 120, 122, 128, 140, 190, 192, 194, 196, 198};
-// Types of collections, which do not change their members: subfigure, group, subfigure instance.
+// IGES entity types of collections, which do not change their members: subfigure, group, subfigure instance.
 constexpr std::array iges_collections{308, 402, 408};
 constexpr int iges_instance = 408, physically_dependent = 1, dependent_both_ways = 3;
 
@@ -129,7 +129,7 @@ void count_iges(const Entity& entity, bool is_made, bool damaged, LossCount& cou
 using Operator = StepGeom_CartesianTransformationOperator3d;
 using UnitDirection = opencascade::handle<StepGeom_Direction>;
 
-// Relative tolerance for the rounding of files.
+// Relative tolerance for numbers that a file has rounded.
 constexpr double rounding = 1e-4;
 
 gp_XYZ to_vector(const UnitDirection& direction, const gp_XYZ& fallback) {
@@ -138,8 +138,8 @@ gp_XYZ to_vector(const UnitDirection& direction, const gp_XYZ& fallback) {
           direction->DirectionRatiosValue(3)};
 }
 
-// Returns true if the placement mirrors. Missing axes follow from the other axes, the third as their cross
-// product (ISO 10303-42, 4.4.16).
+// Returns true if the placement mirrors. It does not if an axis is missing: the missing axis then follows
+// from the other axes, the third as their cross product (ISO 10303-42, 4.4.16).
 bool mirrors(const Operator& placement) {
   if (placement.Axis1().IsNull() || placement.Axis2().IsNull() || placement.Axis3().IsNull()) return false;
   const gp_XYZ first = to_vector(placement.Axis1(), {1, 0, 0}),

@@ -24,14 +24,15 @@ FileUnit find_unit(const opencascade::handle<StepData_StepModel>& model);
 // OpenCASCADE would otherwise convert nothing.
 FileUnit find_unit(const opencascade::handle<IGESData_IGESModel>& model, const std::filesystem::path& file);
 
-// Numbers of entities that OpenCASCADE omits although it reports success.
+// Numbers of entities in a file, and of those that OpenCASCADE omits although it reports success.
 struct LossCount {
   int faces = 0, lost_faces = 0;          // faces of the file, and faces that did not become a shape
   int instances = 0, lost_instances = 0;  // placed copies of parts of an IGES file, and those lost
   int unread = 0;                         // IGES entities that could not be parsed or have no type
 };
 
-// Counts the losses. Call after the transfer.
+// Counts the entities that OpenCASCADE has omitted. Call after OpenCASCADE has converted the entities to
+// shapes.
 LossCount count_losses(const opencascade::handle<XSControl_WorkSession>& session, FileFormat format);
 
 // Returns the number of placements that OpenCASCADE ignores because they do more than translate and rotate.

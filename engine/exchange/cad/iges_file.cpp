@@ -13,7 +13,7 @@ namespace spoonbill {
 namespace {
 
 constexpr std::size_t section_column = 72, line_limit = 2000, iges_parameter_limit = 26;
-constexpr std::size_t model_scale = 12, unit_flag = 13, unit_parameter = 14;  // counted from 0
+constexpr std::size_t model_scale = 12, unit_flag = 13, unit_parameter = 14;  // indices of global parameters
 
 // Returns the text of all lines of the global section.
 std::string global_text(const std::filesystem::path& file) {
@@ -63,8 +63,8 @@ struct LineCounts {
   std::string last;             // last line of the file, which states the number of lines of each section
   int null_entities = 0;
   long farthest = 0;  // last parameter line that an entity refers to
-  // Number of the first parameter line of the present entity, which the first of its two directory lines
-  // states.
+  // Number of the first parameter line of the entity that is being counted. The first of the entity's two
+  // directory lines states it.
   std::optional<long> parameters_of_next;
 };
 

@@ -39,14 +39,15 @@ constexpr double tolerances_mm[] = {1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1};
 constexpr double expected_gap_m = 2e-5;
 constexpr int gap_samples = 16;
 
-// Index of the part to which each surface geometry belongs. Sewing makes new faces on the same geometry.
+// Index of the part to which each surface geometry belongs. Sewing makes new faces but keeps their
+// geometries, which thus identify the parts.
 using PartOf = std::map<const Geom_Surface*, std::size_t>;
 
-// Number of faces of each part.
+// Number of faces of each part, by the index of the part.
 using FaceCounts = std::map<std::size_t, int>;
 
 struct ClosedShell {
-  TopoDS_Shell shell;  // oriented as most of its faces are
+  TopoDS_Shell shell;  // oriented like most of its faces
   FaceCounts faces;
   bool is_cavity = false;
 };
@@ -189,8 +190,8 @@ Result<AllFaces> collect_all_faces(const std::vector<const CadSurface*>& parts) 
   return all;
 }
 
-// Returns true if every part that has a face in `found` has all its faces there. A part with a face outside
-// the solids belongs to no solid.
+// Returns true if every part that has a face in `found` has all its faces there. A part with only some of its
+// faces in solids could be neither joined nor loose.
 bool are_complete(const FaceCounts& found, const FaceCounts& all) {
   return std::all_of(found.begin(), found.end(),
                      [&](const auto& count) { return count.second == all.at(count.first); });

@@ -1,4 +1,4 @@
-// Joining of the faces of a solid. In the program they are separate surfaces.
+// Joining of the faces of a solid, which are separate surfaces in the program.
 #pragma once
 
 #include <TopoDS_Solid.hxx>
@@ -22,10 +22,10 @@ struct JoinedFaces {
   std::vector<std::size_t> loose;  // indices of the parts that belong to no solid
 };
 
-// Sews edges of the parts that are at most 0.1 mm apart, since approximated faces may have such gaps. The
-// normals of most of a shell's faces decide which side is outside. A shell that is inside out is a cavity of
-// the solid around it, or loose if no solid is around it. Refused: a surface or trim loops from which
-// OpenCASCADE cannot build a face.
+// Joins faces to solids by sewing their edges. Edges may be up to 0.1 mm apart, because approximated faces
+// may have such gaps. The orientation of most of a shell's faces decides which side is outside. A shell whose
+// normals point inwards is a cavity of the solid around it, or loose if no solid is around it. Refused: a
+// surface or trim loops from which OpenCASCADE cannot build a face.
 Result<JoinedFaces> join_faces(const std::vector<const CadSurface*>& parts);
 
 // Returns notes about the joined faces of the solid `name`, one line each. They report bridged gaps that are

@@ -18,15 +18,16 @@
 namespace spoonbill {
 namespace {
 
-// One direction of an OpenCASCADE surface. For each pole (OpenCASCADE's control point), it has the index of
-// the program's control point.
+// One direction of an OpenCASCADE surface. `controls` has, for each pole (OpenCASCADE's control point), the
+// index of the same control point in the program's surface.
 struct OcctDirection {
   TColStd_Array1OfReal knots;
   TColStd_Array1OfInteger multiplicities;
   std::vector<int> controls;
 };
 
-// Returns the knots of one period that starts at a seam of full multiplicity, with clamped ends.
+// Returns the knots of one period with clamped ends. The knot at the seam must have the multiplicity of the
+// degree.
 std::vector<double> clamped_period(const KnotVector& knots) {
   const auto degree = static_cast<std::size_t>(knots.degree());
   std::vector<double> period(degree + 1, knots.domain_start());
@@ -83,7 +84,8 @@ std::vector<double> flat_knots(const TColStd_Array1OfReal& knots,
 
 using ControlMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Returns the control points as a matrix; each row holds the control points of one index along the direction.
+// Returns the control points as a matrix. Row k has the coordinates of all control points whose index along
+// `direction` is k.
 ControlMatrix control_lines(const Surface& surface, Direction direction) {
   const ControlNet& net = surface.net;
   const bool along_u = direction == Direction::u;
@@ -99,7 +101,7 @@ ControlMatrix control_lines(const Surface& surface, Direction direction) {
   return lines;
 }
 
-// Returns the surface with its knots and control points along the direction replaced.
+// Returns the surface `like` with other knots and control points along `direction`.
 Surface replace_controls(const Surface& like, Direction direction, const KnotVector& knots,
                          const ControlMatrix& lines) {
   const bool along_u = direction == Direction::u;
@@ -125,7 +127,8 @@ double largest_point_distance(const ControlMatrix& a, const ControlMatrix& b) {
   return largest;
 }
 
-// Returns one period of the clamped knots of an open direction, with a seam of the given multiplicity.
+// Returns periodic knots that have the inner knots of an open, clamped direction, and a seam of the given
+// multiplicity.
 Result<KnotVector> periodic_knots(const KnotVector& open, int seam_multiplicity) {
   std::vector<double> knots(static_cast<std::size_t>(seam_multiplicity), open.domain_start());
   for (const double knot : open.knots()) {
@@ -135,7 +138,8 @@ Result<KnotVector> periodic_knots(const KnotVector& open, int seam_multiplicity)
   return KnotVector::periodic(open.degree(), std::move(knots));
 }
 
-// Returns the control points of a periodic surface in its open form, for comparison.
+// Returns the control points that a periodic surface has after it is opened at its seam, for comparison with
+// those of an open surface.
 ControlMatrix opened_lines(const Surface& periodic, Direction direction) {
   const KnotVector& before = direction == Direction::u ? periodic.u : periodic.v;
   const auto full = insert_knot(periodic, direction, before.domain_start(), before.degree());
@@ -149,7 +153,9 @@ ControlMatrix opened_lines(const Surface& periodic, Direction direction) {
   return opened;
 }
 
-// Limit for the spread of an edge's control points, as a multiple of the width of the edge.
+// Largest distance of the control points of an edge from their mean at which they are joined to a pole, as a
+// multiple of closing_tolerance_m. It is above 1, because control points are farther apart than the points of
+// their edge.
 constexpr double control_spread = 10.0;
 constexpr int moved_samples = 64;
 

@@ -23,26 +23,27 @@ Result<opencascade::handle<Geom_BSplineSurface>> to_occt(const Surface& surface)
 Result<Surface> from_occt(const Geom_BSplineSurface& surface);
 
 // Makes the surface periodic in `direction`, in which it must be clamped, if its two edges coincide to
-// `tolerance_m`. Returns the surface unchanged if they do not, or if an edge is a single point. As many of
-// the seam's knots are removed as possible without moving a control point of the open form by more than the
-// tolerance.
+// `tolerance_m`. The seam gets the smallest multiplicity at which no control point of the open form moves by
+// more than the tolerance. Returns the surface unchanged if the edges do not coincide, if an edge is a single
+// point, or if no multiplicity is sufficient.
 Surface close_seam(const Surface& surface, Direction direction, double tolerance_m);
 
-// Makes all control points of an edge equal if they coincide to `tolerance_m`. Applies to the edges of both
-// directions.
+// Moves all control points of an edge to their mean if none is farther than `tolerance_m` from it. Applies to
+// the edges at the ends of each direction that is not periodic.
 void close_poles(Surface& surface, double tolerance_m);
 
 struct ClosedSurface {
   Surface surface;
-  double moved_m = 0.0;  // largest displacement of a sample
+  double moved_m = 0.0;  // largest displacement of a sampled surface point
 };
 
 // Closes a surface that find_closing() classifies as solid: its seams become periodic and its poles single
 // points. Any other surface, or a surface that cannot be closed within the tolerance, is returned unchanged.
 ClosedSurface close_exactly(const Surface& surface);
 
-// Returns the Greville parameters, at which a spline with as many control points is interpolated well. Each
-// is the mean of the inner knots that a basis function spans (Greville 1964), shifted into the domain.
+// Returns the Greville parameters, one for each control point. Interpolation at these parameters is well
+// conditioned. Each is the mean of the inner knots that a basis function spans (Greville 1964), shifted into
+// the domain.
 std::vector<double> greville_parameters(const KnotVector& knots);
 
 }  // namespace spoonbill

@@ -292,10 +292,10 @@ Result<std::optional<ShapeMesh>> mesh_with_deflection(const TopoDS_Shape& shape,
 }
 
 // Meshes a closed shape so that faces share the points of their edges, with a smaller deflection at each try.
-// The tries end when samples of faces and edges are within the chord error plus `gap_m`. `gap_m` is the
-// widest gap between two faces, and a shared point cannot be on both faces. Returns the most accurate mesh
-// found, or nullopt if none is watertight. Refused: more triangles than the limit before a watertight mesh is
-// found.
+// The tries end when samples of faces and edges are within the requested chord error plus `gap_m`, the widest
+// gap between two faces. The gap is added, because a shared point cannot be on both faces. Returns the most
+// accurate mesh found, or nullopt if none is watertight. Refused: more triangles than the limit before a
+// watertight mesh is found.
 Result<std::optional<ShapeMesh>> mesh_shape(const TopoDS_Shape& shape, const SolidMeshing& meshing,
                                             double gap_m) {
   std::optional<ShapeMesh> best;
@@ -319,9 +319,8 @@ Result<std::optional<ShapeMesh>> mesh_shape(const TopoDS_Shape& shape, const Sol
 
 // Relative tolerance to which OpenCASCADE integrates volume and area; its default has an error of about 1 %.
 constexpr double integration_tolerance = 1e-6;
-// Allowed difference between the volumes of mesh and solid: volume_slack times the area times the chord
-// error, because narrow bends add to the difference, plus integral_slack times the volume for the error of
-// integration.
+// The volumes of mesh and solid may differ by volume_slack x area x chord error, plus integral_slack x volume
+// for the error of integration. volume_slack is above 1, because narrow bends add to the difference.
 constexpr double volume_slack = 2.0, integral_slack = 1e-3;
 
 CadSolid measure_solid(const std::string& name, const JoinedSolid& joined) {
@@ -402,7 +401,8 @@ class SolidMesher {
     return {};
   }
 
-  // Returns true if mesh and solid have the same volume. The volume of a mesh that folds over differs.
+  // Returns true if mesh and solid have nearly the same volume. A mesh that folds over itself has a different
+  // volume.
   static bool has_same_volume(const ShapeMesh& found, const CadSolid& solid) {
     const double difference_m3 = enclosed_volume_m3(found.mesh) - solid.volume_m3;
     return std::abs(difference_m3) <=

@@ -145,7 +145,7 @@ void join(const Point& end, const Point& lengths, std::vector<CubicPiece>& next)
   }
 }
 
-// Closed chain of pieces along the edges of a wire.
+// Closed chain of cubic curves along the edges of a wire.
 struct EdgeChain {
   std::vector<CubicPiece> pieces;
   std::vector<TopoDS_Edge> edges;
@@ -193,7 +193,7 @@ void add_passages(const CubicPiece& piece, int axis, double level, std::vector<d
   const double a = d0 - 2.0 * d1 + d2, b = d1 - d0, c = d0;
   std::vector<double> turns{0.0, 1.0};
   const double root = std::sqrt(std::max(b * b - a * c, 0.0));
-  // This form of the solution divides by no small difference.
+  // This form of the quadratic formula avoids the cancellation of nearly equal numbers.
   const double q = -(b + std::copysign(root, b));
   for (const double turn : {q / a, c / q}) {
     if (turn > 0.0 && turn < 1.0) turns.push_back(turn);
@@ -280,7 +280,8 @@ Result<TrimLoop> make_loop(const std::vector<CubicPiece>& chain, const KnotVecto
 }
 
 constexpr int samples_per_piece = 8, nearest_steps = 8;
-// Samples nearer to an end of an edge than this fraction of its length count as that end.
+// Samples whose parameter is nearer to an end of an edge than this fraction of the edge's range count as that
+// end.
 constexpr double end_fraction = 1e-9;
 
 // Returns the distance of a point from an edge's curve near a parameter, by Gauss-Newton steps; all in the
@@ -332,8 +333,8 @@ double domain_area(const KnotVector& along_u, const KnotVector& along_v) {
 }
 
 // Orients the largest loop counter-clockwise and the others clockwise, because some systems orient wires
-// against the normal of their face. The knots of a chain of pieces are symmetric, so it is enough to reverse
-// the control points.
+// against the normal of their face. The knots of a loop are symmetric, so it is enough to reverse the control
+// points.
 std::vector<TrimLoop> orient_loops(std::vector<TrimLoop> loops, const KnotVector& along_u,
                                    const KnotVector& along_v) {
   std::vector<double> areas;
@@ -389,7 +390,8 @@ double measure_sides(const TopoDS_Face& face, const Surface& surface, double sca
   const CurveTolerance tolerance = find_curve_tolerance(surface, tolerance_m);
   const double u_start = surface.u.domain_start(), u_end = surface.u.domain_end();
   const double v_start = surface.v.domain_start(), v_end = surface.v.domain_end();
-  // Returns the nearest point of the four sides. Each sample of an edge is near one of them.
+  // Projects the parameters onto each of the four sides of the domain and returns the nearest of the four
+  // points. Each sample of an edge is near one of the sides.
   const auto place = [&](const Point& at) {
     const gp_Pnt point = place_on(surface, at, scale);
     gp_Pnt nearest = point;

@@ -19,14 +19,15 @@ struct FaceTrims {
 // Returns a loop for each wire of the face except wires around the whole domain. `surface` is the surface of
 // the face, in metres, over the face's own parameters. `scale` is the length of one unit of the face in
 // metres. The cubic pieces of a loop deviate from the edges' curves by at most a millionth of the domain, or
-// less if a millionth would exceed the tolerance on the surface. Splines of degree 3 and less are exact. The
-// parts of a curve beyond an open end of the domain are moved to that end. Refused: edges that have no curves
-// over the parameters or are not connected, and loops that bound no area.
+// less if a millionth would exceed the tolerance on the surface. Curves of degree 3 and less that are not
+// rational are converted exactly. The parts of a curve beyond an open end of the domain are moved to that
+// end. Refused: edges that have no curves over the parameters or are not connected, and loops that bound no
+// area.
 Result<FaceTrims> read_trim_loops(const TopoDS_Face& face, const Surface& surface, double scale,
                                   double tolerance_m);
 
-// Returns the largest distance, in metres, from the 3D curves of an untrimmed face's edges to the sides of
-// its surface.
+// Returns the largest distance, in metres, between the 3D curves of an untrimmed face's edges and the sides
+// of its surface.
 double measure_sides(const TopoDS_Face& face, const Surface& surface, double scale, double tolerance_m);
 
 }  // namespace spoonbill

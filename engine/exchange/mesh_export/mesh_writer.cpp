@@ -245,7 +245,7 @@ class Archive {
     if (source_ != nullptr) zip_source_free(source_);
   }
 
-  // `text` must outlive pack().
+  // Adds a file. `text` must outlive pack().
   bool add(const char* name, const std::string& text) {
     if (archive_ == nullptr) return false;
     zip_source_t* content = zip_source_buffer(archive_, text.data(), text.size(), 0);

@@ -18,8 +18,8 @@ struct NamedMesh {
   bool closed = true;  // true for a solid, false for a sheet; only 3MF stores it
 };
 
-// Receiver of a file's bytes, part by part. The writer also sends empty parts, between steps that have
-// nothing to write yet, to ask whether to continue. An error stops the writer.
+// Receiver of a file's bytes, part by part. The writer of 3MF also sends empty parts, to ask whether to
+// continue. An error from the receiver stops the writer.
 using ByteSink = std::function<Status(std::string_view)>;
 
 // Writes meshes to a file. STL is binary in single precision, as the format requires. OBJ is text with all

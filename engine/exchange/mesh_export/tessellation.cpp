@@ -24,7 +24,8 @@
 namespace spoonbill {
 namespace {
 
-// Height below which a triangle is a sliver, and distance at or below which vertices are merged.
+// Largest height of a triangle that counts as a sliver, and largest distance between vertices that are
+// merged.
 constexpr double smallest_height_m = 1e-9;
 constexpr std::size_t no_triangle = std::numeric_limits<std::size_t>::max();
 
@@ -136,8 +137,8 @@ class SliverRemover {
     if (is_sliver(mesh_, corners)) queue_.push_back(t);
   }
 
-  // Flips the longest edge of a sliver, or removes a sliver at the boundary. Returns false if neither is
-  // possible.
+  // Flips the longest edge of a sliver, or removes the sliver if this edge is on the boundary. Returns false
+  // if neither is possible.
   bool resolve(std::size_t t) {
     if (!is_sliver(mesh_, mesh_.triangles[t]) || is_degenerate(mesh_.triangles[t])) return true;
     const auto [p, q, between] = rotate_longest_first(mesh_, mesh_.triangles[t]);
@@ -179,8 +180,9 @@ void drop_unused_vertices(TriangleMesh& mesh) {
   }
 }
 
-// Removes triangles lower than a nanometre, which trim loops leave: corners that are close together are
-// merged; the longest edge of any other sliver is flipped, so that no gap opens.
+// Removes slivers, triangles whose height is at most a nanometre. They result from cutting cells along trim
+// loops. Corners that are close together are merged. The longest edge of any other sliver is flipped, so that
+// no gap opens.
 void remove_slivers(TriangleMesh& mesh) {
   merge_near_corners(mesh);
   SliverRemover(mesh).run();
@@ -190,12 +192,13 @@ void remove_slivers(TriangleMesh& mesh) {
 
 // Distance below which coordinates count as equal, because files round them.
 constexpr double coincidence_m = 1e-9;
-// Fraction of the chord error that the curvature along one direction may use; the rest is for the twist.
+// Fraction of the chord error that the curvature along each of the two directions may use; the rest is for
+// the twist.
 constexpr double direction_fraction = 0.4;
 // Smallest fraction of the chord error that remains for the cells; the edges of trim loops may use the rest.
 constexpr double smallest_cell_fraction = 0.5;
 
-// Number of cells of each polynomial piece of one direction.
+// Number of cells into which each knot span of one direction is divided.
 using Cuts = std::vector<int>;
 
 std::vector<double> subdivide(const std::vector<double>& pieces, const Cuts& cuts) {
@@ -264,8 +267,8 @@ Result<Sheet> sample_sheet(const Surface& surface, const Cells& cells) {
   return sheet;
 }
 
-// Returns the largest error of the cells of each polynomial piece, in metres. If a stop is requested, the
-// errors not yet measured are 0.
+// Returns, for each polynomial piece of the surface, the largest error of its cells in metres. If a stop is
+// requested, the errors not yet measured are 0.
 Eigen::MatrixXd measure_errors(const Sheet& sheet, const SurfaceBounds& bounds, const Cells& cells,
                                const Progress& progress) {
   Eigen::MatrixXd errors = Eigen::MatrixXd::Zero(bounds.elements_u(), bounds.elements_v());
@@ -302,7 +305,8 @@ void refine(const Eigen::MatrixXd& errors, double chord_m, Cells& cells) {
   }
 }
 
-// Map from the corners of a sheet to vertices: corners that coincide at a seam or a pole become one vertex.
+// Map from the corners of the cells to the vertices of the mesh. Corners that coincide at a seam or a pole
+// have the same vertex.
 class Welding {
  public:
   Welding(const Sheet& sheet, const Surface& surface)
@@ -409,7 +413,7 @@ TriangleMesh make_mesh(const Sheet& sheet, const std::vector<Vector3>& more,
   return mesh;
 }
 
-// Returns the triangles of the part that the trim loops keep.
+// Returns the triangles of the part of the surface that remains after trimming.
 TriangleMesh make_trimmed_mesh(const Sheet& sheet, const Welding& welding, const TrimmedArea& area) {
   const std::size_t columns = sheet.grid.v.parameters.size(), samples = sheet.samples.x.size();
   const TrimmedGrid cut = trim_grid(sheet.grid.u, sheet.grid.v, area);
@@ -431,7 +435,7 @@ TriangleMesh make_trimmed_mesh(const Sheet& sheet, const Welding& welding, const
   return make_mesh(sheet, more, triangles);
 }
 
-// Returns a bound of the distance between the loops and the polygons that replace them.
+// Returns an upper bound of the distance between trim loops and the polygons that replace them, in metres.
 double trim_edge_error_m(const Surface& surface, const std::vector<TrimLoop>& trims) {
   double fraction = 0.0;
   for (const TrimLoop& loop : trims) {
@@ -459,8 +463,8 @@ Result<Tessellation> make_tessellation(const Sheet& sheet, const Surface& surfac
   return result;
 }
 
-// Largest fraction of the area whose triangles may turn over when a shell is made; slivers may turn over by
-// rounding.
+// Largest fraction of a mesh's area whose triangles may turn over when the mesh is thickened. Slivers may
+// turn over because of rounding.
 constexpr double turned_fraction = 1e-3;
 
 Vector3 twice_area(const std::vector<Vector3>& points_m, const TriangleCorners& corners) {
@@ -478,7 +482,7 @@ std::vector<Vector3> vertex_normals(const TriangleMesh& mesh) {
   return normals;
 }
 
-// Returns the directed edges of triangles without a triangle on the other side.
+// Returns the directed edges that belong to only one triangle.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> boundary_edges(const TriangleMesh& mesh) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> open;
   for (const TriangleCorners& corners : mesh.triangles) {

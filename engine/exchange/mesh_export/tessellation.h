@@ -1,5 +1,5 @@
-// Tessellation of surfaces within a chord error, and shells and volumes of the meshes. Pure functions,
-// outside the tick; any thread.
+// Tessellation of surfaces within a chord error, and shells and volumes of the meshes. The functions have no
+// side effects, may run on any thread, and are too slow for a tick.
 #pragma once
 
 #include <cstddef>
@@ -21,19 +21,19 @@ struct Tessellation {
   bool closed = false;  // every side is a seam or a pole, and no trim loop cuts the surface
   // Largest distance of a point of the surface from the point of its triangle at the same parameters, or of a
   // trim loop from the edges that replace it. It may exceed the requested error by closing_tolerance_m
-  // because of welding. If the error of the loops' edges is more than half of the requested error, it may
-  // also exceed it by the error of these edges.
+  // because of welding. It may also exceed it by the error of the edges along trim loops, if that error is
+  // more than half of the requested error.
   double chord_error_m = 0.0;
 };
 
 inline constexpr Range<double> chord_range_m{1e-7, 0.1};
 inline constexpr std::size_t exported_triangle_limit = 10'000'000;
 
-// Tessellates the part of a surface that the trim loops keep, on a grid over its polynomial pieces that is
-// finer where the surface bends. A cell of sides h_u and h_v is within (h_u^2 |S_uu| + h_v^2 |S_vv|) / 8 of
-// the bilinear patch through its corners (surface_levels.h). The patch is within |P00 - P10 - P01 + P11| / 4
-// of its triangles, for corners P. Both bounds hold for cells that loops cut. A loop's polygon deviates from
-// the loop by at most the fraction polygon_error_fraction() of the domain, and the surface stretches this
+// Tessellates the part of a surface that remains after trimming. The cells are finer where the surface bends,
+// and no cell crosses a knot. A cell of sides h_u and h_v is within (h_u^2 |S_uu| + h_v^2 |S_vv|) / 8 of the
+// bilinear patch through its corners (surface_levels.h). The patch is within |P00 - P10 - P01 + P11| / 4 of
+// its triangles, for corners P. Both bounds hold for cells that loops cut. A loop's polygon deviates from the
+// loop by at most the fraction polygon_error_fraction() of the domain, and the surface stretches this
 // distance by at most its first derivatives. Refused: more triangles than the limit, loops that bound no
 // area, a request to stop.
 Result<Tessellation> tessellate(const Surface& surface, const std::vector<TrimLoop>& trims, double chord_m,

@@ -22,10 +22,10 @@ struct PlyMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-// Reads a PLY file of text or of numbers in either byte order. The result is a mesh if the header declares
-// faces or triangle strips, otherwise a cloud with the normals of its vertices. The elements may be in any
-// order and of any number type. Faces are lists named vertex_indices or vertex_index. Polygons are cut into
-// triangles, and faces of one or two corners are ignored. The index -1 ends a strip and starts the next.
+// Reads a PLY file in text form or in binary form of either byte order. The result is a mesh if the header
+// declares faces or triangle strips, otherwise a cloud with the normals of its vertices. The elements may be
+// in any order and of any number type. Faces are lists named vertex_indices or vertex_index. Polygons are cut
+// into triangles, and faces of one or two corners are ignored. The index -1 ends a strip and starts the next.
 // Other elements and properties are ignored.
 //
 // Refused: what read_ply_header() refuses; vertices without x, y and z; faces without a list of indices; an

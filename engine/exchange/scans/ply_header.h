@@ -15,7 +15,7 @@ namespace spoonbill {
 struct PlyProperty {
   std::string_view name;
   NumberType type = NumberType::float32;
-  std::optional<NumberType> list_count = {};  // type of the length, for lists only
+  std::optional<NumberType> list_count = {};  // type of the number of items; only for lists
 };
 
 struct PlyElement {
