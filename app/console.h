@@ -21,8 +21,8 @@ struct Console {
   bool err_is_terminal = false;
 };
 
-// Returns the first line of the text without_controls(). Messages quote files, whose content could otherwise
-// send control sequences to the terminal.
+// Returns the first line of the text, without control characters. Messages quote the content of files, which
+// could otherwise send control sequences to the terminal.
 std::string one_line(const std::string& text);
 
 // Blocks the signals that stop a command (Ctrl+C, TERM and HUP) while the object exists. A signal stays

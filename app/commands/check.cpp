@@ -62,7 +62,7 @@ Result<CadSolids> join_solids(const CheckOptions& options, const std::vector<Bod
   const double chord_m =
       std::clamp(solid_chord_fraction * size_of(all), solid_chord_range_m.low, solid_chord_range_m.high);
   auto solids = make_cad_solids(model, {chord_m, solid_triangle_limit}, options.model, child);
-  // If the mesh has too many triangles, the solids are meshed again with the largest allowed chord error.
+  // If the meshing fails, for example with too many triangles, it is repeated with the largest chord error.
   if (solids || interrupt.requested() || chord_m == solid_chord_range_m.high) return solids;
   return make_cad_solids(model, {solid_chord_range_m.high, solid_triangle_limit}, options.model, child);
 }
@@ -99,7 +99,7 @@ Result<Json> check_solids(FactSheet& facts, const CadSolids& solids, const std::
 
 struct CheckedBodies {
   Json facts = Json::array();  // one entry per body
-  // Indices of the bodies that enclose their material and are not faces of a solid.
+  // Indices of the bodies that enclose their material. Shells and faces of solids are not included.
   std::vector<std::size_t> solids;
 };
 

@@ -67,7 +67,7 @@ struct MergeOutcome {
   std::vector<std::size_t> reversed_patches;  // indices of patches whose normals pointed inwards
 };
 
-// Parses "-0.25".
+// Parses a fraction of a turn, such as "-0.25".
 Result<double> parse_twist(const std::string& text) {
   double turns = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), turns);
@@ -75,7 +75,7 @@ Result<double> parse_twist(const std::string& text) {
   return Error{ErrorCode::out_of_range, "'" + excerpt(text) + "' is not a fraction of a turn from -1 to 1"};
 }
 
-// Parses "2.v_start", an edge of the second patch.
+// Parses an edge, such as "2.v_start" for the start of v on the second patch.
 Result<PatchEdge> parse_edge(const std::string& text) {
   const std::size_t dot = text.find('.');
   if (dot == 0 || dot == std::string::npos || dot > 3 || text.find_first_not_of("0123456789") != dot) {
@@ -113,8 +113,8 @@ Result<ChosenEdges> parse_edges(const std::string& text) {
   return edges;
 }
 
-// Returns the continuity of the joints. The default is C0 for a sharp corner and C1 for a fillet. A C2 fillet
-// would be tighter than the requested radius.
+// Returns the continuity of the joints. A sharp corner is C0. Otherwise the requested continuity applies; its
+// default is C1 for a fillet, because a C2 fillet would be tighter than the requested radius.
 int continuity_of(const MergeOptions& options) {
   if (options.crossing && options.fillet_m == 0.0) return 0;
   if (options.continuity) return *options.continuity;
@@ -236,7 +236,7 @@ void add_tight_fillet(const Surface& merged, const Joint& corner, const std::str
   notes.push_back("the fillet" + which + " has a radius of about " + short_length_text(least_m) +
                   " at its tightest, less than the requested " + short_length_text(fillet_m) +
                   (continuity > 1 ? ": an arc cannot be C2 with its neighbours; C1 keeps the radius"
-                                  : "; a smaller tolerance brings it nearer"));
+                                  : "; a smaller tolerance brings it closer to the request"));
 }
 
 void add_merge_notes(const MergeOptions& options, const MergeOutcome& outcome,
@@ -447,8 +447,8 @@ CommandEntry add_merge(OptionSet root) {
   CommandOption twist = add_parsed_option(
       parser, "--twist", "TURNS", parse_twist,
       [options](double turns) { options->request.join.twist = turns; },
-      "Rotation of each ring against the one before, from the best match, in turns; default: 0, range: -1 to "
-      "1");
+      "Rotation of each ring relative to the ring before, measured from the best match, in turns; default: "
+      "0, range: -1 to 1");
   CommandOption crossing = parser.add_flag("--intersect", options->crossing,
                                            "Merge patches that cross: each keeps the part outside the other");
   add_parsed_option(

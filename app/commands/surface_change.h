@@ -52,7 +52,7 @@ std::string list_changes();
 void drop_surface_features(Body& body, std::vector<std::string>& notes);
 
 // Adapts the shell thickness to a new surface: a body that has become closed loses its thickness. Adds a note
-// if the surface closed or opened.
+// if it does, or if the surface has opened and the body has no thickness.
 void adapt_thickness(Body& body, const Surface& before, std::vector<std::string>& notes);
 
 }  // namespace spoonbill

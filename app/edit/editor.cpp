@@ -597,7 +597,8 @@ void Editor::set_tool(const LiveFrame& frame, ToolKind kind, ToolAction tool_act
   send(Command(SetTool{tool}));
 }
 
-// Adds a plane at the tool, across the longest direction of the model, that fixes the shorter part.
+// Adds a fixing plane at the tool, perpendicular to the longest direction of the model. The plane fixes the
+// shorter part of the model.
 void Editor::place_plane(const LiveFrame& frame) {
   const Vector3 size = body_bounds_.extent();
   int axis = 0;

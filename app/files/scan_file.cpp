@@ -165,8 +165,8 @@ Result<PointCloud> receive_cloud(ForeignChild& child, const FrameHead& head) {
   return cloud;
 }
 
-// A point cloud, the mesh of a PLY file, or nothing. Nothing stands for the mesh of an OBJ file, which
-// read_mesh_scan() reads.
+// A point cloud, the mesh of a PLY file, or std::monostate. The latter stands for the mesh of an OBJ file,
+// which read_mesh_scan() must read.
 using ScanContent = std::variant<std::monostate, PointCloud, MeshFile>;
 
 Result<ScanContent> read_content(const std::filesystem::path& file, const MeshReading& reading) {

@@ -230,7 +230,7 @@ double share_within(const ScanFit& fit, double tolerance_m) {
     const std::vector<double>& distances = body.errors.distance_m;
     const auto near = std::count_if(distances.begin(), distances.end(),
                                     [&](double distance) { return distance <= tolerance_m; });
-    // The distances of a coarse mesh are measured at points all over the mesh.
+    // The distances of a coarse mesh are those of samples all over it, not of its vertices.
     if (!distances.empty()) {
       within += static_cast<double>(body.points_m.size()) * static_cast<double>(near) /
                 static_cast<double>(distances.size());
