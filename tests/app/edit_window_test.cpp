@@ -84,7 +84,8 @@ class EditWindow : public testing::Test {
     return wait_shown([&](const Json& frame) { return frame["tick"].get<int>() >= from + count; });
   }
 
-  // Moves the pointer and waits until the editor has seen it there and the device has reached the hand.
+  // Moves the pointer and waits until the editor has seen it there. Unless the button is pressed, also waits
+  // until the device has reached the position that the mouse sets.
   bool move_to(int x, int y) const {
     if (!hands("mousemove " + std::to_string(x) + " " + std::to_string(y))) return false;
     return wait_shown(

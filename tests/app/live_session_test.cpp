@@ -376,7 +376,7 @@ TEST(LiveSession, TheWorkspaceFollowsTheModelThatIsOpened) {
   }));
 }
 
-// The force that is cut stays off in another document and is part of the recording.
+// A force that was cut stays off when another document is opened, and the recording contains the switch.
 TEST(LiveSession, TheForceIsCutAtOnceUntilItIsSwitchedOn) {
   const Workplace place;
   Live live(held_handle());

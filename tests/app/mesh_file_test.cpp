@@ -242,7 +242,7 @@ TEST_F(MeshFileTest, DamagedContentIsRefused) {
   }
 }
 
-// Damaged content gives a mesh that can be cleaned, or a one-line error.
+// Damaged content gives an error of one line, when it is read or when the mesh is cleaned.
 TEST_F(MeshFileTest, DamagedContentNeverBecomesAWildMesh) {
   const auto one_line = [&](const std::string& name, const std::string& content, const std::string& reason) {
     const std::string file = write(name, content);
@@ -324,7 +324,7 @@ TEST_F(MeshFileTest, AReaderThatFailsIsOneLine) {
   expect_refusal(file, ErrorCode::unavailable, missing);
 }
 
-// A child process reads clouds too. Every failure of it gives an error of one line.
+// A child process reads clouds too. Every failure of that process gives an error of one line.
 TEST_F(MeshFileTest, AReaderOfPointsThatFailsIsOneLine) {
   const std::string file = write("cloud.xyz", "1 2 3\n4 5 6\n");
   const auto expect_no_cloud = [&](const std::string& reason, const MeshReading& reading) {
@@ -358,7 +358,7 @@ TEST_F(MeshFileTest, AReaderOfPointsThatFailsIsOneLine) {
 TEST_F(MeshFileTest, TheReaderHasFourGibibytes) {
   if (sanitized) GTEST_SKIP() << "a sanitizer's memory knows no limit";
   // The script sends its limit on address space, 4194304 KiB, as the reason of a failure; 007 is the length
-  // of this reason. It waits first, so that the parent can set the limit.
+  // of this reason. The script waits first, so that the parent can set the limit.
   expect_refusal(write("box.stl", binary_stl(box)), "(4194304)",
                  instead("sleep 0.3; printf 'spnlfail\\007\\0\\0\\0\\0\\0\\0\\0'; ulimit -v"));
 }
