@@ -28,7 +28,7 @@ constexpr bool is_sanitized = false;
 #endif
 
 constexpr int first_free_descriptor = STDERR_FILENO + 1;
-// Number of descriptors to close one by one on kernels older than 5.11, which lack close_range().
+// Number of descriptors to mark one by one on kernels older than 5.11, which lack CLOSE_RANGE_CLOEXEC.
 constexpr int descriptors_limit = 65536;
 constexpr int exit_not_started = 127;
 

@@ -51,7 +51,7 @@ class ChildOutput {
   ChildOutput& operator=(ChildOutput&&) = delete;
   ~ChildOutput();  // kills a child that still runs
 
-  // Reads exactly `bytes` bytes. Calls `gives_up` every 50 ms while it waits. Returns false if the output
+  // Reads exactly `bytes` bytes. While waiting, calls `gives_up` every 50 ms. Returns false if the output
   // ends earlier, the time is over, or `gives_up` returns true.
   bool read(void* to, std::size_t bytes, const std::function<bool()>& gives_up = {});
 

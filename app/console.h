@@ -51,7 +51,7 @@ class InterruptWatch {
 class ProgressBar {
  public:
   // The bar is visible on a terminal; elsewhere it is visible only if it is forced. The console must outlive
-  // it.
+  // the bar.
   ProgressBar(Console& console, std::string label, bool is_forced);
   ~ProgressBar();  // ends the line that the bar was drawn on
   ProgressBar(const ProgressBar&) = delete;

@@ -79,7 +79,7 @@ Status fit(const FitOptions& options, Console& console) {
   if (!fitted) return fitted.error();
   const auto document = make_fitted_document(fitted.value(), document_name(options.scan), clay.value());
   if (!document) return document.error().in(options.scan.string());
-  // Ctrl+C waits until the files are complete.
+  // Ctrl+C takes effect only when the files are complete.
   const InterruptWatch until_written;
   if (Status written = write_document(document->document, options.out, options.how); !written) return written;
   FactSheet facts;

@@ -379,7 +379,7 @@ Status merge_models(const MergeOptions& options, Console& console) {
   const Document document =
       merged_document(*parts->first, parts->bodies, options, outcome->merged.surface, parts->notes);
   add_merge_notes(options, outcome.value(), parts->notes);
-  // Ctrl+C waits until the file is complete.
+  // Ctrl+C takes effect only when the file is complete.
   const InterruptWatch until_written;
   if (Status written = write_document(document, options.out, options.how); !written) return written;
   report_merge(options, parts.value(), outcome.value(), console);

@@ -37,14 +37,14 @@ constexpr Range<double> new_tolerance_range_m{1e-8, 1e-2};
 // Range that the parser allows for all sizes. Each shape checks a narrower range of its own.
 constexpr Range<double> size_range_m{-1e3, 1e3};
 constexpr double default_shell_thickness_m = 0.002;
-// Fraction of the work that is fitting; the rest is the search for self-intersections.
+// Fraction of the progress bar that the fit takes; the search for self-intersections takes the rest.
 constexpr double fit_fraction = 0.8;
 
 struct NewShape {
   ExactShape shape;
   std::optional<double> shell_thickness_m = {};  // empty for a closed shape
-  double reach_m =
-      0.0;  // see reach_m() of stock shapes: a surface nearer to the shape cannot touch itself; 0 if unknown
+  // Distance within which a fitted surface cannot touch itself, see reach_m() of stock shapes; 0 if unknown.
+  double reach_m = 0.0;
   int degree = 3;
 };
 

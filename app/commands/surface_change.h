@@ -34,8 +34,8 @@ struct ChangeRequest {
   int continuity = 2;     // continuity of the seam that the change `close` makes
 };
 
-// Parses words such as {"insert", "v=0.3", "2"}. Returns an error for words that are invalid on every
-// surface.
+// Parses words such as {"insert", "v=0.3", "2"}. Returns an error for words that are wrong whatever the
+// surface is.
 Result<ChangeRequest> parse_change(const std::vector<std::string>& words);
 
 // Applies the change to a surface and its trims. A change that is not exact deviates by at most
@@ -47,7 +47,7 @@ Result<ChangedSurfaces> change_surface(const Surface& surface, const std::vector
 // Returns one line per change for --help.
 std::string list_changes();
 
-// Removes regions, loads and supports, whose extents are fractions of the surface that is being replaced.
+// Removes regions, loads and supports, because their extents are fractions of the surface that is replaced.
 // Adds a note if the body had any.
 void drop_surface_features(Body& body, std::vector<std::string>& notes);
 

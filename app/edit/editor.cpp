@@ -256,7 +256,8 @@ void Editor::receive_updates(const LiveFrame& frame, double seconds) {
   }
   if (const auto saved = live_->consume_saved_document()) {
     document_.note_saved(*saved, *live_);
-    // The next step is taken only if the saved document contains the last edit.
+    // The step that waits for the save, such as quitting, is taken only if the saved document has the last
+    // edit.
     if (continues_after_save_ && frame.edit_count <= saved->edit_count) start_next_step(next_step_);
   }
   if (auto conflict = live_->consume_save_conflict()) ask_about_conflict(std::move(*conflict));

@@ -96,8 +96,8 @@ struct MouseFrame {
 };
 
 // The mouse as the hand that holds the virtual handle. While hovering, the tool follows the pointer 1 mm
-// above the surface. Beside the body, it follows the pointer in the screen plane of its last position at the
-// surface. A press pushes the tool in by the strength within a quarter of a second. A drag then moves it
+// above the surface. Beside the body, it moves parallel to the screen, in the plane of its last position at
+// the surface. A press pushes the tool in by the strength within a quarter of a second. A drag then moves it
 // parallel to the screen, and the wheel moves it in depth. One owner: the thread that draws.
 class MouseHand : public InputSource {
  public:

@@ -24,12 +24,14 @@ struct CadChild {
 Result<CadModel> read_cad_file(const std::filesystem::path& file, const CadReading& reading,
                                const CadChild& child = {});
 
-// Returns the content of a CAD file that holds the model. Messages name `file`, but nothing is written to it.
+// Returns the content of a CAD file that holds the model. In messages, `file` names the model; nothing is
+// written to it.
 Result<CadFileContent> make_cad_file(const CadModel& model, const CadWriting& writing,
                                      const std::filesystem::path& file, const CadChild& child = {});
 
 // Joins the faces of each solid that consists of several surfaces, and returns these solids as watertight
-// meshes. Messages name the model `file`. Errors: those of make_cad_file(), more triangles than the limit.
+// meshes. In messages, `file` names the model. Errors: those of make_cad_file(), more triangles than the
+// limit.
 Result<CadSolids> make_cad_solids(const CadModel& model, const SolidMeshing& meshing,
                                   const std::filesystem::path& file, const CadChild& child = {});
 

@@ -43,7 +43,7 @@ struct ConversionReport {
 // Converts a file to another format. The extension selects the format: .json; .step, .stp, .iges, .igs; .stl,
 // .obj, .ply, .3mf.
 //
-// In CAD files and meshes, the faces of one solid are joined to a solid if they enclose it; otherwise a note
+// In CAD files and meshes, the faces of one solid are joined if they enclose a volume; otherwise a note
 // reports that the solid is open. `out` appears complete or not at all; on an error an existing file stays as
 // it is. Errors: a mesh as input; two documents without a choice of bodies; options that have no effect on
 // these formats; errors of the readers and writers.

@@ -76,7 +76,7 @@ struct SizedStockShape {
   std::optional<double> shell_thickness_m = {};
 };
 
-// Returns the stock shape of these sizes, in metres and in the order of the kind's fields.
+// Returns the stock shape with the sizes `m`, which are in metres and in the order of the kind's fields.
 SizedStockShape size_stock_shape(std::size_t kind, const std::vector<double>& m) {
   switch (kind) {
     case 0:
@@ -123,9 +123,9 @@ bool has_lattice_along(const Body& body) {
                                 : tube_lattice(body.surface, body.lattice).ok();
 }
 
-// Sets the largest node budget with which a lattice can follow the shape of the body. Cells of the default
-// size may fold in the details of a scan. If no budget works, the default stays: the body then gets a box of
-// cells, which a smaller budget would only make coarser.
+// Sets the node budget to the largest one with which a lattice can follow the shape of the body. Cells of the
+// default size may fold in the details of a scan. If no budget works, the default stays: the body then gets a
+// box of cells, which a smaller budget would only make coarser.
 void choose_node_budget(Body& body) {
   const int usual = body.lattice.node_budget;
   const int most = body.shell_thickness_m ? 16 : 4;

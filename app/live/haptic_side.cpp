@@ -135,8 +135,8 @@ void HapticSide::run_commands() {
   }
 }
 
-// Switches the force of the device. A replay starts each session with the force on, so every change of the
-// session's own switch is recorded.
+// Switches the force of the device. Records each change of the session's force switch, because a replay
+// starts with the force on.
 void HapticSide::update_force_switch() {
   if (exchange_->force_cut.exchange(false, std::memory_order_acq_rel)) force_on_ = false;
   safe_device_.switch_force(force_on_);

@@ -140,7 +140,7 @@ class HapticSide {
 
   // Runs one tick. Called by the haptic thread, once per period. A failed assertion abandons the tick: the
   // device gets no force and the next frame has tick_flag_failed. A recording ends, because its replay would
-  // not be abandoned at the same point.
+  // not abandon the tick at the same point.
   void tick(const LoopTick& tick) noexcept;
 
   // Leaves the device without force, ends a recording as LiveSession::stop_recording() does, and passes the

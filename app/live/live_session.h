@@ -65,7 +65,7 @@ class LiveSession {
   // of the last frame.
   void set_view(Json view) { journal_.set_view(std::move(view)); }
   void set_autosave(std::optional<Autosave> autosave);
-  // Ends the autosave and stores its content under another name, see Journal.
+  // Ends the autosave and stores its content under another name, see Journal::set_autosave_aside().
   Result<std::filesystem::path> set_autosave_aside() { return journal_.set_autosave_aside(); }
 
   // Returns the newest frame. The haptic thread makes one every four ticks.

@@ -37,7 +37,7 @@ struct PanelModel {
   bool has_ground = false;
 
   double residual_m = 0.0;  // largest distance of a surface from the deformed lattice that it follows
-  int residual_body = 0;    // index of that surface's body in the scene
+  int residual_body = 0;    // index in the scene of the body whose surface has this distance
 
   Overlays overlays;
   bool see_through_body = false;
@@ -55,7 +55,7 @@ struct PanelModel {
 };
 
 // Makes the panel's contents. `snapshot` must be of the same session and tick as `facts`. `view` has the
-// settings with which it is drawn.
+// settings with which the snapshot is drawn.
 PanelModel make_panel_model(const SessionFacts& facts, const Snapshot& snapshot, const ViewSettings& view);
 
 // Returns the area of the panel in a frame of this size and scale: at the left edge, below `top_px`. The area

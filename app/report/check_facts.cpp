@@ -143,8 +143,8 @@ std::string faces_text(std::size_t count) {
   return "solid of " + count_text(count, "face", "faces");
 }
 
-// Adds the mass of a solid. If its faces have several materials, the mass is reported as unknown, because no
-// face determines which part of the solid consists of which material.
+// Adds the mass of a solid. If its faces have several materials, the mass is reported as unknown, because
+// nothing determines which part of the solid consists of which material.
 void add_solid_mass(FactSheet& facts, const CadSolid& solid, const std::vector<Body>& bodies, Json& json) {
   const Material& material = bodies[solid.surface_indices.front()].material;
   const bool is_same =

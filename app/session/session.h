@@ -84,7 +84,7 @@ struct Session {
   // name.
   std::vector<FileMark> marks;
   bool keeps_documents = true;  // false if documents will not be written; those of `marks` are then empty
-  // Document of the last document mark; null if anything has changed since.
+  // Document of the last request to save one; null if anything has changed since.
   std::shared_ptr<const Document> saved = {};
   std::size_t saves_at_tick = 0;  // number of different documents saved at this tick
   bool force_on = true;           // false while the user has switched the device's force off
@@ -95,7 +95,7 @@ struct Session {
                               InstructionSet set, const FeatureMapWatch& watch = {});
 };
 
-// Runs one tick of touch and updates the undo history.
+// Runs one tick with a reading of the device, and updates the undo history.
 TickResult advance(Session& session, const DeviceReading& reading);
 
 // Writes the data that drawing needs, as of the last tick. Before the first tick, writes the initial state.
@@ -127,7 +127,7 @@ struct SessionFacts {
   std::string title;
   Tool tool;
   Material material;
-  int region_count = 0;  // number of regions of the first body; `material` is that of the same body
+  int region_count = 0;  // number of regions of the first body, whose material is `material`
   double mass_kg = 0.0;  // mass of all bodies
   Sculpting sculpting;
   Symmetry symmetry;

@@ -71,7 +71,7 @@ class EditWindow : public testing::Test {
     });
   }
 
-  // Waits until `count` further frames were started and shown. These frames include all earlier events.
+  // Waits until `count` further frames were started and shown. They show the effects of all earlier events.
   bool wait_frames(int count) const {
     const Json before = shown();
     const int from = before.empty() ? 0 : before["frame"].get<int>();

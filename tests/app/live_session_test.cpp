@@ -220,7 +220,7 @@ TEST(LiveSession, ExportsAMeshWhichSavesNothing) {
   ASSERT_TRUE(live->save(place.path("bent.stl")));
   EXPECT_EQ(next_notice(*live, Notice::Kind::information), "exported bent.stl, in mm");
   EXPECT_FALSE(live->consume_saved_document().has_value());
-  // A binary STL file has 80 bytes, a count and 50 bytes per triangle.
+  // A binary STL file has a header of 80 bytes, a count of 4 bytes and 50 bytes per triangle.
   std::ifstream in(place.path("bent.stl"), std::ios::binary);
   std::uint32_t triangles = 0;
   in.seekg(80);

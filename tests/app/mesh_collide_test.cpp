@@ -48,8 +48,8 @@ std::string above(double millimetres) {
   return "30mm," + std::to_string(millimetres) + "mm,0,1,0,0,0";
 }
 
-// The vertices of the ball of 8 mm radius are on the sphere. Its edges are inside the sphere by up to
-// 8 mm (1 - cos(pi/100)).
+// The vertices of the ball are on a sphere of 8 mm radius. Its edges are inside this sphere by up to 8 mm (1
+// - cos(pi/100)).
 constexpr double flatter_m = 8e-3 * 5e-4;
 const TriangleMesh ball = ball_mesh(100, 200, 8.0);
 

@@ -63,8 +63,8 @@ void expect_refusal(const std::string& file, ErrorCode code, const MeshReading& 
   EXPECT_EQ(mesh.error().code, code) << mesh.error().message;
 }
 
-// The file has two triangles and two types of lists. Truncated anywhere, it is reported and does not crash
-// the reader.
+// The file has two triangles, each with a list of corners and a colour. Truncated anywhere, the file is
+// reported and does not crash the reader.
 TEST_F(MeshFileTest, ACutBinaryPlyIsToldOfItsCut) {
   for (const bool big : {false, true}) {
     const std::string header = std::string("ply\nformat binary_") + (big ? "big" : "little") +
@@ -363,7 +363,7 @@ TEST_F(MeshFileTest, TheReaderHasFourGibibytes) {
                  instead("sleep 0.3; printf 'spnlfail\\007\\0\\0\\0\\0\\0\\0\\0'; ulimit -v"));
 }
 
-// The mesh is a ball of many triangles. The full run uses five million and the real limit.
+// The mesh is a ball of many triangles. The long run uses five million triangles and the real limit.
 TEST_F(MeshFileTest, ManyTrianglesAreReadUpToTheLimit) {
   const bool full = is_long_run();
   MeshReading reading = by_program();
