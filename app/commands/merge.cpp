@@ -132,7 +132,7 @@ std::string edges_text(const PatchEdge& a, const PatchEdge& b) {
 std::string joint_text(const MergedJoint& merged) {
   const Joint& joint = merged.joint;
   const std::string edges = edges_text(merged.a, merged.b);
-  if (merged.closes) return edges + ", edge to edge, which closes the surface around";
+  if (merged.closes) return edges + ", edge to edge, which closes the surface in this direction";
   if (!joint.bridged) return edges + ", edge to edge";
   if (joint.cut_back_m == 0.0) {
     return edges + ", bridged over a gap of " + short_length_text(joint.gap_m) + " by a blend of " +
@@ -169,8 +169,8 @@ void add_joints(FactSheet& facts, const std::vector<MergedJoint>& joints) {
 std::string corner_text(const Joint& corner, bool is_last) {
   const std::string start = number_text(corner.blend_start), end = number_text(corner.blend_end);
   if (!corner.bridged) return "an edge" + (is_last ? " at v = " + start : "");
-  return "a fillet of " + short_length_text(corner.blend_length_m) + " along" +
-         (is_last ? " from v = " + start + " to " + end : "");
+  return "a fillet " + short_length_text(corner.blend_length_m) + " long" +
+         (is_last ? ", from v = " + start + " to " + end : "");
 }
 
 // Adds the facts of the corners between crossing bodies. Only the last corner is at constant v in the result,
@@ -181,8 +181,8 @@ void add_corners(FactSheet& facts, const std::vector<Joint>& corners) {
     const bool is_last = k + 1 == corners.size();
     const std::string second = std::to_string(k + 2);
     facts.add("Joint",
-              (k == 0 ? "1 and " : "before and ") + second + " at " + corner_text(corners[k], is_last), "",
-              nullptr);
+              (k == 0 ? "1 and " : "the result and ") + second + " at " + corner_text(corners[k], is_last),
+              "", nullptr);
     list.push_back(joint_json("1", second, Direction::v, corners[k]));
     if (!is_last) list.back()["blend_start"] = list.back()["blend_end"] = nullptr;
   }

@@ -172,8 +172,8 @@ class Journal {
   // Disables the autosave and keeps its content under another name, which is returned; see
   // Autosave::set_aside(). Returns an error if there is no autosave.
   Result<std::filesystem::path> set_autosave_aside();
-  // Saves the scene that answers this request, or a newer one of the same document. A file with the extension
-  // of an export format is exported; an export does not count as saving.
+  // Saves the scene that is published for this request, or a newer one of the same document. A file with the
+  // extension of an export format is exported; an export does not count as saving.
   void save(SaveRequest save);
   // Returns the last document that was saved since the previous call, or nullopt.
   std::optional<SavedDocument> consume_saved_document();

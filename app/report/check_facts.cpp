@@ -196,7 +196,7 @@ void add_solid_thickness(FactSheet& facts, const CadSolid& solid, const SolidChe
   const WallThickness& thin = *check.thinnest;
   const double error_m = 2.0 * solid.chord_error_m;
   const std::string within =
-      error_m > least_gap_m ? ", elsewhere at most " + short_length_text(error_m) + " less" : "";
+      error_m > least_gap_m ? "; no wall is more than " + short_length_text(error_m) + " thinner" : "";
   facts.add("  Thinnest",
             short_length_text(thin.thickness_m) + " at " + position_text(thin.position_m) + within, "",
             nullptr);

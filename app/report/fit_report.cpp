@@ -217,8 +217,8 @@ std::optional<std::string> find_detail_note(const ScanFit& fit) {
   };
   if (std::none_of(fit.bodies.begin(), fit.bodies.end(), is_loose)) return std::nullopt;
   return "5 % of the scan or more is farther from the surface than a hundredth of its size; one surface "
-         "cannot "
-         "have a handle or a hole, so fit its parts; fine detail needs more control points";
+         "cannot have a handle or a hole, so fit the parts of such a scan; fine detail needs more control "
+         "points";
 }
 
 namespace {

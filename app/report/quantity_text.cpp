@@ -134,7 +134,7 @@ std::string closing_text(const Closing& closing) {
     case Closedness::tube:
       return "a tube, open by " + short_length_text(closing.gap_m) + " at an end";
     case Closedness::sheet:
-      return "open both ways";
+      return "a sheet, open in both directions";
   }
   return "";
 }

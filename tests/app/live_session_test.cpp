@@ -153,7 +153,7 @@ TEST(LiveSession, RunsInRealTimeWhereATickHasTheTime) {
   EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) {
     return frame.facts.sculpting.real_time && frame.snapshot.bodies[0].material.inertia_scale == 1.0;
   }));
-  // A new material may need more substeps.
+  // A new material may need more substeps, so it switches real time off.
   Material stiffer = first.facts.material;
   stiffer.youngs_modulus_pa = 1e8;
   ASSERT_TRUE(live->ask(Command(SetMaterial{stiffer})));

@@ -83,7 +83,7 @@ TEST(MergeCommand, AHandleCutInFourAlongIsClosedAroundAgain) {
   for (int k = 0; k < 4; ++k) EXPECT_EQ(joints[k]["closes"], k == 3);
   EXPECT_FALSE(json_of(run({"info", place.text("whole.json"), "--json"}).out)["lattice"].is_null());
   const Outcome told = run({"merge", place.text("quarters.json"), "--out", place.text("whole.json")});
-  EXPECT_NE(told.out.find("4.u_end and 1.u_start, edge to edge, which closes the surface around"),
+  EXPECT_NE(told.out.find("4.u_end and 1.u_start, edge to edge, which closes the surface in this direction"),
             std::string::npos)
       << told.out;
 }
