@@ -1,5 +1,5 @@
-// Texts for the panel and for reports: quantities with about three digits in the units that a designer uses,
-// whether a surface is closed, and regions.
+// Texts for the panel and for reports. Quantities have about three digits and the units that a designer uses.
+// Other texts describe closedness, material regions and the flags of a tick.
 #pragma once
 
 #include <cstddef>
