@@ -19,7 +19,8 @@
 namespace spoonbill {
 namespace {
 
-// Sanitizers reserve more address space than any limit allows, and read their options from the environment.
+// A sanitizer reserves more address space than any useful limit, and reads its options from the environment.
+// A child in a sanitizer build therefore gets no memory limit and the whole environment.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool is_sanitized = true;
 #else
@@ -27,7 +28,7 @@ constexpr bool is_sanitized = false;
 #endif
 
 constexpr int first_free_descriptor = STDERR_FILENO + 1;
-// Number of descriptors to close one by one on kernels older than 5.11, which lack close_range().
+// Number of descriptors to mark one by one on kernels older than 5.11, which lack CLOSE_RANGE_CLOEXEC.
 constexpr int descriptors_limit = 65536;
 constexpr int exit_not_started = 127;
 
@@ -124,8 +125,8 @@ pid_t start_process(const std::vector<std::string>& arguments, int input, int ou
 }
 
 pid_t start_reader(const std::vector<std::string>& arguments, int input, int output) {
-  // The child gets only this variable: others can change the behaviour of libraries, such as OpenCASCADE's
-  // CSF_ variables.
+  // The child gets only this variable. Others, such as OpenCASCADE's CSF_ variables, can change the behaviour
+  // of libraries.
   char locale[] = "LC_ALL=C";
   char* const clean[] = {locale, nullptr};
   return spawn(arguments, input, output, true, is_sanitized ? environ : clean);

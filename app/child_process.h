@@ -34,16 +34,16 @@ struct ChildEnd {
   bool out_of_time = false;  // true if killed at the deadline, or for exceeding its processor time
 };
 
-// The standard output of a child process with limited memory and time, started by start_reader(). One owner;
-// one thread, which outlives the object.
+// The standard output of a child process with limited memory and time, started by start_reader(). All calls
+// must come from one thread, which must outlive the object.
 class ChildOutput {
  public:
   // Limit on the child's address space, in bytes.
   static constexpr std::size_t memory_limit = std::size_t{4} << 30;
 
   // Starts the child. `patience` limits both its wall-clock time and its processor time. `input` becomes its
-  // standard input; a negative one gives it none. Returns an error if no pipe can be created or the program
-  // cannot be started.
+  // standard input; a negative descriptor stands for /dev/null. Returns an error if no pipe can be created or
+  // the program cannot be started.
   static Result<ChildOutput> start(const std::vector<std::string>& arguments,
                                    std::chrono::milliseconds patience, int input = -1);
 
@@ -51,7 +51,7 @@ class ChildOutput {
   ChildOutput& operator=(ChildOutput&&) = delete;
   ~ChildOutput();  // kills a child that still runs
 
-  // Reads exactly `bytes` bytes. Calls `gives_up` every 50 ms while it waits. Returns false if the output
+  // Reads exactly `bytes` bytes. While waiting, calls `gives_up` every 50 ms. Returns false if the output
   // ends earlier, the time is over, or `gives_up` returns true.
   bool read(void* to, std::size_t bytes, const std::function<bool()>& gives_up = {});
 

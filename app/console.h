@@ -21,8 +21,8 @@ struct Console {
   bool err_is_terminal = false;
 };
 
-// Returns the first line of the text without_controls(). Messages quote files, whose content could otherwise
-// send control sequences to the terminal.
+// Returns the first line of the text, without control characters. Messages quote the content of files, which
+// could otherwise send control sequences to the terminal.
 std::string one_line(const std::string& text);
 
 // Blocks the signals that stop a command (Ctrl+C, TERM and HUP) while the object exists. A signal stays
@@ -51,7 +51,7 @@ class InterruptWatch {
 class ProgressBar {
  public:
   // The bar is visible on a terminal; elsewhere it is visible only if it is forced. The console must outlive
-  // it.
+  // the bar.
   ProgressBar(Console& console, std::string label, bool is_forced);
   ~ProgressBar();  // ends the line that the bar was drawn on
   ProgressBar(const ProgressBar&) = delete;

@@ -11,7 +11,7 @@ namespace spoonbill {
 
 inline constexpr int exit_done = 0;
 inline constexpr int exit_failed = 1;     // the command failed; one line on `err` says why
-inline constexpr int exit_wrong_use = 2;  // invalid arguments; one line on `err` names the first
+inline constexpr int exit_wrong_use = 2;  // invalid arguments; one line on `err` names the first one
 
 // Runs the command that the arguments name and returns the process's exit code. `arguments` excludes the
 // program's name; `version` is what --version prints. Throws only standard exceptions, such as

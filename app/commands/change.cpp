@@ -97,7 +97,7 @@ Status change(const ChangeOptions& options, Console& console) {
   const double deviation_m = result->deviation_m;
   std::vector<std::string> notes;
   replace_body(bodies, index, std::move(result).value(), notes);
-  // Ctrl+C waits until the file is complete.
+  // Ctrl+C takes effect only when the file is complete.
   const InterruptWatch until_written;
   if (Status written = write_document(document.value(), options.out, options.how); !written) return written;
   report_change(options, bodies, deviation_m, notes, console);

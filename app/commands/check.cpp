@@ -62,7 +62,7 @@ Result<CadSolids> join_solids(const CheckOptions& options, const std::vector<Bod
   const double chord_m =
       std::clamp(solid_chord_fraction * size_of(all), solid_chord_range_m.low, solid_chord_range_m.high);
   auto solids = make_cad_solids(model, {chord_m, solid_triangle_limit}, options.model, child);
-  // If the mesh has too many triangles, the solids are meshed again with the largest allowed chord error.
+  // If the meshing fails, for example with too many triangles, it is repeated with the largest chord error.
   if (solids || interrupt.requested() || chord_m == solid_chord_range_m.high) return solids;
   return make_cad_solids(model, {solid_chord_range_m.high, solid_triangle_limit}, options.model, child);
 }
@@ -99,7 +99,7 @@ Result<Json> check_solids(FactSheet& facts, const CadSolids& solids, const std::
 
 struct CheckedBodies {
   Json facts = Json::array();  // one entry per body
-  // Indices of the bodies that enclose their material and are not faces of a solid.
+  // Indices of the bodies that enclose their material. Shells and faces of solids are not included.
   std::vector<std::size_t> solids;
 };
 
@@ -197,14 +197,14 @@ CommandEntry add_check(OptionSet root) {
       "volume, area, mass and centre of mass; principal curvatures, positive where convex; the smallest\n"
       "convex and concave radii; the smallest thickness; the positions of all these; and the bending, the\n"
       "integral of both curvatures squared, which is small for a fair surface. The thickness is measured\n"
-      "straight inwards from samples a third of a knot span apart. A line counts only if it leaves within\n"
-      "50 degrees of the normal, so that blunt edges are not thin. Trimmed areas do not count, and regions\n"
-      "have the mass of their material. Bodies that are faces of one solid, as in parts from CAD, are\n"
-      "joined to that solid if they close; the solid has the volume, area, mass, centre and smallest\n"
-      "thickness. Its thickness is measured on a mesh, and the error is reported. Solid bodies that\n"
-      "overlap are listed with their depth; an overlap alone is not a fault. A body is sound if it does\n"
-      "not intersect itself and either encloses its material or is a face of a solid that does. The exit\n"
-      "code is 0 for any result; see \"sound\" in the JSON.\n"
+      "straight inwards from samples a third of a knot span apart. It counts only if the line meets the\n"
+      "opposite wall within 50 degrees of that wall's normal, so that blunt edges do not count as thin.\n"
+      "Trimmed areas do not count, and regions have the mass of their material. Bodies that are faces of\n"
+      "one solid, as in parts from CAD, are joined to that solid if they close; the solid has the volume,\n"
+      "area, mass, centre and smallest thickness. Its thickness is measured on a mesh, and the error is\n"
+      "reported. Solid bodies that overlap are listed with their depth; an overlap alone is not a fault. A\n"
+      "body is sound if it does not intersect itself and either encloses its material or is a face of a\n"
+      "solid that does. The exit code is 0 for any result; see \"sound\" in the JSON.\n"
       "Example: spoonbill check assets/models/spoon-handle.json");
   parser.add_option("MODEL", options->model, "Document (.json)").require();
   add_json_option(parser, options->json);

@@ -38,7 +38,7 @@ struct CollideOptions {
   bool json = false;
 };
 
-// Subdivision levels: contact regions are resolved to cells a quarter of an element wide.
+// Number of times that each element is halved: contact regions are resolved to a quarter of an element.
 constexpr int collision_levels = 2;
 
 // One side of a collision: the bodies of a document, or a mesh.
@@ -54,7 +54,7 @@ struct BodyBoxes {
   std::vector<std::string> names;  // name of each body; empty for a single body
 };
 
-// Returns enlarged boxes. The boxes of bodies that touch within the tolerance overlap.
+// Enlarges the boxes by the touch tolerance, so that the boxes of bodies that touch overlap.
 std::vector<Box> enlarge_boxes(std::vector<Box> boxes) {
   for (Box& box : boxes) box = {box.low.array() - touch_tolerance_m, box.high.array() + touch_tolerance_m};
   return boxes;
@@ -149,7 +149,7 @@ ContactSide surface_side(const SurfaceContact& contact) {
   return {contact.point_m, SurfaceParameters{contact.u, contact.v, {}}, {}};
 }
 
-// Returns the contact of a mesh with a surface. Both separate along the normal of the surface.
+// Returns the contact of a mesh with a surface. Its normal is parallel to the normal of the surface.
 ModelContact make_contact(const ToolShape& tool, const SurfaceContact& at, bool mesh_is_a) {
   ModelContact contact{surface_side(at), mesh_side(tool, at.point_m), -at.normal, at.depth_m, at.tangent_u,
                        at.tangent_v};
@@ -160,8 +160,8 @@ ModelContact make_contact(const ToolShape& tool, const SurfaceContact& at, bool 
 }
 
 // Collides a mesh in its pose with the closed surface of a body. `mesh_is_a` is true if the mesh is side A of
-// the answer. The depth of a contact is that of the surface inside the mesh; if the mesh is inside the body,
-// it is the depth of the mesh.
+// the answer. The depth of a contact is how deep the surface is in the mesh. If the whole mesh is inside the
+// body, it is how deep the mesh is in the body.
 Result<CollisionAnswer> collide_mesh(const SignedDistance& mesh, const Pose& mesh_pose,
                                      const Surface& surface, bool mesh_is_a) {
   const auto grid = make_nested_grid(surface.u, surface.v, collision_levels);
@@ -185,8 +185,8 @@ Result<CollisionAnswer> collide_mesh(const SignedDistance& mesh, const Pose& mes
     side.parameters->range = region.range;
   }
   answer.complete = answer.complete && !collider.regions_overflow();
-  // A mesh that is found without contact regions is inside the body. Otherwise the first contact gets the
-  // largest depth of all.
+  // If the mesh touches the body but has no contact region, the mesh is inside the body. Otherwise the first
+  // contact gets the largest depth, which `nearest` has.
   answer.contained = answer.contacts.empty();
   if (answer.contained) {
     answer.contacts.push_back(nearest);
@@ -229,7 +229,7 @@ Result<CollisionModel> read_bodies(const std::filesystem::path& file) {
   return model;
 }
 
-// Name of a mesh's member in the JSON, and suffix of the labels of its facts.
+// Names for the facts of a mesh: `field` is its member in the JSON, `suffix` ends the labels shown to people.
 struct MeshLabel {
   const char* field;
   const char* suffix;
@@ -320,7 +320,7 @@ Result<CollisionAnswer> collide_documents(const CollisionModel& a, const Collisi
                         });
 }
 
-// Collides a mesh with the bodies of a document. Either of the two may be A; the pose moves B.
+// Collides a mesh with the bodies of a document. Model A may be the mesh or the document; the pose moves B.
 Result<CollisionAnswer> collide_with_mesh(const CollisionModel& a, const CollisionModel& b,
                                           const Pose& pose) {
   const bool mesh_is_a = a.mesh.has_value();

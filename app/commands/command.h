@@ -1,5 +1,6 @@
-// The commands of the program, and the options that several of them have. Each add_ function declares one
-// command and its options on the root parser; the entry's run() does the work after parsing.
+// Declarations of the program's commands, and of options that several commands share. Each function from
+// add_new() to add_read_points() declares one command and its options on the root parser. After parsing,
+// run() of the returned entry does the work.
 #pragma once
 
 #include <filesystem>
@@ -36,22 +37,22 @@ CommandEntry add_rest(OptionSet root);
 CommandEntry add_read_mesh(OptionSet root);
 CommandEntry add_read_points(OptionSet root);
 
-// The variables into which the following options are parsed must exist until the command line has been
+// The variables that the following functions take by reference must exist until the command line has been
 // parsed.
 
 // --json: prints one JSON object and nothing else on standard output.
 void add_json_option(OptionSet parser, bool& json);
 
-// --out: the document to write. Any other ending than .json is a usage error, because the file could be one
-// of another format.
+// --out: the document to write. Its name must end in .json; any other ending is a usage error, because it
+// would suggest a file of another format.
 CommandOption add_document_output(OptionSet parser, std::filesystem::path& out,
                                   const std::string& help = "Document to write (.json)");
 
-// --force: also replaces a file that is read-only.
+// --force: replaces the output even if it is read-only.
 void add_force_option(OptionSet parser, OutputOptions& how);
 
-// Returns an error if the output is read-only and may not be replaced. Called before long work; writing the
-// file checks it again.
+// Returns an error if the output is read-only and may not be replaced. A command calls this function before a
+// long computation, so that it fails early. Writing the file repeats the check.
 Status check_output(const std::filesystem::path& out, const OutputOptions& how);
 
 // --instruction-set: one of the sets that this processor supports; any other is a usage error.

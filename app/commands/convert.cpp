@@ -81,8 +81,9 @@ CommandEntry add_convert(OptionSet root) {
   parser.set_footer(
       "Reads documents (.json), STEP (.step, .stp) and IGES (.iges, .igs); writes the same formats and\n"
       "meshes (.stl, .obj, .ply, .3mf). Closed bodies become solids in STEP and IGES, and watertight\n"
-      "meshes. Each face of a CAD file becomes a body. Faces of one solid that close are written as that\n"
-      "solid, in CAD files and in meshes; bridged gaps are reported. OUT appears complete or not at all.\n"
+      "meshes. Each face of a CAD file becomes a body. Faces of one solid are written as that solid if\n"
+      "they close, in CAD files and in meshes; bridged gaps are reported. OUT appears complete or not at\n"
+      "all.\n"
       "Example: spoonbill convert assets/models/spoon-handle.json handle.step --schema ap242");
   parser.add_option("IN", options->request.in, "Document or CAD file to read").require();
   parser.add_option("OUT", options->request.out, "File to write; its ending selects the format").require();

@@ -67,7 +67,7 @@ CommandEntry add_edit(OptionSet root) {
           },
           "Mouse navigation of the camera: rhino (default), blender or sculptgl")
       .show_as("NAME");
-  parser.add_option("--record", settings->recording, "Recording of the session to write; default: none")
+  parser.add_option("--record", settings->recording, "File to which the session is recorded; default: none")
       .show_as("FILE");
   add_instruction_set_option(parser, settings->instruction_set);
   return {parser, [settings](Console& console) { return edit_model(*settings, console); }};

@@ -23,7 +23,7 @@ namespace {
 
 constexpr Range<int> fit_control_range{4, 200};
 constexpr Range<double> fit_tolerance_range_m{1e-6, 0.1};
-// Smallest distance that the end of the colour scale may stand for.
+// Smallest distance that may be shown as the end of the colour scale.
 constexpr double least_scale_m = 1e-6;
 
 struct FitOptions {
@@ -79,7 +79,7 @@ Status fit(const FitOptions& options, Console& console) {
   if (!fitted) return fitted.error();
   const auto document = make_fitted_document(fitted.value(), document_name(options.scan), clay.value());
   if (!document) return document.error().in(options.scan.string());
-  // Ctrl+C waits until the files are complete.
+  // Ctrl+C takes effect only when the files are complete.
   const InterruptWatch until_written;
   if (Status written = write_document(document->document, options.out, options.how); !written) return written;
   FactSheet facts;
@@ -160,7 +160,7 @@ void add_options(OptionSet parser, const std::shared_ptr<FitOptions>& options) {
   add_parsed_option(
       parser, "--errors", "FILE", parse_cloud_name,
       [options](const std::filesystem::path& file) { options->errors = file; },
-      "Cloud of the scan's points to write, coloured by their distance (.ply)");
+      "Point cloud to write (.ply): the scan's points, coloured by their distance from the surface");
   add_json_option(parser, options->json);
 }
 

@@ -67,7 +67,7 @@ struct MergeOutcome {
   std::vector<std::size_t> reversed_patches;  // indices of patches whose normals pointed inwards
 };
 
-// Parses "-0.25".
+// Parses a fraction of a turn, such as "-0.25".
 Result<double> parse_twist(const std::string& text) {
   double turns = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), turns);
@@ -75,7 +75,7 @@ Result<double> parse_twist(const std::string& text) {
   return Error{ErrorCode::out_of_range, "'" + excerpt(text) + "' is not a fraction of a turn from -1 to 1"};
 }
 
-// Parses "2.v_start", an edge of the second patch.
+// Parses an edge, such as "2.v_start" for the start of v on the second patch.
 Result<PatchEdge> parse_edge(const std::string& text) {
   const std::size_t dot = text.find('.');
   if (dot == 0 || dot == std::string::npos || dot > 3 || text.find_first_not_of("0123456789") != dot) {
@@ -113,8 +113,8 @@ Result<ChosenEdges> parse_edges(const std::string& text) {
   return edges;
 }
 
-// Returns the continuity of the joints. The default is C0 for a sharp corner and C1 for a fillet. A C2 fillet
-// would be tighter than the requested radius.
+// Returns the continuity of the joints. A sharp corner is C0. Otherwise the requested continuity applies; its
+// default is C1 for a fillet, because a C2 fillet would be tighter than the requested radius.
 int continuity_of(const MergeOptions& options) {
   if (options.crossing && options.fillet_m == 0.0) return 0;
   if (options.continuity) return *options.continuity;
@@ -132,7 +132,7 @@ std::string edges_text(const PatchEdge& a, const PatchEdge& b) {
 std::string joint_text(const MergedJoint& merged) {
   const Joint& joint = merged.joint;
   const std::string edges = edges_text(merged.a, merged.b);
-  if (merged.closes) return edges + ", edge to edge, which closes the surface around";
+  if (merged.closes) return edges + ", edge to edge, which closes the surface in this direction";
   if (!joint.bridged) return edges + ", edge to edge";
   if (joint.cut_back_m == 0.0) {
     return edges + ", bridged over a gap of " + short_length_text(joint.gap_m) + " by a blend of " +
@@ -169,8 +169,8 @@ void add_joints(FactSheet& facts, const std::vector<MergedJoint>& joints) {
 std::string corner_text(const Joint& corner, bool is_last) {
   const std::string start = number_text(corner.blend_start), end = number_text(corner.blend_end);
   if (!corner.bridged) return "an edge" + (is_last ? " at v = " + start : "");
-  return "a fillet of " + short_length_text(corner.blend_length_m) + " along" +
-         (is_last ? " from v = " + start + " to " + end : "");
+  return "a fillet " + short_length_text(corner.blend_length_m) + " long" +
+         (is_last ? ", from v = " + start + " to " + end : "");
 }
 
 // Adds the facts of the corners between crossing bodies. Only the last corner is at constant v in the result,
@@ -181,8 +181,8 @@ void add_corners(FactSheet& facts, const std::vector<Joint>& corners) {
     const bool is_last = k + 1 == corners.size();
     const std::string second = std::to_string(k + 2);
     facts.add("Joint",
-              (k == 0 ? "1 and " : "before and ") + second + " at " + corner_text(corners[k], is_last), "",
-              nullptr);
+              (k == 0 ? "1 and " : "the result and ") + second + " at " + corner_text(corners[k], is_last),
+              "", nullptr);
     list.push_back(joint_json("1", second, Direction::v, corners[k]));
     if (!is_last) list.back()["blend_start"] = list.back()["blend_end"] = nullptr;
   }
@@ -236,7 +236,7 @@ void add_tight_fillet(const Surface& merged, const Joint& corner, const std::str
   notes.push_back("the fillet" + which + " has a radius of about " + short_length_text(least_m) +
                   " at its tightest, less than the requested " + short_length_text(fillet_m) +
                   (continuity > 1 ? ": an arc cannot be C2 with its neighbours; C1 keeps the radius"
-                                  : "; a smaller tolerance brings it nearer"));
+                                  : "; a smaller tolerance brings it closer to the request"));
 }
 
 void add_merge_notes(const MergeOptions& options, const MergeOutcome& outcome,
@@ -379,7 +379,7 @@ Status merge_models(const MergeOptions& options, Console& console) {
   const Document document =
       merged_document(*parts->first, parts->bodies, options, outcome->merged.surface, parts->notes);
   add_merge_notes(options, outcome.value(), parts->notes);
-  // Ctrl+C waits until the file is complete.
+  // Ctrl+C takes effect only when the file is complete.
   const InterruptWatch until_written;
   if (Status written = write_document(document, options.out, options.how); !written) return written;
   report_merge(options, parts.value(), outcome.value(), console);
@@ -447,8 +447,8 @@ CommandEntry add_merge(OptionSet root) {
   CommandOption twist = add_parsed_option(
       parser, "--twist", "TURNS", parse_twist,
       [options](double turns) { options->request.join.twist = turns; },
-      "Rotation of each ring against the one before, from the best match, in turns; default: 0, range: -1 to "
-      "1");
+      "Rotation of each ring relative to the ring before, measured from the best match, in turns; default: "
+      "0, range: -1 to 1");
   CommandOption crossing = parser.add_flag("--intersect", options->crossing,
                                            "Merge patches that cross: each keeps the part outside the other");
   add_parsed_option(

@@ -37,13 +37,14 @@ constexpr Range<double> new_tolerance_range_m{1e-8, 1e-2};
 // Range that the parser allows for all sizes. Each shape checks a narrower range of its own.
 constexpr Range<double> size_range_m{-1e3, 1e3};
 constexpr double default_shell_thickness_m = 0.002;
-// Fraction of the work that is fitting; the rest is the search for self-intersections.
+// Fraction of the progress bar that the fit takes; the search for self-intersections takes the rest.
 constexpr double fit_fraction = 0.8;
 
 struct NewShape {
   ExactShape shape;
   std::optional<double> shell_thickness_m = {};  // empty for a closed shape
-  double reach_m = 0.0;  // reach of the shape as in reach_m() of stock shapes; 0 if unknown
+  // Distance within which a fitted surface cannot touch itself, see reach_m() of stock shapes; 0 if unknown.
+  double reach_m = 0.0;
   int degree = 3;
 };
 
@@ -100,9 +101,9 @@ NewKind add_box(OptionSet root) {
   const auto sides = add_size(parser, 3, "Lengths along x, y and z, such as 60x40x20mm");
   const LengthOption rounding = add_length(
       parser, "--rounding",
-      "Radius of the edges around two opposite faces: those at the ends of the longest side, or squarer "
-      "ones if those are slender. The other four edges have twice the radius. Default: a tenth of the "
-      "shortest side; largest: two fifths of it");
+      "Radius of the edges around two opposite faces. They are the ends of the longest side, or of the "
+      "shortest side if the ends of the longest are slender. The other four edges have twice the radius, at "
+      "most half the shortest side. Default: a tenth of the shortest side; largest: two fifths of it");
   return {parser, [=] {
             BoxSize size{{(*sides)[0], (*sides)[1], (*sides)[2]}};
             size.rounding_m = rounding->value_or(default_rounding_m(size));
@@ -116,8 +117,8 @@ NewKind add_cylinder(OptionSet root) {
   const LengthOption height = add_length(parser, "--height", "Height from face to face; default: 60mm");
   const LengthOption rounding =
       add_length(parser, "--rounding",
-                 "Radius of both edges; default: a tenth of the shorter of diameter "
-                 "and height, at most half of it");
+                 "Radius of both edges; default: a tenth of the smaller of diameter "
+                 "and height; largest: half of it");
   return {parser, [=] {
             CylinderSize size;
             size.radius_m = radius->value_or(size.radius_m);
@@ -133,8 +134,8 @@ NewKind add_cone(OptionSet root) {
   const LengthOption height = add_length(parser, "--height", "Height to the sharp tip or top; default: 60mm");
   const LengthOption top = add_length(parser, "--top", "Radius of the top; default: 0mm, a tip");
   const LengthOption rounding = add_length(parser, "--rounding",
-                                           "Radius of edges and tip; default: a tenth of the smallest of its "
-                                           "diameters and its height");
+                                           "Radius of edges and tip; default: a tenth of the smallest of the "
+                                           "cone's diameters and its height");
   return {parser, [=] {
             ConeSize size;
             size.radius_m = radius->value_or(size.radius_m);
@@ -155,7 +156,9 @@ NewKind add_plate(OptionSet root) {
                  "Radius of the four corners seen from above, at least the thickness; "
                  "default: a tenth of the width");
   auto sheet = std::make_shared<bool>(false);
-  parser.add_flag("--sheet", *sheet, "Make an open surface whose body is a shell of the thickness below it")
+  parser
+      .add_flag("--sheet", *sheet,
+                "Make an open surface; its body is a shell that extends down from it by --thickness")
       .exclude(parser.option("--corner"));
   return {parser, [=]() -> Result<NewShape> {
             PlateSize size{(*sides)[0], (*sides)[1]};
@@ -188,8 +191,8 @@ LengthOption add_shell_thickness(OptionSet parser) {
   return add_length(parser, "--thickness", "Thickness of the shell that an open shape becomes; default: 2mm");
 }
 
-// Gives an open shape its thickness, which makes it a shell. Returns an error if a closed shape has a
-// thickness.
+// Makes an open shape a shell with the given or default thickness. Returns an error if a closed shape is
+// given a thickness.
 Result<NewShape> apply_thickness(ExactShape shape, const LengthOption& thickness) {
   const bool open = !shape.is_closed();
   if (!open && *thickness) {
@@ -226,7 +229,7 @@ NewKind add_tube(OptionSet root) {
       .show_as("FILE|POINTS");
   const LengthOption radius = add_length(parser, "--radius", "Radius of a round section; default: 5mm");
   const LengthOption width =
-      add_length(parser, "--width", "Width of an elliptic section, level at the start");
+      add_length(parser, "--width", "Width of an elliptic section, horizontal at the start");
   const LengthOption height = add_length(parser, "--height", "Height of an elliptic section");
   const CommandOption round = parser.option("--radius"), wide = parser.option("--width"),
                       high = parser.option("--height");

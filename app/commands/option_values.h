@@ -39,7 +39,7 @@ Result<std::vector<double>> parse_lengths(std::string_view text, std::size_t cou
 // Parses an order of continuity, from "C0" to "C8"; the highest degree allows no higher order.
 Result<int> parse_continuity(const std::string& text);
 
-// Parses "1,3-5": at most 1000 numbers from 1, in the given order, duplicates removed.
+// Parses "1,3-5": numbers from 1 to 1000, in the given order. Duplicates are removed.
 Result<std::vector<int>> parse_number_list(std::string_view text);
 
 // Returns the value of the choice whose word is the text.
@@ -60,7 +60,8 @@ Result<Side> parse_side(std::string_view text);
 // Parses "mm", "cm", "m", "in" or "inch".
 Result<LengthUnit> parse_unit(std::string_view text);
 
-// Parses "0,0,0;10,5,0;20,0,0mm": points of three coordinates, the last one with the unit of all points.
+// Parses "0,0,0;10,5,0;20,0,0mm": points of three coordinates each. The unit at the end applies to all of
+// them.
 Result<std::vector<Vector3>> parse_points(const std::string& text);
 
 // A table of lengths in metres, optionally with a leading column of whole numbers named "section".
@@ -71,8 +72,8 @@ struct PointTable {
 
 // Reads a CSV file of at most 16 MiB and 100,000 rows. The first line has the names of the columns in the
 // given order, each with mm, cm, m or in: "x_mm,y_mm,z_mm". Empty lines, lines that begin with # and a byte
-// order mark are ignored. Errors, which name the line: unexpected columns, a wrong number of values, text
-// that is not a number, a length beyond 100 m.
+// order mark are ignored. The following errors name the line: unexpected columns, a wrong number of values,
+// text that is not a number, a length beyond 100 m, too many rows.
 Result<PointTable> read_point_table(const std::filesystem::path& file,
                                     const std::vector<std::string>& columns, bool with_section);
 

@@ -49,8 +49,8 @@ Status send_ply(const std::string& bytes, Console& console) {
   return {};
 }
 
-// Sends the point cloud of a file, or the mesh of a PLY file. For an OBJ file that is a mesh, sends only a
-// frame of kind `faces`.
+// Sends the point cloud of a file, or the mesh of a PLY file. If an OBJ file contains faces, sends
+// FrameKind::faces alone, which reports that the file is a mesh.
 Status send_cloud(const std::filesystem::path& file, Console& console) {
   const FileFormat format = format_from_name(file);
   const auto bytes = read_file(file, point_file_bytes_limit);
@@ -66,8 +66,8 @@ Status send_cloud(const std::filesystem::path& file, Console& console) {
   return {};
 }
 
-// Removes "FILE: " from the start of the message. The parent adds it, and a long name would leave no room for
-// the message.
+// Removes "FILE: " from the start of the message. The parent adds the name itself, and a long name would
+// leave no room for the rest of the message.
 std::string without_name(const std::string& message, const std::filesystem::path& file) {
   const std::string name = file.string() + ": ";
   return message.starts_with(name) ? message.substr(name.size()) : message;

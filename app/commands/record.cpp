@@ -32,7 +32,7 @@ struct RecordOptions {
   bool json = false;
 };
 
-constexpr std::uint64_t ticks_between_checks = 10;  // ticks between checks of progress and Ctrl+C
+constexpr std::uint64_t ticks_between_checks = 10;  // ticks between progress updates and checks for Ctrl+C
 
 Error stopped_recording(std::uint64_t ticks, const std::filesystem::path& file) {
   return Error{ErrorCode::cancelled, "stopped after " + std::to_string(ticks) + " ticks; the recording is " +

@@ -61,7 +61,7 @@ Error stopped_replay(const Replay& replay, InterruptWatch& interrupt) {
 }
 
 Status run_without_pictures(const Replay& replay) {
-  constexpr std::uint64_t ticks_between_checks = 10;  // ticks between checks of progress and Ctrl+C
+  constexpr std::uint64_t ticks_between_checks = 10;  // ticks between progress updates and checks for Ctrl+C
   replay.session.keeps_documents = false;
   InterruptWatch interrupt;
   ProgressBar progress(replay.console, "Replaying", replay.options.progress);
@@ -147,8 +147,8 @@ Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPi
     PaintingJob job = make_painting_job(frame, replay.session, framed, request);
     job.extra_names = std::exchange(names, {});
     job.is_frame = is_frame;
-    // Flags of ticks are cleared only at numbered frames. A screenshot between two frames must not remove a
-    // flag from the next frame.
+    // Only a numbered frame clears the tick flags. A screenshot between two frames must not hide them from
+    // the next frame.
     if (is_frame) replay.session.flags = tick_flag_none;
     if (crew.is_full()) {
       if (Status written = write_oldest_frame(crew, request, pictures); !written) return written;

@@ -26,7 +26,7 @@ struct Allowed {
   Progress progress;
 };
 
-// Parsers of the words of a change, one per word, in order.
+// Parsers of the arguments of a change, one per argument, in order.
 using WordParsers = std::vector<Status (*)(const std::string& word, ChangeRequest& request)>;
 
 struct Change {
@@ -35,8 +35,8 @@ struct Change {
   std::size_t fewest_words;
   Result<ChangedSurfaces> (*make)(const Surface& surface, const ChangeRequest& request,
                                   const Allowed& allowed);
-  // Maps a trim loop to the parameters of the changed surface. Null if the change moves parameters but cannot
-  // map trims.
+  // Maps a trim loop to the parameters of the changed surface. Null if the change keeps the parameters, so
+  // that no mapping is needed, or if it cannot map trims.
   TrimLoop (*map_trim)(const Surface& surface, const ChangeRequest& request, const TrimLoop& loop);
   const char *name, *form, *description;
 };
@@ -57,7 +57,7 @@ Status parse_direction_word(const std::string& word, ChangeRequest& request) {
   return {};
 }
 
-// Parses "v=0.3".
+// Parses a direction and a parameter, such as "v=0.3".
 Status parse_parameter_word(const std::string& word, ChangeRequest& request) {
   const auto parameter = word.size() > 2 && word[1] == '='
                              ? parse_whole_text<double>(std::string_view(word).substr(2))
@@ -70,7 +70,7 @@ Status parse_parameter_word(const std::string& word, ChangeRequest& request) {
   return {};
 }
 
-// Parses a degree or the number of copies of a knot, both at most max_degree.
+// Parses a degree or the number of copies of a knot. Each is from 1 to max_degree.
 Status parse_number_word(const std::string& word, ChangeRequest& request) {
   const auto number = parse_whole_text<int>(word);
   if (!number || *number < 1 || *number > max_degree) {
@@ -249,7 +249,7 @@ const std::vector<Change>& all_changes() {
       bulge{parse_side_word, parse_height_word};
   static const std::vector<Change> changes{
       {ChangeKind::split, parameter, 1, split_surface, nullptr, "split", "v=0.5",
-       "cut in two there, or open a closed direction there"},
+       "cut in two at a parameter; a closed direction is only opened"},
       {ChangeKind::insert, knots, 1, insert_knot_copies, nullptr, "insert", "v=0.5 [2]",
        "insert a knot, 1 or more times; exact"},
       {ChangeKind::remove, knots, 1, remove_knot_copies, nullptr, "remove", "v=0.5 [2]",
@@ -263,7 +263,7 @@ const std::vector<Change>& all_changes() {
       {ChangeKind::exchange, none, 0, exchange_directions, exchange_trim, "exchange", "",
        "swap u and v; flips the normals"},
       {ChangeKind::seam, parameter, 1, move_seam, move_trims_seam, "seam", "u=0.25",
-       "move the seam of a closed direction there"},
+       "move the seam of a closed direction to a parameter"},
       {ChangeKind::close, direction, 1, close_around, nullptr, "close", "u",
        "close a direction whose first and last edges meet"},
       {ChangeKind::cap, bulge, 1, add_cap, nullptr, "cap", "v_end [3mm]",

@@ -34,8 +34,8 @@ struct ChangeRequest {
   int continuity = 2;     // continuity of the seam that the change `close` makes
 };
 
-// Parses words such as {"insert", "v=0.3", "2"}. Returns an error for words that are invalid on every
-// surface.
+// Parses words such as {"insert", "v=0.3", "2"}. Returns an error for words that are wrong whatever the
+// surface is.
 Result<ChangeRequest> parse_change(const std::vector<std::string>& words);
 
 // Applies the change to a surface and its trims. A change that is not exact deviates by at most
@@ -47,12 +47,12 @@ Result<ChangedSurfaces> change_surface(const Surface& surface, const std::vector
 // Returns one line per change for --help.
 std::string list_changes();
 
-// Removes regions, loads and supports, whose extents are fractions of the surface that is being replaced.
+// Removes regions, loads and supports, because their extents are fractions of the surface that is replaced.
 // Adds a note if the body had any.
 void drop_surface_features(Body& body, std::vector<std::string>& notes);
 
 // Adapts the shell thickness to a new surface: a body that has become closed loses its thickness. Adds a note
-// if the surface closed or opened.
+// if it does, or if the surface has opened and the body has no thickness.
 void adapt_thickness(Body& body, const Surface& before, std::vector<std::string>& notes);
 
 }  // namespace spoonbill

@@ -33,8 +33,9 @@ class EditedDocument {
   // since is stored as a document, whose name is returned.
   Result<std::optional<std::filesystem::path>> discard_changes(LiveSession& live);
 
-  // Switches to a file that the session has opened, and discards the changes of the previous one. Nothing is
-  // autosaved before begin(), because a recovered document must stay until the user has decided about it.
+  // Switches to a file that the session has opened, and discards the changes of the previous document.
+  // Nothing is autosaved before begin(), because a recovered document must stay until the user has decided
+  // about it.
   Result<std::optional<std::filesystem::path>> switch_to(std::filesystem::path file, LiveSession& live);
 
   // Marks the document as unchanged and starts to autosave.
@@ -42,7 +43,7 @@ class EditedDocument {
   // Starts with the recovered document, which counts as changed.
   void begin_recovered(LiveSession& live);
 
-  // Updates file and changes after the session has saved a document.
+  // Updates the file and the state of unsaved changes after the session has saved a document.
   void note_saved(const SavedDocument& saved, LiveSession& live);
   // Returns true if the document was recovered and has not been saved since.
   bool is_recovered() const { return is_recovered_; }

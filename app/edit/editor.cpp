@@ -256,7 +256,8 @@ void Editor::receive_updates(const LiveFrame& frame, double seconds) {
   }
   if (const auto saved = live_->consume_saved_document()) {
     document_.note_saved(*saved, *live_);
-    // The next step is taken only if the saved document contains the last edit.
+    // The step that waits for the save, such as quitting, is taken only if the saved document has the last
+    // edit.
     if (continues_after_save_ && frame.edit_count <= saved->edit_count) start_next_step(next_step_);
   }
   if (auto conflict = live_->consume_save_conflict()) ask_about_conflict(std::move(*conflict));
@@ -597,7 +598,8 @@ void Editor::set_tool(const LiveFrame& frame, ToolKind kind, ToolAction tool_act
   send(Command(SetTool{tool}));
 }
 
-// Adds a plane at the tool, across the longest direction of the model, that fixes the shorter part.
+// Adds a fixing plane at the tool, perpendicular to the longest direction of the model. The plane fixes the
+// shorter part of the model.
 void Editor::place_plane(const LiveFrame& frame) {
   const Vector3 size = body_bounds_.extent();
   int axis = 0;

@@ -29,7 +29,7 @@ struct EditSettings {
   int height = 720;
   std::optional<double> scale;
   NavigationPreset navigation = NavigationPreset::rhino;
-  std::filesystem::path recording;  // recording from the start of the session; empty for none
+  std::filesystem::path recording;  // file that records the session from its start; empty for none
   std::filesystem::path log;        // file of the FrameLog; empty for none
   InstructionSet instruction_set = best_instruction_set();
   bool real_time = true;
@@ -73,7 +73,7 @@ class Editor {
   void lay_out_prompts();
   ViewSettings view_settings(double top_px) const;
 
-  // Input.
+  // The following functions handle the user's input.
   Pointer read_pointer() const;
   void handle_keys(const LiveFrame& frame);
   void handle_pointer(const LiveFrame& frame, double seconds);
@@ -87,7 +87,7 @@ class Editor {
   void place_plane(const LiveFrame& frame);
   void show_camera();
 
-  // Files.
+  // The following functions handle files.
   void finish_document(NextStep step);
   void start_next_step(NextStep step);
   void open(const std::filesystem::path& file);
@@ -143,7 +143,8 @@ class Editor {
   bool is_finished_ = false;
   bool shows_keys_ = false;
   bool screenshot_due_ = false;
-  // In the order of the requests; nullopt stands for the start of a recording.
+  // Jobs that the session has not completed, in the order of the requests. nullopt stands for the start of a
+  // recording.
   std::vector<std::optional<PendingOpen>> pending_jobs_;
   std::uint64_t completed_jobs_ = 0;
 };

@@ -56,7 +56,7 @@ struct KeyBinding {
 // Returns all bindings in the order of the list of keys.
 std::span<const KeyBinding> key_bindings();
 
-// Mouse buttons and modifier keys, for the list of keys only.
+// Mouse buttons and keys that are held during a drag, for the list of keys only.
 struct HeldInput {
   const char* chord;
   const char* text;

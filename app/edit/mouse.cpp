@@ -75,8 +75,8 @@ namespace {
 constexpr double picking_px_per_m = 1000.0;
 constexpr SamplingTarget target{1.0, 0.1};
 
-// Returns the first t > 0 with |origin + t direction - point| = reach. Returns nullopt if the ray misses the
-// sphere of radius `reach` around `point` or starts beyond it.
+// Returns the t > 0 at which the ray enters the sphere of radius `reach` around `point`. Returns nullopt if
+// the ray misses the sphere, or starts inside it or beyond it.
 std::optional<double> first_crossing(const Ray& ray, const Vector3& point, double reach) {
   const Vector3 to_point = point - ray.origin_m;
   const double along = to_point.dot(ray.direction);

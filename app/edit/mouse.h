@@ -38,10 +38,10 @@ struct Pointer {
 
 enum class CameraMotion { none, orbit, pan, zoom };
 
-// Returns the camera motion of the pressed buttons. `on_model`: the drag began on the model.
+// Returns the camera motion of the pressed buttons. `on_model` is true if the drag began on the model.
 CameraMotion camera_motion(NavigationPreset preset, const Pointer& pointer, bool on_model);
 
-// Returns the camera after a motion of the pointer. An orbit turns it about its target.
+// Returns the camera after a motion of the pointer. An orbit turns the camera about its target.
 Camera move_camera_by(const Camera& camera, CameraMotion motion, const Eigen::Vector2d& moved_px,
                       const Viewport& viewport);
 
@@ -55,11 +55,11 @@ struct PickedPoint {
 };
 
 // Finds where a tool that moves along a ray first touches a body. This gives the depth, which the mouse does
-// not. One owner: the thread that draws.
+// not give. One owner: the thread that draws.
 class SurfacePick {
  public:
-  // Samples the current surfaces. Grids are reused until the knots of a surface change. Surfaces that cannot
-  // be evaluated are not picked.
+  // Samples the current surfaces. The sampling grid of a surface is reused until its knots change. Surfaces
+  // that cannot be evaluated are not picked.
   void update(const Snapshot& snapshot);
 
   // Returns the first contact of a sphere of this radius that moves along the ray; empty if it misses. Each
@@ -96,8 +96,8 @@ struct MouseFrame {
 };
 
 // The mouse as the hand that holds the virtual handle. While hovering, the tool follows the pointer 1 mm
-// above the surface. Beside the body, it follows the pointer in the screen plane of its last position at the
-// surface. A press pushes the tool in by the strength within a quarter of a second. A drag then moves it
+// above the surface. Beside the body, it moves parallel to the screen, in the plane of its last position at
+// the surface. A press pushes the tool in by the strength within a quarter of a second. A drag then moves it
 // parallel to the screen, and the wheel moves it in depth. One owner: the thread that draws.
 class MouseHand : public InputSource {
  public:
@@ -111,7 +111,8 @@ class MouseHand : public InputSource {
   bool is_used() override { return frame_.is_stroking || !frame_.pointer.moved_px.isZero(); }
   HandTarget next_target(const HandTarget& current, double elapsed_s) override;
 
-  // Ends the press as if the button were released, until it is pressed again.
+  // Ends the press as if the button had been released. A new press begins only when the button is pressed
+  // again.
   void release_press();
 
   bool is_pressing() const { return press_.has_value(); }

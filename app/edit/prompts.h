@@ -24,7 +24,8 @@ class Question {
     is_open_ = appearing_ = true;
   }
   bool is_open() const { return is_open_; }
-  // Centres of the buttons in the last frame, in pixels from the left and the top; empty without a question.
+  // Centres of the buttons in the last frame, in pixels from the left and the top; empty if no question is
+  // open.
   const std::vector<std::array<double, 2>>& button_centres_px() const { return button_centres_px_; }
 
   // Draws the question, between begin_frame() and end_frame(). Returns the index of the answer, 0 to 2, once.

@@ -15,21 +15,22 @@ namespace spoonbill {
 struct CadChild {
   std::filesystem::path program;  // program to run; default: spoonbill-cad in this program's folder
   std::chrono::milliseconds patience{300'000};  // time limit of the child
-  Progress progress;                            // reported to several times a second
+  Progress progress;                            // receives the progress several times a second
 };
 
 // Reads a CAD file of at most 512 MiB. Every error names the file. Errors: a file that is missing,
-// unreadable, empty or malformed; a child that crashes, exceeds its time or 4 GiB; what read_cad() rejects; a
-// surface that no document can hold; a request to stop.
+// unreadable, empty or malformed; a child that crashes, runs out of time or needs more than 4 GiB; what
+// read_cad() rejects; a surface that no document can hold; a request to stop.
 Result<CadModel> read_cad_file(const std::filesystem::path& file, const CadReading& reading,
                                const CadChild& child = {});
 
-// Returns the content of a CAD file that holds the model. `file` names it in messages; nothing is written.
+// Returns the content of a CAD file that holds the model. In messages, `file` names the model; nothing is
+// written to it.
 Result<CadFileContent> make_cad_file(const CadModel& model, const CadWriting& writing,
                                      const std::filesystem::path& file, const CadChild& child = {});
 
 // Joins the faces of each solid that consists of several surfaces, and returns these solids as watertight
-// meshes. `file` names the model in messages. Errors: those of make_cad_file(), more triangles than the
+// meshes. In messages, `file` names the model. Errors: those of make_cad_file(), more triangles than the
 // limit.
 Result<CadSolids> make_cad_solids(const CadModel& model, const SolidMeshing& meshing,
                                   const std::filesystem::path& file, const CadChild& child = {});

@@ -22,7 +22,7 @@ namespace spoonbill {
 namespace {
 
 constexpr double default_chord_m = 5e-5, default_cad_tolerance_m = 1e-5;
-// Fractions of the work that are complete after the file is read, and after the solids of a mesh are joined.
+// Fractions of the work that are done once the file is read, and once the faces of solids are joined.
 constexpr double read_fraction = 0.5, joined_fraction = 0.7;
 
 // A request with the formats of its files.
@@ -192,7 +192,7 @@ bool is_face_of_solid(const CadSurface& surface) {
 
 struct ModelMeshing {
   double chord_m = default_chord_m;
-  std::filesystem::path file;  // file whose name messages contain
+  std::filesystem::path file;  // file that messages name
   CadChild child;              // child process that joins the faces of solids
   Progress progress;           // progress of the meshing
 };
@@ -357,7 +357,7 @@ Status write_native(const CadModel& model, const ConversionRequest& request, Con
   return write_document(document.value(), request.out, request.how);
 }
 
-// Copies some bodies of a document unchanged.
+// Copies the requested bodies of a document unchanged.
 Result<ConversionReport> convert_document(const ConversionRequest& request) {
   auto document = read_document(request.in);
   if (!document) return document.error();

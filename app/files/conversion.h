@@ -43,10 +43,10 @@ struct ConversionReport {
 // Converts a file to another format. The extension selects the format: .json; .step, .stp, .iges, .igs; .stl,
 // .obj, .ply, .3mf.
 //
-// In CAD files and meshes, faces of one solid become a solid if they close it; otherwise a note reports that
-// they do not. `out` appears complete or not at all; on an error an existing file stays as it is. Errors: a
-// mesh as input; two documents without a choice of bodies; options that have no effect on these formats;
-// errors of the readers and writers.
+// In CAD files and meshes, the faces of one solid are joined if they enclose a volume; otherwise a note
+// reports that the solid is open. `out` appears complete or not at all; on an error an existing file stays as
+// it is. Errors: a mesh as input; two documents without a choice of bodies; options that have no effect on
+// these formats; errors of the readers and writers.
 Result<ConversionReport> convert_file(const ConversionRequest& request, const Progress& progress);
 
 // Returns true if the extension is that of a CAD file or a mesh.

@@ -29,7 +29,8 @@ constexpr double tool_fraction = 0.15;
 constexpr double target_force_n = 1.5;
 // Fraction of the body's extent that is fixed by the plane of a new document.
 constexpr double fixed_fraction = 0.1;
-// A body lower than this fraction of its median extent is fixed at its end, not at its foot.
+// A body whose height is below this fraction of its median extent is fixed at its end along x, not at its
+// foot.
 constexpr double flat_fraction = 0.25;
 
 constexpr double stock_shape_tolerance_m = 1e-4;
@@ -75,7 +76,7 @@ struct SizedStockShape {
   std::optional<double> shell_thickness_m = {};
 };
 
-// Returns the stock shape of these sizes, in metres and in the order of the kind's fields.
+// Returns the stock shape with the sizes `m`, which are in metres and in the order of the kind's fields.
 SizedStockShape size_stock_shape(std::size_t kind, const std::vector<double>& m) {
   switch (kind) {
     case 0:
@@ -103,8 +104,8 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-// Returns the largest shell thickness with which the body has a lattice. If no thickness does, returns the
-// smallest thickness tried.
+// Returns the largest of several shell thicknesses with which a lattice can be made for the body. If none
+// works, returns the smallest of them.
 double find_shell_thickness(Body body, double size_m) {
   double thickness = shell_thickness_range_m.low;
   for (int halving = 0; halving <= thickness_halvings; ++halving) {
@@ -122,9 +123,9 @@ bool has_lattice_along(const Body& body) {
                                 : tube_lattice(body.surface, body.lattice).ok();
 }
 
-// Sets the largest node budget with which a lattice can follow the shape of the body. Cells of the default
-// size may fold in the details of a scan. The default stays if no budget works, because the body then gets a
-// box of cells, which is better than a coarse lattice.
+// Sets the node budget to the largest one with which a lattice can follow the shape of the body. Cells of the
+// default size may fold in the details of a scan. If no budget works, the default stays: the body then gets a
+// box of cells, which a smaller budget would only make coarser.
 void choose_node_budget(Body& body) {
   const int usual = body.lattice.node_budget;
   const int most = body.shell_thickness_m ? 16 : 4;

@@ -18,10 +18,11 @@ namespace spoonbill {
 struct CadModel;
 struct ScanFit;
 
-// Returns an error for the name of a CAD file, a mesh or a scan; it names the command that converts the file.
+// Returns an error if the name is that of a CAD file, a mesh or a scan. The error names the command that
+// converts the file.
 Status check_native_name(const std::filesystem::path& file);
 
-// Reads a document after check_native_name().
+// Reads a document. For the name of a file of another format, returns the error of check_native_name().
 Result<Document> read_document_file(const std::filesystem::path& file);
 
 // Returns the names of the materials that come with the program, sorted.
@@ -31,8 +32,8 @@ std::vector<std::string> shipped_material_names();
 // as "clay" for modelling-clay. The error lists all names.
 Result<Material> shipped_material(const std::string& name);
 
-// Returns a document with one body around the surface. A plane fixes a tenth of the body: at its foot, or at
-// its left end if it is flat. The radius of the ball tool follows from the body's size, and the force scale
+// Returns a document with one body around the surface. A plane fixes a tenth of the body, at its foot or, for
+// a flat body, at its left end. The radius of the ball tool follows from the body's size, and the force scale
 // makes the forces perceptible. `shell_thickness_m`: see Body.
 Document starting_document(const std::string& name, Surface surface, const Material& material,
                            std::optional<double> shell_thickness_m = {});
@@ -54,7 +55,7 @@ std::span<const StockShapeKind> stock_shape_kinds();
 
 struct StockShapeChoice {
   std::size_t kind = 0;          // index into stock_shape_kinds()
-  std::vector<double> sizes_mm;  // size of each field of the kind
+  std::vector<double> sizes_mm;  // one size per field of the kind
 };
 
 StockShapeChoice default_stock_shape(std::size_t kind);
@@ -74,8 +75,8 @@ struct FittedDocument {
 };
 
 // Returns a starting_document() of clay bodies for a fitted scan. Closed surfaces become solids. Other
-// surfaces become shells of a hundredth of their size, at most 2 mm, thinner where their curvature demands
-// it. Returns an error for more bodies than a document can have.
+// surfaces become shells. Their thickness is a hundredth of their size, at most 2 mm, or less if the
+// curvature demands it. Returns an error for more bodies than a document can have.
 Result<FittedDocument> make_fitted_document(const ScanFit& fit, const std::string& name,
                                             const Material& clay);
 

@@ -37,11 +37,12 @@ struct ForeignTask {
   static std::string printable(const std::string& reason);
 };
 
-// The parent's side of the exchange with a child process. One owner, one thread. Every error names the file.
+// The parent's side of the exchange with a child process. It has one owner and is used by one thread. Every
+// error names the file.
 class ForeignChild {
  public:
   // Starts the program `arguments[0]`. `patience` limits its time, ChildOutput::memory_limit its memory.
-  // `input` becomes its standard input; a negative one gives it none.
+  // `input` becomes its standard input; a negative descriptor stands for /dev/null.
   static Result<ForeignChild> start(ForeignTask task, const std::vector<std::string>& arguments,
                                     std::chrono::milliseconds patience, int input = -1);
 
@@ -53,8 +54,8 @@ class ForeignChild {
   // stops the work.
   Result<FrameHead> next();
 
-  // Returns the whole content of the frame whose head next() returned last. Errors: those of next(), and more
-  // than frame_bytes_limit.
+  // Returns the whole content of the frame whose head next() returned last. Errors: those of next(), and
+  // content of more than frame_bytes_limit bytes.
   Result<std::string> content(const FrameHead& head);
 
   // Reads the next bytes of the content of the frame whose head next() returned last.

@@ -132,7 +132,7 @@ ScanFile scan_from_cloud(PointCloud cloud, LengthUnit unit) {
   return scan;
 }
 
-// Reads the content of a frame of kind `mesh`, and converts it to metres.
+// Receives the mesh that a frame of kind `mesh` contains, and converts it to metres.
 Result<MeshFile> receive_mesh(ForeignChild& child, const FrameHead& head, const std::filesystem::path& file,
                               const MeshReading& reading) {
   MeshCounts counts;
@@ -150,7 +150,7 @@ Result<MeshFile> receive_mesh(ForeignChild& child, const FrameHead& head, const 
   return result;
 }
 
-// Reads the content of a frame of kind `cloud`.
+// Receives the point cloud that a frame of kind `cloud` contains.
 Result<PointCloud> receive_cloud(ForeignChild& child, const FrameHead& head) {
   CloudCounts counts;
   if (head.kind != FrameKind::cloud || head.bytes < sizeof counts) return child.invalid_answer();
@@ -165,8 +165,8 @@ Result<PointCloud> receive_cloud(ForeignChild& child, const FrameHead& head) {
   return cloud;
 }
 
-// A point cloud, the mesh of a PLY file, or nothing. Nothing stands for the mesh of an OBJ file, which
-// read_mesh_scan() reads.
+// A point cloud, the mesh of a PLY file, or std::monostate. The latter stands for the mesh of an OBJ file,
+// which read_mesh_scan() must read.
 using ScanContent = std::variant<std::monostate, PointCloud, MeshFile>;
 
 Result<ScanContent> read_content(const std::filesystem::path& file, const MeshReading& reading) {

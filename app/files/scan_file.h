@@ -24,7 +24,7 @@ struct MeshReading {
   std::optional<LengthUnit> unit;
   std::size_t triangle_limit = mesh_triangle_limit;
   // Program whose commands `read-mesh FILE` and `read-points FILE` parse the file. Default: the running
-  // program. A test must name it.
+  // program. A test must set it, because the running program is then the test itself.
   std::filesystem::path program = "/proc/self/exe";
   std::chrono::milliseconds patience{60'000};  // time limit of the child
 };
@@ -35,8 +35,8 @@ struct MeshFile {
 };
 
 // Reads an OBJ, STL or PLY file of at most 512 MiB. Every error names the file. Errors: another extension; a
-// file that is missing, unreadable, empty, truncated or malformed; a child that crashes, exceeds its time or
-// 4 GiB; more triangles than triangle_limit, or more vertices than three times that limit.
+// file that is missing, unreadable, empty, truncated or malformed; a child that crashes, runs out of time or
+// needs more than 4 GiB; more triangles than triangle_limit, or more vertices than three times that limit.
 Result<MeshFile> read_mesh_file(const std::filesystem::path& file, const MeshReading& reading = {});
 
 // Reads a point cloud of at most 1 GiB in the file's own unit. Returns nullopt if a PLY or OBJ file has

@@ -12,7 +12,8 @@ namespace spoonbill {
 Result<std::filesystem::path> state_folder();
 
 // An exclusive lock between processes, held through a lock file that is deleted when the lock is released.
-// The system releases the lock when the process ends, however it ends. One owner; any thread.
+// The system releases the lock when the process ends, however it ends. The lock has one owner and may be used
+// on any thread.
 class FileLock {
  public:
   // Returns ErrorCode::in_use if this or another process holds the lock, ErrorCode::unwritable if the file

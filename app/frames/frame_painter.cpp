@@ -86,8 +86,8 @@ const ImDrawData& FramePainter::lay_out(const Snapshot& snapshot, const ViewSett
 
 namespace {
 
-// Number of painters, the same on every machine: a deforming mesh is drawn with the edges of the first shape
-// that its painter drew, so the number of painters affects the pictures.
+// Number of painters. It is the same on every machine, because it affects the pictures: a painter draws a
+// deforming mesh with the edges of the first shape that it drew.
 constexpr std::size_t painter_count = 3;
 
 // Jobs per painter: one in progress and one waiting.

@@ -23,16 +23,16 @@ namespace spoonbill {
 // touch determines the camera and the ground.
 Box framed_box(const Snapshot& start);
 
-// Returns the settings that show the view choice in a frame of this size, with room for the panel. The
-// tessellation does not depend on earlier frames.
+// Returns the settings that show the view choice in a frame of this size, with room for the panel. With these
+// settings, the tessellation of a frame does not depend on earlier frames.
 ViewSettings frame_view(const ViewChoice& choice, const Box& framed, int width_px, int height_px);
 
-// Paints snapshots into images. One owner; used on the thread that made it.
+// Paints snapshots into images. A painter must be used on the thread that made it.
 class FramePainter {
  public:
   // Makes a painter with its own GL context. Dear ImGui has one current context per process, so painters on
   // several threads share the mutex `interface_turn`, which each painter locks while it lays out its
-  // interface. Null for a single painter.
+  // interface. A single painter needs no mutex.
   static Result<FramePainter> make(int width_px, int height_px, std::mutex* interface_turn = nullptr);
 
   FramePainter(FramePainter&&) noexcept = default;
@@ -78,7 +78,7 @@ struct PaintedFrame {
 };
 
 // Paints frames on several threads while the owner prepares the next ones. Frames are assigned to the
-// painters in a fixed order, so that the result is the same on any machine. One owner, one thread:
+// painters in a fixed order, so that the result is the same on any machine. Used by one thread, as follows:
 //
 //  while (more) {
 //    if (crew.is_full()) use(crew.receive());
@@ -98,7 +98,7 @@ class PaintingCrew {
   // Queues a job. The crew must not be full.
   void start(PaintingJob job);
 
-  // Waits for the oldest frame in progress; there must be one. After an error of its painter the crew is
+  // Waits for the oldest frame in progress; there must be one. After an error of a painter the crew is
   // unusable.
   Result<PaintedFrame> receive();
 

@@ -24,8 +24,8 @@
 namespace spoonbill {
 
 // Removes the marks (requests for files) from the session. Writes the requested documents into the folder and
-// returns the names of the requested screenshots of the next frame. If there is no folder, writes nothing and
-// returns no names.
+// returns the names of the requested screenshots, which must show the next frame. If there is no folder,
+// writes nothing and returns no names.
 Result<std::vector<std::string>> consume_marks(Session& session,
                                                const std::optional<std::filesystem::path>& folder);
 
@@ -36,9 +36,9 @@ Status write_marked_picture(const Image& picture, const std::string& name,
 // Returns "frame-0042.png" for 42.
 std::string frame_file_name(int number);
 
-// Makes the folder, or removes the frames and the contact sheet of an earlier run from it. Other files are
-// not changed. Returns an error with the folder's name if the folder cannot be made or written. Removes
-// read-only files only if `replaces_read_only` is set; otherwise they are an error.
+// Makes the folder if it is missing; otherwise removes the frames and the contact sheet of an earlier run
+// from it. Other files are not changed. Returns an error with the folder's name if the folder cannot be made
+// or written. Removes read-only files only if `replaces_read_only` is set; otherwise they are an error.
 Status prepare_frame_folder(const std::filesystem::path& folder, bool replaces_read_only = false);
 
 // Writes numbered frames as PNG files on its own thread, so that encoding does not delay drawing. One thread
@@ -67,7 +67,7 @@ class FrameWriter {
 };
 
 // A video file that an ffmpeg process encodes from raw pictures. The complete file appears under its name in
-// finish(), or not at all. One owner, one thread. The program must ignore SIGPIPE (see main).
+// finish(), or not at all. Used by one thread. The program must ignore SIGPIPE (see main).
 class VideoEncoder {
  public:
   // Returns true if ffmpeg is on the PATH.
@@ -110,7 +110,7 @@ struct PictureRequest {
   bool replaces_read_only = false;  // also replaces read-only files of earlier runs
 };
 
-// Writes the pictures of a replay. One owner, one thread.
+// Writes the pictures of a replay. Used by one thread.
 class ReplayPictures {
  public:
   // Prepares the folder and starts the video.

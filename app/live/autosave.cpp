@@ -32,8 +32,9 @@ std::filesystem::path canonical_path(const std::filesystem::path& path) {
   return problem ? path : canonical;
 }
 
-// Returns the first file name of the form `file` + `before` + "-N" + `after` that is free, such as
-// a.autosave.json.kept-1.json. The claim's lock prevents other windows from choosing the same name.
+// Returns the first free file name of the form `file` + `before` + "-N" + `after`, such as
+// a.autosave.json.kept-1.json. The lock of the AutosaveClaim prevents other windows from choosing the same
+// name.
 std::filesystem::path find_free_name(const std::filesystem::path& file, const std::string& before,
                                      const std::string& after) {
   for (int number = 1;; ++number) {

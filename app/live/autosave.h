@@ -34,8 +34,8 @@ class Autosave {
   // Removes the file if it exists.
   void remove() const;
   // Moves the file's content to a free name in the same folder, so that later autosaves do not overwrite it,
-  // and returns that name. The new file is a document that can be opened; a file that cannot be read is only
-  // renamed.
+  // and returns that name. The new file is a document that can be opened. A file that cannot be read or
+  // copied is only renamed.
   Result<std::filesystem::path> set_aside() const;
 
   const std::filesystem::path& file() const { return file_; }
@@ -47,7 +47,7 @@ class Autosave {
   std::filesystem::path file_;
 };
 
-// A window's exclusive right to one autosave file, for the lifetime of the object. One owner.
+// A window's exclusive right to one autosave file, for the lifetime of the object, which has one owner.
 class AutosaveClaim {
  public:
   // Claims an unclaimed autosave that an interrupted session left, otherwise the first free one.
@@ -62,7 +62,7 @@ class AutosaveClaim {
       : autosave_(std::move(autosave)), lock_(std::move(lock)) {}
 
   Autosave autosave_;
-  std::optional<FileLock> lock_;  // lock of the autosave; empty if the folder does not support locks
+  std::optional<FileLock> lock_;  // lock of the autosave; empty if none could be acquired
   bool is_open_elsewhere_ = false;
 };
 

@@ -125,7 +125,7 @@ void HapticSide::close() {
   safe_device_.give_none();
   if (lent_.session == nullptr) return;
   if (recording_) end_recording();
-  // The autosave of a session that ends with a fault then contains the newest state.
+  // The journal autosaves this state, so that a session that ends with a fault loses no work.
   if (published_change_ != change_) publish_scene();
 }
 
@@ -135,8 +135,8 @@ void HapticSide::run_commands() {
   }
 }
 
-// Switches the force of the device. A replay starts each session with the force on, so the recording gets
-// every difference from the session's own switch.
+// Switches the force of the device. Records each change of the session's force switch, because a replay
+// starts with the force on.
 void HapticSide::update_force_switch() {
   if (exchange_->force_cut.exchange(false, std::memory_order_acq_rel)) force_on_ = false;
   safe_device_.switch_force(force_on_);
@@ -145,7 +145,7 @@ void HapticSide::update_force_switch() {
   if (recording_) push(RecordedForceSwitch{force_on_});
 }
 
-// Runs command_. Returns false if the session is on loan afterwards.
+// Runs command_. Returns false if the session is then on loan to the worker.
 bool HapticSide::run_command() {
   if (auto* queued = std::get_if<QueuedRequest>(&command_)) {
     if (is_main_thread_request(queued->request)) {

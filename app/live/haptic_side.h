@@ -72,9 +72,9 @@ struct LiveFrame {
   std::uint32_t safety_flags = 0;  // SafetyFlag bits of the last tick
   bool recording = false;
   std::uint64_t session = 0;     // number of sessions opened or restarted so far
-  std::uint64_t edit_count = 0;  // number of commands, and of ticks with contact, so far: edits worth saving
+  std::uint64_t edit_count = 0;  // number of commands and of ticks with contact so far: edits worth saving
   std::uint64_t document = 0;    // number of documents opened so far
-  std::uint64_t completed_jobs = 0;  // number of completed jobs: open, start recording
+  std::uint64_t completed_jobs = 0;  // number of completed jobs: documents opened, recordings started
   std::uint64_t failed_jobs = 0;     // bit n % 64 is set if job n failed; jobs are counted from 0
 };
 
@@ -110,7 +110,7 @@ class SessionWorker {
   std::thread thread_;
 };
 
-// Queues and buffers between the main thread and the haptic thread. Must exist as long as that thread.
+// Queues and buffers between the main thread and the haptic thread. Must outlive the haptic thread.
 struct LiveExchange {
   static constexpr std::size_t command_capacity = 256;
   static constexpr std::size_t force_capacity = 4096;
@@ -133,14 +133,14 @@ struct LiveExchange {
 // State and functions of the haptic thread.
 class HapticSide {
  public:
-  // Exchange, journal and worker must outlive the object. The device's workspace is centred on the session's
-  // reading.
+  // Exchange, journal and worker must outlive the object. The device's workspace is centred on the position
+  // in the session's reading.
   HapticSide(std::unique_ptr<Session> session, std::unique_ptr<Device> device, LiveExchange& exchange,
              Journal& journal, SessionWorker& worker);
 
   // Runs one tick. Called by the haptic thread, once per period. A failed assertion abandons the tick: the
   // device gets no force and the next frame has tick_flag_failed. A recording ends, because its replay would
-  // not be abandoned at the same point.
+  // not abandon the tick at the same point.
   void tick(const LoopTick& tick) noexcept;
 
   // Leaves the device without force, ends a recording as LiveSession::stop_recording() does, and passes the
@@ -177,7 +177,7 @@ class HapticSide {
   std::unique_ptr<Device> device_;
   WatchedDevice watched_device_;
   SafeDevice safe_device_;  // the only access to the device
-  bool force_on_ = true;    // not changed when another session takes over
+  bool force_on_ = true;    // the user's choice, which stays when another session takes over
 
   LiveExchange* exchange_;
   Journal* journal_;

@@ -79,8 +79,8 @@ void Journal::set_autosave(std::optional<Autosave> autosave, std::uint64_t docum
   ++autosave_count_;
 }
 
-// Holds the mutex until the file has its new name. A thread that is writing the autosave waits for it in
-// was_superseded().
+// Holds the mutex until the file has its new name. A thread that is writing the autosave waits for the mutex
+// in was_superseded().
 Result<std::filesystem::path> Journal::set_autosave_aside() {
   const std::lock_guard lock(mutex_);
   if (!autosave_) return Error{ErrorCode::unavailable, "there is no autosave"};
@@ -129,7 +129,7 @@ bool Journal::process_pending() {
   bool worked = false;
   for (int i = 0; i < 1000 && entries_.pop(entry); ++i) {
     write(entry);
-    // Freed on this thread, because the queue returns the slot to the haptic thread.
+    // The entry is freed here, so that the haptic thread does not free it when it reuses the queue's slot.
     entry = std::monostate{};
     worked = true;
   }

@@ -46,13 +46,13 @@ class Notices {
   std::vector<Notice> all_;
 };
 
-// Writes bodies as CAD files and meshes on its own thread, so that neither autosaving nor drawing waits for
-// it. One owner; one thread calls begin().
+// Writes bodies as CAD files and meshes on its own thread, so that an export delays neither autosaves nor
+// frames. It has one owner, and one thread calls begin().
 class Exporter {
  public:
   // The notices must outlive the exporter.
   explicit Exporter(Notices& notices) : notices_(&notices) {}
-  ~Exporter();  // cancels an export; an older file of that name remains
+  ~Exporter();  // cancels a running export; an older file of that name remains
   Exporter(const Exporter&) = delete;
   Exporter& operator=(const Exporter&) = delete;
 
@@ -60,7 +60,7 @@ class Exporter {
   static bool has_export_extension(const std::filesystem::path& file);
   static const char* extensions_text();
 
-  // Starts an export. A notice reports its end or its error, also if another export is still running.
+  // Starts an export, unless another one is still running. A notice reports its end or its error.
   void begin(std::vector<Body> bodies, std::filesystem::path file);
 
  private:
@@ -136,7 +136,8 @@ struct SaveRequest {
 // Writes the files of one live session. The autosave is at most a second older than the simulation.
 class Journal {
  public:
-  // Number of entries that may wait for the disk before a recording is abandoned, about one per tick.
+  // Number of entries that may wait for the disk before a recording is abandoned. A tick makes about one
+  // entry.
   static constexpr std::size_t entry_capacity = 16384;
 
   // The notices must outlive the journal. The scene buffers are allocated with the sizes of `first`.
@@ -165,14 +166,14 @@ class Journal {
 
   // Sets the view that is saved with documents. Called by the main thread, as are all functions after it.
   void set_view(Json view);
-  // Sets the autosave of a document, numbered as in LiveFrame, or disables it if empty. The previous file is
-  // removed.
+  // Sets the autosave of the document with this number (LiveFrame::document); an empty value disables
+  // autosaving. The previous autosave file is removed.
   void set_autosave(std::optional<Autosave> autosave, std::uint64_t document);
   // Disables the autosave and keeps its content under another name, which is returned; see
   // Autosave::set_aside(). Returns an error if there is no autosave.
   Result<std::filesystem::path> set_autosave_aside();
-  // Saves the scene that answers this request, or a newer one of the same document. A file with the extension
-  // of an export format is exported; an export does not count as saving.
+  // Saves the scene that is published for this request, or a newer one of the same document. A file with the
+  // extension of an export format is exported; an export does not count as saving.
   void save(SaveRequest save);
   // Returns the last document that was saved since the previous call, or nullopt.
   std::optional<SavedDocument> consume_saved_document();

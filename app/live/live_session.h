@@ -41,7 +41,7 @@ class LiveSession {
   // Switches the force of the device off at the next tick, ahead of everything that is queued.
   void cut_force() { exchange_.force_cut.store(true, std::memory_order_release); }
 
-  // Queues the replacement of the document. A recording ends first.
+  // Queues the replacement of the document. A recording in progress ends first.
   bool open(Document document, std::string source);
 
   // Restarts the session from the current shape, at rest, and records from there, so that the recording is
@@ -65,12 +65,12 @@ class LiveSession {
   // of the last frame.
   void set_view(Json view) { journal_.set_view(std::move(view)); }
   void set_autosave(std::optional<Autosave> autosave);
-  // Ends the autosave and stores its content under another name, see Journal.
+  // Ends the autosave and stores its content under another name, see Journal::set_autosave_aside().
   Result<std::filesystem::path> set_autosave_aside() { return journal_.set_autosave_aside(); }
 
-  // Returns the newest tick.
+  // Returns the newest frame. The haptic thread makes one every four ticks.
   const LiveFrame& frame();
-  // Returns the frame of the last call of frame(); it is valid until the next one.
+  // Returns the frame of the last call of frame(). It is valid until the next call of frame().
   const LiveFrame& last_frame() const { return exchange_.frames.reading(); }
   // Writes the forces of the ticks since the last call, oldest first, in newtons.
   void consume_forces(std::vector<float>& forces_n);

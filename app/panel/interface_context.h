@@ -55,8 +55,8 @@ class InterfaceContext {
   // Makes this context ImGui's current one, which ImGui stores in a global variable.
   void make_current() const { ImGui::SetCurrentContext(context_.get()); }
 
-  // Begin and end a frame; ImGui calls between them lay it out. The fonts must be uploaded before the first
-  // frame. The draw data is valid until the next begin_frame().
+  // begin_frame() and end_frame() begin and end a frame; the ImGui calls between them lay it out. The fonts
+  // must be uploaded before the first frame. The draw data is valid until the next begin_frame().
   void begin_frame(int width_px, int height_px);
   const ImDrawData& end_frame();
 

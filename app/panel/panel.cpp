@@ -163,8 +163,8 @@ void request_material(Material material, PanelAnswer& answer) {
   answer.requests.emplace_back(Command(SetMaterial{std::move(material)}));
 }
 
-// Returns the mass and the number of regions with other materials. Both share a row, because the window is
-// small.
+// Returns the mass, and the number of regions with a material or friction of their own. Both share a row,
+// because the window is small.
 std::string mass_text(const PanelModel& model) {
   std::string mass = grams_text(model.mass_kg);
   if (model.region_count == 0) return mass;
@@ -191,7 +191,7 @@ void draw_material(const PanelModel& model, const Theme& theme, PanelAnswer& ans
   if (sculpting_changed) answer.requests.emplace_back(Command(SetSculpting{sculpting}));
 }
 
-// Returns the text for the distance by which a surface lags behind its lattice.
+// Returns the text for the largest distance of a surface from the deformed lattice that it follows.
 std::string residual_text(double residual_m) {
   return rounded_text(1e3 * residual_m, 3, " mm error");
 }

@@ -25,7 +25,7 @@ struct PanelModel {
   Tool tool;
   Sculpting sculpting;
   Material material;
-  int region_count = 0;           // number of regions with other materials
+  int region_count = 0;           // number of regions with a material or friction of their own
   std::vector<Material> presets;  // materials in the list of presets
 
   double inertia_scale = 1.0;
@@ -36,8 +36,8 @@ struct PanelModel {
   int unheld_count = 0;  // number of bodies without fixed nodes
   bool has_ground = false;
 
-  double residual_m = 0.0;  // largest distance by which a surface lags behind its lattice
-  int residual_body = 0;    // index of that surface's body in the scene
+  double residual_m = 0.0;  // largest distance of a surface from the deformed lattice that it follows
+  int residual_body = 0;    // index in the scene of the body whose surface has this distance
 
   Overlays overlays;
   bool see_through_body = false;
@@ -54,7 +54,8 @@ struct PanelModel {
   std::string drawing_text;      // details omitted from the picture
 };
 
-// Makes the panel's contents. `snapshot` must be of the same session and tick; `view` draws it.
+// Makes the panel's contents. `snapshot` must be of the same session and tick as `facts`. `view` has the
+// settings with which the snapshot is drawn.
 PanelModel make_panel_model(const SessionFacts& facts, const Snapshot& snapshot, const ViewSettings& view);
 
 // Returns the area of the panel in a frame of this size and scale: at the left edge, below `top_px`. The area

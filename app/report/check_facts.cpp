@@ -29,7 +29,7 @@ Json curvature_json(const CurvatureExtreme& place) {
           {"point_m", position_json(place.position_m)}};
 }
 
-// Returns the radius of curvature in metres; null if the curvature is negative or only rounding error.
+// Returns the radius of curvature in metres; null if the curvature is negative or counts as flat.
 Json radius_json(double curvature_per_m) {
   return curvature_per_m > least_curvature_per_m ? Json(1.0 / curvature_per_m) : Json(nullptr);
 }
@@ -73,8 +73,8 @@ std::string names_text(const std::vector<std::string>& names) {
   return text;
 }
 
-// Adds the mass of a body with its material regions. If the regions cannot be evaluated, the body's own
-// material is assumed everywhere and the line of the mass states the reason.
+// Adds the volume, mass and centre of mass of a body with its material regions. If the regions cannot be
+// evaluated, the body's own material is assumed everywhere and the line of the mass states the reason.
 void add_mass(FactSheet& facts, const Body& body, double volume_m3, const Vector3& centre_m, Json& json) {
   const BodyMass mass = mass_of_volume(body, volume_m3, centre_m);
   facts.add("  Volume", volume_text(volume_m3), "", nullptr);
@@ -143,8 +143,8 @@ std::string faces_text(std::size_t count) {
   return "solid of " + count_text(count, "face", "faces");
 }
 
-// Adds the mass of a solid whose faces all have the same material. If the faces have several materials, it is
-// unknown which part of the solid consists of which material.
+// Adds the mass of a solid. If its faces have several materials, the mass is reported as unknown, because
+// nothing determines which part of the solid consists of which material.
 void add_solid_mass(FactSheet& facts, const CadSolid& solid, const std::vector<Body>& bodies, Json& json) {
   const Material& material = bodies[solid.surface_indices.front()].material;
   const bool is_same =
@@ -196,7 +196,7 @@ void add_solid_thickness(FactSheet& facts, const CadSolid& solid, const SolidChe
   const WallThickness& thin = *check.thinnest;
   const double error_m = 2.0 * solid.chord_error_m;
   const std::string within =
-      error_m > least_gap_m ? ", elsewhere at most " + short_length_text(error_m) + " less" : "";
+      error_m > least_gap_m ? "; no wall is more than " + short_length_text(error_m) + " thinner" : "";
   facts.add("  Thinnest",
             short_length_text(thin.thickness_m) + " at " + position_text(thin.position_m) + within, "",
             nullptr);

@@ -261,7 +261,8 @@ void add_material_facts(FactSheet& facts, const Material& material) {
   facts.add("Material", material_text(material), "material", material_to_json(material));
 }
 
-// Distances up to this one between trim loops and the edges in a CAD file are rounding errors of the file.
+// Distances of trim loops from the edges in a CAD file that are below this limit are rounding errors of the
+// file.
 constexpr double shown_trim_deviation_m = 1e-9;
 
 void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces) {

@@ -20,9 +20,9 @@ namespace spoonbill {
 // surface it is the box around the area that the loops keep; invalid loops are ignored.
 Box extent_of(const Surface& surface, const std::vector<TrimLoop>& trims = {});
 
-// Adds the name, the unit of the file, the size of all bodies together and each body. In the JSON these are
-// "bodies"; the members of a single body are also at the top level. With more bodies than can be sculpted
-// together, each has one line.
+// Adds the name, the unit of the file, the size of all bodies together and each body. In the JSON the bodies
+// are the list "bodies", and the members of a single body are also at the top level. With more bodies than
+// can be sculpted together, each body has only one line.
 void add_document_facts(FactSheet& facts, const Document& document);
 
 // Adds the size of the box along x, y and z.
@@ -41,7 +41,8 @@ void add_unit_facts(FactSheet& facts, const std::string& unit, bool declared);
 void add_elasticity_facts(FactSheet& facts, const Simulation& simulation);
 
 // Adds the lattice, mass and solver of each body. `snapshot` is that of the initial state of a simulation of
-// these bodies. In the JSON they are "simulated"; the members of a single body are also at the top level.
+// these bodies. In the JSON these facts are the list "simulated", and the members of a single body are also
+// at the top level.
 void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot, const std::vector<Body>& bodies);
 
 // Adds the quality of the cells of each lattice, with and without its feature map. `maps` are the reports of

@@ -217,8 +217,8 @@ std::optional<std::string> find_detail_note(const ScanFit& fit) {
   };
   if (std::none_of(fit.bodies.begin(), fit.bodies.end(), is_loose)) return std::nullopt;
   return "5 % of the scan or more is farther from the surface than a hundredth of its size; one surface "
-         "cannot "
-         "have a handle or a hole, so fit its parts; fine detail needs more control points";
+         "cannot have a handle or a hole, so fit the parts of such a scan; fine detail needs more control "
+         "points";
 }
 
 namespace {
@@ -230,7 +230,8 @@ double share_within(const ScanFit& fit, double tolerance_m) {
     const std::vector<double>& distances = body.errors.distance_m;
     const auto near = std::count_if(distances.begin(), distances.end(),
                                     [&](double distance) { return distance <= tolerance_m; });
-    // The distances of a coarse mesh are measured at points all over the mesh.
+    // The distances of a coarse mesh belong to samples all over it, so their number differs from that of its
+    // points.
     if (!distances.empty()) {
       within += static_cast<double>(body.points_m.size()) * static_cast<double>(near) /
                 static_cast<double>(distances.size());

@@ -28,9 +28,9 @@ std::optional<std::string> find_detail_note(const ScanFit& fit);
 // components of the scan that were skipped or capped. A tolerance of 0 means that there is no tolerance.
 std::vector<std::string> find_fit_shortcomings(const ScanFit& fit, double tolerance_m);
 
-// Adds the parts of the scan that belong to no body: outliers, specks and other islands, as fractions of the
-// distinct points. Must be called before all other facts are added, because those describe the remaining
-// points.
+// Adds the numbers of points that belong to no body: outliers, points in specks and points on other islands.
+// Also adds the fraction of the distinct points that these are. Must be called before all other facts are
+// added, because those describe the remaining points.
 void add_left_out_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit);
 
 // Adds the unit and size of the scan, the distance within which vertices were joined, and the number of

@@ -19,7 +19,7 @@ std::string with_decimals(double number, int decimals, const char* unit) {
   return text.data();
 }
 
-// Formats with three significant digits.
+// Formats the number with three significant digits.
 std::string with_three_digits(double number, const char* unit) {
   const double size = std::abs(number);
   return with_decimals(number, size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2, unit);
@@ -134,7 +134,7 @@ std::string closing_text(const Closing& closing) {
     case Closedness::tube:
       return "a tube, open by " + short_length_text(closing.gap_m) + " at an end";
     case Closedness::sheet:
-      return "open both ways";
+      return "a sheet, open in both directions";
   }
   return "";
 }

@@ -1,5 +1,5 @@
-// Texts for the panel and for reports: quantities with about three digits in the units that a designer uses,
-// whether a surface is closed, and regions.
+// Texts for the panel and for reports. Quantities have about three digits and the units that a designer uses.
+// Other texts describe closedness, material regions and the flags of a tick.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +26,7 @@ std::string grams_text(double kilograms);           // "34.2 g"
 std::string density_text(double kilograms_per_m3);  // "1.80 g/cm³"
 std::string newtons_text(double newtons);           // "1.23 N"
 std::string percent_text(double fraction);          // "12 %", "0.081 %"
-// Returns how much slower than the real body one with this inertia scale responds: "real time", "1.4 times
+// Returns how much slower than the real body a body with this inertia scale responds: "real time", "1.4 times
 // slower", "31 times slower".
 std::string slowness_text(double inertia_scale);
 // Returns the count with its noun, such as "1 body" or "3 bodies".
@@ -40,10 +40,11 @@ std::vector<std::string> flag_texts(std::uint32_t flags);
 const char* name_of(Closedness closedness);        // "solid", "tube", "sheet"
 std::string closing_text(const Closing& closing);  // "a tube, open by 12.0 mm at an end"
 
-// The material and friction of a region: "silicone-soft, friction 0.9", or "friction 0.9" without a material.
+// Returns the material and friction of a region: "silicone-soft, friction 0.9", or "friction 0.9" without a
+// material.
 std::string region_material_text(const MaterialRegion& region);
-// The extent of a region: "50 to 100 % along, 0 to 2.0 mm deep". Directions that it spans completely are
-// omitted.
+// Returns the extent of a region: "50 to 100 % along, 0 to 2.0 mm deep". Directions that the region spans
+// completely are omitted.
 std::string region_extent_text(const BodyRegion& region);
 
 }  // namespace spoonbill

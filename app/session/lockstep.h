@@ -35,7 +35,7 @@ struct LockstepInput {
   std::string source;        // names the input in messages
 };
 
-// Runs a session in lock-step. One owner, one thread.
+// Runs a session in lock-step. The loop has one owner and is used by one thread.
 class Lockstep {
  public:
   // The session, the input's device and the writer must outlive the loop. The writer may be null.

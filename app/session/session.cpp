@@ -117,8 +117,8 @@ bool changes_shape_meaning(const Command& command) {
          std::holds_alternative<KeepShape>(command) || std::holds_alternative<RefineKnots>(command);
 }
 
-// Largest numbers of unread marks, and of different documents saved at one tick, so that a recording cannot
-// fill the memory.
+// Largest number of requested files that wait to be written, and largest number of different documents saved
+// at one tick. The limits keep a recording from filling the memory.
 constexpr std::size_t waiting_marks_limit = 1000;
 constexpr std::size_t saves_at_tick_limit = 16;
 
@@ -154,7 +154,8 @@ struct RequestApplier {
       if (Status saved = save_document(); !saved) return saved;
       made.document = session.saved;
     }
-    // A new mark replaces an earlier one of the same name, because a replay would overwrite its file.
+    // A new mark replaces an earlier one of the same kind and name, because both would be written to the same
+    // file.
     std::erase_if(session.marks, [&](const FileMark& other) {
       return other.mark.kind == mark.kind && other.mark.name == mark.name;
     });
@@ -162,7 +163,7 @@ struct RequestApplier {
     return {};
   }
 
-  // Makes the document of the current state, unless the last one that was made is still current.
+  // Sets session.saved to the document of the current state, unless it is that document already.
   Status save_document() const {
     if (session.saved != nullptr) return {};
     if (session.saves_at_tick == saves_at_tick_limit) {

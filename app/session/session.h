@@ -23,7 +23,7 @@ namespace spoonbill {
 
 // Requests: everything that a user, a script or a recording can request from a session between two ticks.
 // Plain values, each with one JSON form:
-//  the simulation's commands (engine/exchange/document.h)     the view's (app/session/view_choice.h)
+//  the commands of engine/exchange/document.h     the commands of app/session/view_choice.h
 //  {"command": "undo"}    {"command": "redo"}    {"command": "cancel_stroke"}
 //  {"command": "switch_force", "on": false}      the force of the device; on at the start
 //  {"command": "save", "name": "bent"}           the document at that tick
@@ -80,10 +80,11 @@ struct Session {
   DeviceSpecification device;
   DeviceReading reading;                 // reading of the last tick
   std::uint32_t flags = tick_flag_none;  // TickFlag bits, accumulated until the reader clears them
-  // Requests for files until consume_marks(); a new one replaces one of the same name.
+  // Requests for files that consume_marks() has not consumed yet. A new one replaces one of the same kind and
+  // name.
   std::vector<FileMark> marks;
-  bool keeps_documents = true;  // false if nothing writes the documents of marks, which then stay empty
-  // Document of the last mark; null once anything has changed since.
+  bool keeps_documents = true;  // false if documents will not be written; those of `marks` are then empty
+  // Document of the last request to save one; null if anything has changed since.
   std::shared_ptr<const Document> saved = {};
   std::size_t saves_at_tick = 0;  // number of different documents saved at this tick
   bool force_on = true;           // false while the user has switched the device's force off
@@ -94,7 +95,7 @@ struct Session {
                               InstructionSet set, const FeatureMapWatch& watch = {});
 };
 
-// Runs one tick of touch and updates the undo history.
+// Runs one tick with a reading of the device, and updates the undo history.
 TickResult advance(Session& session, const DeviceReading& reading);
 
 // Writes the data that drawing needs, as of the last tick. Before the first tick, writes the initial state.
@@ -106,11 +107,12 @@ std::uint64_t state_hash(const Session& session);
 // Returns the document of the current state, as it would be saved.
 Document make_session_document(const Session& session);
 
-// Applies a request. An error leaves the session unchanged. Does not allocate unless needs_rebuild(session,
-// request).
+// Applies a request. An error leaves the session unchanged. Does not allocate if needs_rebuild(session,
+// request) is false.
 Status apply_request(Session& session, const Request& request);
 
-// Returns true if applying the request rebuilds grids or lattices, which takes milliseconds and allocates.
+// Returns true if applying the request takes milliseconds and allocates. It does so if it rebuilds grids or
+// lattices, or makes a document to be written.
 bool needs_rebuild(const Session& session, const Request& request);
 
 // Applies a request given as JSON. An error names the command's origin.
@@ -125,7 +127,7 @@ struct SessionFacts {
   std::string title;
   Tool tool;
   Material material;
-  int region_count = 0;  // number of regions of the first body, which also gives the material
+  int region_count = 0;  // number of regions of the first body, whose material is `material`
   double mass_kg = 0.0;  // mass of all bodies
   Sculpting sculpting;
   Symmetry symmetry;

@@ -6,8 +6,8 @@
 // A contact stage is "none", "hulls", "spheres", "triangles" or "contacts". The sphere level ranges from 0,
 // the coarsest, to 3. Camera fields, all optional: "yaw_deg", "pitch_deg", "field_of_view_deg", and
 // "target_mm": [x, y, z] with "distance_mm". Without target and distance the whole body is shown. Overlays
-// that are not named keep their state. The default ground is just below the body; a height suits bodies that
-// will be bent further down. Unknown fields and values out of range are errors that name the field.
+// that are not named keep their state. The default ground is just below the body; set a height for bodies
+// that will be bent further down. Unknown fields and values out of range are errors that name the field.
 #pragma once
 
 #include <array>
@@ -81,10 +81,11 @@ inline constexpr std::array<StageChoice, 8> stage_choices = {{
     {"Contact points", ContactStage::contacts, 0},
 }};
 
-// Computes the contact stages of the next frame if one of them is shown. One owner: the thread that draws.
+// Computes the data of the contact debug views for the next frame, if such a view is shown. Used only by the
+// thread that draws.
 class StageFinder {
  public:
-  // Sets settings.stages; null if no stage is shown.
+  // Sets settings.stages; to null if no contact debug view is shown.
   void fill(const Snapshot& snapshot, ViewSettings& settings) {
     settings.stages = nullptr;
     if (settings.overlays.contact_stage == ContactStage::none) return;

@@ -16,7 +16,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return place == std::string::npos ? text : text.replace(place, what.size(), with);
 }
 
-// Expects every command to fail on the file in one line.
+// Expects each of these commands to fail on the file with a message of one line.
 void expect_refusals(const Workplace& place, const std::string& file) {
   const std::vector<std::vector<std::string>> uses = {
       {"info", file},

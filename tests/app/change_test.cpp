@@ -87,8 +87,8 @@ TEST(ChangeCommand, OpenedAndCappedAndClosed) {
   EXPECT_EQ(knots_at_seam(), 3);
 }
 
-// Capping makes the body closed, so its shell thickness must be removed: a closed body with one cannot be
-// sculpted.
+// Capping makes the body closed, so its shell thickness must be removed: a closed body with a shell thickness
+// cannot be sculpted.
 TEST(ChangeCommand, AShellThatIsCappedIsASolid) {
   const Workplace place;
   const std::string opened = place.text("opened.json"), capped = place.text("capped.json");
@@ -160,8 +160,8 @@ TEST(ChangeCommand, SaysWhatADegreeTakes) {
   const Workplace place;
   const std::string ball = place.text("ball.json");
   ASSERT_EQ(run({"new", "sphere", "--control", "40x48", "--out", ball}).code, exit_done);
-  // The 48 control points in v make 43 spans of degree 5. At degree 9 they have 42 inner knots of
-  // multiplicity five and ten knots at each end, so 42 x 5 + 10 control points.
+  // The 48 control points in v make 43 spans of degree 5. At degree 9, the knot vector has 42 inner knots of
+  // multiplicity five and ten knots at each end, which makes 42 x 5 + 10 control points.
   const Outcome outcome = run({"change", ball, "degree", "v", "9", "--out", place.text("out.json")});
   EXPECT_TRUE(is_clean_failure(outcome)) << outcome.err;
   EXPECT_NE(outcome.err.find("needs 220 control points, and a document holds 200"), std::string::npos)

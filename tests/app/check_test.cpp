@@ -193,8 +193,8 @@ TEST(Check, WeighsRegionsByWhatTheyAreMadeOf) {
   save(place, "grip.json", document);
   const Json plain = check_of(place, "plain.json")["bodies"][0],
              grip = check_of(place, "grip.json")["bodies"][0];
-  // A cell has a single material. This shifts the boundary between the materials by at most half of a layer
-  // of cells, of which there are ten or more.
+  // A cell has a single material. This shifts the boundary between the materials by at most half the height
+  // of a layer of cells. There are ten or more layers.
   EXPECT_NEAR(grip["mass_kg"].get<double>() / plain["mass_kg"].get<double>(), 0.75, 0.03);
   EXPECT_EQ(grip["materials"], Json::array({"modelling-clay", "light"}));
   EXPECT_GT(grip["centre_of_mass_m"][1], 0.003);
@@ -237,7 +237,8 @@ TEST(Check, TellsWhichBodiesAreInEachOther) {
   bodies.resize(3, bodies[0]);
   for (int b = 0; b < 3; ++b) {
     bodies[static_cast<std::size_t>(b)].name = std::string(1, static_cast<char>('a' + b));
-    // The second ball overlaps the first by a tenth. The third ball is a tenth away from the second.
+    // The second ball overlaps the first by a tenth of the diameter. The third ball is a tenth of the
+    // diameter away from the second.
     for (double& x : bodies[static_cast<std::size_t>(b)].surface.net.x)
       x += std::array{0.0, 0.9, 2.0}[b] * size;
   }

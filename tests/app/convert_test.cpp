@@ -284,7 +284,7 @@ TEST_F(ConvertTest, WhatDoesNotGoOutIsSaid) {
 }
 
 // The mesh of a shell has both faces and walls along all edges, including those of holes. A shell that is too
-// thick has only its surface.
+// thick is written as its surface alone.
 TEST_F(ConvertTest, AShellGoesOutAsAMeshOfItsThickness) {
   const std::string plate = std::string(SPOONBILL_ASSETS) + "/models/trimmed-plate.json";
   Json document = json_of(content_of(plate));
@@ -331,7 +331,8 @@ TEST_F(ConvertTest, NoMessageCommandsTheTerminal) {
       << outcome.err;
 }
 
-// The child process sends itself Ctrl+C before the work begins; the signal takes effect at the first check.
+// Returns the exit code of a conversion that Ctrl+C interrupts. The child process sends itself the signal
+// before the work begins, and the signal takes effect at the first check.
 int exit_code_when_interrupted(const std::string& in, const std::string& out) {
   const pid_t process = fork();
   if (process == 0) {

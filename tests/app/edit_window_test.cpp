@@ -71,7 +71,7 @@ class EditWindow : public testing::Test {
     });
   }
 
-  // Waits until `count` further frames were started and shown. These frames include all earlier events.
+  // Waits until `count` further frames were started and shown. They show the effects of all earlier events.
   bool wait_frames(int count) const {
     const Json before = shown();
     const int from = before.empty() ? 0 : before["frame"].get<int>();
@@ -84,7 +84,8 @@ class EditWindow : public testing::Test {
     return wait_shown([&](const Json& frame) { return frame["tick"].get<int>() >= from + count; });
   }
 
-  // Moves the pointer and waits until the editor has seen it there and the device has reached the hand.
+  // Moves the pointer and waits until the editor has seen it there. Unless the button is pressed, also waits
+  // until the device has reached the position that the mouse sets.
   bool move_to(int x, int y) const {
     if (!hands("mousemove " + std::to_string(x) + " " + std::to_string(y))) return false;
     return wait_shown(

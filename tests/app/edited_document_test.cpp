@@ -10,7 +10,7 @@
 namespace spoonbill {
 namespace {
 
-// A session of a file that begins with the work recovered from an earlier session.
+// A session that edits a file and begins with the work recovered from an earlier session.
 class RecoveredSession {
  public:
   RecoveredSession() {
@@ -97,7 +97,7 @@ TEST(EditedDocument, KeepsNothingOfTheNextDocument) {
   ASSERT_TRUE(session.live().open(next, "test"));
   ASSERT_TRUE(wait_for(session.live(), [](const LiveFrame& frame) { return frame.document == 1; }));
   ASSERT_TRUE(session.live().ask(Command(PlacePlane{{Vector3(0.01, 0, 0), Vector3::UnitX()}})));
-  // Its scene is offered to the autosave every 400 ticks.
+  // The scene of the next document is passed to the journal every 400 ticks.
   const std::uint64_t tick = session.live().last_frame().snapshot.tick;
   ASSERT_TRUE(
       wait_for(session.live(), [&](const LiveFrame& frame) { return frame.snapshot.tick > tick + 900; }));

@@ -102,7 +102,7 @@ TEST(Info, EscapesWhatIsNotText) {
   EXPECT_EQ(without_controls("\n\xe2\x80\xa8"), "??");
 }
 
-// Every body is listed with the domain of its parameters, because `change` and `--bodies` need these.
+// Every body is listed with its number and the domain of its parameters, which `--bodies` and `change` need.
 TEST(Info, TellsOfEveryBody) {
   const Workplace place;
   Document two = read_document(place.path("model.json")).value();

@@ -299,7 +299,8 @@ TEST_F(FitTest, AnUnknownElementBeforeTheVerticesIsSkipped) {
   }
 }
 
-// These vertices are farther apart than the joining distance, so the triangles do not form a surface.
+// The vertices of neighbouring triangles are farther apart than the joining distance, so the triangles do not
+// form a surface.
 TEST_F(FitTest, LessThanHalfOfTheScanIsNoFitUnlessIslandsAreChosen) {
   TriangleMesh loose = ball_mesh(12, 24, 20.0);
   const TriangleMesh ball = loose;
@@ -326,7 +327,8 @@ TEST_F(FitTest, LessThanHalfOfTheScanIsNoFitUnlessIslandsAreChosen) {
   EXPECT_EQ(json_of_fit(three, {"--control", "8x8", "--islands", "largest"}).at("islands"), 3);
 }
 
-// Repeated points on another island do not make it larger than the largest one.
+// Repeated points count once. The largest island has less than half of all points, but more than half of the
+// distinct points.
 TEST_F(FitTest, TheHalfIsOfDistinctPoints) {
   Scan balls = ellipsoid_cloud(900, {0.02, 0.02, 0.02});
   for (const double x_m : {0.1, 0.1, 0.2, 0.2}) {
@@ -405,8 +407,8 @@ class RealScans : public FitTest {
     if (folder == nullptr) GTEST_SKIP() << "SPOONBILL_SCANS names no folder with scans";
     scans_ = folder;
   }
-  // Expects every body to have no folds and an error of at most a millimetre and at most a hundredth of
-  // `size_m`, the size of the object.
+  // Expects every body to have no folds, and 95 % of its points to be within a millimetre of the surface. The
+  // error of all points must also be below a hundredth of `size_m`, the size of the object.
   void expect_good(const std::string& name, const std::vector<std::string>& options, double size_m,
                    std::size_t bodies) {
     const Json json = json_of_fit((scans_ / name).string(), options);

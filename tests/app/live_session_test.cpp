@@ -153,7 +153,7 @@ TEST(LiveSession, RunsInRealTimeWhereATickHasTheTime) {
   EXPECT_TRUE(wait_for(*live, [](const LiveFrame& frame) {
     return frame.facts.sculpting.real_time && frame.snapshot.bodies[0].material.inertia_scale == 1.0;
   }));
-  // A new material may need more substeps.
+  // A new material may need more substeps, so it switches real time off.
   Material stiffer = first.facts.material;
   stiffer.youngs_modulus_pa = 1e8;
   ASSERT_TRUE(live->ask(Command(SetMaterial{stiffer})));
@@ -220,7 +220,7 @@ TEST(LiveSession, ExportsAMeshWhichSavesNothing) {
   ASSERT_TRUE(live->save(place.path("bent.stl")));
   EXPECT_EQ(next_notice(*live, Notice::Kind::information), "exported bent.stl, in mm");
   EXPECT_FALSE(live->consume_saved_document().has_value());
-  // A binary STL file has 80 bytes, a count and 50 bytes per triangle.
+  // A binary STL file has a header of 80 bytes, a count of 4 bytes and 50 bytes per triangle.
   std::ifstream in(place.path("bent.stl"), std::ios::binary);
   std::uint32_t triangles = 0;
   in.seekg(80);
@@ -376,7 +376,7 @@ TEST(LiveSession, TheWorkspaceFollowsTheModelThatIsOpened) {
   }));
 }
 
-// The force that is cut stays off in another document and is part of the recording.
+// A force that was cut stays off when another document is opened, and the recording contains the switch.
 TEST(LiveSession, TheForceIsCutAtOnceUntilItIsSwitchedOn) {
   const Workplace place;
   Live live(held_handle());

@@ -36,7 +36,7 @@ TEST(MergeCommand, BowlAndHandleBecomeASpoon) {
   for (const auto& [knot, multiplicity] : knot_multiplicities(spoon.v)) {
     EXPECT_TRUE(knot == spoon.v.domain_start() || multiplicity == 1) << knot;
   }
-  // Outside the blend the spoon equals the handle, with the same u and a different v.
+  // Before the blend, the spoon has the shape and the parameters of the handle.
   const Surface part = surface_of(handle);
   const double end = joint["blend_start"];
   EXPECT_GT(end, 90.0);
@@ -83,7 +83,7 @@ TEST(MergeCommand, AHandleCutInFourAlongIsClosedAroundAgain) {
   for (int k = 0; k < 4; ++k) EXPECT_EQ(joints[k]["closes"], k == 3);
   EXPECT_FALSE(json_of(run({"info", place.text("whole.json"), "--json"}).out)["lattice"].is_null());
   const Outcome told = run({"merge", place.text("quarters.json"), "--out", place.text("whole.json")});
-  EXPECT_NE(told.out.find("4.u_end and 1.u_start, edge to edge, which closes the surface around"),
+  EXPECT_NE(told.out.find("4.u_end and 1.u_start, edge to edge, which closes the surface in this direction"),
             std::string::npos)
       << told.out;
 }
@@ -144,7 +144,7 @@ Vector3 middle_of(const std::string& ball) {
          (position(sphere, 0.0, sphere.v.domain_start()) + position(sphere, 0.0, sphere.v.domain_end()));
 }
 
-// Places rod.json of the workplace upright at the centre of the ball.
+// Moves the rod in rod.json so that its lower end is at the height of the ball's centre.
 void stand_in_middle(const Workplace& place, const std::string& ball) {
   Document moved = read_document(place.path("rod.json")).value();
   Vector3 low = moved.scene.bodies[0].surface.net.point(0, 0);

@@ -48,8 +48,8 @@ std::string above(double millimetres) {
   return "30mm," + std::to_string(millimetres) + "mm,0,1,0,0,0";
 }
 
-// The vertices of the ball of 8 mm radius are on the sphere. Its edges are inside the sphere by up to
-// 8 mm (1 - cos(pi/100)).
+// The vertices of the ball are on a sphere of 8 mm radius. Its edges are inside this sphere by up to 8 mm (1
+// - cos(pi/100)).
 constexpr double flatter_m = 8e-3 * 5e-4;
 const TriangleMesh ball = ball_mesh(100, 200, 8.0);
 
@@ -63,7 +63,7 @@ TEST(MeshCollide, TheDistanceIsThatOfASphere) {
   EXPECT_EQ(facts["touching"], false);
   EXPECT_EQ(facts["complete"], true);
   EXPECT_TRUE(facts["contacts"].empty());
-  // The search guarantees 2e-5 m; Newton iteration refines the result.
+  // The search alone is accurate to 2e-5 m. Newton's method then refines the result.
   EXPECT_NEAR(facts["distance_m"].get<double>(), expected, 2.0 * flatter_m);
   EXPECT_TRUE(facts["nearest"]["a"].contains("u"));
   EXPECT_FALSE(facts["nearest"]["b"].contains("u"));
@@ -140,7 +140,7 @@ TEST(MeshCollide, TwoMeshesAreAsFarApartAsTheyAre) {
   EXPECT_EQ(apart["mesh_a"]["cleaning"]["vertices_joined"], 28);
   EXPECT_EQ(apart["mesh_b"]["cleaning"]["vertices_joined"], 28);
 
-  // In centimetres the cube is ten times as large; the pose makes it overlap as deeply as before.
+  // In centimetres, both meshes are ten times as large. In this pose, they overlap by 10 mm.
   const Json deep = facts_of({box, cube, "--unit", "cm", "--pose", "14cm,20mm,0,1,0,0,0"});
   EXPECT_EQ(deep["touching"], true);
   EXPECT_EQ(deep["contained"], false);
@@ -164,7 +164,8 @@ TEST(MeshCollide, TwoMeshesAreAsFarApartAsTheyAre) {
   }
 }
 
-// Returns a document of two bodies, the second a copy of the first 20 mm above it.
+// Writes a document of two bodies, the second a copy of the first 20 mm above it. Returns the name of the
+// file.
 std::string two_bodies(const Workplace& place) {
   place.text("model.json");
   auto document = read_document(place.path("model.json"));
@@ -194,7 +195,7 @@ TEST(MeshCollide, AllBodiesOfADocumentCount) {
   EXPECT_FALSE(upper["nearest"]["b"].contains("body"));
   EXPECT_FALSE(one["nearest"]["a"].contains("body"));
 
-  // A copy of the model is between both bodies, 1 mm below the upper one and overlapping it.
+  // A copy of the model is between both bodies. It is 1 mm lower than the upper body and overlaps it.
   const Json alone = facts_of({model, model, "--pose", "0,-1mm,0,1,0,0,0"});
   const Json between = facts_of({two, model, "--pose", "0,19mm,0,1,0,0,0"});
   EXPECT_EQ(between["touching"], true);

@@ -63,8 +63,8 @@ void expect_refusal(const std::string& file, ErrorCode code, const MeshReading& 
   EXPECT_EQ(mesh.error().code, code) << mesh.error().message;
 }
 
-// The file has two triangles and two types of lists. Truncated anywhere, it is reported and does not crash
-// the reader.
+// The file has two triangles, each with a list of corners and a colour. Truncated anywhere, the file is
+// reported and does not crash the reader.
 TEST_F(MeshFileTest, ACutBinaryPlyIsToldOfItsCut) {
   for (const bool big : {false, true}) {
     const std::string header = std::string("ply\nformat binary_") + (big ? "big" : "little") +
@@ -242,7 +242,7 @@ TEST_F(MeshFileTest, DamagedContentIsRefused) {
   }
 }
 
-// Damaged content gives a mesh that can be cleaned, or a one-line error.
+// Damaged content gives an error of one line, when it is read or when the mesh is cleaned.
 TEST_F(MeshFileTest, DamagedContentNeverBecomesAWildMesh) {
   const auto one_line = [&](const std::string& name, const std::string& content, const std::string& reason) {
     const std::string file = write(name, content);
@@ -324,7 +324,7 @@ TEST_F(MeshFileTest, AReaderThatFailsIsOneLine) {
   expect_refusal(file, ErrorCode::unavailable, missing);
 }
 
-// A child process reads clouds too. Every failure of it gives an error of one line.
+// A child process reads clouds too. Every failure of that process gives an error of one line.
 TEST_F(MeshFileTest, AReaderOfPointsThatFailsIsOneLine) {
   const std::string file = write("cloud.xyz", "1 2 3\n4 5 6\n");
   const auto expect_no_cloud = [&](const std::string& reason, const MeshReading& reading) {
@@ -358,12 +358,12 @@ TEST_F(MeshFileTest, AReaderOfPointsThatFailsIsOneLine) {
 TEST_F(MeshFileTest, TheReaderHasFourGibibytes) {
   if (sanitized) GTEST_SKIP() << "a sanitizer's memory knows no limit";
   // The script sends its limit on address space, 4194304 KiB, as the reason of a failure; 007 is the length
-  // of this reason. It waits first, so that the parent can set the limit.
+  // of this reason. The script waits first, so that the parent can set the limit.
   expect_refusal(write("box.stl", binary_stl(box)), "(4194304)",
                  instead("sleep 0.3; printf 'spnlfail\\007\\0\\0\\0\\0\\0\\0\\0'; ulimit -v"));
 }
 
-// The mesh is a ball of many triangles. The full run uses five million and the real limit.
+// The mesh is a ball of many triangles. The long run uses five million triangles and the real limit.
 TEST_F(MeshFileTest, ManyTrianglesAreReadUpToTheLimit) {
   const bool full = is_long_run();
   MeshReading reading = by_program();

@@ -1,4 +1,4 @@
-// Texts of mesh files as other programs write them.
+// Contents of mesh files as other programs write them.
 #pragma once
 
 #include <string>

@@ -104,7 +104,7 @@ TEST_P(Lumps, CanBePressed) {
   EXPECT_EQ(json_of(replayed.out)["state_hash"], json_of(recorded.out)["state_hash"]);
 }
 
-// The tool presses the ball in by a tenth of its radius. The reaction must be perceptible, and the surface
+// The ball tool is pressed in by a tenth of its radius. The reaction must be perceptible, and the surface
 // must yield by a plausible fraction of the depth.
 TEST_P(Lumps, GiveWayToTheirTool) {
   const Workplace place;
@@ -234,8 +234,8 @@ TEST(New, StopsWhenAskedTo) {
   EXPECT_EQ(content_of(place.path("old.json")), "precious");
 }
 
-// Stock shapes cannot intersect themselves. A search for intersections would take minutes for thin and wide
-// shapes.
+// Stock shapes cannot intersect themselves, so the command does not search for intersections. For thin and
+// wide shapes, such a search would take minutes.
 TEST(New, MakesWideThinLumpsAtOnce) {
   const Workplace place;
   for (const std::vector<std::string>& lump :

@@ -163,7 +163,8 @@ TEST(Panel, OffersASolidWhereTheToolHasABody) {
 }
 
 TEST(Panel, SwitchesTheForceOfALiveDevice) {
-  // Returns the switch that is requested by clicks down the right edge of the panel.
+  // Clicks at one height after another along the right edge of the panel. Returns whether the first request
+  // to switch the force is to switch it on.
   const auto find_switch = [](const PanelModel& model) -> std::optional<bool> {
     for (float y = 500.0F; y < 700.0F; y += 10.0F) {
       for (const Request& request : click_once(model, 275.0F, y)) {
@@ -429,7 +430,7 @@ TEST(Panel, ShowsAndAcceptsOnlyFiniteNumbersInRange) {
   }
 }
 
-// Clicks ever farther down along the right edge until the button is hit. Other widgets make other requests.
+// Clicks at one height after another along the right edge. Clicks that miss the button make other requests.
 TEST(Panel, AddsKnotsToTheBodyThatLagsMost) {
   Snapshot snapshot;
   snapshot.bodies.resize(3);
@@ -458,7 +459,7 @@ TEST(Panel, AddsKnotsToTheBodyThatLagsMost) {
   EXPECT_EQ(refined.front(), 1);
 }
 
-// Opens the list of stages, which covers the last rows, and clicks its second entry.
+// Opens the list of contact stages, which covers the last rows of the panel, and clicks its second entry.
 TEST(Panel, OffersTheStagesOfContact) {
   Frame frame(1280, 720);
   const auto click = [&](float x, float y) {

@@ -1,5 +1,5 @@
-// Tests the built program when a signal ends it: no temporary file stays, and the recording up to the signal
-// does.
+// Tests the built program when a signal ends it: temporary files are removed, and the recording up to the
+// signal stays.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
@@ -36,7 +36,7 @@ class RunningProgram {
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT, 0600);
-    // A signal to process -1 would go to every process of the machine.
+    // If the program does not start, process_ may be -1. A signal to process -1 would go to every process.
     const int refused =
         posix_spawn(&process_, stopped_program.c_str(), &actions, nullptr, pointers.data(), environ);
     EXPECT_EQ(refused, 0);
@@ -220,7 +220,7 @@ bool has_lost_all_children() {
   return false;
 }
 
-// Returns a STEP file of so many bodies that it takes seconds to convert.
+// Writes a STEP file of so many bodies that its conversion takes seconds. Returns the name of the file.
 std::string assembly_of(const Workplace& place) {
   Document document = read_document(place.path("model.json")).value();
   const Body first = document.scene.bodies[0];

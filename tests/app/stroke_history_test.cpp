@@ -11,8 +11,8 @@
 namespace spoonbill {
 namespace {
 
-// Returns an elastic handle of so few nodes that a tick takes a fraction of the usual time. Many strokes do
-// not press it out of reach.
+// Returns an elastic handle of so few nodes that a tick takes a fraction of the usual time. Because it is
+// elastic, many strokes do not press it out of the tool's reach.
 Scene coarse_handle() {
   Scene scene = small_handle();
   scene.bodies[0].lattice.node_budget = 150;
