@@ -1,5 +1,4 @@
-// The code of an error and the field at fault, which identify it. Tests compare these, because the text of a
-// message may change.
+// The code and the field of an error. Tests compare these two, because the text of a message may change.
 #pragma once
 
 #include <optional>

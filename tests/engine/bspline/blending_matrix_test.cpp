@@ -85,7 +85,7 @@ TEST(BlendingMatrix, PeriodicCubicIsWellConditionedAtKnots) {
 }
 
 // A periodic cubic curve whose control polygon is regular, with corners on the unit circle, has known radii
-// at its knots and between them.
+// at its knots and halfway between them.
 TEST(BlendingMatrix, PeriodicCubicCircleHasItsRadii) {
   for (const int controls : {8, 16, 32}) {
     const auto knots = KnotVector::periodic_uniform(3, controls).value();
@@ -217,8 +217,8 @@ TEST(SchoenbergWhitney, NamesTheControlPointInAPeriodicGap) {
       << status.error().message;
 }
 
-// For random samplings, the condition is compared with the rank of the matrix. In any direction the condition
-// is necessary; in a periodic direction it is not sufficient.
+// Compares the Schoenberg-Whitney condition with the rank of the matrix for random samplings. Full rank
+// always requires the condition. In a periodic direction, the condition does not ensure full rank.
 TEST(SchoenbergWhitney, AgreesWithTheRank) {
   Random random(5);
   int refused = 0;

@@ -14,7 +14,7 @@ namespace {
 
 struct Pair {
   const char *left, *right;  // names of bundled materials
-  double press_m;            // distance of the press: a fraction of that at which a block would bend aside
+  double press_m;            // distance of the press, a fraction of that at which a block would buckle
   int node_budget;
   ForceRun run;
 };
@@ -24,8 +24,8 @@ void PrintTo(const Pair& pair, std::ostream* out) {
 }
 
 constexpr double length_m = 0.02, width_m = 0.014, rounding_m = 0.001;
-// Tolerance of the surface. It is larger than the default, so that fewer control points suffice and contacts
-// take less time.
+// Tolerance of the fit of a block's surface. It is larger than the default, so that fewer control points
+// suffice and contacts take less time.
 constexpr double tolerance_m = 2e-5;
 
 // Returns a block along x with its contact face at x = 0, fixed at the other end.

@@ -134,7 +134,7 @@ TEST(Blend, APatchIsNotMergedWithItself) {
   }
 }
 
-// Two planes that meet at an angle; 180 degrees is flat.
+// Returns two planes that meet at an angle; 180 degrees is flat.
 std::vector<Surface> planes_at(double angle) {
   const auto flat = [](double from, double to) {
     return sheet_between([=](double) { return from; }, [=](double) { return to; });

@@ -27,7 +27,8 @@ TEST(Bridge, AGapIsBridgedSmoothly) {
   }
 }
 
-// Fits of scans end in irregular edges, which would grow into folds along a long strip.
+// Fits of scans end in irregular edges. If a long bridge continued these irregularities, they would grow into
+// folds.
 TEST(Bridge, RingsThatEndUnevenlyAreBridgedOverALongGap) {
   Surface first = ring_strip(0.0, 0.03, 16, 0.0), second = ring_strip(0.12, 0.15, 20, 0.2);
   for (Surface* ring : {&first, &second}) {
@@ -99,7 +100,7 @@ Surface pipe(const Vector3& from, const Vector3& to, const Vector3& seam, bool l
   return fit_grid(u, v, points).value();
 }
 
-// Returns the least area enclosed by any ring.
+// Returns the smallest area enclosed by a ring of the tube.
 double least_section_m2(const Surface& tube) {
   const double start = tube.v.domain_start(), end = tube.v.domain_end();
   double least = 1.0;

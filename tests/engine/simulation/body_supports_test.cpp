@@ -59,7 +59,7 @@ TEST(SupportMotion, SwingsAsASine) {
 }
 
 // The bar has a Poisson's ratio of 0, so the force is E A d / L up to the nonlinearity at a strain of 1e-3.
-// Springs have a ratio of at least 0.2, and their fixed ends, which do not narrow, make the bar slightly
+// Springs have a ratio of at least 0.2. Their bar narrows except at its fixed ends, which makes it slightly
 // stiffer.
 TEST(BodySupports, APulledEndBearsWhatABarSays) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
@@ -120,7 +120,7 @@ TEST(BodySupports, HoldWhatTheBlockHasNoNodeFor) {
   }
 }
 
-// A motion faster than the lattice's waves would invert cells; the support lags instead.
+// A motion that is faster than the waves in the lattice would invert cells. The support lags instead.
 TEST(BodySupports, WaitsForALatticeThatItWouldOutrun) {
   LoadedBlock body({0.012, 0.012, 0.04}, {4, 4, 11}, elastic_material(2e3, 0.3, 1000.0), Stepping::springs);
   body.support({{block_start, {}}, ramp(block_end, Vector3(0, 0, 0.02), 0.01)});

@@ -232,7 +232,8 @@ TEST(BoxedLoads, RemarksTellOfTheBoxAndOfItsCells) {
   }
 }
 
-// A ring fixed on one side moves furthest on the other; the corners of the box beyond it move further.
+// A ring that is fixed on one side moves farthest on the other. The corners of the box beyond the ring move
+// farther, but are not part of the body.
 TEST(BoxedLoads, RestTellsWhatTheBodyDoes) {
   Scene scene = small_handle();
   Body& body = scene.bodies[0];

@@ -18,7 +18,7 @@ namespace spoonbill {
 namespace {
 
 constexpr double arm_m = 0.04, bend_radius_m = 0.005, arm_thick_m = 0.006;
-// Distance between the arms.
+// Distance between the arms of the hairpin.
 constexpr double bend_gap_m = 2.0 * bend_radius_m - arm_thick_m;
 
 struct Station {
@@ -127,7 +127,7 @@ class Folding {
   }
 
  private:
-  // The first fifth of the body is pulled along y, the last fifth against it.
+  // The first fifth of the body is pulled along +y, the last fifth along -y.
   template <class Visit>
   void visit_ends(const Visit& visit) {
     const LatticeMesh& mesh = body_.lattice.mesh();

@@ -122,7 +122,7 @@ TEST(StiffBodies, KeepTheShapeInWhichTheyAreCast) {
   EXPECT_NEAR(sunk_m(simulation), bent, 1e-7);
 }
 
-// One of the hands has no coupling and moves at 5 m/s.
+// The hand holds the tool without a coupling spring and moves at up to 5 m/s.
 TEST(StiffBodies, NoHandBlowsThemUp) {
   for (const double youngs : {2e6, 2e9, 193e9}) {
     if ((sanitized || !is_full_run()) && youngs != 2e9) continue;

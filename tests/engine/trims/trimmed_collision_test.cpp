@@ -128,8 +128,8 @@ TEST(TrimmedCollision, ASolidMeetsTheRimToo) {
   const Surface surface = bent_sheet();
   const NestedGrid nested = make_nested_grid(surface.u, surface.v, 3).value();
   SurfaceCollider collider(nested, shared_area_of(surface, {hole(surface)}));
-  // The corners of the larger box, half a side 9 mm, are 12.73 mm from the centre and so reach the rim; those
-  // of the smaller one do not.
+  // The corners of the larger box, whose half sides are 9 mm, are 12.73 mm from the centre and so reach the
+  // rim. Those of the smaller box do not.
   const auto box = make_signed_distance(ImplicitShape(BoxShape{{0.009, 0.009, 0.002}}));
   const auto thin = make_signed_distance(ImplicitShape(BoxShape{{0.008, 0.008, 0.002}}));
   const Pose over{{0.05, 0.05, 0.0}, Eigen::Quaterniond::Identity()};

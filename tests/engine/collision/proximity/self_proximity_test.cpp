@@ -65,7 +65,7 @@ TEST(RestPairs, OfARingAreNeighboursOverTheSeamAsElsewhere) {
   EXPECT_LT(meet, pairs_seen);
 }
 
-// Returns the gaps of the samples in contact, in order.
+// Returns the gaps of the samples in contact, sorted.
 std::vector<double> gaps_m(int first, double squeeze) {
   const Surface rest = torus(first), now = torus(first, squeeze);
   const NestedGrid nested = nested_grid_of(rest);

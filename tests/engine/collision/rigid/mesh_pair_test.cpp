@@ -71,7 +71,7 @@ double grown_of(const CleanMesh& mesh, std::size_t t) {
   return 0.0;
 }
 
-// Returns the distance of two meshes from all pairs of triangles. It is negative where plates overlap.
+// Returns the distance of two meshes from all pairs of triangles. It is negative if plates overlap.
 double brute_gap(const CleanMesh& a, const CleanMesh& b) {
   double least = 1e300;
   for (std::size_t s = 0; s < a.mesh.triangles.size(); ++s) {
@@ -164,13 +164,13 @@ void expect_sound(const MeshPairResult& result, const CleanMesh& first, const Cl
     EXPECT_LE(contact.depth_m, last);
     last = contact.depth_m;
     EXPECT_NEAR(contact.normal.norm(), 1.0, 1e-9);
-    // The two points are apart along the normal by at most the depth; the depth is larger if one mesh is
-    // completely inside the other.
+    // The two points of a contact are apart along its normal by at most the depth. The depth is larger than
+    // this distance if one mesh is completely inside the other.
     const Vector3 apart = contact.second_m - contact.first_m;
     EXPECT_LT(apart.cross(contact.normal).norm(), 2e-6);
     EXPECT_LT(apart.dot(contact.normal), contact.depth_m + 2e-6);
-    // At least one of the two points is on the surface of its own mesh, or within half the thickness of a
-    // plate of it.
+    // At least one of the two points is on the surface of its own mesh, or within half a plate's thickness of
+    // this surface.
     EXPECT_LT(
         std::min(brute_distance(first.mesh, contact.first_m), brute_distance(second.mesh, contact.second_m)),
         half_plate_m + 1e-9);

@@ -15,8 +15,8 @@ constexpr double growth_tolerance = 1e-6, rounding = 1e-11;
 constexpr double difference_step = 1e-6;  // relative to the box's size
 constexpr double difference_tolerance = 1e-3, most_misfits = 0.02;
 
-// Returns point k of a Halton sequence (1960) in the unit cube: its points are evenly distributed, and the
-// same on every machine.
+// Returns point k of a Halton sequence (1960) in the unit cube. The points of the sequence are evenly
+// distributed, and the same on every machine.
 Vector3 spread(int k) {
   Vector3 result;
   const int bases[3] = {2, 3, 5};

@@ -99,7 +99,7 @@ TEST(SolidSearch, AgreesWithDenseSampling) {
   EXPECT_LT(touching, trials);
 }
 
-// A signed distance that guarantees only that it changes by no more than the point moves.
+// A signed distance that guarantees only one thing: it changes by no more than the point moves.
 class BareTorus final : public SignedDistance {
  public:
   DistanceSample at(const Vector3& point_m) const override { return torus_->at(point_m); }
@@ -171,8 +171,8 @@ TEST(SolidSearch, AToolFarLargerThanTheModelIsFound) {
           .found);
 }
 
-// The tool is completely inside and does not touch the surface. The result is the displacement through the
-// nearest wall, along its normal.
+// The tool is completely inside the tube and does not touch its surface. The result is the displacement
+// through the nearest wall, along the wall's normal.
 TEST(SolidSearch, AToolWhollyInsideIsFoundWithItsWayOut) {
   const Surface tube = round_tube(0.02, 0.06);
   const ImplicitShape shapes[] = {
@@ -212,7 +212,7 @@ TEST(SolidSearch, TouchingAnEdgeAPoleOrByATangentIsFound) {
   // The tool is beyond a pole, where all values of u are one point.
   for (const bool turned : {false, true}) {
     const Surface tube = ellipsoid_tube(12, 12), body = turned ? transposed(tube) : tube;
-    // The surface with exchanged directions has normals that point inwards.
+    // The transposed surface has inward normals.
     const CollisionResult pole =
         search(body, BoxShape{Vector3::Constant(0.01)}, {{0.0, 0.0, 0.05 + 0.0095}, none}, !turned);
     ASSERT_TRUE(pole.found);

@@ -104,7 +104,7 @@ TEST_F(SolidMeshes, ADrilledBoxIsWatertightWithinItsChord) {
 
 TEST_F(SolidMeshes, SolidsOfManyFacesAreWatertight) {
   for (const NamedShape& named : every_second(solid_shapes(), false)) {
-    // A solid with a single face is not imported as several surfaces, so it is left out here.
+    // A solid with a single face is not imported as several surfaces, so it is skipped here.
     if (count_of(named.shape, TopAbs_SOLID) == 0 || count_of(named.shape, TopAbs_FACE) < 2) continue;
     SCOPED_TRACE(named.name);
     expect_solid(named.shape, usual_chord_m);

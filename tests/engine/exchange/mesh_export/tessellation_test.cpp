@@ -201,7 +201,7 @@ double lowest_triangle_m(const TriangleMesh& mesh) {
   return lowest;
 }
 
-// On the left and on the right the disc has corners of equal height, except for their last bits.
+// At its left and right ends, the disc has corners whose heights differ only in their last bits.
 TEST(Tessellation, NoTriangleIsWithoutArea) {
   constexpr double radius_m = 0.01;
   ControlNet net(2, 2);

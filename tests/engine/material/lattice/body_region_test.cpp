@@ -47,7 +47,7 @@ LatticeMesh bar_lattice(std::array<int, 3> counts) {
   return std::move(mesh).value();
 }
 
-// Returns the shorter way from one turn to another, as a fraction of a turn, possibly across the seam.
+// Returns the shorter of the two distances between two positions around the bar, as a fraction of a turn.
 double apart(double turn, double other) {
   const double far = std::abs(turn - other);
   return std::min(far, 1.0 - far);
@@ -109,7 +109,7 @@ TEST(BodyRegion, CellsOfARoundBarAreWhereTheCylinderHasThem) {
   }
 }
 
-// The depth is the least distance to the six planes.
+// The depth of a node is its smallest distance from the six faces of the box.
 TEST(BodyRegion, DepthInABoxIsTheDistanceToItsNearestFace) {
   const Vector3 size_m(0.012, 0.007, 0.03);
   const LatticeMesh mesh = box_mesh(size_m, {6, 5, 11});
@@ -138,7 +138,8 @@ TEST(BodyRegion, CellsOfAThinRingLieBetweenItsFaces) {
       const BodyCoordinates& place = places[ring->cell_index(i, 0, k)];
       EXPECT_NEAR(place.around, (i + 0.5) / 24.0, 1e-3);
       EXPECT_NEAR(place.along, 0.25 + 0.5 * k, 1e-12);
-      // Chords of 15 degrees are nearer than arcs by less than 1 % of the thickness.
+      // The chords of 15 degrees on the outer and the inner face are nearer to each other than the arcs, by
+      // less than 1 % of the thickness.
       EXPECT_NEAR(place.depth_m, 0.001, 2e-5);
       held += contains(across_seam, place) ? 1 : 0;
     }

@@ -1,5 +1,5 @@
-// Tests lattices of bodies that no block of cells can be bent into, such as rings and bowls with a wall: they
-// are embedded in a box of cells.
+// Tests lattices of bodies such as rings and walled bowls, into which no block of cells can be bent. Such
+// bodies are embedded in a box of cells.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -133,7 +133,7 @@ TEST(SolidLattice, ARegionWithoutSurfaceNodesHasNoFriction) {
   EXPECT_FALSE(lattice_materials(mesh, Material(), {&spot, 1}).ok());
 }
 
-// The rim may be anywhere in v: the middle ring of the surface may be on the outside, on the rim or on the
+// The rim may be anywhere in v. The ring halfway along v may thus be on the outside, on the rim or on the
 // inside.
 TEST(SolidLattice, OfAWalledBowlHasItsVolume) {
   for (const double rim : {0.35, 0.65}) {

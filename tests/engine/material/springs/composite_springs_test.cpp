@@ -231,9 +231,9 @@ TEST(CompositeSprings, OnlyThePlasticHalfKeepsItsLength) {
   EXPECT_NEAR(strain_between(lattice, 15, 21), 0.0, 2e-3);
 }
 
-// A bar of two materials is held stretched, and one half creeps and yields to the other half. In the end,
-// half of its shear stress is gone and none of its pressure. With K = E / 1.2 and half the shear modulus,
-// G = E / 5.2, its modulus is 9 K G / (3 K + G) = 0.536 E.
+// A bar of two materials is held stretched, and its gel half creeps. In the end, the gel has lost half of its
+// shear stress and none of its pressure. With K = E / 1.2 and half the shear modulus, G = E / 5.2, Young's
+// modulus of the gel is then 9 K G / (3 K + G) = 0.536 E.
 TEST(CompositeSprings, OnlyTheGelCreeps) {
   Material gel = elastic_material(4e3, 0.3, 1000.0), rubber = elastic_material(4e3, 0.3, 1000.0);
   gel.relaxing_fraction = 0.5;
@@ -255,7 +255,7 @@ TEST(CompositeSprings, OnlyTheGelCreeps) {
 }
 
 // The number of substeps that a tick chooses is stable for any two damping times. With the longest damping
-// time, stability also needs the larger inertia of strained nodes.
+// time, stability also requires the increased inertia of strained nodes.
 TEST(CompositeSprings, StayStableHoweverTheyAreDamped) {
   const DenormalsFlushed flushed;
   for (const double first_time_s : {0.0, 1e-4, damping_time_range_s.high}) {
@@ -333,7 +333,7 @@ TEST(CompositeSprings, ABlockSlidesByTheFrictionsOfItsBase) {
   smooth.damping_time_s = 7e-5;
   smooth.friction = 0.1;
   for (const double rough : {0.1, 0.5, 1.2}) {
-    // The region covers the middle three of seven rows, which bear half of the weight.
+    // The region covers the central three of seven rows, which bear half of the weight.
     MaterialRegion middle;
     middle.region.along = {0.3, 0.7};
     middle.friction = rough;

@@ -173,8 +173,8 @@ TEST(CompositeStatics, OneCellOfABlockBendsAsItsLayersDo) {
   ImplicitStep step;
   step.drag_per_s = 40.0;
   for (int tick = 0; tick < 1500; ++tick) body.step(step);
-  // The cell treats the shear as uniform through the thickness, in faces and core: it shows 1 % of the
-  // deflection from shear instead of 2.7 %.
+  // The cell treats the shear as uniform through the thickness, in faces and core. Shear therefore accounts
+  // for 1 % of its deflection, instead of 2.7 %.
   EXPECT_NEAR(-body.displacement(block.node_count() - 1).y() / Sandwich::sinking_m(), 1.0, 0.025);
 }
 
