@@ -57,7 +57,7 @@ TEST(Basis, DerivativesSumToZero) {
       for (int d = 1; d <= max_basis_derivative; ++d) {
         double magnitude = 0.0;
         for (int j = 0; j <= knots.degree(); ++j) magnitude += std::abs(basis.values[d][j]);
-        // Cancellation leaves an error of a few units in the last place of the terms.
+        // The sum is zero except for rounding, which is a few units in the last place of the terms.
         EXPECT_NEAR(sum_of(basis, d, knots.degree()), 0.0, 1e-14 * magnitude);
       }
     }

@@ -1,4 +1,4 @@
-// Tests PLY files like those of Stanford, MeshLab and VTK, and generated files of every form.
+// Tests PLY files as Stanford, MeshLab and VTK write them, and generated files of every form.
 #include "engine/exchange/scans/ply_file.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Tests the force on a tool that presses a block. At rest it is the same for any number of substeps, and a
-// quick press ends with the same force as a slow one.
+// Tests the force on a tool that presses a block. The force at rest is the same for any number of substeps,
+// and a quick press ends with the same force as a slow one.
 #include <gtest/gtest.h>
 
 #include <algorithm>

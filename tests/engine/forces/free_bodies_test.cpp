@@ -1,4 +1,5 @@
-// Tests free bodies of springs: one that rings keeps its energy, and two that collide keep their momentum.
+// Tests free bodies of springs: a body that rings keeps its energy, and two bodies that collide keep their
+// momentum.
 #include <gtest/gtest.h>
 
 #include <algorithm>

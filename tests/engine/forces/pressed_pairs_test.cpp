@@ -1,5 +1,5 @@
 // Tests that two bodies pressed against each other push with equal forces, and that their interface is where
-// each body alone would be under that force.
+// the face of each body alone would be under this force.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -113,7 +113,8 @@ TEST(CurvatureRange, OfAnEllipsoid) {
   fit.control_counts = {{96, 96}};
   const Surface ellipsoid = fitted(Result<ExactShape>(shape), fit).surface;
   const CurvatureRange range = find_curvature_range(ellipsoid);
-  // The ends of the longest axis are sharpest, c / b^2; those of the shortest are flattest, b / c^2.
+  // The curvature is largest at the ends of the longest axis, c / b^2, and smallest at the ends of the
+  // shortest axis, b / c^2.
   EXPECT_NEAR(range.largest.curvature_per_m, c / (b * b), 0.01 * c / (b * b));
   EXPECT_NEAR(range.smallest.curvature_per_m, b / (c * c), 0.01 * b / (c * c));
   EXPECT_NEAR(std::abs(range.smallest.position_m.z()), b, 1e-4);

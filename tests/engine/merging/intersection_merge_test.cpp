@@ -168,7 +168,8 @@ TEST(IntersectionMerge, AFloorAndAWall) {
   }
 }
 
-// Lines of one sheet run along the border of the other, so that rounding puts them on either side of it.
+// Lines of one sheet run along the border of the other sheet. Rounding puts them inside or outside this
+// border.
 TEST(IntersectionMerge, SheetsOfOneWidth) {
   for (const double turn : {0.0, 0.3, 0.7, 1.1}) {
     const auto turned = [&](const Vector3& p) {

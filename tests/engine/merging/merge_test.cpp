@@ -318,7 +318,8 @@ TEST(Merge, AGridIsBlendedInAllRowsAlike) {
   EXPECT_EQ(mixed.error().code, ErrorCode::mismatch) << mixed.error().message;
 }
 
-// The edges differ by less than the tolerance and are brought together, with a kink beside them.
+// Two slopes meet at a ridge, and their edges differ by less than the tolerance. The movement of the edges
+// and the rounding of the ridge must together be within the tolerance.
 TEST(Merge, TheToleranceHoldsForAllOfADeviation) {
   for (const Vector3& moved : {Vector3(2.63e-5, -2.72e-5, -3.25e-5), Vector3(0, 4.5e-5, 0),
                                Vector3(0, 0, -4.5e-5), Vector3(4.5e-5, 0, 0)}) {

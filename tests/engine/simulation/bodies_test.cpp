@@ -68,8 +68,8 @@ Scene stacked_handles() {
   return scene;
 }
 
-// Expects the contact to be on its body: its frame is that of the surface, and the weighted positions of its
-// nodes give its point.
+// Expects the contact to be on its body: the contact's frame is the frame of the surface, and its point is
+// the weighted mean of the positions of its nodes.
 void expect_is_on_its_body(const Simulation& simulation, const ContactSnapshot& contact) {
   const SpringLattice& lattice = simulation.lattice(contact.body);
   double sum = 0.0;

@@ -104,7 +104,7 @@ TEST(BodySupports, MovesItsNodesExactly) {
 }
 
 // The support fixes one slice of the lattice, anywhere between the slices of the coarser implicit block.
-// Without it, the body would fall by 8 mm.
+// Without the support, the body would fall by 8 mm.
 TEST(BodySupports, HoldWhatTheBlockHasNoNodeFor) {
   const Vector3 size_m(0.012, 0.012, 0.08), gravity_m_per_s2(0, 0, 9.81);
   const Material material = elastic_material(5e6, 0.3, 1000.0);

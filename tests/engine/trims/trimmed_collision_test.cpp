@@ -86,8 +86,8 @@ TEST(TrimmedCollision, ASphereThatFitsPassesThroughAHole) {
   }
 }
 
-// The distance must agree with that of the nearest of many sampled kept points; the surface between samples
-// may be nearer by less than `between_m`.
+// The distance must agree with the distance of the nearest of many sampled kept points. It may be less by up
+// to `between_m`, because the surface between samples may be nearer.
 TEST(TrimmedCollision, AgreesWithDenseSamplingOnBentSheets) {
   const Surface surface = bent_sheet(0.004);
   const NestedGrid nested = make_nested_grid(surface.u, surface.v, 3).value();

@@ -1,4 +1,4 @@
-// Contact of solids with surfaces that have a closed form.
+// Tests contacts of solids with surfaces against closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>

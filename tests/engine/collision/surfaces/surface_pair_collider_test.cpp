@@ -278,7 +278,7 @@ TEST(SurfacePair, NoCommonPointIsMissed) {
   for (const auto& [kind, count] : missed) ADD_FAILURE() << count << " missed, " << kind;
 }
 
-// Compares the distance with that of balls around dense samples, which are found without hulls, levels or
+// Compares the distance with bounds from balls around dense samples, which are found without hulls, levels or
 // triangles.
 TEST(SurfacePair, AgreesWithDenseSamplesWhereTheyAreApart) {
   Random random(78);

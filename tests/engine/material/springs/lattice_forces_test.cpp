@@ -134,7 +134,7 @@ TEST(LatticeForces, AKickAddsTheWholeImpulse) {
 }
 
 // One pass over the springs gives the same bits as a linearisation followed by a step of the power iteration.
-// It leaves the previous derivatives unchanged if the new ones are not to be stored.
+// If the new derivatives are not to be stored, the pass leaves the previous ones unchanged.
 TEST(LatticeForces, PowerStepsAlongWithALinearisation) {
   for (const double stiffening : {0.0, 20.0, -20.0}) {
     Material material = elastic_material(5000.0, 0.3, 1000.0);
