@@ -11,7 +11,7 @@
 namespace spoonbill {
 
 struct Refusal {
-  Refusal() = default;  // stands for no error
+  Refusal() = default;  // represents no error
   explicit Refusal(ErrorCode error_code, std::string field_name = {})
       : code(error_code), field(std::move(field_name)) {}
   explicit Refusal(const Error& error) : code(error.code), field(error.field), message(error.message) {}

@@ -24,7 +24,7 @@ TEST(BlendingMatrix, RowsSumToOneAtTheLastKnotAndTheSeamToo) {
     const auto parameters = random_parameters(random, knots, 20);
     const Eigen::MatrixXd matrix = blending_matrix(knots, parameters, 0).dense();
     for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-      // The sum has at most ten positive terms below 1.
+      // The tolerance covers the rounding of at most ten positive terms below 1.
       EXPECT_NEAR(matrix.row(i).sum(), 1.0, 1e-14);
     }
     if (knots.is_periodic()) {
@@ -140,7 +140,7 @@ TEST(PseudoInverse, IsTheLeastSquaresSolution) {
   const auto parameters = uniform_parameters(knots, 30);
   const Eigen::MatrixXd a = blending_matrix(knots, parameters, 0).dense();
   const Eigen::MatrixXd projection = a * pseudo_inverse(knots, parameters).value();
-  // The entries are below 1, and the condition number is below 10.
+  // The tolerance covers the rounding of entries below 1, multiplied by a condition number below 10.
   EXPECT_LT((projection - projection.transpose()).cwiseAbs().maxCoeff(), 1e-14);
   EXPECT_LT((projection * projection - projection).cwiseAbs().maxCoeff(), 1e-14);
 }

@@ -28,7 +28,8 @@ double share_facing(const Surface& surface, const std::function<Vector3(const Ve
   return facing / static_cast<double>(grid * grid);
 }
 
-// Scanners see surfaces from outside. The normals must therefore point to the side that was scanned.
+// Scanners see surfaces from outside, so the normals must point away from the clay: away from the axis of a
+// tube, and towards the side to which a dome bulges.
 TEST(RoughScan, OpenShapesWithoutNormalsFaceOutwards) {
   for (unsigned seed = 1; seed <= (is_full_run() ? 6U : 2U); ++seed) {
     Scan tube = random_cloud(4000, seed, [](double s, double t) { return on_cylinder(s, t, 0.01, 0.06); });
@@ -232,7 +233,7 @@ Scan bowl_with_normals(double wall_m) {
   return scan;
 }
 
-// The nodes are about 4 mm apart, which is more than the thickness of the thinner two walls.
+// The nodes are about 4 mm apart. Two of the three walls are thinner than this.
 TEST(RoughScan, WallsKeepTheNormalsOfTheirFaces) {
   for (const double wall : {0.001, 0.002, 0.005}) {
     if (wall > 0.001 && !is_full_run()) continue;

@@ -14,7 +14,7 @@ namespace {
 
 struct Pair {
   const char *left, *right;  // names of bundled materials
-  double press_m;            // distance of the press, a fraction of that at which a block would buckle
+  double press_m;            // pressing distance, far less than a block needs to buckle
   int node_budget;
   ForceRun run;
 };

@@ -116,7 +116,8 @@ TEST(EnclosedMass, IsBelowZeroInsideOut) {
   EXPECT_NEAR(compute_enclosed_mass(inside_out).volume_m3, -volume, 1e-12 * volume);
 }
 
-// Compares with the volume between two balls, and between two tori whose tubes differ by the thickness.
+// Compares the volume of a shell with the volume between two balls, and between two tori whose tube radii
+// differ by the thickness.
 TEST(ShellMass, IsWhatIsBetweenTwoSurfaces) {
   ShapeFit fit;
   fit.tolerance_m = 1e-7;

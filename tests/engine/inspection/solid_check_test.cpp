@@ -56,7 +56,7 @@ TEST(SolidCheck, ThicknessOfABallIsItsDiameterWithinItsChords) {
 }
 
 TEST(SolidCheck, TheWallAboutACavityIsTheThickness) {
-  // The cavity's walls are 2, 3 and 4 mm from the box's.
+  // The cavity's walls are 2, 3 and 4 mm from the faces of the box.
   const TriangleMesh hollow = joined(box_of_triangles({0, 0, 0}, {0.05, 0.04, 0.03}),
                                      turned(box_of_triangles({0.004, 0.003, 0.005}, {0.045, 0.034, 0.028})));
   const SolidCheck check = checked(hollow);

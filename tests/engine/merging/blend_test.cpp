@@ -29,8 +29,8 @@ Surface tube(double from, double to, double radius, const Vector3& shift = Vecto
   return fit_grid(u, v, points).value();
 }
 
-// Returns the smallest cosine of the angle between a normal in the blend and the normal before the blend on
-// the same line.
+// Returns the smallest cosine of the angle between a normal in the blend and the normal at the start of the
+// blend on the same line of constant u.
 double least_cosine(const Merged& merged) {
   const Joint& joint = merged.joints[0].joint;
   double least = 1.0;

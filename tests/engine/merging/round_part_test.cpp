@@ -44,7 +44,7 @@ TrimLoop circle(const Surface& surface, double radius_m, bool hole,
 }
 
 // Returns a cylinder about y from `low_m` to `high_m`, facing outwards. Its seam is at a different angle than
-// a disc's.
+// the seam of a disc.
 Surface side(double radius_m, double low_m, double high_m) {
   const auto u = KnotVector::periodic_uniform(3, 24).value();
   const auto v = KnotVector::clamped_uniform(3, 6).value();

@@ -38,8 +38,8 @@ double largest_off_the_wave(const Surface& surface) {
 }
 
 TEST(TrimmedPatch, EndsOnItsTrims) {
-  // The loop keeps the part above a roof with a central ridge. The lines end at the roof, so their ends have
-  // a kink.
+  // The loop keeps the part above a roof with a central ridge. Parameter lines end at the roof, so the edge
+  // there has a kink.
   const auto whole =
       untrimmed(wave(), {polygon({{0.1, 0.2}, {0.5, 0.5}, {0.9, 0.2}, {0.9, 0.95}, {0.1, 0.95}})}, 2e-5);
   ASSERT_TRUE(whole.ok()) << whole.error().message;

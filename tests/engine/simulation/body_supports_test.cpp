@@ -59,8 +59,8 @@ TEST(SupportMotion, SwingsAsASine) {
 }
 
 // The bar has a Poisson's ratio of 0, so the force is E A d / L up to the nonlinearity at a strain of 1e-3.
-// Springs have a ratio of at least 0.2. Their bar narrows except at its fixed ends, which makes it slightly
-// stiffer.
+// Springs have a ratio of at least 0.2, so a bar of springs narrows, except at its fixed ends. This makes it
+// slightly stiffer.
 TEST(BodySupports, APulledEndBearsWhatABarSays) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     const double youngs = stepping == Stepping::springs ? 2e4 : 5e6, area = 1e-4, length = 0.06, way = 6e-5;

@@ -144,7 +144,7 @@ TEST(MaterialRegions, ADraggedToolFeelsTheFrictionOfTheRegion) {
   rough.friction = 0.5;
   Simulation simulation = simulate(handle_with_regions(elastic("rubber", 1e5, 0.1), {rough}));
   for (int tick = 0; tick < 200; ++tick) simulation.advance(above(0.015, 0.0095 - 1e-5 * tick));
-  // The mean of a movement back and forth over the same points cancels the inclination of the bent surface.
+  // Averaging a movement back and forth over the same points cancels the effect of the surface's inclination.
   double drag[2] = {}, push[2] = {};
   constexpr int way = 1500;
   for (int tick = 0; tick < 2 * way; ++tick) {

@@ -164,8 +164,8 @@ TEST(BodyMapping, FollowsKnotsOfEveryMultiplicity) {
   EXPECT_LT(shown_residual_m(simulation), 1e-3);
 }
 
-// A fixing plane needs knots at its edge. A document can have at most 200 columns of control points. If knots
-// would exceed that number, columns are fixed without knots.
+// A fixing plane needs knots at its edge. A document can have at most 200 columns of control points. If new
+// knots would make more columns, columns are fixed without knots.
 TEST(BodyMapping, HoldsWithoutMoreColumnsThanADocumentTakes) {
   for (const int columns : {190, 198, 199, 200}) {
     SCOPED_TRACE(columns);

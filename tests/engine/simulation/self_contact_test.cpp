@@ -68,7 +68,7 @@ double depth_in_itself(const Surface& surface, bool* touching = nullptr) {
   return deepest;
 }
 
-// A free body that any forces can pull, with or without self-contact.
+// A free body, with or without self-contact, whose ends are pulled or thrown.
 class Folding {
  public:
   Folding(const Body& body, bool is_self_intersecting)

@@ -16,7 +16,7 @@
 namespace spoonbill {
 namespace {
 
-// Largest penetration of surface and mesh, in lattice cells of the coarser one.
+// Largest allowed penetration of a surface and a mesh, in cells of the coarser of their two lattices.
 constexpr double mesh_depth_limit_cells = 0.02;
 
 SoftTool flesh(int nodes, double grip_m = 0.001) {

@@ -130,7 +130,8 @@ TEST(MeshDistance, ChangesByNoMoreThanTheWayMoved) {
   }
 }
 
-// The nearest surface point is at the distance along the negative gradient, by the definition of a distance.
+// A point reaches the surface if it moves along the negative gradient by its distance. This follows from the
+// definition of a distance.
 TEST(MeshDistance, TheGradientLeadsToTheSurface) {
   for (const NamedMesh& shape : everything()) {
     SCOPED_TRACE(shape.name);
@@ -167,8 +168,8 @@ TEST(MeshDistance, AFilledHoleIsAsSolidAsTheRest) {
   Random random(6);
   for (int k = 0; k < random_point_count(500); ++k) {
     const Vector3 at = random_point(random, 1.2);
-    // The hole over one square of the ball is closed by a fan, which differs from the ball by less than its
-    // bulge.
+    // A fan closes the hole over one square of the ball. The fan differs from the ball by less than the ball
+    // bulges over the square.
     ASSERT_NEAR(holed.at(at).distance_m, whole.at(at).distance_m, 0.03);
   }
 }

@@ -35,7 +35,7 @@ double brute_distance(const TriangleMesh& mesh, const Vector3& point);
 bool brute_inside(const TriangleMesh& mesh, const Vector3& point, Random& random);
 
 Vector3 random_point(Random& random, double extent_m);
-// Returns `few`, or fifty times as many if all cases are run.
+// Returns `few`, under a sanitizer a quarter of it, or in a long run fifty times as many.
 int random_point_count(int few);
 
 }  // namespace spoonbill

@@ -164,8 +164,8 @@ TEST(MeshProximity, FindsEveryVertexThatIsNear) {
       ASSERT_EQ(told[vertex] != nullptr, gap < margin) << gap;
       if (!told[vertex]) continue;
       ++found;
-      // The brute-force point differs from the foot by about the square root of the brute-force error in
-      // distance. The normals are therefore compared less strictly.
+      // The brute-force point differs from the nearest point by about the square root of the brute-force
+      // error in distance. The normals are therefore compared less strictly.
       EXPECT_NEAR(told[vertex]->gap_m, gap, 1e-9);
       EXPECT_LT((told[vertex]->normal - normal).norm(), 1e-3);
     }
@@ -186,8 +186,9 @@ TEST(MeshProximity, TellsTheDeepestOfAPatch) {
   double least = 1.0;
   for (const VertexNearSurface& near : all.mesh_vertices()) least = std::min(least, near.gap_m);
   EXPECT_LT(least, -2e-4);
-  // The vertex is chosen by its distance from the tangent plane at the foot of another vertex, here up to
-  // 6 mm away on a surface with a radius of about 20 mm. It is therefore only nearly the deepest.
+  // The reported vertex is chosen by its depth below the tangent plane at the nearest point of another
+  // vertex. The two vertices are here up to 6 mm apart on a surface with a radius of about 20 mm, so the
+  // reported vertex is only nearly the deepest.
   EXPECT_NEAR(one.mesh_vertices()[0].gap_m, least, 3e-4);
 }
 

@@ -64,8 +64,8 @@ TEST(SearchBudget, OfACrumpledSurfaceAgainstItselfIsKept) {
   EXPECT_LE(proximity.points().size(), near_point_limit);
 }
 
-// The mesh is outside the body but within the boxes of its coarse elements. Every vertex is therefore
-// compared with the surface, and none is near enough to count.
+// The mesh is outside the body but within the bounding boxes of the body's coarse elements. Every vertex is
+// therefore compared with the surface, and none is near enough to count.
 TEST(SearchBudget, OfAMeshAroundASurfaceIsKept) {
   const Surface surface = ellipsoid_tube(8, 8);
   const NestedGrid nested = grid_of(surface);

@@ -257,7 +257,8 @@ TEST(MeshPair, CubesAreAsDeepAsTheirFacesOverlap) {
   edge.orientation = lying;
   const MeshPairResult crossing = collide_meshes(one, cube, edge);
   ASSERT_EQ(crossing.contacts.size(), 1U);
-  // An edge 0.02 behind the other is 0.02 cos 45 degrees behind either of the other's faces.
+  // An edge that is 0.02 behind another edge is 0.02 cos 45 degrees behind each of the two faces that meet
+  // there.
   EXPECT_NEAR(crossing.contacts[0].depth_m, 0.02 * std::sqrt(0.5), 1e-9);
 }
 

@@ -107,7 +107,7 @@ Status check_signed_distance(const SignedDistance& solid, const Box& where) {
     const Vector3 here = point(k), other = point(sample_count + 1 - k);
     const DistanceSample sample = solid.at(here);
     if (Status status = check_alone(solid, here, sample); !status) return status;
-    // Pairs of samples are far, near and very near.
+    // The samples of a pair are far from, near to or very near to each other.
     for (const double share : {1.0, 0.05, 0.001}) {
       const Vector3 there = here + share * (other - here);
       if (Status status = check_both(solid, here, sample, there, size); !status) return status;

@@ -77,8 +77,8 @@ TEST(SolidSearch, AgreesWithDenseSampling) {
     const Pose pose = pose_near_contact(random, surface, solid->bounds());
     const ToolShape tool = ToolShape::solid(*solid, pose);
     const CollisionResult result = collider.collide(surface, tool, 0.0, false);
-    // The distance to a superquadric is found from its support function, because its own distance takes a
-    // hundred times as long as that of other shapes and may overstate the depth.
+    // The distance function of a superquadric takes a hundred times as long as those of other shapes and may
+    // overstate the depth. The distance is therefore found from the support function.
     const Vector3 at = dense_nearest(surface, tool, kind == 6 ? 30 : 120);
     double reference = tool.distance(at);
     if (kind == 6 && reference < std::min(-result.nearest.depth_m, 0.0) - 1e-6) {
@@ -187,7 +187,8 @@ TEST(SolidSearch, AToolWhollyInsideIsFoundWithItsWayOut) {
       const CollisionResult result = search(tube, shape, pose, true);
       ASSERT_TRUE(result.found) << shape.index();
       const SurfaceContact& wall = result.nearest;
-      // The support function is the distance by which the solid reaches behind the wall's plane.
+      // The depth is the distance by which the solid reaches behind the wall's tangent plane. It is computed
+      // with the support function of the solid.
       const double behind =
           wall.normal.dot(wall.point_m - pose.position_m) + support(shape, turn.conjugate() * -wall.normal);
       EXPECT_NEAR(wall.depth_m, behind, 2e-7) << shape.index();

@@ -27,8 +27,8 @@ Surface spike() {
   return make_surface(knots, knots, net).value();
 }
 
-// The test uses one cell for the whole sheet, instead of one for each pair of knot spans, so the bound is the
-// largest over all elements.
+// The sphere covers the corners of the whole sheet, as if the sheet were one cell. Its bound is therefore the
+// largest one of all elements (pairs of knot spans).
 TEST(SurfaceBounds, ASpikeEscapesTheSphereOfItsCornersButNotTheBoundedOne) {
   const Surface surface = spike();
   const Vector3 peak = evaluate(surface, 0.5, 0.5).position_m;

@@ -160,8 +160,8 @@ TEST_F(ToolStagesOfRandomSurfaces, ContactsLieInTrianglesAndKeptSpheresOfEachLev
   });
 }
 
-// A cell with a point in the tool has a triangle. The distance of a triangle from the tool is at most that of
-// the surface in its cell, plus the size of the smallest part into which the triangle was divided.
+// A cell with a point in the tool has a triangle. A triangle is at most as far from the tool as the surface
+// in its cell, plus the size of the smallest part into which the triangle was divided.
 TEST_F(ToolStagesOfRandomSurfaces, TrianglesAreThoseThatMeetTheTool) {
   for_cases([](const StagesCase& made) {
     const auto& triangles = made.stages.triangles;

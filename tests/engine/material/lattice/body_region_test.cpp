@@ -85,12 +85,12 @@ void expect_places_of_a_bar(const std::vector<Vector3>& points, const std::vecto
     ++seen;
     // Slices of the lattice are evenly spaced along the bar.
     EXPECT_NEAR(place.along, point.x() / length_m, 0.01);
-    // A ring of 24 chords is inside the circle by less than 1 % of its radius. A cell's depth is the mean
-    // over its corners, which the curvature changes by about as much again.
+    // A ring of 24 chords is inside the circle by less than 1 % of its radius. The depth of a cell is the
+    // mean depth of its corners; the curvature changes this mean by about as much again.
     EXPECT_NEAR(place.depth_m, bar_radius_m - from_axis, (of_cells ? 0.05 : 0.012) * bar_radius_m);
     if (from_axis < 1e-3 * bar_radius_m) return;
     const double angle = std::atan2(point.z(), point.y()) / (2.0 * std::numbers::pi);
-    // Nodes inside the bar are on the block's lines, which are not exactly radial.
+    // Nodes inside the bar are on grid lines of the bent block of cells, which are not exactly radial.
     EXPECT_LT(apart(place.around, angle < 0.0 ? angle + 1.0 : angle), 0.02)
         << point.transpose() << " turn " << place.around;
   });

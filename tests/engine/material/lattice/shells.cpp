@@ -11,8 +11,8 @@ namespace {
 
 constexpr int shell_around = 32, shell_along = 24;
 
-// Returns the radius of the control points that give a closed uniform cubic curve of this radius: the curve
-// is smaller by (2 + cos(step)) / 3.
+// Returns the radius of the circle of control points for which a closed uniform cubic curve has this radius.
+// The curve is smaller than the circle by the factor (2 + cos(step)) / 3.
 double control_radius(double radius) {
   return radius * 3.0 / (2.0 + std::cos(2.0 * std::numbers::pi / shell_around));
 }

@@ -77,7 +77,7 @@ TEST(CompositeSprings, InSeriesEachHalfStretchesByItsOwnModulus) {
   const SpringLattice lattice = drawn_bar(composite(long_bar(), elastic_material(4e3, 0.3, 1000.0),
                                                     elastic_material(1.2e4, 0.4, 1000.0), in_far_half),
                                           20.0);
-  // The bound allows for strains of 5e-3 and the terms of second order of the springs.
+  // The bound allows for second-order terms of the springs at strains of 5e-3.
   EXPECT_NEAR(strain_between(lattice, 4, 9) / (20.0 / 4e3), 1.0, 0.01);
   EXPECT_NEAR(strain_between(lattice, 15, 21) / (20.0 / 1.2e4), 1.0, 0.01);
 }
@@ -193,7 +193,8 @@ TEST(CompositeSprings, EachMaterialIsDampedByItsOwnTime) {
     const double little = energy_left(2e-5, 2e-5, of_second), much = energy_left(3e-4, 3e-4, of_second);
     EXPECT_LT(much, 0.7 * little);
     const double mixed = energy_left(2e-5, 3e-4, of_second);
-    // At the time of measurement waves have not crossed the few cells between the halves.
+    // At the time of measurement, waves have not crossed the few cells between the moving nodes and the other
+    // half.
     EXPECT_NEAR(mixed / (of_second ? much : little), 1.0, 0.05);
   }
 }

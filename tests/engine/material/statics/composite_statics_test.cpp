@@ -13,8 +13,8 @@ namespace {
 
 constexpr double strain = 1e-6;
 
-// Returns the effective modulus of a stretched bar along z, whose ends are free to slip but which cannot
-// slide or turn as a whole.
+// Returns the effective modulus of a bar that is stretched along z. The ends are free to slip, but the bar
+// cannot slide or turn as a whole.
 double youngs_modulus_along_z(const LatticeMesh& mesh, const LatticeMaterials& materials, CellKind kind) {
   Result<StaticBody> body = StaticBody::make(mesh, materials, kind);
   EXPECT_TRUE(body.ok()) << body.error().message;

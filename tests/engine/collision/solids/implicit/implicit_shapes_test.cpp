@@ -18,8 +18,9 @@ double size_of(const ImplicitShape& shape) {
   return make_signed_distance(shape)->bounds().size();
 }
 
-// Checks that the solid is on one side of the tangent plane at the foot, and that the foot is on the surface.
-// Outside the solid, these two facts prove the distance. Inside, they prove only a local minimum.
+// Checks that the solid is on one side of the tangent plane at the foot (the nearest surface point), and that
+// the foot is on the surface. Outside the solid, these two facts prove the distance. Inside, they prove only
+// a local minimum.
 void expect_proven(const ImplicitShape& shape, const Vector3& point, double tolerance,
                    double inside_tolerance) {
   const auto solid = make_signed_distance(shape);
