@@ -42,7 +42,7 @@ class Incline {
   // Applies a force that is distributed over all nodes.
   void push(const Vector3& force_n) { block_.load({ForceLoad{{}, force_n, ForceDistribution::volume}}); }
 
-  // Returns the mean displacement or velocity over the whole block.
+  // Returns the mean velocity of the block if `velocity` is true, otherwise its mean displacement.
   Vector3 mean(bool velocity) const {
     Vector3 sum = Vector3::Zero();
     const SpringLattice& lattice = block_.lattice;

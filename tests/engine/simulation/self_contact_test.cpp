@@ -188,7 +188,8 @@ TEST(SelfContact, KeepsTheMomentum) {
   EXPECT_LT((after.angular - before.angular).norm(), 1e-2 * before.angular_sizes);
 }
 
-// Returns a hairpin whose lower arm is fixed at its lower half; a sphere pushes the upper arm onto it.
+// Returns a simulation of a hairpin. The lower half of its lower arm is fixed; a sphere tool can push the
+// upper arm onto the lower one.
 Simulation pushed_hairpin() {
   Scene scene = small_handle();
   scene.bodies[0] = hairpin();

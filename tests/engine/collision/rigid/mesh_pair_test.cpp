@@ -241,7 +241,7 @@ TEST(MeshPair, CubesAreAsDeepAsTheirFacesOverlap) {
   EXPECT_NEAR(collide_meshes(cube, cube, at(1.25, 0.1, 0.2)).distance_m, 0.25, 1e-12);
   EXPECT_NEAR(collide_meshes(cube, cube, at(1.3, 1.4, 0.0)).distance_m, 0.5, 1e-12);
 
-  // The deepest points of the faces are on their diagonals.
+  // Each face of a cube consists of two triangles, and its deepest points are on the diagonal between them.
   const MeshPairResult deep = collide_meshes(cube, cube, at(0.9, 0.05, 0.05));
   ASSERT_EQ(deep.contacts.size(), 1U);
   EXPECT_NEAR(deep.contacts[0].depth_m, 0.1, 1e-9);

@@ -63,7 +63,7 @@ TEST(SolidLattice, OfARingHasItsVolumeAndKnowsWhereItsNodesLie) {
     if (depth < 0.0 || depth > 0.8 * round_tube_m) continue;
     ++inside;
     const Vector3 nearest = middle + round_tube_m * (at - middle).normalized();
-    // The bound is half the diagonal of a cell between samples. A turn has 160 or 180 samples.
+    // The bound is half the diagonal of a cell of the grid of samples, which has 160 or 180 samples per turn.
     EXPECT_LT((position(ring, places[n].around, places[n].along) - nearest).norm(), 0.0012);
   }
   EXPECT_GT(inside, 100);
@@ -85,7 +85,8 @@ TEST(SolidLattice, OfARingKnowsWhereItsCellsLie) {
         if (!mesh.is_filled(i, j, k) || depth > 0.8 * round_tube_m) continue;
         ++filled;
         const Vector3 nearest = middle + round_tube_m * (at - middle).normalized();
-        // The bound is half the diagonal of a cell between samples. A turn has 160 or 180 samples.
+        // The bound is half the diagonal of a cell of the grid of samples, which has 160 or 180 samples per
+        // turn.
         EXPECT_LT((position(ring, place.around, place.along) - nearest).norm(), 0.0012) << i << j << k;
       }
     }
