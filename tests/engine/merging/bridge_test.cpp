@@ -131,8 +131,8 @@ TEST(Bridge, PipesSideBySideAreJoinedByABend) {
     EXPECT_GT(least_section_m2(surface), 0.8 * std::numbers::pi * 6.4e-5);
     for (double u = 0.0; u < 1.0; u += 0.1) {
       const Vector3 start = position(surface, u, 0.0), end = position(surface, u, surface.v.domain_end());
-      // The ends of the two pipes are mirror images in x. Points on the inside of the bend are joined to
-      // points on the inside.
+      // The ends of the two pipes are mirror images in x. Points on the inside of the bend of one pipe are
+      // joined to points on the inside of the other.
       EXPECT_NEAR(end.x(), 0.06 - start.x(), 1e-5);
       EXPECT_NEAR(end.z(), start.z(), 1e-5);
     }

@@ -31,8 +31,8 @@ struct Evenness {
 };
 Evenness evenness(const Surface& surface);
 
-// Returns the largest jump across the seam of u: of the position, and of the first and second derivatives,
-// each divided by a length scale from the first derivative.
+// Returns the largest jump across the seam of u: of the position and of the first two derivatives, each
+// relative to the length of the first derivative.
 double seam_jump(const Surface& surface);
 
 // Returns true if elements that are not neighbours intersect. Uses coarse levels only: the finer ones take

@@ -264,8 +264,8 @@ TEST(OnGround, AFallOfHalfAMetreLeavesNoCellInsideOut) {
   }
 }
 
-// The handle drops from 27 mm, so that nodes arrive faster than the speed cap lets them move in the squashed
-// body. The skin penetrates the ground slightly and leaves it again.
+// The handle drops from 27 mm and arrives faster than the speed cap, which limits the speed of nodes relative
+// to the body's mean velocity. The skin penetrates the ground slightly and leaves it again.
 TEST(OnGround, NoFallIsTooFast) {
   Scene scene = falling_handle(1e4);
   scene.ground->point_m.y() = -0.03;

@@ -57,7 +57,7 @@ TEST(ShellLattice, BowlHasTheVolumeOfTheShell) {
       EXPECT_FALSE(mesh.closed);
       EXPECT_LE(mesh.node_count(), budget);
       EXPECT_GT(mesh.node_count(), budget / 2);
-      // The surface is a sphere within 1e-5 of its radius, and its area is within twice that.
+      // The surface is a sphere to 1e-5 of its radius, so its area is exact to 2e-5 of the area.
       EXPECT_NEAR(mass_of(mesh, density) / (density * volume), 1.0, 1e-4) << budget;
       const CellQuality quality = measure_cell_quality(mesh);
       EXPECT_GT(quality.worst_jacobian, 0.0) << budget;
