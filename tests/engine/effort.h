@@ -12,7 +12,7 @@ inline constexpr bool sanitized = true;
 inline constexpr bool sanitized = false;
 #endif
 
-// Returns the number of trials, or a quarter of it under a sanitizer.
+// Returns the number of trials, or under a sanitizer a quarter of it, rounded up.
 constexpr int effort(int trials) {
   return sanitized ? (trials + 3) / 4 : trials;
 }
@@ -27,7 +27,8 @@ inline bool is_long_run() {
   return std::getenv("SPOONBILL_LONG") != nullptr;
 }
 
-// Number of random cases that a test tries.
+// Returns the number of random cases to try: `many` in a long run, otherwise `quick`, or under a sanitizer a
+// quarter of `quick`.
 inline int random_cases(int quick, int many) {
   return is_long_run() ? many : effort(quick);
 }

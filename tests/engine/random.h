@@ -22,7 +22,7 @@ class Random {
     return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
   }
   double uniform(const Range<double>& range) { return uniform(range.low, range.high); }
-  // Returns a value that is evenly distributed over the orders of magnitude.
+  // Returns a value between `low` and `high` whose logarithm is uniformly distributed.
   double log_uniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
   Vector3 in_box(const Vector3& half) {
     return {uniform(-half.x(), half.x()), uniform(-half.y(), half.y()), uniform(-half.z(), half.z())};

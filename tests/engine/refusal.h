@@ -1,5 +1,4 @@
-// The code of an error and the field at fault, which identify it. Tests compare these, because the text of a
-// message may change.
+// The code and the field of an error. Tests compare these two, because the text of a message may change.
 #pragma once
 
 #include <optional>
@@ -12,7 +11,7 @@
 namespace spoonbill {
 
 struct Refusal {
-  Refusal() = default;  // stands for no error
+  Refusal() = default;  // represents no error
   explicit Refusal(ErrorCode error_code, std::string field_name = {})
       : code(error_code), field(std::move(field_name)) {}
   explicit Refusal(const Error& error) : code(error.code), field(error.field), message(error.message) {}

@@ -22,7 +22,7 @@ TEST(OutputFile, AppearsWholeAtItsCommit) {
   const auto file = folder.write("a.csv", "old");
   auto out = OutputFile::create(file);
   ASSERT_TRUE(out.ok()) << out.error().message;
-  const std::string half(100'000, 'x');  // larger than the buffer
+  const std::string half(100'000, 'x');  // larger than the file's write buffer
   ASSERT_TRUE(out->write(half).ok());
   EXPECT_EQ(content_of(file), "old");
   ASSERT_TRUE(out->write("end").ok());

@@ -57,7 +57,7 @@ TEST(Basis, DerivativesSumToZero) {
       for (int d = 1; d <= max_basis_derivative; ++d) {
         double magnitude = 0.0;
         for (int j = 0; j <= knots.degree(); ++j) magnitude += std::abs(basis.values[d][j]);
-        // Cancellation leaves an error of a few units in the last place of the terms.
+        // The sum is zero except for rounding, which is a few units in the last place of the terms.
         EXPECT_NEAR(sum_of(basis, d, knots.degree()), 0.0, 1e-14 * magnitude);
       }
     }
@@ -85,11 +85,12 @@ double combination(const KnotVector& knots, const std::array<double, 8>& coeffic
 TEST(Basis, ReproducesPolynomialsFromTheirCoefficients) {
   const auto knots = KnotVector::clamped_uniform(3, 8).value();
   const std::array<double, 8> linear{0, 1.0 / 15, .2, .4, .6, .8, 14.0 / 15, 1};
-  // The exact values are 2/75, 11/75 and so on; the published decimals are rounded to six digits.
+  // The coefficients of u^2 are exact here: 2/75, 11/75 and so on. The published table rounds them to six
+  // digits.
   const std::array<double, 8> square{0, 0, 2.0 / 75, 11.0 / 75, 26.0 / 75, 47.0 / 75, 65.0 / 75, 1};
   const std::array<double, 8> cube{0, 0, 0, .048, .192, .48, .8, 1};
-  // Values are up to 1, and derivatives up to 6 are sums of terms up to 600: the tolerances are a few units
-  // in the last place of these numbers.
+  // The tolerances are a few units in the last place of 1 for values, which are up to 1, and of 600 for
+  // derivatives. Derivatives are up to 6 and are sums of terms up to 600.
   constexpr double value_tolerance = 1e-15 * 4, derivative_tolerance = 1e-12;
   for (int i = 0; i <= 100; ++i) {
     const double u = i / 100.0;

@@ -24,7 +24,7 @@ TEST(BlendingMatrix, RowsSumToOneAtTheLastKnotAndTheSeamToo) {
     const auto parameters = random_parameters(random, knots, 20);
     const Eigen::MatrixXd matrix = blending_matrix(knots, parameters, 0).dense();
     for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-      // The sum has at most ten positive terms below 1.
+      // The tolerance covers the rounding of at most ten positive terms below 1.
       EXPECT_NEAR(matrix.row(i).sum(), 1.0, 1e-14);
     }
     if (knots.is_periodic()) {
@@ -85,7 +85,7 @@ TEST(BlendingMatrix, PeriodicCubicIsWellConditionedAtKnots) {
 }
 
 // A periodic cubic curve whose control polygon is regular, with corners on the unit circle, has known radii
-// at its knots and between them.
+// at its knots and halfway between them.
 TEST(BlendingMatrix, PeriodicCubicCircleHasItsRadii) {
   for (const int controls : {8, 16, 32}) {
     const auto knots = KnotVector::periodic_uniform(3, controls).value();
@@ -140,7 +140,7 @@ TEST(PseudoInverse, IsTheLeastSquaresSolution) {
   const auto parameters = uniform_parameters(knots, 30);
   const Eigen::MatrixXd a = blending_matrix(knots, parameters, 0).dense();
   const Eigen::MatrixXd projection = a * pseudo_inverse(knots, parameters).value();
-  // The entries are below 1, and the condition number is below 10.
+  // The tolerance covers the rounding of entries below 1, multiplied by a condition number below 10.
   EXPECT_LT((projection - projection.transpose()).cwiseAbs().maxCoeff(), 1e-14);
   EXPECT_LT((projection * projection - projection).cwiseAbs().maxCoeff(), 1e-14);
 }
@@ -217,8 +217,8 @@ TEST(SchoenbergWhitney, NamesTheControlPointInAPeriodicGap) {
       << status.error().message;
 }
 
-// For random samplings, the condition is compared with the rank of the matrix. In any direction the condition
-// is necessary; in a periodic direction it is not sufficient.
+// Compares the Schoenberg-Whitney condition with the rank of the matrix for random samplings. Full rank
+// always requires the condition. In a periodic direction, the condition does not ensure full rank.
 TEST(SchoenbergWhitney, AgreesWithTheRank) {
   Random random(5);
   int refused = 0;

@@ -15,7 +15,7 @@ double largest_difference(Random& random, const Surface& a, const Surface& b,
                           Direction along = Direction::u) {
   double largest = 0.0;
   for (int sample = 0; sample < 60; ++sample) {
-    // The surfaces are compared on the part of the domain that both have.
+    // The surfaces are compared on the part of the domain that is common to both.
     const KnotVector &ka = knots_along(a, along), &kb = knots_along(b, along);
     const double t = random.uniform(kb.domain_start(), kb.domain_end());
     const KnotVector& other = along == Direction::u ? b.v : b.u;
@@ -81,8 +81,8 @@ TEST(ChangeKnots, TakesPartsAlsoAcrossASeam) {
     ASSERT_TRUE(part.ok()) << part.error().message;
     const auto cut = convert_to_finer_knots(surface, along, part.value());
     ASSERT_TRUE(cut.ok()) << cut.error().message;
-    // The tolerance holds for short parts too: where a part is a small piece of a long span, the blossoms
-    // that give its control points are evaluated within that span.
+    // The tolerance holds for short parts, too. Where a part is a small piece of a long span, its control
+    // points are given by blossoms, which are evaluated within that span.
     EXPECT_LT(largest_difference(random, surface, cut.value(), along), same_surface);
   }
 }
@@ -128,8 +128,8 @@ TEST(ChangeKnots, TheDeviationOfACoarserSurfaceIsNeverPassed) {
     ASSERT_TRUE(coarse.ok()) << coarse.error().message;
     const double seen = largest_difference(random, surface, coarse->surface, along);
     EXPECT_LE(seen, coarse->deviation_m + 1e-12);
-    // Even the deviation of a coarse fit is bounded: its control points exceed the surface's size by at most
-    // a factor that grows with the degree.
+    // The deviation of even a coarse fit is bounded, because the control points of a fit exceed the size of
+    // the surface by at most a factor that grows with the degree.
     EXPECT_LE(coarse->deviation_m, 1.0);
   }
 }
@@ -166,7 +166,7 @@ TEST(ChangeKnots, SpareKnotsGoAndOthersStay) {
 
 TEST(ChangeKnots, SpareKnotsOfUnclampedAndOfLongDirectionsGo) {
   Random random(40);
-  // In an unclamped direction, the four pieces of one cubic polynomial become one piece.
+  // In an unclamped direction, knot removal joins the four pieces of one cubic polynomial into one piece.
   const auto unclamped =
       KnotVector::open(3, {-0.3, -0.2, -0.1, 0, 0.25, 0.5, 0.75, 1, 1.1, 1.2, 1.3}).value();
   const auto single = KnotVector::open(3, {-0.3, -0.2, -0.1, 0, 1, 1.1, 1.2, 1.3}).value();

@@ -42,14 +42,14 @@ TEST(DerivativeBound, HoldsEveryDerivative) {
   }
 }
 
-// At a clamped end the derivative is the first control point of the derivative curve.
+// At a clamped end, the curve's derivative equals the first control point of the derivative curve.
 TEST(DerivativeBound, IsReachedAtAClampedEnd) {
   const KnotVector knots = KnotVector::open(3, {2, 2, 2, 2, 3, 5, 5, 5, 5}).value();
   const std::vector<double> x = {0, 6, 7, 8, 8}, zero(5, 0.0);
   const double longest =
       DerivativeBound(knots).longest(ControlLines<double>{x.data(), zero.data(), zero.data(), 1, 1, 5});
-  // The first control point of the derivative is 3 * 6 / (3 - 2). The domain of length 3 is scaled
-  // to length 1.
+  // The first control point of the derivative is 3 * 6 / (3 - 2) = 18. The bound is for a domain scaled from
+  // length 3 to length 1, so it is three times as large.
   EXPECT_DOUBLE_EQ(longest, 54.0);
 }
 

@@ -66,7 +66,8 @@ TEST(GridEvaluator, AgreesWithSinglePoints) {
       for (int j = 0; j < grid.columns(); ++j) {
         const int k = i * grid.columns() + j;
         const Vector3 position = evaluate(surface, grid.u.parameters[i], grid.v.parameters[j]).position_m;
-        // Points are weighted means of coordinates below 1 m.
+        // The tolerances allow for the rounding of points, which are weighted means of coordinates below
+        // 1 m.
         EXPECT_LT((point_of(exact, k) - position).norm(), 1e-14);
         EXPECT_LT((point_of(single, k) - position).norm(), 1e-6);
         const Vector3 normal = unit_normal(surface, grid.u.parameters[i], grid.v.parameters[j]);
@@ -115,8 +116,8 @@ TEST(GridEvaluator, PointsAloneAreTheSameBits) {
   }
 }
 
-// Returns a sheet squeezed until some of its normals are only rounding noise in single precision and others
-// are just above it.
+// Returns a sheet that is squeezed until, in single precision, du x dv is only rounding noise at some samples
+// and just above the noise at others.
 Surface squeezed_sheet(Random& random) {
   Surface surface = random_surface(random);
   const double squeeze = std::pow(10.0, random.uniform(-8.0, 0.0)), away_m = random.uniform(0.0, 2.0);
@@ -138,9 +139,10 @@ std::vector<double> some_of(Random& random, const std::vector<double>& values, i
   return some;
 }
 
-// Compares a part of a grid with the whole grid. The part's two rows of seven samples are too small for block
-// evaluation, so each sample is checked by itself. Most rows of the whole grid are known to be regular. The
-// whole grid has only four rows, so that one pass may call unit_normal() for all irregular samples.
+// Compares a part of a grid with the whole grid. The part has two rows of seven samples, too few for a block
+// of 16, so each of its samples is checked for regularity on its own. Most rows of the whole grid are found
+// regular at once. The whole grid has only four rows, so that one pass may call unit_normal() for all
+// irregular samples.
 void expect_same_bits_in_parts(Random& random, const Surface& surface) {
   const Grid grid = random_grid(random, surface, 4, random.integer(7, 60));
   const Grid part = make_grid(surface.u, surface.v, some_of(random, grid.u.parameters, 2),
@@ -162,7 +164,7 @@ TEST(GridEvaluator, EveryPartOfAGridHasTheBitsOfTheWhole) {
   for (int repeat = 0; repeat < 300; ++repeat) expect_same_bits_in_parts(random, squeezed_sheet(random));
 }
 
-// All samples of a parallelogram are equally regular and become noise together.
+// At all samples of a parallelogram du x dv is equal, so all normals become rounding noise at the same width.
 TEST(GridEvaluator, APartOfANarrowParallelogramHasTheBitsOfTheWhole) {
   Random random(24);
   const KnotVector line = KnotVector::clamped_uniform(1, 2).value();
@@ -224,7 +226,7 @@ void expect_pole_normals(const Surface& surface, double tolerance) {
 TEST(GridEvaluator, PolesHaveTheirLimitNormals) {
   for (const Vector3& centre : {Vector3(0, 0, 0), Vector3(0.3, -0.2, 0.1)}) {
     const Surface tube = ellipsoid_tube(12, 9, centre);
-    // Single precision resolves the ring beside the pole, 6 mm wide, to about 2e-8 m.
+    // Single precision resolves the ring of control points beside the pole, 6 mm wide, to about 2e-8 m.
     expect_pole_normals<float>(tube, 1e-4);
     expect_pole_normals<float>(transposed(tube), 1e-4);
     expect_pole_normals<double>(tube, 1e-12);
@@ -258,7 +260,8 @@ TEST(GridEvaluator, SamplesBesideAPoleAgreeWithSinglePoints) {
       const int k = i * grid.columns() + j;
       const Vector3 normal = unit_normal(tube, grid.u.parameters[i], v[j]);
       EXPECT_LT((normal_of(exact, k) - normal).norm(), 1e-7) << "v = " << v[j];
-      // In single precision the ring of samples at 1e-7 is no larger than its rounding error.
+      // In single precision, the ring of samples at v = 1e-7 is no larger than the rounding error of its
+      // points.
       EXPECT_LT((normal_of(single, k) - normal).norm(), v[j] < 1e-3 ? 0.3 : 1e-3) << "v = " << v[j];
       EXPECT_NEAR(normal_of(single, k).norm(), 1.0, 1e-6);
     }
@@ -289,8 +292,8 @@ TEST(GridEvaluator, PointsAndLinesHaveNoNormals) {
   expect_no_normals<float>(line);
 }
 
-// Returns a tube whose surface at v = 1/2 is a single point, and whose poles are only as round as after a
-// refit.
+// Returns a tube whose surface at v = 1/2 is a single point. The control points of its poles coincide only to
+// 1e-9 m, as after a refit.
 Surface pinched_tube() {
   Surface tube = ellipsoid_tube(12, 9);
   for (int j = 3; j < 6; ++j) {
@@ -314,7 +317,7 @@ TEST(GridEvaluator, APinchBetweenPolesHasTheNormalsBesideIt) {
   }
 }
 
-// Only a clamped end passes through its control points.
+// A surface passes through the control points at an end only if this end is clamped.
 TEST(GridEvaluator, CoincidingControlPointsBeyondAnUnclampedEndAreNoPole) {
   Random random(28);
   const auto unclamped = KnotVector::open(3, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}).value();

@@ -1,4 +1,5 @@
-// Compares values, derivatives and normals with OpenCASCADE, an independent implementation.
+// Compares values, derivatives and normals of B-spline surfaces with OpenCASCADE, an independent
+// implementation.
 #include <gtest/gtest.h>
 
 #include <Geom_BSplineSurface.hxx>
@@ -25,7 +26,7 @@ struct OcctDirection {
 };
 
 // OpenCASCADE evaluates a periodic surface wrongly if the same pole affects a sample from two periods. Such a
-// surface is passed to it in an open direction, with the extended knots and repeated poles.
+// direction is passed to OpenCASCADE as an open one, with the extended knots and repeated poles.
 bool needs_unrolling(const KnotVector& knots) {
   return knots.control_point_count() <= knots.degree();
 }
@@ -82,8 +83,8 @@ SurfacePoint occt_point(const Geom_BSplineSurface& surface, double u, double v) 
           vector(dvv)};
 }
 
-// Returns the sum of the magnitudes of all basis derivatives, to which a derivative's rounding error is
-// relative.
+// Returns the sum of the magnitudes of all basis functions' derivatives. The rounding error of a surface's
+// derivative is relative to this sum.
 double magnitude(const KnotVector& knots, double u, int derivative) {
   const BasisFunctions basis = basis_functions(knots, knots.into_domain(u));
   double sum = 0.0;
@@ -99,7 +100,7 @@ double net_size(const ControlNet& net) {
   return largest;
 }
 
-// Returns the factor by which a tangent's relative rounding error grows in the direction of the normal.
+// Returns the factor by which the relative rounding error of the tangents is multiplied in the unit normal.
 double normal_amplification(const Surface& surface, const SurfacePoint& point, double u, double v) {
   const double size = net_size(surface.net);
   const double error =
@@ -157,8 +158,8 @@ void expect_same_grid(const Surface& surface, const Grid& grid, const Geom_BSpli
       const Vector3 position(samples.x[k], samples.y[k], samples.z[k]);
       EXPECT_LE((position - expected.position_m).norm(), tolerance * size);
       ++checked.samples;
-      // The normal is ill-defined in this precision if the tangents are nearly parallel or short. The
-      // tolerance is therefore multiplied by the amplification of a tangent's rounding error.
+      // The normal is ill-defined in this precision if the tangents are nearly parallel or short. It is
+      // compared only where the rounding error of the tangents is amplified by less than 20.
       if (has_two_tangents(surface.u, u) || has_two_tangents(surface.v, v)) continue;
       if (!(normal_amplification(surface, expected, u, v) < 20.0)) continue;
       ++checked.normals;

@@ -9,8 +9,9 @@
 namespace spoonbill {
 namespace {
 
-// Compares the evaluation by polynomial pieces, scaled to -1..1 and of degree 5 at most, with the B-spline
-// recursion. Derivatives of surfaces of about 1 m grow as the pieces get shorter.
+// Compares two evaluations of a surface: by polynomial pieces, scaled to -1..1 and of degree 5 at most, and
+// by the B-spline recursion. The tolerances grow with the derivatives, which are larger the shorter the
+// pieces are.
 void expect_agreement(const Surface& surface, double u, double v) {
   const PieceBasis in_u(surface.u), in_v(surface.v);
   const PiecewiseSurface pieces{&surface, &in_u, &in_v};

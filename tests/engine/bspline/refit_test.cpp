@@ -24,7 +24,8 @@ Grid usual_grid() {
   return grid_of(u, v, 20, 29);
 }
 
-// Returns rows of samples in the layout of the refit; the numbers in the gaps must have no effect.
+// Returns rows of samples with the stride of the refit. The gaps at the ends of the rows contain a large
+// number, which must have no effect.
 AlignedVector<float> with_gaps(const DisplacementRefit& refit, const std::vector<float>& samples) {
   AlignedVector<float> rows(static_cast<std::size_t>(refit.sample_rows() * refit.sample_stride()), 1e3f);
   for (int i = 0; i < refit.sample_rows(); ++i) {
@@ -73,8 +74,8 @@ TEST(DisplacementRefit, GivesBackTheDisplacementOfControlPoints) {
   refit.control_displacement(with_gaps(refit, displacement).data(), found.data());
   for (int i = 0; i < 10; ++i) {
     for (int j = 0; j < 13; ++j) {
-      // The tolerance is the single precision of displacements up to 1 mm, times the norms of the inverses,
-      // below 10.
+      // The tolerance is the rounding of displacements up to 1 mm in single precision, times the norms of the
+      // two pseudo-inverses, which are below 10.
       EXPECT_NEAR(found[i * 13 + j], controls(i, j), 1e-8);
     }
   }
@@ -148,7 +149,7 @@ TEST(DisplacementRefit, HeldColumnsNeverMoveAndKeptEndsFollowTheirSamples) {
   for (int i = 0; i < 10; ++i) {
     EXPECT_EQ(controls[i * 13 + 4], 0.0f);
     EXPECT_EQ(controls[i * 13 + 5], 0.0f);
-    // A column of the periodic inverse sums to one up to rounding.
+    // A row of the periodic pseudo-inverse sums to one up to rounding.
     EXPECT_NEAR(controls[i * 13], 0.007f, 1e-8);
   }
 }

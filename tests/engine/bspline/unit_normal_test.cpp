@@ -40,15 +40,16 @@ TEST(UnitNormal, SmoothPolesHaveOneNormal) {
       const double t = (step + 0.2) / 33;
       const Vector3 start = poles_in_v ? unit_normal(surface, t, 0.0) : unit_normal(surface, 0.0, t);
       const Vector3 end = poles_in_v ? unit_normal(surface, t, 1.0) : unit_normal(surface, 1.0, t);
-      // The normal is exact up to rounding, because the ring beside the pole is in one plane.
+      // The normal is exact up to rounding, because the ring of control points beside the pole is in one
+      // plane.
       EXPECT_LT((start - Vector3(0, 0, -sign)).norm(), 1e-12) << start.transpose();
       EXPECT_LT((end - Vector3(0, 0, sign)).norm(), 1e-12) << end.transpose();
     }
   }
 }
 
-// Compares the normals at the poles with those beside them. For any net, the two differ only by the curvature
-// along a millionth of the domain.
+// Compares the normals at the poles with those beside them. For any net, they differ only by what the
+// curvature adds over a millionth of the domain.
 void expect_limits(const Surface& surface, bool poles_in_v) {
   constexpr double inside = 1e-6, tolerance = 1e-4;
   for (int step = 0; step < 15; ++step) {
@@ -91,7 +92,8 @@ TEST(UnitNormal, RingsThatCoincideToSinglePrecisionArePoles) {
   }
   for (int step = 0; step < 20; ++step) {
     const double u = (step + 0.2) / 20;
-    // The tolerance is a few times the jitter divided by the ring's size.
+    // The tolerance is a few times the jitter divided by the size of the ring of control points beside the
+    // pole.
     EXPECT_LT(angle_between(unit_normal(tube, u, 0.0), Vector3(0, 0, -1)), 1e-5);
     EXPECT_LT(angle_between(unit_normal(tube, u, 1.0), Vector3(0, 0, 1)), 1e-5);
   }

@@ -104,8 +104,8 @@ Json choice_schema() {
   return json;
 }
 
-// Returns one schema per alternative of the variant; the field `name_field` tells which one applies. An
-// alternative with a region gets it from the schema of documents, because no table describes it.
+// Returns one schema per alternative of the variant; the field `name_field` states which alternative applies.
+// The schema of a region is taken from the schema of documents, because no table describes it.
 template <class Variant>
 Json variant_schema(const char* name_field) {
   Json json;

@@ -29,7 +29,7 @@ std::string actions_text() {
 }
 
 // Returns the schema of the tool made from the table of fields. Properties that no table describes are copied
-// from the old schema.
+// from `old`.
 Json tool_schema(const Json& old) {
   Json tool = object_schema(Tool{});
   Json& properties = tool["properties"];

@@ -1,4 +1,5 @@
-// Tests that files with former fields are read as their values in real time.
+// Tests that documents of versions 1 and 2 are read with their former fields converted to constants in real
+// time.
 #include "engine/exchange/old_documents.h"
 
 #include <gtest/gtest.h>

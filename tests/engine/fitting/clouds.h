@@ -13,8 +13,9 @@ Scan ellipsoid_cloud(int count, const Vector3& semi_axes_m);
 // Returns the points place(s, t) for random s and t in [0, 1].
 Scan random_cloud(int count, std::uint64_t seed, const std::function<Vector3(double, double)>& place);
 
-// on_cylinder() returns a point of an open cylinder along z, from z = 0; on_torus_sector() one of an open
-// tube that is bent by a quarter turn about z; on_waves() one of a wavy sheet over x and y.
+// on_cylinder() returns a point of an open cylinder along z, which starts at z = 0. on_torus_sector() returns
+// a point of an open tube that is bent by a quarter turn about z. on_waves() returns a point of a wavy sheet
+// over x and y.
 Vector3 on_cylinder(double s, double t, double radius_m, double length_m);
 Vector3 on_torus_sector(double s, double t, double displacement_m, double tube_m);
 Vector3 on_waves(double s, double t, double width_m, double height_m);

@@ -22,7 +22,7 @@ TEST(FitScan, SphereIsClosedAndFacesOutward) {
   EXPECT_EQ(body.kind, ShapeKind::closed);
   EXPECT_EQ(body.folds.folds, 0U);
   // Cubic pieces of a sixteenth of a turn have an error below 1e-4 of the radius. The rest of the error is
-  // due to the fairness, mostly near the poles, where few points determine a control point.
+  // due to the fairness term of the fit, mostly near the poles, where few points determine a control point.
   EXPECT_LT(body.errors.data_to_surface.p95_m, 2e-5);
   EXPECT_LT(farthest_off(body.surface, from_sphere(0.02)), 6e-4);
   EXPECT_NEAR(volume_of(body.surface), 4.0 / 3.0 * M_PI * 8e-6, 1e-7);
@@ -73,7 +73,7 @@ TEST(FitScan, WavesAreASheet) {
   EXPECT_LT(fitted.bodies[0].errors.data_to_surface.p95_m, 1e-4);
 }
 
-// An even grid without noise has no strays, and the surface extends to its edges and corners.
+// An even grid without noise has no outliers, and the surface extends to the grid's edges and corners.
 TEST(FitScan, ExactGridIsFittedToItsEdges) {
   Scan scan;
   for (int k = 0; k < 900; ++k) {
@@ -97,7 +97,8 @@ TEST(FitScan, LowWavesAreNoThinWall) {
   EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::sheet);
 }
 
-// The fit spans the hole with nodes whose normals may face either way. They must not decide the orientation.
+// The fit spans the hole with nodes whose normals may point in either direction. These normals must not
+// decide the orientation.
 TEST(FitScan, ClosedShapesFaceOutwardsWhateverWasNotSeen) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     Scan scan = ellipsoid_cloud(3000 + 500 * seed, {0.02, 0.022, 0.03});
@@ -143,7 +144,8 @@ TEST(FitScan, IslandsAreFittedAsAsked) {
   EXPECT_EQ(largest.other_islands, 3000U);
 }
 
-// The gap between the balls is about 5 mm wide: less than three node spacings, but five point spacings.
+// The gap between the balls is about 5 mm wide. This is less than three node spacings, but five point
+// spacings.
 TEST(FitScan, IslandsNearEachOtherAreTwo) {
   Scan scan = ellipsoid_cloud(10000, {0.03, 0.03, 0.03});
   append(scan, ellipsoid_cloud(9000, {0.03, 0.03, 0.03}), {0.045, 0.045, 0.016});
@@ -158,8 +160,8 @@ TEST(FitScan, IslandsNearEachOtherAreTwo) {
   EXPECT_LT(farthest_off(all.bodies[0].surface, from_sphere(0.03)), 3e-4);
 }
 
-// A stripe of 6 mm across a single sheet was not scanned. A gap of this width between two bodies would part
-// them.
+// A stripe of 6 mm across a single sheet was not scanned. A gap of this width between two bodies would
+// separate them.
 TEST(FitScan, AStripeWithoutPointsPartsNoSheet) {
   Scan scan = random_cloud(20000, 31, [](double s, double t) { return on_waves(s, t, 0.2, 0.01); });
   leave_out(scan, [](const Vector3& p) { return std::abs(p.x() - 0.09) < 0.003; });
@@ -235,8 +237,8 @@ TEST(FitScan, TriangleSoupOfABallIsClosed) {
   EXPECT_LT(farthest_off(fitted.bodies[0].surface, from_sphere(0.02)), 2e-4);
 }
 
-// The surface rounds the eight corners, which therefore have the largest errors. The errors are measured all
-// over the mesh, not only at its eight vertices.
+// The surface rounds the eight corners, which therefore have the largest errors. The errors are measured over
+// the whole mesh, not only at its eight vertices.
 TEST(FitScan, ErrorsOfAMeshAreThoseOfAllItsTriangles) {
   Scan box;
   for (int k = 0; k < 8; ++k) box.points_m.emplace_back(0.03 * (k & 1), 0.02 * (k >> 1 & 1), 0.05 * (k >> 2));

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int controls = 10;
 
-// Returns a sheet over the unit square with even control points.
+// Returns a sheet over the unit square with evenly spaced control points.
 Surface sheet() {
   ControlNet net(controls, controls);
   for (int i = 0; i < controls; ++i) {
@@ -73,8 +73,8 @@ TEST(Folds, WhereItGoesBackItFoldsAndHasCusps) {
   }
 }
 
-// Returns a sheet that runs along x, back below itself and forward again, without a large turn of the normal
-// between samples.
+// Returns a sheet that runs along x, back below itself and forward again. Its normal never turns far between
+// two samples.
 Surface doubled_back() {
   constexpr int rows = 28;
   ControlNet net(rows, controls);

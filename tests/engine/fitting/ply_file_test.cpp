@@ -1,4 +1,4 @@
-// Tests PLY files like those of Stanford, MeshLab and VTK, and generated files of every form.
+// Tests PLY files as Stanford, MeshLab and VTK write them, and generated files of every form.
 #include "engine/exchange/scans/ply_file.h"
 
 #include <gtest/gtest.h>
@@ -320,7 +320,7 @@ TEST(PlyFile, GeneratedFilesAreReadAsTheyWereMade) {
     if (sample.is_text()) {
       EXPECT_FALSE(parse_ply(sample.bytes + " 1"));
     } else {
-      // The file is truncated at a random byte or has bytes after its last row.
+      // The file is cut off at a random byte, or has extra bytes after its last row.
       const int kept =
           random.integer(static_cast<int>(sample.header_bytes), static_cast<int>(sample.bytes.size()) - 1);
       EXPECT_FALSE(parse_ply(std::string_view(sample.bytes).substr(0, static_cast<std::size_t>(kept))));

@@ -28,7 +28,8 @@ double share_facing(const Surface& surface, const std::function<Vector3(const Ve
   return facing / static_cast<double>(grid * grid);
 }
 
-// Scanners see surfaces from outside, and the clay is on the side opposite to the normals.
+// Scanners see surfaces from outside, so the normals must point away from the clay: away from the axis of a
+// tube, and towards the side to which a dome bulges.
 TEST(RoughScan, OpenShapesWithoutNormalsFaceOutwards) {
   for (unsigned seed = 1; seed <= (is_full_run() ? 6U : 2U); ++seed) {
     Scan tube = random_cloud(4000, seed, [](double s, double t) { return on_cylinder(s, t, 0.01, 0.06); });
@@ -138,8 +139,8 @@ TEST(RoughScan, TipsOfMeshesAreNoSpikes) {
   EXPECT_EQ(spikes_in(mesh_over(64, rings + 1, on_pencil)), 0U);
 }
 
-// The cloud has more points than the limit. Each outlier is alone in its voxel, while surface points share
-// voxels.
+// The cloud has more points than fitted_point_limit, so it is thinned by voxels. Each outlier is alone in its
+// voxel, while surface points share voxels.
 TEST(RoughScan, OutliersOfLargeCloudsAreLeftOut) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   Scan scan = ellipsoid_cloud(600'000, {0.03, 0.03, 0.03});
@@ -168,7 +169,8 @@ TEST(RoughScan, SparsePartsOfLargeCloudsAreKept) {
   EXPECT_NEAR(fitted.bodies[0].size_m.x(), 0.1, 1e-3);
 }
 
-// Noise and wrinkles about the poles bend a surface many times more than its shape does.
+// A surface that followed the noise, or that had wrinkles about its poles, would have many times the bending
+// energy of its shape.
 TEST(RoughScan, NoiseDoesNotWrinkleTheSurface) {
   for (const Vector3& half_axes : {Vector3(0.03, 0.03, 0.03), Vector3(0.02, 0.025, 0.04)}) {
     Scan scan = ellipsoid_cloud(12000, half_axes);
@@ -231,7 +233,7 @@ Scan bowl_with_normals(double wall_m) {
   return scan;
 }
 
-// The nodes are about 4 mm apart, which is more than the thickness of the walls.
+// The nodes are about 4 mm apart. Two of the three walls are thinner than this.
 TEST(RoughScan, WallsKeepTheNormalsOfTheirFaces) {
   for (const double wall : {0.001, 0.002, 0.005}) {
     if (wall > 0.001 && !is_full_run()) continue;
@@ -263,7 +265,8 @@ TEST(RoughScan, NoisyDomeIsASheet) {
   EXPECT_LT(fitted.bodies[0].errors.surface_to_data.p95_m, 3e-4);
 }
 
-// The wall is 2 mm thick and its points are 3 mm apart, so that only the profile separates the two faces.
+// The wall is 2 mm thick and its points are 3 mm apart. Only the profile separates the two faces. The profile
+// consists of all points, turned about the axis into one plane.
 TEST(RoughScan, ThinBowlWithoutNormalsHasTwoFaces) {
   const auto bowl = [](double s, double t, double radius) {
     const double height = t * radius, out = std::sqrt(radius * radius - height * height);

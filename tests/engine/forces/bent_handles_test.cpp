@@ -38,7 +38,7 @@ TEST_P(BentHandle, FollowsTheHand) {
   constexpr double tip_m = 0.096, travel_m = 0.004;
   ToolInput input;
   input.coupling_n_per_m = device_n_per_m / bend.force_scale;
-  // The tool is first moved to where it touches.
+  // The tool is first lowered until it touches the handle.
   double height_m = 0.03;
   bool touching = false;
   while (!touching && height_m > 0.0) {

@@ -1,5 +1,5 @@
-// Tests the force on a tool that presses a block. At rest it is the same for any number of substeps, and a
-// quick press ends with the same force as a slow one.
+// Tests the force on a tool that presses a block. The force at rest is the same for any number of substeps,
+// and a quick press ends with the same force as a slow one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -101,8 +101,8 @@ INSTANTIATE_TEST_SUITE_P(, FeltForce,
                                          FeltCase{"gelatin-20-1", false, ForceRun::whole_table},
                                          FeltCase{"silicone-00-30", false, ForceRun::whole_table}));
 
-// The block is fine enough for the sphere to be equally deep at several places, between which its nearest
-// point jumps.
+// The block is so fine that the sphere is equally deep at several places. The sphere's nearest point jumps
+// between them.
 TEST(HeldSphere, FeelsASteadyForceWhereSeveralPlacesAreEquallyDeep) {
   if (const std::string reason = find_skip_reason(ForceRun::always); !reason.empty()) GTEST_SKIP() << reason;
   Scene scene = block_scene("silicone-00-30", 2000);

@@ -1,4 +1,5 @@
-// Tests free bodies of springs: one that rings keeps its energy, and two that collide keep their momentum.
+// Tests free bodies of springs: a body that rings keeps its energy, and two bodies that collide keep their
+// momentum.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +19,7 @@ BodyState make_state(const Body& body) {
   return make_body_state(body, {}, InstructionSet::baseline).value();
 }
 
-// Returns the kinetic energy of a lattice in real time, in joules.
+// Returns the kinetic energy of a lattice that moves in real time, in joules.
 double kinetic_energy_j(const SpringLattice& lattice) {
   double energy = 0.0;
   for (int n = 0; n < lattice.mesh().node_count(); ++n) {
@@ -77,7 +78,7 @@ TEST(Ringing, KeepsItsEnergyWithoutDamping) {
         static_cast<int>(std::lround(settings.time_s / lattice.find_real_time_step_s(settings.time_s)));
     const double step_s = settings.time_s / settings.substeps;
     lattice.set_inertia(1.0, step_s);
-    // The rod starts to swing in about its first bending shape, and along itself.
+    // The rod starts to swing in about its first bending mode, and to vibrate along its length.
     for (int n = 0; n < lattice.mesh().node_count(); ++n) {
       const double along = lattice.mesh().nodes[static_cast<std::size_t>(n)].y() / size.height_m;
       lattice.set_velocity(n, speed_m_per_s * Vector3(std::cos(2.0 * std::numbers::pi * along), along, 0.0));

@@ -1,5 +1,5 @@
-// Tests that a body has one mass: that of its exact volume, in its lattice, in the implicit solver's block
-// and in the information about the body.
+// Tests that a body has the mass of its exact volume everywhere: in its lattice, in the implicit solver's
+// block and in the information about the body.
 #include <gtest/gtest.h>
 
 #include <algorithm>

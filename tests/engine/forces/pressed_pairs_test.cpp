@@ -1,5 +1,5 @@
 // Tests that two bodies pressed against each other push with equal forces, and that their interface is where
-// each body alone would be under that force.
+// the face of each body alone would be under this force.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 struct Pair {
   const char *left, *right;  // names of bundled materials
-  double press_m;            // distance of the press: a fraction of that at which a block would bend aside
+  double press_m;            // pressing distance, far less than a block needs to buckle
   int node_budget;
   ForceRun run;
 };
@@ -24,8 +24,8 @@ void PrintTo(const Pair& pair, std::ostream* out) {
 }
 
 constexpr double length_m = 0.02, width_m = 0.014, rounding_m = 0.001;
-// Tolerance of the surface. It is larger than the default, so that fewer control points suffice and contacts
-// take less time.
+// Tolerance of the fit of a block's surface. It is larger than the default, so that fewer control points
+// suffice and contacts take less time.
 constexpr double tolerance_m = 2e-5;
 
 // Returns a block along x with its contact face at x = 0, fixed at the other end.

@@ -49,7 +49,8 @@ Body stock_body(const std::string& name, const StockShapeSize& size, const Vecto
 // a fraction of the tube's length.
 BodyRegion end_region(const Surface& tube, int axis, bool at_larger, double length);
 
-// Returns a scene of these bodies without gravity, which comes to rest as soon as it can.
+// Returns a scene of these bodies without gravity. Motion is critically damped, so that the scene comes to
+// rest quickly.
 Scene settling_scene(std::vector<Body> bodies);
 
 Simulation make_simulation(const Scene& scene);

@@ -19,8 +19,9 @@ double weight_n(const Body& body) {
   return g * compute_body_mass(body).value().mass_kg();
 }
 
-// Advances until the mean of a force over 200 ticks changes by less than a thousandth of it, and returns the
-// mean.
+// Advances by windows of 200 ticks and returns the mean of a force over the last window. Stops when this mean
+// differs from that of the window before by less than a fraction of 2e-4, but not before six windows have
+// passed, and at the latest after `most_ticks` ticks.
 double settled_force_n(Simulation& simulation, int most_ticks, const std::function<double()>& force_n) {
   constexpr int window = 200;
   double before = 0.0, now = mean_over(simulation, window, idle_tool(), force_n);
@@ -78,7 +79,7 @@ std::vector<ModelCase> model_cases() {
   return cases;
 }
 
-// Each model has the inertia scale of its own lattice, material and substeps.
+// Each model is simulated with the inertia scale that its lattice, material and substeps require.
 class WeightOfModel : public testing::TestWithParam<ModelCase> {};
 
 TEST_P(WeightOfModel, ReachesItsSupport) {
@@ -108,7 +109,8 @@ Body small_block(const std::string& material, const Vector3& centre_m) {
   return stock_body(material, size, centre_m, elastic, 250);
 }
 
-// With a large drag a soft body would take minutes to come to rest, so the drag is set at rest.
+// With a large drag, a soft body would take minutes to come to rest. The drag is therefore set only after the
+// body has come to rest.
 TEST(WeightOnSupport, IsTheSameWithAnyDrag) {
   if (const std::string reason = find_skip_reason(ForceRun::full); !reason.empty()) GTEST_SKIP() << reason;
   for (const char* material : {"gelatin-20-1", "silicone-00-30", "abs", "steel-304"}) {

@@ -28,12 +28,13 @@ Surface paraboloid(double a, double b) {
 }
 
 TEST(PrincipalCurvatures, AreThoseOfAParaboloid) {
-  // At the vertex the curvatures are 2 a and 2 b, concave seen from above, the side of its normals.
+  // At the vertex, the curvatures are -2 a and -2 b. The normals point up; a curvature is negative if the
+  // surface is concave as seen from above.
   const auto vertex = compute_principal_curvatures(evaluate(paraboloid(0.7, -0.2), 0.0, 0.0));
   ASSERT_TRUE(vertex);
   EXPECT_NEAR(vertex->smallest, -1.4, 1e-14);
   EXPECT_NEAR(vertex->largest, 0.4, 1e-14);
-  // Beside the vertex on the line v = 0, the curvatures are 2 a / root^3 along u and 2 b / root across it,
+  // Beside the vertex on the line v = 0, the curvatures are -2 a / root^3 along u and -2 b / root across it,
   // with root = (1 + 4 a^2 u^2)^(1/2).
   const auto beside = compute_principal_curvatures(evaluate(paraboloid(0.7, 0.2), 0.5, 0.0));
   const double root = std::sqrt(1.0 + 4.0 * 0.49 * 0.25);
@@ -112,7 +113,8 @@ TEST(CurvatureRange, OfAnEllipsoid) {
   fit.control_counts = {{96, 96}};
   const Surface ellipsoid = fitted(Result<ExactShape>(shape), fit).surface;
   const CurvatureRange range = find_curvature_range(ellipsoid);
-  // The ends of the longest axis are sharpest, c / b^2; those of the shortest are flattest, b / c^2.
+  // The curvature is largest at the ends of the longest axis, c / b^2, and smallest at the ends of the
+  // shortest axis, b / c^2.
   EXPECT_NEAR(range.largest.curvature_per_m, c / (b * b), 0.01 * c / (b * b));
   EXPECT_NEAR(range.smallest.curvature_per_m, b / (c * c), 0.01 * b / (c * c));
   EXPECT_NEAR(std::abs(range.smallest.position_m.z()), b, 1e-4);

@@ -16,8 +16,8 @@ namespace {
 
 using std::numbers::pi;
 
-// Returns the solid of revolution r^2 = (h^2 - z^2)(1 + c z) with its axis along y. Its volume is 4/3 pi h^3,
-// and its centre is c h^2 / 5 above the origin.
+// Returns the solid of revolution about the y axis with r^2 = (h^2 - y^2)(1 + c y), where r is the radius at
+// the height y. Its volume is 4/3 pi h^3, and its centre is at y = c h^2 / 5.
 Surface egg(double h, double c) {
   ExactShape shape;
   shape.u.periodic = true;
@@ -32,7 +32,7 @@ Surface egg(double h, double c) {
   return fitted(Result<ExactShape>(shape), fit).surface;
 }
 
-// The surfaces are fitted within 1e-7 m, which is 1e-5 of the radius.
+// The surfaces are fitted within 1e-7 m, which is less than 1e-5 of the radius.
 TEST(EnclosedMass, HasVolumeAndMiddleOfAnEgg) {
   const double h = 0.03, c = 12.0;
   const EnclosedMass mass = compute_enclosed_mass(egg(h, c));
@@ -81,12 +81,13 @@ TEST(EnclosedMass, AreaOfWhatTrimsKeep) {
   const auto hole = polygon_loop(sheet.u, sheet.v, backwards(rectangle(0.25, 0.25, 0.5, 0.75)));
   const EnclosedMass mass = compute_enclosed_mass(sheet, TrimmedArea::make(sheet.u, sheet.v, {hole}).value());
   EXPECT_NEAR(mass.area_m2, 0.875 * 0.006, 1e-12);
-  // The hole's centre is an eighth of 0.1 m to the left.
+  // The hole's centre is 0.0125 m to the left, so the centre of the remaining area is to the right.
   EXPECT_LT((mass.area_centre_m - Vector3(0.0125 * 0.125 / 0.875, 0.0, 0.0)).norm(), 1e-10);
   const auto round = round_loop(sheet.u, sheet.v, {0.5, 0.5}, 0.2, 16, true);
   const EnclosedMass rounded =
       compute_enclosed_mass(sheet, TrimmedArea::make(sheet.u, sheet.v, {round}).value());
-  // The chords are within 1e-5 of the domain, and the circumference is 1.3 times as long as the domain.
+  // The chords are within 1e-5 of the circle, in units of the domain. The circumference is 1.3 times as long
+  // as the domain.
   EXPECT_NEAR(rounded.area_m2 / 0.006, 1.0 - round_loop_area(0.2, 16), 2e-5);
 }
 
@@ -101,7 +102,7 @@ TEST(EnclosedMass, AreaOfAPartOfATube) {
   fit.tolerance_m = 1e-7;
   fit.keeps_parameters = true;
   const Surface tube = fitted(Result<ExactShape>(shape), fit).surface;
-  // The hole crosses the seam.
+  // The kept part crosses the seam.
   const auto part = polygon_loop(tube.u, tube.v, rectangle(-0.25, 0.2, 0.25, 0.6));
   const EnclosedMass mass = compute_enclosed_mass(tube, TrimmedArea::make(tube.u, tube.v, {part}).value());
   // The fit is within 1e-7 m of a radius of 1e-2 m.
@@ -115,7 +116,8 @@ TEST(EnclosedMass, IsBelowZeroInsideOut) {
   EXPECT_NEAR(compute_enclosed_mass(inside_out).volume_m3, -volume, 1e-12 * volume);
 }
 
-// Compares with the volume between two balls, and between two tori whose tubes differ by the thickness.
+// Compares the volume of a shell with the volume between two balls, and between two tori whose tube radii
+// differ by the thickness.
 TEST(ShellMass, IsWhatIsBetweenTwoSurfaces) {
   ShapeFit fit;
   fit.tolerance_m = 1e-7;
@@ -141,7 +143,7 @@ TEST(ShellMass, OfASheetLiesBelowIt) {
   EXPECT_LT((sheet.centre_m - Vector3(0.0, -0.002, 0.0)).norm(), 1e-9);
 }
 
-// Returns an upright cylinder of 60 mm with its centre at the origin. Its lower half is lighter.
+// Returns an upright cylinder, 60 mm high, with its centre at the origin. Its lower half is lighter.
 Body weighted() {
   Body body;
   body.surface = fitted(cylinder_shape({0.01, 0.06, 0.001})).surface;

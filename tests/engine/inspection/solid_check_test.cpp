@@ -18,7 +18,8 @@ SolidCheck checked(const TriangleMesh& mesh, double error_m = 0.0) {
   return check.value_or(SolidCheck());
 }
 
-// Returns a bar of length 100 along x over a triangle or quadrangle, counter-clockwise seen from +x.
+// Returns a bar of 0.1 m along x whose section is a triangle or quadrangle, with the corners
+// counter-clockwise seen from +x.
 TriangleMesh prism(const std::vector<Vector3>& profile) {
   TriangleMesh mesh;
   const auto n = static_cast<std::uint32_t>(profile.size());
@@ -55,7 +56,7 @@ TEST(SolidCheck, ThicknessOfABallIsItsDiameterWithinItsChords) {
 }
 
 TEST(SolidCheck, TheWallAboutACavityIsTheThickness) {
-  // The cavity's walls are 2, 3 and 4 mm from the box's.
+  // The cavity's walls are 2, 3 and 4 mm from the faces of the box.
   const TriangleMesh hollow = joined(box_of_triangles({0, 0, 0}, {0.05, 0.04, 0.03}),
                                      turned(box_of_triangles({0.004, 0.003, 0.005}, {0.045, 0.034, 0.028})));
   const SolidCheck check = checked(hollow);
@@ -64,8 +65,8 @@ TEST(SolidCheck, TheWallAboutACavityIsTheThickness) {
   EXPECT_TRUE(check.self_intersections.empty());
 }
 
-// Faces with a draft of 3 degrees meet the bottom at 87 degrees. Near that edge, lines between the two can be
-// arbitrarily short.
+// Faces with a draft of 3 degrees meet the bottom at 87 degrees. Near that edge, lines between the two faces
+// can be arbitrarily short.
 TEST(SolidCheck, EdgesOfADraftedBlockAreNotThin) {
   const double draft = 0.02 * std::tan(3.0 * pi / 180.0);
   const SolidCheck check =

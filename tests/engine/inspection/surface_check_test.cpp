@@ -79,7 +79,7 @@ TEST(SurfaceCheck, FindsWhereATubePassesThroughItself) {
   ExactShape shape;
   shape.u.periodic = true;
   shape.at = [](double u, double v) {
-    // The loop follows a circle of 30 mm for more than a turn and rises by half the tube's width: the ends
+    // The tube follows a circle of 30 mm for more than a turn and rises by half its width, so that its ends
     // overlap.
     const double turn = 2.2 * pi * v, around = 2.0 * pi * u;
     const Vector3 outward(std::cos(turn), 0.0, std::sin(turn));
@@ -89,7 +89,7 @@ TEST(SurfaceCheck, FindsWhereATubePassesThroughItself) {
   const SurfaceCheck check = *check_surface(fitted(Result<ExactShape>(shape)).surface);
   ASSERT_FALSE(check.self_intersections.empty());
   const SelfIntersection& meeting = check.self_intersections[0];
-  // One side is near the start of the loop, the other near its end.
+  // One of the two intersecting parts is near the start of the loop, the other near its end.
   EXPECT_LT(std::min(meeting.v, meeting.other_v), 0.15);
   EXPECT_GT(std::max(meeting.v, meeting.other_v), 0.85);
 }

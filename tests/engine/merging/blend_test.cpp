@@ -29,8 +29,8 @@ Surface tube(double from, double to, double radius, const Vector3& shift = Vecto
   return fit_grid(u, v, points).value();
 }
 
-// Returns the smallest cosine of the angle between a normal in the blend and the normal before the blend on
-// the same line.
+// Returns the smallest cosine of the angle between a normal in the blend and the normal at the start of the
+// blend on the same line of constant u.
 double least_cosine(const Merged& merged) {
   const Joint& joint = merged.joints[0].joint;
   double least = 1.0;
@@ -134,7 +134,7 @@ TEST(Blend, APatchIsNotMergedWithItself) {
   }
 }
 
-// Two planes that meet at an angle; 180 degrees is flat.
+// Returns two planes that meet at an angle; 180 degrees is flat.
 std::vector<Surface> planes_at(double angle) {
   const auto flat = [](double from, double to) {
     return sheet_between([=](double) { return from; }, [=](double) { return to; });

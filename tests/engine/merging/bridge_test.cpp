@@ -27,7 +27,8 @@ TEST(Bridge, AGapIsBridgedSmoothly) {
   }
 }
 
-// Fits of scans end in irregular edges, which would grow into folds along a long strip.
+// Fits of scans end in irregular edges. If a long bridge continued these irregularities, they would grow into
+// folds.
 TEST(Bridge, RingsThatEndUnevenlyAreBridgedOverALongGap) {
   Surface first = ring_strip(0.0, 0.03, 16, 0.0), second = ring_strip(0.12, 0.15, 20, 0.2);
   for (Surface* ring : {&first, &second}) {
@@ -99,7 +100,7 @@ Surface pipe(const Vector3& from, const Vector3& to, const Vector3& seam, bool l
   return fit_grid(u, v, points).value();
 }
 
-// Returns the least area enclosed by any ring.
+// Returns the smallest area enclosed by a ring of the tube.
 double least_section_m2(const Surface& tube) {
   const double start = tube.v.domain_start(), end = tube.v.domain_end();
   double least = 1.0;
@@ -130,8 +131,8 @@ TEST(Bridge, PipesSideBySideAreJoinedByABend) {
     EXPECT_GT(least_section_m2(surface), 0.8 * std::numbers::pi * 6.4e-5);
     for (double u = 0.0; u < 1.0; u += 0.1) {
       const Vector3 start = position(surface, u, 0.0), end = position(surface, u, surface.v.domain_end());
-      // The two ends are mirror images in x: points on the inside of the bend on one pipe are joined to those
-      // on the inside on the other.
+      // The ends of the two pipes are mirror images in x. Points on the inside of the bend of one pipe are
+      // joined to points on the inside of the other.
       EXPECT_NEAR(end.x(), 0.06 - start.x(), 1e-5);
       EXPECT_NEAR(end.z(), start.z(), 1e-5);
     }

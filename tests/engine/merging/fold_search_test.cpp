@@ -24,7 +24,7 @@ Surface ribbon(const std::function<double(double)>& climb) {
   return fit_grid(u, v, points).value();
 }
 
-// The strip turns by up to half a turn and back, but never by a right angle between two samples.
+// The strip turns by up to 162 degrees and back, but never by a right angle between two samples.
 TEST(FoldSearch, AStripThatTurnsBackSlowlyFolds) {
   const Surface back =
       ribbon([](double t) { return 0.9 * std::numbers::pi * std::sin(t * std::numbers::pi); });

@@ -168,7 +168,8 @@ TEST(IntersectionMerge, AFloorAndAWall) {
   }
 }
 
-// Lines of one sheet run along the border of the other, so that rounding puts them on either side of it.
+// Lines of one sheet run along the border of the other sheet. Rounding puts them inside or outside this
+// border.
 TEST(IntersectionMerge, SheetsOfOneWidth) {
   for (const double turn : {0.0, 0.3, 0.7, 1.1}) {
     const auto turned = [&](const Vector3& p) {
@@ -238,7 +239,7 @@ struct Drum {
   }
 };
 
-// A rod is in the side of a drum, or upright on the drum beside its pole.
+// A rod enters a drum from the side, or is upright on the drum beside its pole.
 TEST(IntersectionMerge, LinesLeadAwayFromACrossingBesideThePole) {
   const Drum tall{0.01, 0.03}, wide{0.03, 0.01};
   const Vector3 x(1, 0, 0), z(0, 0, 1), beside(0.012, 0, 0);

@@ -9,7 +9,8 @@ namespace spoonbill {
 
 MergeRequest request_of(int continuity, double tolerance_m = 5e-5);
 
-// Returns rings of a conical frustum between two heights; u starts at the fraction `seam` of a turn.
+// Returns the side of a conical frustum between two heights. u goes around and starts at the fraction `seam`
+// of a turn.
 Surface ring_strip(double from, double to, int count, double seam);
 
 // Returns a sheet between two curves over x; the spacing of u is uneven by `warp`.

@@ -118,8 +118,8 @@ TEST(Merge, PatchesOfOtherDegreesAndCounts) {
   }
 }
 
-// Fits |u - 1/2| with four equal pieces to 41 samples: C0 leaves no error; C1 and C2 leave 3.52e-2 before
-// knots are added.
+// Fits |u - 1/2| with four equal pieces to 41 samples. With C0 at the kink, no error is left. With C1 and C2,
+// an error of 3.52e-2 is left before knots are added.
 TEST(Merge, TheKinkOfTheLiterature) {
   const auto u = KnotVector::clamped_uniform(1, 2).value();
   for (const auto& [multiplicity, residual] :
@@ -132,13 +132,13 @@ TEST(Merge, TheKinkOfTheLiterature) {
     for (const double a : points.u) {
       for (const double b : points.v) points.points_m.emplace_back(a, b, std::abs(b - 0.5));
     }
-    // The table gives three digits; a zero residual is rounding.
+    // The published table gives three digits; a zero residual is rounding.
     EXPECT_NEAR(largest_deviation_m(fit_grid(u, v, points).value(), points), residual,
                 residual > 0 ? 5e-5 : 1e-14);
   }
 }
 
-// Two planes that meet at a right angle.
+// Returns two planes that meet at a right angle.
 std::vector<Surface> roof() {
   const auto knots = KnotVector::clamped_uniform(3, 6).value();
   const auto plane = [&](const Vector3& from, const Vector3& across, const Vector3& along) {
@@ -277,7 +277,8 @@ TEST(Merge, PatchesOfAGridOverOtherDomains) {
   EXPECT_LT(largest_difference(whole, merged->surface), 1e-11);
 }
 
-// A roof whose ridge fades out towards half of the width; the other half is level.
+// Returns the four patches of a roof whose ridge fades out towards half of the width; the other half is
+// level.
 std::vector<Surface> fading_roof(double lift) {
   std::vector<Surface> parts;
   for (const double x : {0.0, 0.03}) {
@@ -317,7 +318,8 @@ TEST(Merge, AGridIsBlendedInAllRowsAlike) {
   EXPECT_EQ(mixed.error().code, ErrorCode::mismatch) << mixed.error().message;
 }
 
-// The edges differ by less than the tolerance and are brought together, with a kink beside them.
+// Two slopes meet at a ridge, and their edges differ by less than the tolerance. The movement of the edges
+// and the rounding of the ridge must together be within the tolerance.
 TEST(Merge, TheToleranceHoldsForAllOfADeviation) {
   for (const Vector3& moved : {Vector3(2.63e-5, -2.72e-5, -3.25e-5), Vector3(0, 4.5e-5, 0),
                                Vector3(0, 0, -4.5e-5), Vector3(4.5e-5, 0, 0)}) {

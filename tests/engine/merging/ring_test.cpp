@@ -1,4 +1,4 @@
-// Tests rows and grids of patches whose last edges meet their first.
+// Tests rows and grids of patches whose last edges meet their first edges.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -16,7 +16,7 @@ namespace {
 
 using std::numbers::pi;
 
-// A plane at height `y_m` from -0.05 to 0.05 m in x and z, facing up or down.
+// Returns a plane at height `y_m` from -0.05 to 0.05 m in x and z, facing up or down.
 Surface level_plane(double y_m, bool up) {
   Surface surface;
   surface.u = surface.v = KnotVector::clamped_uniform(1, 2).value();
@@ -43,7 +43,8 @@ TrimLoop circle(const Surface& surface, double radius_m, bool hole,
   return make_polygon_loop(surface.u, surface.v, corners).value();
 }
 
-// A cylinder about y from `low_m` to `high_m`, facing outwards, with a seam that differs from a disc's.
+// Returns a cylinder about y from `low_m` to `high_m`, facing outwards. Its seam is at a different angle than
+// the seam of a disc.
 Surface side(double radius_m, double low_m, double high_m) {
   const auto u = KnotVector::periodic_uniform(3, 24).value();
   const auto v = KnotVector::clamped_uniform(3, 6).value();

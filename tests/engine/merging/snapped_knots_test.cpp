@@ -18,7 +18,7 @@ double shortest_piece(const KnotVector& knots) {
   return shortest / (ends.back() - ends.front());
 }
 
-// Returns the surface with each coordinate moved by at most `noise_m`.
+// Returns the surface with each coordinate of its control points moved by at most `noise_m`.
 Surface with_noise(Surface surface, Random& random, double noise_m) {
   for (std::size_t k = 0; k < surface.net.size(); ++k) {
     surface.net.x[k] += random.uniform(-noise_m, noise_m);

@@ -12,7 +12,7 @@
 namespace spoonbill {
 namespace {
 
-// Returns the sheet z = 10 sin(20 x) mm over 0.1 x 0.1 m. Its equation shows for each point whether it is on
+// Returns the sheet z = 0.01 sin(20 x) over 0.1 x 0.1 m. The equation shows for each point whether it is on
 // the sheet.
 Surface wave() {
   const auto knots = KnotVector::clamped_uniform(3, 16).value();
@@ -38,7 +38,8 @@ double largest_off_the_wave(const Surface& surface) {
 }
 
 TEST(TrimmedPatch, EndsOnItsTrims) {
-  // The part above a roof with a central ridge, where the lines' ends have a kink.
+  // The loop keeps the part above a roof with a central ridge. Parameter lines end at the roof, so the edge
+  // there has a kink.
   const auto whole =
       untrimmed(wave(), {polygon({{0.1, 0.2}, {0.5, 0.5}, {0.9, 0.2}, {0.9, 0.95}, {0.1, 0.95}})}, 2e-5);
   ASSERT_TRUE(whole.ok()) << whole.error().message;
@@ -94,7 +95,8 @@ TEST(TrimmedPatch, IsMergedWithItsNeighbour) {
 }
 
 TEST(TrimmedPatch, LinesOfTheOtherDirectionServeToo) {
-  // The notch comes from the side: lines of constant u are in two pieces there, lines of constant v in one.
+  // The notch is cut into one side. Lines of constant u are in two pieces there, and lines of constant v in
+  // one.
   const auto notched = untrimmed(
       wave(), {polygon({{0.0, 0.0}, {0.6, 0.0}, {0.6, 0.4}, {0.4, 0.5}, {0.6, 0.6}, {0.6, 1.0}, {0.0, 1.0}})},
       2e-5);
@@ -122,7 +124,7 @@ TEST(TrimmedPatch, NarrowGapsAndSlitsAreNotMissed) {
   const TrimLoop left = polygon({{0.1, 0.1}, {0.4003, 0.1}, {0.4003, 0.9}, {0.1, 0.9}});
   const TrimLoop right = polygon({{0.4004, 0.1}, {0.9, 0.1}, {0.9, 0.9}, {0.4004, 0.9}});
   EXPECT_FALSE(untrimmed(wave(), {left, right}, 2e-5).ok());
-  // Beside the slit, a line of constant v has two pieces. The ends of lines of constant u jump there.
+  // The slit cuts lines of constant v into two pieces. The ends of lines of constant u jump at the slit.
   const TrimLoop slit = polygon({{0.1, 0.1},
                                  {0.403, 0.1},
                                  {0.403, 0.5},

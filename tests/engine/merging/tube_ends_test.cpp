@@ -21,7 +21,7 @@ struct TubeProfile {
   double radius, along;
 };
 
-// Returns a profile turned about the z axis, with poles at ends of zero radius.
+// Returns a profile that is turned about the z axis, with poles at ends of zero radius.
 Surface turned_profile(const std::function<TubeProfile(double)>& profile, int along, double shift_z = 0.0) {
   const auto u = KnotVector::periodic_uniform(3, 24).value();
   const auto v = KnotVector::clamped_uniform(3, along).value();
@@ -44,7 +44,7 @@ Surface ball_at(double radius, double z) {
       24, z);
 }
 
-// A tube with hemispherical ends.
+// Returns a tube with hemispherical ends.
 Surface capsule(double radius, double half_length, double z) {
   const double quarter = 0.5 * pi * radius, whole = 2 * (quarter + half_length);
   return turned_profile(
@@ -152,7 +152,7 @@ TEST(TubeEnds, AWasherIsCappedFlatAlone) {
   EXPECT_TRUE(add_cap(washer, Side::v_start, 0.0, c2()).ok());
 }
 
-// A tube about the z axis with the given outline.
+// Returns a tube about the z axis with the given outline.
 Surface outline_tube(const KnotVector& u, const std::function<Eigen::Vector2d(double)>& outline) {
   const auto v = KnotVector::clamped_uniform(3, 6).value();
   PointGrid points{
@@ -163,7 +163,7 @@ Surface outline_tube(const KnotVector& u, const std::function<Eigen::Vector2d(do
   return fit_grid(u, v, points).value();
 }
 
-// A bean along an arc of the given angle, 4 mm wide.
+// Returns a point of the outline of a bean, which is 4 mm wide and follows an arc of the given angle.
 Eigen::Vector2d along_bean(double u, double angle) {
   const double turn = 2 * pi * u, out = 0.02 + 0.002 * std::sin(turn), at = 0.5 * angle * std::cos(turn);
   return {out * std::cos(at), out * std::sin(at)};

@@ -23,15 +23,16 @@ double largest_distance_m(const Surface& surface, const std::function<double(con
 // points.
 double least_outward(const Surface& surface, const std::function<double(const Vector3&)>& distance);
 
-// The longest step divided by the shortest: `along` for steps between rings along v, `around` for steps along
-// the ring halfway along v. Both are 1 if parameters are proportional to length.
+// Ratio of the longest to the shortest of the distances that equal parameter steps cover. `along` is for
+// steps from ring to ring along v, `around` for steps along the ring halfway along v. Both are 1 if
+// parameters are proportional to length.
 struct Evenness {
   double along = 0.0, around = 0.0;
 };
 Evenness evenness(const Surface& surface);
 
-// Returns the largest jump across the seam of u: of the position, and of the first and second derivatives,
-// each divided by a length scale from the first derivative.
+// Returns the largest jump across the seam of u: of the position and of the first two derivatives, each
+// relative to the length of the first derivative.
 double seam_jump(const Surface& surface);
 
 // Returns true if elements that are not neighbours intersect. Uses coarse levels only: the finer ones take

@@ -79,7 +79,8 @@ TEST(FitShape, TellsHowFarItIsAndStops) {
   }
 }
 
-// The fit is refused before any work if its breaks need more cells than are allowed.
+// The fit is refused before the shape is sampled if the breaks, at each of which a fit has a knot, require
+// more control points than are allowed.
 TEST(FitShape, RefusesMoreBreaksThanControlPointsAtOnce) {
   ExactShape shape = wave(0.0);
   shape.v.breaks.clear();

@@ -74,8 +74,8 @@ TEST(Tube, BentIsRoundAboutItsLine) {
     }
   }
   EXPECT_LE(largest, shape_tolerance_m);
-  // Pappus's theorem for a bent line: the volume is the section times the length, plus the ball that both
-  // ends form.
+  // Pappus's theorem for a bent line: the volume is the section times the length, plus the ball that the two
+  // ends form together.
   double length = 0.0;
   for (int k = 0; k < 20000; ++k) {
     length += (line.at(line.end() * (k + 1) / 20000) - line.at(line.end() * k / 20000)).norm();

@@ -56,7 +56,7 @@ TEST(Bodies, ThatBeginInEachOtherPart) {
   EXPECT_GT(impact.momentum_of(1).y(), 0.0);
 }
 
-// Returns two handles one above the other, the lower one fixed. The tool's action on the upper one reaches
+// Returns two handles one above the other, the lower one fixed. The tool's action on the upper handle reaches
 // the lower one.
 Scene stacked_handles() {
   Scene scene = small_handle();
@@ -68,8 +68,8 @@ Scene stacked_handles() {
   return scene;
 }
 
-// Expects the contact to be on its body: its frame is that of the surface, and the weighted positions of its
-// nodes give its point.
+// Expects the contact to be on its body: the contact's frame is the frame of the surface, and its point is
+// the weighted mean of the positions of its nodes.
 void expect_is_on_its_body(const Simulation& simulation, const ContactSnapshot& contact) {
   const SpringLattice& lattice = simulation.lattice(contact.body);
   double sum = 0.0;

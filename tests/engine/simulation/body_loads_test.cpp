@@ -44,7 +44,7 @@ TEST(BodyLoads, PressureAllAroundShrinksABodyAsItsBulkModulusSays) {
   }
 }
 
-// Between the quarters the fixed end has no influence: the strain is F / (E A).
+// Between slices 4 and 14 of 18, the fixed end has no influence: the strain is F / (E A).
 TEST(BodyLoads, AForceOnTheEndStretchesABar) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     const double youngs = stepping == Stepping::springs ? 2e4 : 5e6, area = 0.01 * 0.01, share = 2e-3;

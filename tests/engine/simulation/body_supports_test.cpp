@@ -59,8 +59,8 @@ TEST(SupportMotion, SwingsAsASine) {
 }
 
 // The bar has a Poisson's ratio of 0, so the force is E A d / L up to the nonlinearity at a strain of 1e-3.
-// Springs have a ratio of at least 0.2, and their fixed ends, which do not narrow, make the bar slightly
-// stiffer.
+// Springs have a ratio of at least 0.2, so a bar of springs narrows, except at its fixed ends. This makes it
+// slightly stiffer.
 TEST(BodySupports, APulledEndBearsWhatABarSays) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     const double youngs = stepping == Stepping::springs ? 2e4 : 5e6, area = 1e-4, length = 0.06, way = 6e-5;
@@ -104,7 +104,7 @@ TEST(BodySupports, MovesItsNodesExactly) {
 }
 
 // The support fixes one slice of the lattice, anywhere between the slices of the coarser implicit block.
-// Without it, the body would fall by 8 mm.
+// Without the support, the body would fall by 8 mm.
 TEST(BodySupports, HoldWhatTheBlockHasNoNodeFor) {
   const Vector3 size_m(0.012, 0.012, 0.08), gravity_m_per_s2(0, 0, 9.81);
   const Material material = elastic_material(5e6, 0.3, 1000.0);
@@ -120,7 +120,7 @@ TEST(BodySupports, HoldWhatTheBlockHasNoNodeFor) {
   }
 }
 
-// A motion faster than the lattice's waves would invert cells; the support lags instead.
+// A motion that is faster than the waves in the lattice would invert cells. The support lags instead.
 TEST(BodySupports, WaitsForALatticeThatItWouldOutrun) {
   LoadedBlock body({0.012, 0.012, 0.04}, {4, 4, 11}, elastic_material(2e3, 0.3, 1000.0), Stepping::springs);
   body.support({{block_start, {}}, ramp(block_end, Vector3(0, 0, 0.02), 0.01)});

@@ -1,5 +1,5 @@
-// Tests bodies in a box of cells: untouched they stay at rest, pressed they yield, and they rest on the
-// ground.
+// Tests bodies whose lattice is a box of cells: they stay at rest if untouched, yield if pressed, and rest on
+// the ground.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -91,8 +91,8 @@ TEST(BoxedBody, KeepsStillUntouched) {
   }
 }
 
-// The ring has a square section: it is as thick as wide, so that it can touch itself. Beside an edge, none of
-// its four faces is near to the next.
+// The section of the ring is a square and thick enough for self-contact. Points on two faces beside their
+// common edge must not count as self-contact.
 TEST(BoxedBody, WithSharpEdgesKeepsStillUntouched) {
   constexpr int along = 24;
   ControlNet net(4, along);

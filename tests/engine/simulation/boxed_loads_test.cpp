@@ -1,4 +1,5 @@
-// Tests that loads and supports of bodies in a box of cells act on the body, not on the box.
+// Tests that loads and supports of bodies that are embedded in a box of cells act on the body, not on the
+// box.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +23,7 @@ namespace {
 using std::numbers::pi;
 constexpr double ring_m = 0.03, tube_m = 0.01;
 
-// Returns a ring about y: `around` runs about y and `along` about the tube.
+// Returns a ring about y. The body coordinate `around` runs about y, and `along` runs about the tube.
 const LatticeMesh& ring_in_box() {
   static const LatticeMesh mesh = solid_lattice(round_torus(ring_m, tube_m), {3000, {}}).value();
   return mesh;
@@ -232,7 +233,8 @@ TEST(BoxedLoads, RemarksTellOfTheBoxAndOfItsCells) {
   }
 }
 
-// A ring fixed on one side moves furthest on the other; the corners of the box beyond it move further.
+// A ring that is fixed on one side moves farthest on the other. The corners of the box beyond the ring move
+// farther, but are not part of the body.
 TEST(BoxedLoads, RestTellsWhatTheBodyDoes) {
   Scene scene = small_handle();
   Body& body = scene.bodies[0];

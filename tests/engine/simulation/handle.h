@@ -1,4 +1,5 @@
-// Provides a small clay handle for simulation tests: 60 x 10 x 5 mm along x, wide along z, coarse for speed.
+// Provides a small clay handle for simulation tests, 60 mm long along x, 10 mm wide along z and 5 mm high.
+// Its lattice is coarse, so that tests are fast.
 #pragma once
 
 #include "engine/scene/scene.h"

@@ -17,7 +17,7 @@ inline const BodyRegion block_start{{0.0, 0.0}}, block_end{{1.0, 1.0}};
 
 class LoadedBlock {
  public:
-  // Puts a corner at the origin; a region's `along` runs along z. Drag lets the block come to rest.
+  // Places the block with a corner at the origin. A region's `along` runs along z.
   LoadedBlock(const Vector3& size_m, std::array<int, 3> counts, const Material& material, Stepping stepping);
 
   void load(const std::vector<Load>& loads);

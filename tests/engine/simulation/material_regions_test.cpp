@@ -144,7 +144,7 @@ TEST(MaterialRegions, ADraggedToolFeelsTheFrictionOfTheRegion) {
   rough.friction = 0.5;
   Simulation simulation = simulate(handle_with_regions(elastic("rubber", 1e5, 0.1), {rough}));
   for (int tick = 0; tick < 200; ++tick) simulation.advance(above(0.015, 0.0095 - 1e-5 * tick));
-  // Moving back and forth over the same points cancels the inclination of the bent surface.
+  // Averaging a movement back and forth over the same points cancels the effect of the surface's inclination.
   double drag[2] = {}, push[2] = {};
   constexpr int way = 1500;
   for (int tick = 0; tick < 2 * way; ++tick) {
@@ -206,8 +206,8 @@ TEST(MaterialRegions, WrongOnesAreRefused) {
             "body \"other\": regions[0].along is [0.9, 0.1], must run from the lower to the higher");
 }
 
-// The reported elasticity is that of the cells that step the body. Hexahedra achieve the requested values,
-// because they pass the patch test in any shape.
+// The reported elasticity is that of the cells that step the body: springs or hexahedra. Hexahedra achieve
+// the requested values, because they pass the patch test in any shape.
 TEST(MaterialRegions, WhatABodyAchievesIsReportedOfWhatStepsIt) {
   Simulation wood = simulate(handle_with_regions(elastic("gel", 1e4), {far_half_of(elastic("wood", 1e9))}));
   Simulation gel = simulate(handle_with_regions(elastic("gel", 1e4), {}));
@@ -236,7 +236,7 @@ Material random_material(Random& random, bool plainly_elastic) {
 }
 
 // With random materials in random regions and strokes at up to 5 m/s, all values stay finite and all nodes
-// stay near their places.
+// stay near their initial positions.
 TEST(MaterialRegions, NoStrokeBlowsThemUp) {
   const int trials = random_cases(is_full_run() ? 12 : 4, 100);
   Random random(31);

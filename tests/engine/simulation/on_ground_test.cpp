@@ -42,7 +42,7 @@ class Incline {
   // Applies a force that is distributed over all nodes.
   void push(const Vector3& force_n) { block_.load({ForceLoad{{}, force_n, ForceDistribution::volume}}); }
 
-  // Returns the mean displacement or velocity over the whole block.
+  // Returns the mean velocity of the block if `velocity` is true, otherwise its mean displacement.
   Vector3 mean(bool velocity) const {
     Vector3 sum = Vector3::Zero();
     const SpringLattice& lattice = block_.lattice;
@@ -264,8 +264,8 @@ TEST(OnGround, AFallOfHalfAMetreLeavesNoCellInsideOut) {
   }
 }
 
-// The handle drops from 27 mm, so that nodes arrive faster than the speed cap lets them move in the squashed
-// body. The skin penetrates the ground slightly and comes out again.
+// The handle drops from 27 mm and arrives faster than the speed cap, which limits the speed of nodes relative
+// to the body's mean velocity. The skin penetrates the ground slightly and leaves it again.
 TEST(OnGround, NoFallIsTooFast) {
   Scene scene = falling_handle(1e4);
   scene.ground->point_m.y() = -0.03;
@@ -278,7 +278,7 @@ TEST(OnGround, NoFallIsTooFast) {
   EXPECT_LT(depth_cells(simulation), ground_depth_limit_cells);
 }
 
-// A hand that presses a body on the ground feels the force that the ground bears in addition to the weight.
+// A hand that presses a body on the ground feels the force that the ground bears beyond the body's weight.
 // The tool's spring is far softer than the body and takes up almost the whole distance.
 TEST(OnGround, AStiffHandlePassesOnWhatTheToolPresses) {
   Simulation simulation = simulate(falling_handle(2e9));
@@ -302,7 +302,7 @@ TEST(OnGround, AStiffHandlePassesOnWhatTheToolPresses) {
   EXPECT_NEAR((borne - weight) / felt, 1.0, 0.02);
 }
 
-// The memory of the contacts is part of the state.
+// The state, which must be equal, includes the data that contacts store from one tick to the next.
 TEST(OnGround, IsTheSameOnEveryInstructionSetAndAllocatesNothing) {
   for (const double youngs : {1e4, 2e9}) {
     Simulation first = simulate(falling_handle(youngs), InstructionSet::baseline);

@@ -1,4 +1,5 @@
-// Tests the mapping residual of the control net, and knots inserted where it is largest.
+// Tests the mapping residual, the distance by which a control net fails to follow its lattice, and the
+// insertion of knots where this residual is largest.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -146,7 +147,7 @@ TEST(BodyMapping, FollowsOneSpanFromPoleToPole) {
             1e-4);
 }
 
-// Elements between knots of full multiplicity have as many control points as the degree.
+// With knots of full multiplicity, each span adds as many control points as the degree.
 TEST(BodyMapping, FollowsKnotsOfEveryMultiplicity) {
   Scene scene = small_handle();
   Surface& surface = scene.bodies[0].surface;
@@ -163,8 +164,8 @@ TEST(BodyMapping, FollowsKnotsOfEveryMultiplicity) {
   EXPECT_LT(shown_residual_m(simulation), 1e-3);
 }
 
-// A plane needs knots at its edge. A document can have at most 200 columns; beyond that number, columns are
-// fixed without knots.
+// A fixing plane needs knots at its edge. A document can have at most 200 columns of control points. If new
+// knots would make more columns, columns are fixed without knots.
 TEST(BodyMapping, HoldsWithoutMoreColumnsThanADocumentTakes) {
   for (const int columns : {190, 198, 199, 200}) {
     SCOPED_TRACE(columns);

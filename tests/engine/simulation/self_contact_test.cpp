@@ -18,7 +18,7 @@ namespace spoonbill {
 namespace {
 
 constexpr double arm_m = 0.04, bend_radius_m = 0.005, arm_thick_m = 0.006;
-// Distance between the arms.
+// Distance between the arms of the hairpin.
 constexpr double bend_gap_m = 2.0 * bend_radius_m - arm_thick_m;
 
 struct Station {
@@ -68,7 +68,7 @@ double depth_in_itself(const Surface& surface, bool* touching = nullptr) {
   return deepest;
 }
 
-// A free body that any forces can pull, with or without self-contact.
+// A free body, with or without self-contact, whose ends are pulled or thrown.
 class Folding {
  public:
   Folding(const Body& body, bool is_self_intersecting)
@@ -127,7 +127,7 @@ class Folding {
   }
 
  private:
-  // The first fifth of the body is pulled along y, the last fifth against it.
+  // The first fifth of the body is pulled along +y, the last fifth along -y.
   template <class Visit>
   void visit_ends(const Visit& visit) {
     const LatticeMesh& mesh = body_.lattice.mesh();
@@ -188,7 +188,8 @@ TEST(SelfContact, KeepsTheMomentum) {
   EXPECT_LT((after.angular - before.angular).norm(), 1e-2 * before.angular_sizes);
 }
 
-// Returns a hairpin whose lower arm is fixed at its lower half; a sphere pushes the upper arm onto it.
+// Returns a simulation of a hairpin. The lower half of its lower arm is fixed; a sphere tool can push the
+// upper arm onto the lower one.
 Simulation pushed_hairpin() {
   Scene scene = small_handle();
   scene.bodies[0] = hairpin();

@@ -55,7 +55,7 @@ TEST(Settling, IsCriticalForTheMotionThatABodyIsIn) {
   }
   ASSERT_GT(longest, 0.0);
   const double omega = std::acos(-1.0) / longest;
-  // Other modes that remain only add to the energy.
+  // Other modes that still vibrate can only make the quotient larger.
   EXPECT_GT(std::sqrt(quotient), 0.9 * omega);
   EXPECT_LT(std::sqrt(quotient), 3.0 * omega);
 }
@@ -67,7 +67,8 @@ TEST(Settling, AReleasedBodyComesBackWithoutSwinging) {
   for (const Stepping stepping : {Stepping::springs, Stepping::implicitly}) {
     LoadedBlock bar = pushed_bar(stepping), swinging = pushed_bar(stepping);
     bar.is_critically_damped = true;
-    // The implicit solver is slower, and its rest is compared with the static one by ImplicitBody.
+    // The implicit solver is slower, and the tests of ImplicitBody compare its rest shape with the static
+    // one.
     const bool is_compared = stepping == Stepping::springs || is_full_run();
     for (int tick = 0; tick < 4000; ++tick) {
       bar.tick(0.0);

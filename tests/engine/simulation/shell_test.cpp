@@ -70,7 +70,7 @@ double first_touch_m(const Scene& scene, double from_m, double to_m) {
 
 TEST(Shell, IsTouchedOnTheFaceThatIsMet) {
   const Scene scene = clay_bowl();
-  // From below the tool touches the surface, from above the far face, one thickness higher.
+  // From below, the tool touches the surface. From above, it touches the far face, one thickness higher.
   EXPECT_NEAR(first_touch_m(scene, -shell_radius_m - shell_tool_radius_m - 0.003, -0.03),
               -shell_radius_m - shell_tool_radius_m, 5e-5);
   EXPECT_NEAR(first_touch_m(scene, -shell_radius_m + shell_thickness_m + shell_tool_radius_m + 0.003, -0.03),
@@ -221,7 +221,7 @@ TEST(Shell, BearsAnotherBody) {
   }
 }
 
-// The seam of a closed shell bears weight too.
+// The nodes at the seam of a closed shell, which are stored twice, must weigh only once.
 TEST(Shell, RingWeighsOnItsSupportOnce) {
   Scene scene = small_handle();
   Body& body = scene.bodies[0];

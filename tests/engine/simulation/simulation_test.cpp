@@ -232,7 +232,7 @@ struct RandomStroke {
 };
 
 // With random materials, tools and strokes at up to 5 m/s, all values stay finite and all nodes stay near
-// their places.
+// their initial positions.
 TEST(Simulation, NoSettingBlowsItUp) {
   const int trials = random_cases(is_full_run() ? 12 : 5, 100);
   Random random(77);

@@ -95,7 +95,7 @@ TEST(SnapshotStages, FollowTheToolAndItsImage) {
   }
   snapshot.tool.kind = ToolKind::solid;
   snapshot.tool.body = std::make_shared<ToolBody>(ToolBody{SurfaceSolid{finger}, std::nullopt});
-  // The short half axis is 2.5 mm, so that the tool is half a millimetre deep.
+  // The shortest half axis of the tool is 2.5 mm, so that the tool is half a millimetre deep.
   snapshot.tool.proxy.position_m.y() -= 0.006 - 0.002;
   const ContactStages of_surface = finder.find(snapshot);
   EXPECT_EQ(of_surface.surfaces, 2);

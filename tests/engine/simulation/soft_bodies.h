@@ -9,8 +9,8 @@ namespace spoonbill {
 // Returns an elastic material with the stiffness of the test clay.
 Material silicone();
 
-// Returns the penetration of two bodies by the collider, which is independent of the contact constraints.
-// Bodies that enclose each other fail the test.
+// Returns the penetration of two bodies as measured by the collider, which is independent of the contact
+// constraints. Bodies that enclose each other fail the test.
 double depth_between(const Surface& first, const Surface& second);
 
 // Returns the smallest height of a control point.

@@ -16,7 +16,7 @@
 namespace spoonbill {
 namespace {
 
-// Largest penetration of surface and mesh, in lattice cells of the coarser one.
+// Largest allowed penetration of a surface and a mesh, in cells of the coarser of their two lattices.
 constexpr double mesh_depth_limit_cells = 0.02;
 
 SoftTool flesh(int nodes, double grip_m = 0.001) {
@@ -79,8 +79,8 @@ double depth_behind(const SampledSurface& samples, const Vector3& point) {
   return least < 1e-6 ? samples.normals[nearest].dot(samples.points_m[nearest] - point) : 0.0;
 }
 
-// Returns the larger depth of surface and mesh in each other, from samples of the surface and from the
-// corners, side midpoints and centres of the triangles.
+// Returns the larger of two depths: that of the surface in the mesh, from samples of the surface, and that of
+// the mesh in the surface, from the corners, side midpoints and centres of the triangles.
 double depth_between(const Surface& surface, const std::vector<Vector3>& vertices,
                      const std::vector<TriangleCorners>& triangles) {
   const MeshDistance mesh(cleaned({vertices, triangles}));
@@ -116,7 +116,7 @@ double coarser_cell(const SpringLattice& first, const SpringLattice& second) {
   return static_cast<double>(std::max(first.cell_size_m(), second.cell_size_m()));
 }
 
-// Returns a ball that hits a pebble of 40 x 20 x 100 mm off centre.
+// Returns the impact of a mesh on a pebble of 40 x 20 x 100 mm.
 Impact ball_on_pebble(const TriangleMesh& mesh) {
   const Body pebble{"pebble", ellipsoid_tube(12, 12), silicone(), {700, {}}};
   return {make_body_state(pebble, {}, InstructionSet::baseline).value(),
@@ -172,7 +172,7 @@ TEST(SoftMesh, GivesWayAndReturns) {
   ASSERT_TRUE(rest.is_mesh());
   EXPECT_EQ(rest.lattice.x.size(), static_cast<std::size_t>(simulation.lattice(1).mesh().node_count()));
   EXPECT_EQ(rest.material.name, "silicone");
-  // Distance of a vertex from its position on a rigid tool.
+  // Returns the largest distance of a vertex from its position on a rigid tool.
   const auto bent = [&](double hand_m) {
     simulation.write_snapshot(snapshot);
     const MeshSnapshot& now = snapshot.bodies[1].mesh;
@@ -240,7 +240,7 @@ TEST(SoftMesh, IsExchangedHashedAndLeftOutOfUndo) {
   EXPECT_EQ(snapshot.bodies.size(), 1u);
 }
 
-// All instruction sets give the same bits.
+// All instruction sets must give the same bits.
 TEST(SoftMesh, IsTheSameOnEveryInstructionSet) {
   const Scene scene = held_soft_handle(soft_tool(ball(), flesh(300)));
   Simulation plain = simulate(scene), best = simulate(scene, best_instruction_set());

@@ -21,7 +21,7 @@ Tool solid(ToolSolid of, std::optional<SoftTool> soft = std::nullopt) {
   return tool;
 }
 
-// Returns a pebble of 40 x 20 x 100 mm scaled to a fingertip of 10 x 5 x 25 mm, fixed at its upper half.
+// Returns a fingertip of 10 x 5 x 25 mm, scaled down from a pebble of 40 x 20 x 100 mm.
 Surface finger() {
   Surface surface = ellipsoid_tube(12, 12);
   for (std::vector<double>* values : {&surface.net.x, &surface.net.y, &surface.net.z}) {
@@ -153,7 +153,7 @@ TEST(SolidTool, ASoftToolGivesWayAndReturns) {
   simulation.write_snapshot(snapshot);
   ASSERT_EQ(snapshot.bodies.size(), 2u);
   const LatticeSnapshot rest = snapshot.bodies[1].lattice;
-  // Returns the distance of a node from its position on a rigid tool.
+  // Returns the largest distance of a node from its position on a rigid tool.
   const auto bent = [&](double hand_m) {
     simulation.write_snapshot(snapshot);
     const LatticeSnapshot& now = snapshot.bodies[1].lattice;

@@ -92,7 +92,7 @@ TEST(StiffBodies, BendUnderTheHandAsTheStaticSolverSays) {
     }
     EXPECT_TRUE(reaction.touching);
     EXPECT_GT(reaction.force_n.y(), 0.1);
-    // The coupling spring is stretched by the distance of the hand minus the displacement of the body.
+    // The hand is at 6.5 mm. The coupling spring is stretched by the distance from the hand to the tool.
     EXPECT_NEAR(reaction.force_n.y() / (coupling_n_per_m * (reaction.proxy.position_m.y() - 0.0065)), 1.0,
                 0.01);
     // A sphere presses on a few nodes of one slice only, which accounts for 3 %.
@@ -122,7 +122,7 @@ TEST(StiffBodies, KeepTheShapeInWhichTheyAreCast) {
   EXPECT_NEAR(sunk_m(simulation), bent, 1e-7);
 }
 
-// One of the hands has no coupling and moves at 5 m/s.
+// The hand holds the tool without a coupling spring and moves at up to 5 m/s.
 TEST(StiffBodies, NoHandBlowsThemUp) {
   for (const double youngs : {2e6, 2e9, 193e9}) {
     if ((sanitized || !is_full_run()) && youngs != 2e9) continue;

@@ -26,8 +26,8 @@ TEST(Tool, SymmetryMirrorsTheStroke) {
     }
     EXPECT_TRUE(reaction.touching);
     EXPECT_EQ(reaction.mirror_touching, symmetric);
-    // The top is two of the twelve spans beyond the knot of its control point. Points at equal distances from
-    // it are mirror images.
+    // The basis function of the control point at the top starts at u = 0.75 and has its maximum two of the
+    // twelve spans later. Points at equal distances from this maximum are mirror images.
     const double top = 0.75 + 2.0 / 12.0;
     const auto dent = [&](double u) {
       return (evaluate(before, u, 0.03).position_m - evaluate(simulation.surface(), u, 0.03).position_m).y();

@@ -116,8 +116,8 @@ TEST(TrimLoop, RefusesACurveOfMoreChordsThanTheLimit) {
   expect_refused(rough, ErrorCode::too_many);
 }
 
-// Expects `after` to be the same curve run backwards, where each point is moved to the new parameters of the
-// same point of the surface.
+// Expects `after` to be the curve `before` run backwards. `moved` converts the parameters of a surface point
+// to the new parameters of the same point.
 void expect_runs_backwards(const TrimLoop& before, const TrimLoop& after,
                            const std::function<Eigen::Vector2d(const Eigen::Vector2d&)>& moved) {
   const double start = before.knots.domain_start(), end = before.knots.domain_end();

@@ -86,8 +86,8 @@ TEST(TrimmedCollision, ASphereThatFitsPassesThroughAHole) {
   }
 }
 
-// The distance must agree with that of the nearest of many sampled kept points; the surface between samples
-// may be nearer by less than `between_m`.
+// The distance must agree with the distance of the nearest of many sampled kept points. It may be less by up
+// to `between_m`, because the surface between samples may be nearer.
 TEST(TrimmedCollision, AgreesWithDenseSamplingOnBentSheets) {
   const Surface surface = bent_sheet(0.004);
   const NestedGrid nested = make_nested_grid(surface.u, surface.v, 3).value();
@@ -128,8 +128,8 @@ TEST(TrimmedCollision, ASolidMeetsTheRimToo) {
   const Surface surface = bent_sheet();
   const NestedGrid nested = make_nested_grid(surface.u, surface.v, 3).value();
   SurfaceCollider collider(nested, shared_area_of(surface, {hole(surface)}));
-  // The corners of the larger box, half a side 9 mm, are 12.73 mm from the centre and so reach the rim; those
-  // of the smaller one do not.
+  // The corners of the larger box, whose half sides are 9 mm, are 12.73 mm from the centre and so reach the
+  // rim. Those of the smaller box do not.
   const auto box = make_signed_distance(ImplicitShape(BoxShape{{0.009, 0.009, 0.002}}));
   const auto thin = make_signed_distance(ImplicitShape(BoxShape{{0.008, 0.008, 0.002}}));
   const Pose over{{0.05, 0.05, 0.0}, Eigen::Quaterniond::Identity()};

@@ -178,7 +178,8 @@ TEST(TrimmedGrid, CutVerticesLieBetweenTheirCellsCorners) {
       EXPECT_GE(cut.weights[c], -1e-15);
       mean += cut.weights[c] * vertices[cut.corners[c]];
     }
-    // u and v are bilinear in a cell; the bound allows for rounding of numbers up to 2.
+    // u and v are bilinear in a cell. The bound allows for the rounding of coordinates, whose magnitude is at
+    // most 2.
     EXPECT_NEAR((mean - Eigen::Vector2d(cut.u, cut.v)).norm(), 0.0, 1e-14);
   }
 }

@@ -13,8 +13,8 @@ Surface random_of(Random& random) {
   return random_pair(random, 0.0).first;
 }
 
-// An element's samples must have the same bits whether they are evaluated one by one or given, because
-// contact must not depend on how a cell was reached.
+// The samples of an element, which is a pair of knot spans, must have the same bits whether they are
+// evaluated one by one or all at once. Contact must not depend on how a cell was reached.
 TEST(CellSlabs, SamplesHaveTheSameBitsHoweverTheyAreEvaluated) {
   Random random(94);
   for (int trial = 0; trial < 60; ++trial) {

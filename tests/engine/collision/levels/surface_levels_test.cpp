@@ -64,8 +64,9 @@ TEST(SurfaceLevels, BoxesOfElementsHoldThem) {
   }
 }
 
-// Thin triangles in one plane fan out from a point, with another triangle between them. Neither the line
-// between their centres nor their normals separate them.
+// Two quadrilaterals in one plane, each cut from a sector with its tip at the origin. A narrow gap separates
+// the two sectors. Neither the line between the centres of the quadrilaterals nor their normals separate
+// them.
 TEST(PatchDistance, TellsSliversApartThatLieSideBySide) {
   const auto sliver = [](double from, double low_slope, double high_slope) {
     const double to = from + 4.0;

@@ -130,12 +130,13 @@ TEST(MeshDistance, ChangesByNoMoreThanTheWayMoved) {
   }
 }
 
-// The nearest surface point is at the distance along the negative gradient, by the definition of a distance.
+// A point reaches the surface if it moves along the negative gradient by its distance. This follows from the
+// definition of a distance.
 TEST(MeshDistance, TheGradientLeadsToTheSurface) {
   for (const NamedMesh& shape : everything()) {
     SCOPED_TRACE(shape.name);
     const CleanMesh clean = cleaned(shape.mesh);
-    // In a plate, or where parts overlap, the depth is not the distance to the outside.
+    // The depth is not the distance to the outside in a plate, or where parts overlap.
     const bool depth_is_distance =
         clean.report.sheets == 0 && shape.name.find("overlapping") == std::string::npos;
     const MeshDistance distance(clean, 0.04);
@@ -167,8 +168,8 @@ TEST(MeshDistance, AFilledHoleIsAsSolidAsTheRest) {
   Random random(6);
   for (int k = 0; k < random_point_count(500); ++k) {
     const Vector3 at = random_point(random, 1.2);
-    // The hole over one square of the ball is closed by a fan, which differs from the ball by less than its
-    // bulge.
+    // A fan closes the hole over one square of the ball. The fan differs from the ball by less than the ball
+    // bulges over the square.
     ASSERT_NEAR(holed.at(at).distance_m, whole.at(at).distance_m, 0.03);
   }
 }
@@ -177,7 +178,7 @@ TEST(MeshDistance, WhatOverlapsIsOneBody) {
   const MeshDistance balls(
       cleaned(joined(ball_mesh(40, 80, 0.7, {0.4, 0, 0}), ball_mesh(40, 80, 0.7, {-0.4, 0, 0}))));
   EXPECT_NEAR(balls.at({0.0, 0.0, 0.0}).distance_m, -0.3, 2e-3);
-  // This point is near the surface of the other ball, but inside this one.
+  // The point is on the surface of one ball, up to the chords, and deep inside the other ball.
   EXPECT_NEAR(balls.at({-0.3, 0.0, 0.0}).distance_m, -0.6, 2e-3);
   const MeshDistance spindle(cleaned(torus_mesh(60, 60, 0.4, 0.7)));
   // The surface winds around this point once in each orientation, so the point is outside.
@@ -219,7 +220,7 @@ TEST(MeshDistance, KnowsWhatIsConvex) {
   for (int k = 0; k < random_point_count(1000); ++k) {
     const Vector3 a = point_about(random, ball, k), b = random_point(random, 1.5);
     const DistanceSample sample = distance.at(a);
-    // The ball's corners are in their neighbours' planes up to rounding.
+    // Some adjacent triangles of the ball are in one plane only up to rounding.
     ASSERT_LE(sample.distance_m + sample.gradient.dot(b - a), distance.at(b).distance_m + 1e-12);
   }
 }

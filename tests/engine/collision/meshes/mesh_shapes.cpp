@@ -112,7 +112,7 @@ TriangleMesh moebius_strip(int along) {
     }
   }
   for (int i = 0; i + 1 < along; ++i) add_square(mesh, 2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1);
-  // The last section joins the first turned by half a turn.
+  // The last section is joined to the first one with half a twist.
   add_square(mesh, 2 * along - 2, 1, 0, 2 * along - 1);
   return mesh;
 }

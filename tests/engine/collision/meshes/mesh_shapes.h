@@ -9,8 +9,8 @@ namespace spoonbill {
 TriangleMesh box_of_triangles(const Vector3& low, const Vector3& high);
 // Returns a mesh of rings of latitude, with poles on the y axis and corners on the sphere.
 TriangleMesh ball_mesh(int rings, int around, double radius_m, const Vector3& centre_m = Vector3::Zero());
-// Returns a torus about the y axis. If the tube is thicker than the torus' radius, the torus intersects
-// itself.
+// Returns a torus about the y axis. It intersects itself if `tube_m` exceeds `displacement_m`, the radius of
+// the ring.
 TriangleMesh torus_mesh(int along, int around, double displacement_m, double tube_m);
 // Returns side x side squares over the unit square in x and y, with z = height x y.
 TriangleMesh sheet_mesh(int side, double height_m);
@@ -30,12 +30,12 @@ CleanMesh cleaned(const TriangleMesh& mesh);
 // Returns the unsigned distance, found by testing all triangles: the plane of each, if the foot of the
 // perpendicular is inside the triangle, and its three sides.
 double brute_distance(const TriangleMesh& mesh, const Vector3& point);
-// Casts three rays in random directions: the point is inside if most rays leave the mesh more often than they
+// Casts three rays in random directions. Returns true if most of the rays leave the mesh more often than they
 // enter it.
 bool brute_inside(const TriangleMesh& mesh, const Vector3& point, Random& random);
 
 Vector3 random_point(Random& random, double extent_m);
-// Returns `few`, or fifty times as many if all cases are run.
+// Returns `few`, under a sanitizer a quarter of it, or in a long run fifty times as many.
 int random_point_count(int few);
 
 }  // namespace spoonbill

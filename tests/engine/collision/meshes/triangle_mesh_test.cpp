@@ -119,7 +119,7 @@ TEST(TriangleMesh, SmallHolesAreFilledAndLargeOnesMakeASheet) {
   EXPECT_EQ(holes.report.open_edges, 8u);
   EXPECT_EQ(holes.report.closed_parts, 1u);
   EXPECT_NEAR(volume(holes), volume(whole), 1e-3 * volume(whole));
-  // Each of the two holes lost 2 triangles and is filled by 4.
+  // Each of the two holes was made by removing 2 triangles and is filled by 4.
   EXPECT_EQ(holes.mesh.triangles.size(), ball.triangles.size() + 4u);
 
   const CleanMesh half = cleaned(without(ball, 0, 760));
@@ -141,7 +141,7 @@ TEST(TriangleMesh, AFinOnASolidIsDropped) {
   EXPECT_EQ(clean.mesh.vertices_m.size(), 8u);
 }
 
-// The top of a box is divided differently from its sides: the crack between them has no area and needs no
+// The top of a box is divided differently from its sides. The crack between them has no area and needs no
 // triangle.
 TEST(TriangleMesh, ACrackWithoutAreaLeavesABoxClosed) {
   TriangleMesh mesh = box_of_triangles({0, 0, 0}, {1, 1, 1});

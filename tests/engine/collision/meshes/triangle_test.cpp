@@ -16,7 +16,8 @@ struct TriangleCase {
   Triangle triangle;
 };
 
-// Tests all orders of the corners and both orders of the triangles.
+// Returns triangles_meet(), and expects the same result for all orders of the corners and both orders of the
+// triangles.
 bool meets(const Triangle& a, const Triangle& b, double slack = 0.0) {
   const bool answer = triangles_meet(a, b, slack);
   for (int turn = 0; turn < 3; ++turn) {

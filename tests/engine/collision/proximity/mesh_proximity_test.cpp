@@ -89,7 +89,7 @@ struct EllipsoidScene {
   NestedGrid nested = make_nested_grid(surface.u, surface.v, 1).value();
 };
 
-// Returns a mesh at a random point of the ellipsoid, slightly inside or outside of it.
+// Returns a mesh whose centre is 2 to 12 mm outside a random point of the ellipsoid.
 TriangleMesh placed_mesh(Random& random, int trial) {
   const TriangleMesh shapes[] = {box_of_triangles({-0.012, -0.007, -0.009}, {0.012, 0.007, 0.009}),
                                  ball_mesh(10, 14, 0.01), torus_mesh(18, 8, 0.012, 0.004)};
@@ -158,13 +158,14 @@ TEST(MeshProximity, FindsEveryVertexThatIsNear) {
       const Vector3 normal = unit_normal(scene.surface, u, v);
       const double gap =
           normal.dot(point - evaluate(scene.surface, u, v).position_m) < 0.0 ? -distance : distance;
-      // A vertex may or may not be reported if its depth is near the margin.
+      // A vertex may or may not be reported if its gap is near the margin, or if it is deeper than the
+      // margin.
       if (std::abs(gap - margin) < 1e-6 || gap < 1e-6 - margin) continue;
       ASSERT_EQ(told[vertex] != nullptr, gap < margin) << gap;
       if (!told[vertex]) continue;
       ++found;
-      // The distance between the brute-force point and the foot is of the order of the square root of the
-      // brute-force error in distance.
+      // The brute-force point differs from the nearest point by about the square root of the brute-force
+      // error in distance. The normals are therefore compared less strictly.
       EXPECT_NEAR(told[vertex]->gap_m, gap, 1e-9);
       EXPECT_LT((told[vertex]->normal - normal).norm(), 1e-3);
     }
@@ -185,8 +186,9 @@ TEST(MeshProximity, TellsTheDeepestOfAPatch) {
   double least = 1.0;
   for (const VertexNearSurface& near : all.mesh_vertices()) least = std::min(least, near.gap_m);
   EXPECT_LT(least, -2e-4);
-  // The vertex is chosen by its distance from the tangent plane at the foot of another vertex, here up to
-  // 6 mm away on a surface with a radius of about 20 mm. It is therefore only nearly the deepest.
+  // The reported vertex is chosen by its depth below the tangent plane at the nearest point of another
+  // vertex. The two vertices are here up to 6 mm apart on a surface with a radius of about 20 mm, so the
+  // reported vertex is only nearly the deepest.
   EXPECT_NEAR(one.mesh_vertices()[0].gap_m, least, 3e-4);
 }
 

@@ -1,5 +1,5 @@
-// Tests that contact searches stay within their budgets where surfaces are crumpled or fit snugly, and report
-// it. Work is counted, never timed.
+// Tests that contact searches stay within their budgets of evaluations where surfaces are crumpled or fit
+// snugly, and that they report a budget that is used up. Work is counted, never timed.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -19,7 +19,8 @@ namespace spoonbill {
 namespace {
 
 constexpr double crumpled_m = 0.005;
-// When a budget is used up, each remaining point costs one more evaluation, and so does the step in progress.
+// After a budget is used up, each remaining point costs one more evaluation, and so does the step that was in
+// progress.
 constexpr int most_evaluations = proximity_evaluation_limit + 2 * static_cast<int>(near_point_limit);
 
 // Returns a tube whose control points are at random in a small box.
@@ -63,8 +64,8 @@ TEST(SearchBudget, OfACrumpledSurfaceAgainstItselfIsKept) {
   EXPECT_LE(proximity.points().size(), near_point_limit);
 }
 
-// The mesh is outside the body but within the boxes of its coarse elements. Every vertex is therefore
-// compared with the surface, and none is near enough to count.
+// The mesh is outside the body but within the bounding boxes of the body's coarse elements. Every vertex is
+// therefore compared with the surface, and none is near enough to count.
 TEST(SearchBudget, OfAMeshAroundASurfaceIsKept) {
   const Surface surface = ellipsoid_tube(8, 8);
   const NestedGrid nested = grid_of(surface);
@@ -76,14 +77,14 @@ TEST(SearchBudget, OfAMeshAroundASurfaceIsKept) {
   proximity.find(surface, DeformingMesh(around), 0.0);
   EXPECT_TRUE(proximity.overflow());
   EXPECT_GE(proximity.evaluations(), proximity_evaluation_limit) << "the scene is to use up the budget";
-  // When the budget is used up, each remaining vertex costs at most two evaluations: for itself, and for the
-  // deepest of its patch.
+  // After the budget is used up, each remaining vertex costs at most two evaluations: one for itself, and one
+  // for the deepest vertex of its patch.
   EXPECT_LE(proximity.evaluations(), proximity_evaluation_limit + 2 * static_cast<int>(patches.size()));
   EXPECT_LE(proximity.surface_samples().size(), near_point_limit);
   EXPECT_LE(proximity.mesh_vertices().size(), near_point_limit);
 }
 
-// Everything below a plane; whether it is convex is unknown to the search.
+// A half-space below a plane. It does not state that it is convex.
 class UnknownFloor : public SignedDistance {
  public:
   DistanceSample at(const Vector3& point_m) const override { return {point_m.y() + 0.001, Vector3::UnitY()}; }
@@ -91,7 +92,7 @@ class UnknownFloor : public SignedDistance {
   Box bounds() const override { return {Vector3::Constant(-1.0), Vector3::Constant(1.0)}; }
 };
 
-// All points of the sheet are equally near.
+// All points of the sheet are equally near to the tool.
 TEST(SearchBudget, OfAToolAlongASheetIsKept) {
   const Surface sheet = quadric_sheet(0.05, 0.0, 0.0, 12);
   const NestedGrid nested = grid_of(sheet);

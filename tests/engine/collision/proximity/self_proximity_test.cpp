@@ -1,4 +1,5 @@
-// Tests that a ring is as near to itself across its seams as elsewhere.
+// Tests that the search for points where a torus is near to itself works across its seams as it does
+// elsewhere.
 #include "engine/collision/proximity/self_proximity.h"
 
 #include <gtest/gtest.h>
@@ -65,7 +66,7 @@ TEST(RestPairs, OfARingAreNeighboursOverTheSeamAsElsewhere) {
   EXPECT_LT(meet, pairs_seen);
 }
 
-// Returns the gaps of the samples in contact, in order.
+// Returns the gaps of the samples in contact, sorted.
 std::vector<double> gaps_m(int first, double squeeze) {
   const Surface rest = torus(first), now = torus(first, squeeze);
   const NestedGrid nested = nested_grid_of(rest);
@@ -89,7 +90,7 @@ TEST(SelfProximity, OfARingAtRestIsNone) {
   EXPECT_TRUE(proximity.is_clear());
 }
 
-// The walls of the ring's hole are pressed together where the seam of v is, and where it is not.
+// The walls of the ring's hole are pressed together at the seam of v, and away from this seam.
 TEST(SelfProximity, OfARingPressedTogetherIsAlikeOverTheSeam) {
   for (const double gap_m : {0.4 * proximity_margin_m, -0.4 * proximity_margin_m}) {
     const double squeeze = (torus_tube_m + 0.5 * gap_m) / torus_ring_m;

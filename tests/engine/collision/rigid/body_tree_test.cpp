@@ -58,7 +58,7 @@ TEST(BodyTree, TheNearestAreFoundAmongFewPairs) {
     return boxes[i].gap(others[j]);
   });
   EXPECT_EQ(found, least);
-  EXPECT_LT(looks, 400);  // far fewer than the 40,000 triangles
+  EXPECT_LT(looks, 400);  // far fewer than the 200 x 200 pairs of boxes
   EXPECT_EQ(BodyTree({}).find_nearest(BodyTree(others), [](std::size_t, std::size_t) { return 0.0; }),
             std::numeric_limits<double>::infinity());
 }

@@ -71,7 +71,7 @@ double grown_of(const CleanMesh& mesh, std::size_t t) {
   return 0.0;
 }
 
-// Returns the distance of two meshes from all pairs of triangles. It is negative where plates overlap.
+// Returns the distance of two meshes from all pairs of triangles. It is negative if plates overlap.
 double brute_gap(const CleanMesh& a, const CleanMesh& b) {
   double least = 1e300;
   for (std::size_t s = 0; s < a.mesh.triangles.size(); ++s) {
@@ -164,13 +164,13 @@ void expect_sound(const MeshPairResult& result, const CleanMesh& first, const Cl
     EXPECT_LE(contact.depth_m, last);
     last = contact.depth_m;
     EXPECT_NEAR(contact.normal.norm(), 1.0, 1e-9);
-    // The two points are apart along the normal by at most the depth; the depth is larger if one mesh is
-    // completely inside the other.
+    // The two points of a contact are apart along its normal by at most the depth. The depth is larger than
+    // this distance if one mesh is completely inside the other.
     const Vector3 apart = contact.second_m - contact.first_m;
     EXPECT_LT(apart.cross(contact.normal).norm(), 2e-6);
     EXPECT_LT(apart.dot(contact.normal), contact.depth_m + 2e-6);
-    // At least one of the two points is on the surface of its own mesh, or within half the thickness of a
-    // plate of it.
+    // At least one of the two points is on the surface of its own mesh, or within half a plate's thickness of
+    // this surface.
     EXPECT_LT(
         std::min(brute_distance(first.mesh, contact.first_m), brute_distance(second.mesh, contact.second_m)),
         half_plate_m + 1e-9);
@@ -241,7 +241,7 @@ TEST(MeshPair, CubesAreAsDeepAsTheirFacesOverlap) {
   EXPECT_NEAR(collide_meshes(cube, cube, at(1.25, 0.1, 0.2)).distance_m, 0.25, 1e-12);
   EXPECT_NEAR(collide_meshes(cube, cube, at(1.3, 1.4, 0.0)).distance_m, 0.5, 1e-12);
 
-  // The deepest points of the faces are on their diagonals.
+  // Each face of a cube consists of two triangles, and its deepest points are on the diagonal between them.
   const MeshPairResult deep = collide_meshes(cube, cube, at(0.9, 0.05, 0.05));
   ASSERT_EQ(deep.contacts.size(), 1U);
   EXPECT_NEAR(deep.contacts[0].depth_m, 0.1, 1e-9);
@@ -257,7 +257,8 @@ TEST(MeshPair, CubesAreAsDeepAsTheirFacesOverlap) {
   edge.orientation = lying;
   const MeshPairResult crossing = collide_meshes(one, cube, edge);
   ASSERT_EQ(crossing.contacts.size(), 1U);
-  // An edge 0.02 behind the other is 0.02 cos 45 degrees behind either of the other's faces.
+  // An edge that is 0.02 behind another edge is 0.02 cos 45 degrees behind each of the two faces that meet
+  // there.
   EXPECT_NEAR(crossing.contacts[0].depth_m, 0.02 * std::sqrt(0.5), 1e-9);
 }
 

@@ -15,8 +15,8 @@ constexpr double growth_tolerance = 1e-6, rounding = 1e-11;
 constexpr double difference_step = 1e-6;  // relative to the box's size
 constexpr double difference_tolerance = 1e-3, most_misfits = 0.02;
 
-// Returns point k of a Halton sequence (1960) in the unit cube: its points are evenly distributed, and the
-// same on every machine.
+// Returns point k of a Halton sequence (1960) in the unit cube. The points of the sequence are evenly
+// distributed, and the same on every machine.
 Vector3 spread(int k) {
   Vector3 result;
   const int bases[3] = {2, 3, 5};
@@ -107,7 +107,7 @@ Status check_signed_distance(const SignedDistance& solid, const Box& where) {
     const Vector3 here = point(k), other = point(sample_count + 1 - k);
     const DistanceSample sample = solid.at(here);
     if (Status status = check_alone(solid, here, sample); !status) return status;
-    // Pairs of samples are far, near and very near.
+    // The samples of a pair are far from, near to or very near to each other.
     for (const double share : {1.0, 0.05, 0.001}) {
       const Vector3 there = here + share * (other - here);
       if (Status status = check_both(solid, here, sample, there, size); !status) return status;

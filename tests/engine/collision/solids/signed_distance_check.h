@@ -6,14 +6,16 @@
 
 namespace spoonbill {
 
-// Samples the box `where` in the solid's own frame; it should enclose the solid. The samples are the same
-// each time. Returns an Error for the first condition that fails:
+// Samples the box `where`, given in the solid's own frame, which should enclose the solid. The samples are
+// the same in each call. Returns an Error for the first condition that fails:
 //   - the distance and gradient are finite, and the gradient has unit length;
 //   - the distance changes by no more than the point moves;
 //   - inside points are within the bounds;
-//   - a solid that claims to be convex has no tangent above its distance, or satisfies its stated concavity;
-//   - the gradient fits differences of the distance in all but a fiftieth of the samples (there are kinks).
-// Not for the tick.
+//   - no tangent is above the distance, if the solid claims to be convex; otherwise, no tangent is above it
+//     by more than the solid's concavity() permits;
+//   - the gradient agrees with differences of the distance, except at a fiftieth of the samples, which may
+//     be at kinks.
+// The check is too slow for a tick.
 Status check_signed_distance(const SignedDistance& solid, const Box& where);
 
 }  // namespace spoonbill

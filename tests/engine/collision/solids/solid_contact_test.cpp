@@ -1,4 +1,4 @@
-// Contact of solids with surfaces that have a closed form.
+// Tests contacts of solids with surfaces against closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -119,7 +119,7 @@ TEST(SolidContact, BoxOnAPlaneByFaceEdgeAndCorner) {
   box(Quaternion::Identity(), 0.03, depth);
   box(about(Vector3::UnitY(), 0.3), 0.03, depth);
   for (const double tilt : {0.25 * std::numbers::pi, 0.5}) {
-    // The deepest point, below the edge, is equally far from both faces.
+    // The deepest point, below the edge, is equally far from the two faces that meet at the edge.
     const double lowest = half.y() * std::cos(tilt) + half.x() * std::sin(tilt);
     const double width = depth * (1.0 / std::tan(tilt) + std::tan(tilt));
     const double expected = width * std::sin(tilt) * std::cos(tilt) / (std::sin(tilt) + std::cos(tilt));

@@ -77,8 +77,8 @@ TEST(SolidSearch, AgreesWithDenseSampling) {
     const Pose pose = pose_near_contact(random, surface, solid->bounds());
     const ToolShape tool = ToolShape::solid(*solid, pose);
     const CollisionResult result = collider.collide(surface, tool, 0.0, false);
-    // The distance to a superquadric is found from its support function, because its own distance takes a
-    // hundred times as long as that of other shapes and may overstate the depth.
+    // The distance function of a superquadric takes a hundred times as long as those of other shapes and may
+    // overstate the depth. The distance is therefore found from the support function.
     const Vector3 at = dense_nearest(surface, tool, kind == 6 ? 30 : 120);
     double reference = tool.distance(at);
     if (kind == 6 && reference < std::min(-result.nearest.depth_m, 0.0) - 1e-6) {
@@ -99,7 +99,7 @@ TEST(SolidSearch, AgreesWithDenseSampling) {
   EXPECT_LT(touching, trials);
 }
 
-// A signed distance that guarantees only that it changes by no more than the point moves.
+// A signed distance that guarantees only one thing: it changes by no more than the point moves.
 class BareTorus final : public SignedDistance {
  public:
   DistanceSample at(const Vector3& point_m) const override { return torus_->at(point_m); }
@@ -171,8 +171,8 @@ TEST(SolidSearch, AToolFarLargerThanTheModelIsFound) {
           .found);
 }
 
-// The tool is completely inside and does not touch the surface. The result is the displacement through the
-// nearest wall, along its normal.
+// The tool is completely inside the tube and does not touch its surface. The result is the displacement
+// through the nearest wall, along the wall's normal.
 TEST(SolidSearch, AToolWhollyInsideIsFoundWithItsWayOut) {
   const Surface tube = round_tube(0.02, 0.06);
   const ImplicitShape shapes[] = {
@@ -187,7 +187,8 @@ TEST(SolidSearch, AToolWhollyInsideIsFoundWithItsWayOut) {
       const CollisionResult result = search(tube, shape, pose, true);
       ASSERT_TRUE(result.found) << shape.index();
       const SurfaceContact& wall = result.nearest;
-      // The support function is the distance by which the solid reaches behind the wall's plane.
+      // The depth is the distance by which the solid reaches behind the wall's tangent plane. It is computed
+      // with the support function of the solid.
       const double behind =
           wall.normal.dot(wall.point_m - pose.position_m) + support(shape, turn.conjugate() * -wall.normal);
       EXPECT_NEAR(wall.depth_m, behind, 2e-7) << shape.index();
@@ -212,7 +213,7 @@ TEST(SolidSearch, TouchingAnEdgeAPoleOrByATangentIsFound) {
   // The tool is beyond a pole, where all values of u are one point.
   for (const bool turned : {false, true}) {
     const Surface tube = ellipsoid_tube(12, 12), body = turned ? transposed(tube) : tube;
-    // The surface with exchanged directions has normals that point inwards.
+    // The transposed surface has inward normals.
     const CollisionResult pole =
         search(body, BoxShape{Vector3::Constant(0.01)}, {{0.0, 0.0, 0.05 + 0.0095}, none}, !turned);
     ASSERT_TRUE(pole.found);

@@ -27,7 +27,8 @@ Surface spike() {
   return make_surface(knots, knots, net).value();
 }
 
-// One cell covers the whole sheet and ignores the inner breakpoints, so the bound is taken over all elements.
+// The sphere covers the corners of the whole sheet, as if the sheet were one cell. Its bound is therefore the
+// largest one of all elements (pairs of knot spans).
 TEST(SurfaceBounds, ASpikeEscapesTheSphereOfItsCornersButNotTheBoundedOne) {
   const Surface surface = spike();
   const Vector3 peak = evaluate(surface, 0.5, 0.5).position_m;
@@ -104,8 +105,8 @@ double dense_distance(const Surface& surface, const ToolShape& tool) {
   return best;
 }
 
-// Random surfaces of every kind against spheres, points and planes near them: the distance is never worse
-// than by dense sampling, and the point found is on the surface.
+// Compares random surfaces of every kind with spheres, points and planes near them. The distance is never
+// larger than by dense sampling, and the point found is on the surface.
 TEST(SurfaceCollider, AgreesWithDenseSampling) {
   const int trials = random_cases(150, 4000);
   Random random(5);
@@ -121,7 +122,8 @@ TEST(SurfaceCollider, AgreesWithDenseSampling) {
                                             : ToolShape::sphere(at, 0.0);
     const double reference = dense_distance(surface, tool);
     const CollisionResult result = collider.collide(surface, tool, 0.0, false);
-    // The collider guarantees 2e-5 m; if it finds nothing, it guarantees only that no depth exceeds 1e-6 m.
+    // The collider guarantees the distance to 2e-5 m. If it finds nothing, it guarantees only that no depth
+    // exceeds 1e-6 m.
     if (result.found || reference < -1e-6) {
       ASSERT_TRUE(result.found) << trial << " distance " << reference;
       EXPECT_LE(-result.nearest.depth_m, reference + 2e-5) << trial;

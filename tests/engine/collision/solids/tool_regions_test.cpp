@@ -31,7 +31,7 @@ struct Asked {
 
 const Quaternion along_x(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3::UnitZ()));
 
-// Returns two crests and a trough: y = 0.01 cos of x, approximated by control points.
+// Returns a sheet with three crests: y = 0.01 cos(2 pi x / 0.08), approximated by control points.
 Surface waves() {
   Surface sheet = quadric_sheet(0.1, 0.0, 0.0, 24);
   for (std::size_t k = 0; k < sheet.net.size(); ++k) {
@@ -129,7 +129,7 @@ TEST(ToolRegions, AreNoneWhereNothingTouches) {
   EXPECT_TRUE(asked.regions(sheet, ToolShape::sphere({0.0, 0.1, 0.0}, 0.05)).empty());
 }
 
-// A sphere gives the same regions as a sphere tool and as a solid.
+// A sphere gives the same regions as ToolShape::sphere() and as a general solid.
 TEST(ToolRegions, OfASphereAndOfItsSolidAreAlike) {
   const Surface sheet = waves();
   Asked asked(sheet);

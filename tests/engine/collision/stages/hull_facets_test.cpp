@@ -96,7 +96,8 @@ TEST(HullFacets, OfALatticeInACubeAreTheCube) {
   EXPECT_NEAR(length, 12.0, 1e-12) << "no edge within a side";
 }
 
-// A box has a roof whose faces meet at the given angle. The ridge counts as an edge from half a degree on.
+// A box has a roof of two faces, whose normals differ by `bend_deg`. The ridge counts as an edge from half a
+// degree on.
 TEST(HullFacets, HaveEdgesWhereTheyBend) {
   for (const auto& [bend_deg, edges] : {std::pair{0.4, 12u}, {0.6, 13u}}) {
     const double height = 0.5 * std::tan(0.5 * bend_deg * std::numbers::pi / 180.0);

@@ -1,4 +1,5 @@
-// Tests the stages of two round tubes that cross at a right angle; their common curve has a closed form.
+// Tests the contact stages of two round tubes that cross at a right angle. Their common curve has a closed
+// form.
 #include "engine/collision/stages/pair_stages.h"
 
 #include <gtest/gtest.h>
@@ -95,7 +96,8 @@ TEST_F(CrossingTubes, RefineEachKeptCellInFour) {
   }
 }
 
-// Cells far from the curve are dropped: each remaining cell is no farther from the curve than its own size.
+// Cells far from the curve are dropped: each triangle that remains is nearer to the curve than three times
+// its longest side, up to the margin.
 TEST_F(CrossingTubes, DropWhatIsFarFromTheCurve) {
   for (const StageTriangle& triangle : stages_.triangles) {
     double nearest = 1e30, longest = 0.0;

@@ -1,4 +1,4 @@
-// Compares the stages with dense samples of the surface.
+// Compares the contact stages of a tool and a surface with dense samples of the surface.
 #include "engine/collision/stages/tool_stages.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ struct StagesCase {
   ContactStages stages;
 };
 
-// Returns a sphere or a box that touches the surface or comes within the margin.
+// Returns a case with a sphere or a box that touches the surface or comes within the margin.
 StagesCase touching_case(Random& random) {
   const Surface surface = random_surface(random);
   StagesCase made{
@@ -160,8 +160,8 @@ TEST_F(ToolStagesOfRandomSurfaces, ContactsLieInTrianglesAndKeptSpheresOfEachLev
   });
 }
 
-// A cell with a point in the tool has a triangle. A triangle's distance from the tool is at most that of its
-// cell's surface plus the size of the smallest part into which it was divided.
+// A cell with a point in the tool has a triangle. A triangle is at most as far from the tool as the surface
+// in its cell, plus the size of the smallest part into which the triangle was divided.
 TEST_F(ToolStagesOfRandomSurfaces, TrianglesAreThoseThatMeetTheTool) {
   for_cases([](const StagesCase& made) {
     const auto& triangles = made.stages.triangles;
@@ -192,8 +192,8 @@ TEST_F(ToolStagesOfRandomSurfaces, TrianglesAreThoseThatMeetTheTool) {
 }
 
 TEST(ToolStages, OfATrianglePairFarFromItsBilinearPatchHaveItsSlack) {
-  // The surface is x y over the unit square: its centre is a quarter below the diagonal that joins the high
-  // corners.
+  // The surface is z = x y over the unit square. Its centre is a quarter below the diagonal from the corner
+  // at z = 0 to the corner at z = 1.
   const KnotVector knots = KnotVector::clamped_uniform(1, 2).value();
   ControlNet net(2, 2);
   for (int k = 0; k < 4; ++k) net.set_point(k / 2, k % 2, {1.0 * (k / 2), 1.0 * (k % 2), k == 3 ? 1.0 : 0.0});

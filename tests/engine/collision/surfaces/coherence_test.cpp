@@ -13,15 +13,15 @@
 namespace spoonbill {
 namespace {
 
-// Tolerance in metres that both colliders guarantee.
+// Tolerance that the collider guarantees, in metres.
 constexpr double deepest_m = 2e-5;
 
 Vector3 random_point(Random& random, double low, double high) {
   return {random.uniform(low, high), random.uniform(low, high), random.uniform(low, high)};
 }
 
-// The sphere moves a little from query to query, and to a random position every tenth time; the surface
-// yields.
+// The sphere moves a little from query to query, and to a random position at every tenth query. The surface
+// changes a little at every third.
 TEST(Coherence, ASphereOnItsWayIsFoundAsByAColliderThatKnowsNothing) {
   Random random(301);
   int found = 0;

@@ -36,7 +36,7 @@ TEST(ConvexHulls, WithACommonPointAreNotApart) {
   }
 }
 
-// One net is moved until a plane across the direction separates the two.
+// One net is moved until a plane perpendicular to `direction` separates the two nets.
 TEST(ConvexHulls, WithAPlaneBetweenAreApart) {
   Random random(42);
   for (int repeat = 0; repeat < 5000; ++repeat) {

@@ -1,4 +1,4 @@
-// An independent, slow test for a surface that intersects itself: the triangles between dense samples.
+// An independent, slow test of whether a surface intersects itself, by triangles between dense samples.
 #pragma once
 
 #include "engine/collision/levels/surface_levels.h"

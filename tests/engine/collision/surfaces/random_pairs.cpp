@@ -28,7 +28,8 @@ void change_points(Surface& surface, const Change& change) {
   }
 }
 
-// Folds half of the sheet over the other half, with a gap of a twentieth.
+// Folds the half of the sheet with positive x over the other half. The heights of the folded half are scaled
+// by -0.2 and raised by 0.05.
 Vector3 folded(const Vector3& point) {
   return point.x() < 0.0 ? point : Vector3(-point.x(), 0.05 - 0.2 * point.y(), point.z());
 }

@@ -9,11 +9,11 @@ namespace spoonbill {
 // points up. v runs along x and u along z, both from 0 to 1.
 Surface quadric_sheet(double half_m, double bend_x, double bend_z, int controls);
 
-// A tube about x from -half_length_m to half_length_m, round to 1e-9 of its radius; u goes around it, and
-// du x dv points outwards.
+// Returns a tube about x from -half_length_m to half_length_m, round to 1e-9 of its radius. u goes around it,
+// and du x dv points outwards.
 Surface round_tube(double radius_m, double half_length_m);
 
-// A torus about y, round to 1e-8 of its tube; du x dv points outwards.
+// Returns a torus about y, round to 1e-8 of the tube's radius; du x dv points outwards.
 Surface round_torus(double ring_radius_m, double tube_radius_m);
 
 }  // namespace spoonbill

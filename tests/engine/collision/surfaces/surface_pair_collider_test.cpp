@@ -55,9 +55,9 @@ Surface box(const Vector3& half, const Vector3& centre) {
   return make_surface(around, along, net).value();
 }
 
-// The tolerance of Newton's method in double precision, on surfaces of 1 m.
+// Tolerance of results of Newton's method in double precision, on surfaces of 1 m.
 constexpr double exact_m = 1e-9;
-// Newton's method ends at steps below 1e-15 m. Normals are accurate to about the square root of this number.
+// Tolerance of normals: about the square root of 1e-15 m, the step at which Newton's method ends.
 constexpr double exact_normal = 1e-7;
 
 TEST(SurfacePair, AParaboloidReachesThroughAPlaneByItsVertex) {
@@ -231,7 +231,7 @@ TEST(SurfacePair, GivenSamplesAreNotEvaluatedAndTellTheSame) {
   }
 }
 
-// All cells of the first surfaces are neighbours: they are one region, whatever level the capacity allows.
+// Every cell is in contact, so all cells together are one region, whatever level the capacity allows.
 TEST(SurfacePair, CoincidentSheetsAreOneRegionAndNothingOverflows) {
   const KnotVector knots = KnotVector::clamped_uniform(3, 40).value();
   ControlNet net(40, 40);
@@ -278,7 +278,8 @@ TEST(SurfacePair, NoCommonPointIsMissed) {
   for (const auto& [kind, count] : missed) ADD_FAILURE() << count << " missed, " << kind;
 }
 
-// The distance is compared with balls around dense samples, which use no hulls, levels or triangles.
+// Compares the distance with bounds from balls around dense samples, which are found without hulls, levels or
+// triangles.
 TEST(SurfacePair, AgreesWithDenseSamplesWhereTheyAreApart) {
   Random random(78);
   const int count = random_cases(50, 300);

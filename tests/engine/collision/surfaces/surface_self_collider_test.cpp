@@ -31,8 +31,8 @@ SelfAnswer collide_with_itself(const Surface& surface, bool closed = false, int 
   return {result, collider.contacts()};
 }
 
-// Returns the surface of a curve extruded along y from 0 to 1. `curve` are its control points in the x-z
-// plane.
+// Returns the surface of a curve extruded along y from 0 to 1. `curve` contains the control points of the
+// curve, which is in the x-z plane.
 Surface drawn_out(const KnotVector& knots, const std::vector<Vector3>& curve) {
   const KnotVector along = KnotVector::clamped_uniform(1, 6).value();
   ControlNet net(knots.control_point_count(), 6);
@@ -72,8 +72,9 @@ Surface pressed_tube(double gap) {
   return drawn_out(KnotVector::periodic_uniform(2, static_cast<int>(curve.size())).value(), curve);
 }
 
-// Returns a surface along a Lissajous curve 1:2, which crosses itself at its centre by symmetry.
 constexpr int eight_points = 24;
+
+// Returns a surface extruded from a Lissajous curve 1:2, which crosses itself at its centre by symmetry.
 Surface figure_eight() {
   std::vector<Vector3> curve;
   for (int k = 0; k < eight_points; ++k) {
@@ -193,8 +194,8 @@ TEST(SurfaceSelf, AllocatesNothing) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-// The result is compared with intersecting triangles between dense samples, which use no cones, hulls or
-// levels.
+// Compares the result with intersections of triangles between dense samples, which are found without cones,
+// hulls or levels.
 TEST(SurfaceSelf, NoCrossingOfDenseTrianglesIsMissed) {
   constexpr int levels = 2;
   Random random(81);

@@ -254,7 +254,8 @@ TEST_F(CadReader, OtherFilesThatAFileNamesAreNotOpened) {
   EXPECT_NE(found.error().message.find("names other files"), std::string::npos) << found.error().message;
 }
 
-// OpenCASCADE names an instance without a name by a number. The reader uses the name of the part instead.
+// OpenCASCADE gives an instance without a name a number as its name. The reader uses the name of the part
+// instead.
 TEST_F(CadReader, AUseWithoutANameHasItsPartsName) {
   const auto file = folder_.path() / "trolley.step";
   write_trolley(file);

@@ -1,5 +1,5 @@
-// Tests faces with edges that are slightly outside the surface's domain, or that only have control points
-// outside it.
+// Tests faces with edges that are slightly outside the surface's domain, and with edges of which only control
+// points are outside it.
 #include <gtest/gtest.h>
 
 #include <BRepBuilderAPI_MakeEdge.hxx>

@@ -63,7 +63,7 @@ struct Knots {
   TColStd_Array1OfInteger multiplicities;
 };
 
-// Returns clamped, even knots for this number of poles; the central knot has the given multiplicity.
+// Returns clamped, evenly spaced knots for this number of poles. Each inner knot is single.
 Knots knots_for(int poles, int degree) {
   const int inner = poles - degree - 1;
   Knots knots{TColStd_Array1OfReal(1, inner + 2), TColStd_Array1OfInteger(1, inner + 2)};

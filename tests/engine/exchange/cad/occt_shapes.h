@@ -21,8 +21,8 @@ struct NamedShape {
 
 // Returns solids: primitives and parts of them, sweeps, lofts, and solids with fillets, cuts and shells.
 std::vector<NamedShape> solid_shapes();
-// Returns every second of the shapes, from the first or the second one, or all of them in a full run. Two
-// tests that each try the shapes in another format then try all of them together.
+// Returns every second shape, from the first or the second one on; in a full run, returns all shapes. Two
+// tests that take different halves together try every shape.
 std::vector<NamedShape> every_second(std::vector<NamedShape> shapes, bool from_first);
 // Returns solids with cavities.
 std::vector<NamedShape> hollow_solids();

@@ -1,5 +1,5 @@
-// Compares fifty shapes with what our reader returns for them; OpenCASCADE builds the shapes and writes the
-// files.
+// Compares more than fifty shapes with what our reader returns for them. OpenCASCADE builds the shapes and
+// writes the files.
 #include "tests/engine/exchange/cad/occt_shapes.h"
 
 #include <gtest/gtest.h>

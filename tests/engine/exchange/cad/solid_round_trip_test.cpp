@@ -78,8 +78,8 @@ TEST_F(SolidRoundTrip, CavitiesStayCavities) {
   }
 }
 
-// Only the cavity's surface is left of the model of a box with a ball-shaped cavity. Its shell encloses no
-// material.
+// The model is a box with a ball-shaped cavity, from which all surfaces except the cavity's are removed. The
+// shell of the cavity encloses no material.
 TEST_F(SolidRoundTrip, ACavityByItselfIsNoSolid) {
   CadModel model = read(hollow_solids()[1].shape);
   ASSERT_EQ(model.surfaces.size(), 7u);

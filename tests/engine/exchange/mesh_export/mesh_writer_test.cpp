@@ -1,4 +1,4 @@
-// Tests that written meshes can be read by Assimp alone (STL, OBJ, PLY) or by libzip (3MF).
+// Tests that other libraries read the written meshes: Assimp reads STL, OBJ and PLY, and libzip opens 3MF.
 #include "engine/exchange/mesh_export/mesh_writer.h"
 
 #include <assimp/postprocess.h>
@@ -36,7 +36,7 @@ std::string bytes_of(const std::vector<NamedMesh>& meshes, FileFormat format, do
 
 class MeshWriter : public testing::Test {
  protected:
-  // Reads all meshes with Assimp alone, which shares no code with the writer.
+  // Reads all meshes with Assimp, which shares no code with the writer.
   TriangleMesh read(const std::string& name, const std::string& bytes) const {
     Assimp::Importer importer;
     const aiScene* scene =

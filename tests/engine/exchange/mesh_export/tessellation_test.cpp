@@ -101,7 +101,7 @@ TEST(Tessellation, BodiesThatCloseAreWatertightWithNormalsOutward) {
     if (!known.closes) continue;
     const double volume = std::abs(volume_by_quadrature_m3(known.surface.surface));
     const double area = area_by_quadrature_m2(known.surface.surface);
-    // The volumes differ by at most the chord error times the area.
+    // The volumes of the mesh and of the surface differ by at most the chord error times the area.
     EXPECT_NEAR(enclosed_volume_m3(found->mesh), volume, 5e-5 * area);
     EXPECT_GT(enclosed_volume_m3(found->mesh), 0.0);
   }
@@ -201,7 +201,7 @@ double lowest_triangle_m(const TriangleMesh& mesh) {
   return lowest;
 }
 
-// On the left and on the right the disc has corners of equal height, except for their last bits.
+// At its left and right ends, the disc has corners whose heights differ only in their last bits.
 TEST(Tessellation, NoTriangleIsWithoutArea) {
   constexpr double radius_m = 0.01;
   ControlNet net(2, 2);

@@ -56,8 +56,8 @@ TEST(Thickened, APlateIsABoxWithoutAnOpenEdge) {
 }
 
 // The volume of the shell is that between two cylinders. The walls along the edges lean by half of a chord's
-// turn, a quarter of a degree, which changes the volume by about 2e-4 of itself. Chords instead of arcs
-// reduce it by less than 2e-5.
+// turn, a quarter of a degree, which changes the volume by the fraction 2e-4. Chords instead of arcs reduce
+// the volume by less than 2e-5.
 TEST(Thickened, ACurvedShellHasItsVolume) {
   constexpr double angle = std::numbers::pi / 2.0, radius_m = 0.05, thickness_m = 0.004, length_m = 0.03;
   const auto shell = thicken_mesh(cylinder(radius_m, length_m, angle, 180, 4), thickness_m);

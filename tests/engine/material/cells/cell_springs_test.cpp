@@ -58,7 +58,8 @@ TEST(CellSprings, SlenderCellsKeepPositiveSpringsAndReportTheirMisfit) {
   EXPECT_LT(cell_springs(brick(1e-3, 1e-3, 1e-3), 700.0).misfit, 1e-9);
 }
 
-// Returns a cell at the corner of a square grid that is bent into a circle. Its outer corner is nearly flat.
+// Returns a cell from the corner of a square grid that was bent into a circle. Its outer corner has an angle
+// of 127 degrees.
 CellCorners corner_of_round_section() {
   CellCorners corners = brick(1e-3, 1e-3, 1.5e-3);
   for (const int c : {6, 7}) {

@@ -63,8 +63,8 @@ TEST(Hexahedron, UniformStrainsCostWhatTheMaterialAsks) {
   }
 }
 
-// End moments bend a cell of length L to the curvature k with the energy E I / 2 k^2 L. Without its inner
-// displacements, a trilinear cell of height h would overestimate the energy by the factor
+// End moments bend a cell of length L to the curvature k with the energy E I / 2 k^2 L. Without internal
+// displacement modes, a trilinear cell of height h would overestimate the energy by the factor
 // (L/h)^2 / (2 (1 + nu)): more than a hundred here.
 TEST(Hexahedron, BendsAsABeam) {
   const double length = 20.0, wide = 1.0, high = 1.0, curvature = 1e-3;
@@ -116,7 +116,7 @@ TEST(CorotatedCell, ForceIsTheGradientOfItsEnergyAndTheTangentItsChange) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const CellCorners corners = distorted_cell(seed);
     const CorotatedCell cell(corners, hexahedron_stiffness(corners, 1.0, 0.3));
-    // The tangent neglects how the stretch changes the rotation, which is a product of two small strains.
+    // The tangent neglects how the strain changes the rotation. This term is a product of two small strains.
     expect_derivatives(cell, turned_and_strained(corners, seed), 1e-3);
   }
 }

@@ -66,7 +66,7 @@ TEST(ImplicitBody, SettlesToTheStaticAnswer) {
       ImplicitStep step;
       step.drag_per_s = 20.0;
       for (int tick = 0; tick < 1000; ++tick) body.step(step);
-      // After a second, a drag of 20 per second leaves less than this bound of the lowest mode.
+      // After a second, a drag of 20 per second leaves a smaller fraction of the lowest mode than this bound.
       EXPECT_NEAR(body.displacement(beam.tip()).y() / expected, 1.0, 1e-3) << youngs << " Pa, load " << load;
     }
   }

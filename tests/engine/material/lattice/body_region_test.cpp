@@ -47,7 +47,7 @@ LatticeMesh bar_lattice(std::array<int, 3> counts) {
   return std::move(mesh).value();
 }
 
-// Returns the shorter way from one turn to another, as a fraction of a turn, possibly across the seam.
+// Returns the shorter of the two distances between two positions around the bar, as a fraction of a turn.
 double apart(double turn, double other) {
   const double far = std::abs(turn - other);
   return std::min(far, 1.0 - far);
@@ -85,12 +85,12 @@ void expect_places_of_a_bar(const std::vector<Vector3>& points, const std::vecto
     ++seen;
     // Slices of the lattice are evenly spaced along the bar.
     EXPECT_NEAR(place.along, point.x() / length_m, 0.01);
-    // A ring of 24 chords is inside the circle by less than 1 % of its radius. A cell's depth is the mean
-    // over its corners, which the curvature changes by about as much again.
+    // A ring of 24 chords is inside the circle by less than 1 % of its radius. The depth of a cell is the
+    // mean depth of its corners; the curvature changes this mean by about as much again.
     EXPECT_NEAR(place.depth_m, bar_radius_m - from_axis, (of_cells ? 0.05 : 0.012) * bar_radius_m);
     if (from_axis < 1e-3 * bar_radius_m) return;
     const double angle = std::atan2(point.z(), point.y()) / (2.0 * std::numbers::pi);
-    // Nodes inside the bar are on the block's lines, which are not exactly radial.
+    // Nodes inside the bar are on grid lines of the bent block of cells, which are not exactly radial.
     EXPECT_LT(apart(place.around, angle < 0.0 ? angle + 1.0 : angle), 0.02)
         << point.transpose() << " turn " << place.around;
   });
@@ -109,7 +109,7 @@ TEST(BodyRegion, CellsOfARoundBarAreWhereTheCylinderHasThem) {
   }
 }
 
-// The depth is the least distance to the six planes.
+// The depth of a node is its smallest distance from the six faces of the box.
 TEST(BodyRegion, DepthInABoxIsTheDistanceToItsNearestFace) {
   const Vector3 size_m(0.012, 0.007, 0.03);
   const LatticeMesh mesh = box_mesh(size_m, {6, 5, 11});
@@ -138,7 +138,8 @@ TEST(BodyRegion, CellsOfAThinRingLieBetweenItsFaces) {
       const BodyCoordinates& place = places[ring->cell_index(i, 0, k)];
       EXPECT_NEAR(place.around, (i + 0.5) / 24.0, 1e-3);
       EXPECT_NEAR(place.along, 0.25 + 0.5 * k, 1e-12);
-      // Chords of 15 degrees are nearer than arcs by less than 1 % of the thickness.
+      // The chords of 15 degrees on the outer and the inner face are nearer to each other than the arcs, by
+      // less than 1 % of the thickness.
       EXPECT_NEAR(place.depth_m, 0.001, 2e-5);
       held += contains(across_seam, place) ? 1 : 0;
     }

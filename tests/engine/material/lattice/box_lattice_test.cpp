@@ -56,8 +56,9 @@ TEST(BoxLattice, WeighsWhatTheSolidWeighsAndIsNoFasterForItsParts) {
   EXPECT_NEAR(sum / lattice.mass_kg(), 1.0, 1e-6);
   EXPECT_LT((middle / sum).norm(), 1e-3 * 0.02) << "in its middle";
   // For a ball, the sum of mass times squared coordinate is m r^2 / 5 along each axis. The lattice has its
-  // mass at the corners of cells that are a quarter of the radius wide. This mass is farther out than that of
-  // the ball, which adds a twentieth. Partly filled cells add as much again.
+  // mass at the corners of cells that are a quarter of the radius wide. Its mass is therefore farther out
+  // than the mass of the ball, which increases the sum by a twentieth. Partly filled cells increase it by as
+  // much again.
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(inertia(axis, axis) / (sum * 0.02 * 0.02 / 5.0), 1.0, 0.15);
   }

@@ -64,7 +64,8 @@ TEST(FeatureMap, GivesTheSameNodesForTheSameSeed) {
   EXPECT_NE(one.nodes, other.nodes);
 }
 
-// At too high rates the map would fold cells. Only a part of its displacement is applied then, or none.
+// At too high rates, the map would fold cells. In this case, only a part of its displacement is applied, or
+// none.
 TEST(FeatureMap, NeverFoldsACell) {
   Random random(4);
   for (int trial = 0; trial < 20; ++trial) {

@@ -57,7 +57,7 @@ TEST(ShellLattice, BowlHasTheVolumeOfTheShell) {
       EXPECT_FALSE(mesh.closed);
       EXPECT_LE(mesh.node_count(), budget);
       EXPECT_GT(mesh.node_count(), budget / 2);
-      // The surface is a sphere within 1e-5 of its radius, and its area is within twice that.
+      // The surface is a sphere to 1e-5 of its radius, so its area is exact to 2e-5 of the area.
       EXPECT_NEAR(mass_of(mesh, density) / (density * volume), 1.0, 1e-4) << budget;
       const CellQuality quality = measure_cell_quality(mesh);
       EXPECT_GT(quality.worst_jacobian, 0.0) << budget;
@@ -68,7 +68,7 @@ TEST(ShellLattice, BowlHasTheVolumeOfTheShell) {
       }
     }
   }
-  // The volume is the area times the thickness to first order; the relative error is thickness / radius.
+  // To first order, the volume is the area times the thickness; the relative error is thickness / radius.
   const double area = 2.0 * pi * radius * radius * (1.0 - std::cos(opening));
   EXPECT_NEAR(mass_of(make_shell_lattice(spherical_bowl(radius, opening), thickness, {}), density) /
                   (density * area * thickness),
@@ -139,8 +139,8 @@ TEST(ShellLattice, RefusesWhatIsNoShell) {
   EXPECT_EQ(refusal_code(fan, 0.002), ErrorCode::degenerate);
 }
 
-// The free edge of a plate that is fixed along the opposite edge and bent to a cylinder sinks by
-// P L^3 (1 - nu^2) / 3 E I under the force P, where I is the second moment of its whole width. Shear adds
+// Tests a plate that is fixed along one edge and bent to a cylinder. Under the force P, the free edge sinks
+// by P L^3 (1 - nu^2) / 3 E I, where I is the second moment of area of the whole width. Shear adds
 // (6/5) P L / G A.
 TEST(ShellLattice, SheetBendsAsAPlate) {
   constexpr double length = 0.06, width = 0.03, thickness = 0.002, youngs = 2e9, poisson = 0.35, force = 0.5;
@@ -274,8 +274,8 @@ TEST(ShellLattice, SpringsOfARingKnowNoSeam) {
     plain_substep(lattice, h);
     const std::vector<double> out = gone_out(mesh, [&](int n) { return lattice.displacement(n); });
     farthest = std::max(farthest, out.front());
-    // Nodes at knots and nodes between knots oscillate slightly differently, so each kind is compared with
-    // itself.
+    // Nodes at knots and nodes between knots oscillate slightly differently, so each node is compared only
+    // with nodes of its own kind.
     for (std::size_t i = 2; i < out.size(); ++i) EXPECT_NEAR(out[i], out[i % 2], 1e-3 * 0.02 * 0.05) << step;
     EXPECT_EQ(out.front(), out.back());
   }

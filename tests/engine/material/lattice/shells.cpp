@@ -11,8 +11,8 @@ namespace {
 
 constexpr int shell_around = 32, shell_along = 24;
 
-// Returns the radius of the control points that give a closed uniform cubic curve of this radius: the curve
-// is smaller by (2 + cos(step)) / 3.
+// Returns the radius of the circle of control points for which a closed uniform cubic curve has this radius.
+// The curve is smaller than the circle by the factor (2 + cos(step)) / 3.
 double control_radius(double radius) {
   return radius * 3.0 / (2.0 + std::cos(2.0 * std::numbers::pi / shell_around));
 }
@@ -29,7 +29,7 @@ Surface flat_sheet(double a_m, double b_m, bool up) {
   for (int i = 0; i < count; ++i) {
     for (int j = 0; j < count; ++j) {
       const double x = up ? greville(i) : 1.0 - greville(i);
-      // z x x is y: the normal is up if u is along z and v along x. Here u is along x, so v runs against z.
+      // The normal du x dv is up if u is along z and v along x. Here u is along x, so v runs against z.
       net.set_point(i, j, {a_m * x, 0.0, b_m * (1.0 - greville(j))});
     }
   }
@@ -62,7 +62,7 @@ Surface open_ring(double radius_m, double height_m, double seam_turn) {
   const KnotVector knots = KnotVector::clamped_uniform(3, 6).value();
   ControlNet net(shell_around, 6);
   for (int i = 0; i < shell_around; ++i) {
-    // A control point has its largest weight two knots after its own.
+    // A control point has its largest weight two knots after the first knot of its basis function.
     const double angle = -2.0 * std::numbers::pi * ((i + 2.0) / shell_around + seam_turn);
     for (int j = 0; j < 6; ++j) {
       const double share = (knots.knots()[j + 1] + knots.knots()[j + 2] + knots.knots()[j + 3]) / 3;

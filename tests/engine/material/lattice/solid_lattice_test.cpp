@@ -1,5 +1,5 @@
-// Tests lattices of bodies that no block of cells can be bent into, such as rings and bowls with a wall: they
-// are embedded in a box of cells.
+// Tests lattices of bodies such as rings and walled bowls, into which no block of cells can be bent. Such
+// bodies are embedded in a box of cells.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -63,7 +63,7 @@ TEST(SolidLattice, OfARingHasItsVolumeAndKnowsWhereItsNodesLie) {
     if (depth < 0.0 || depth > 0.8 * round_tube_m) continue;
     ++inside;
     const Vector3 nearest = middle + round_tube_m * (at - middle).normalized();
-    // The bound is half the diagonal of a cell between samples. A turn has 160 or 180 samples.
+    // The bound is half the diagonal of a cell of the grid of samples, which has 160 or 180 samples per turn.
     EXPECT_LT((position(ring, places[n].around, places[n].along) - nearest).norm(), 0.0012);
   }
   EXPECT_GT(inside, 100);
@@ -85,7 +85,8 @@ TEST(SolidLattice, OfARingKnowsWhereItsCellsLie) {
         if (!mesh.is_filled(i, j, k) || depth > 0.8 * round_tube_m) continue;
         ++filled;
         const Vector3 nearest = middle + round_tube_m * (at - middle).normalized();
-        // The bound is half the diagonal of a cell between samples. A turn has 160 or 180 samples.
+        // The bound is half the diagonal of a cell of the grid of samples, which has 160 or 180 samples per
+        // turn.
         EXPECT_LT((position(ring, place.around, place.along) - nearest).norm(), 0.0012) << i << j << k;
       }
     }
@@ -133,7 +134,7 @@ TEST(SolidLattice, ARegionWithoutSurfaceNodesHasNoFriction) {
   EXPECT_FALSE(lattice_materials(mesh, Material(), {&spot, 1}).ok());
 }
 
-// The rim may be anywhere in v: the middle ring of the surface may be on the outside, on the rim or on the
+// The rim may be anywhere in v. The ring halfway along v may thus be on the outside, on the rim or on the
 // inside.
 TEST(SolidLattice, OfAWalledBowlHasItsVolume) {
   for (const double rim : {0.35, 0.65}) {

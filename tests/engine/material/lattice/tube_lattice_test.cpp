@@ -42,8 +42,8 @@ TEST(TubeLattice, FillsCoilsOfAnyTurn) {
     if (degrees < 90.0) continue;
     const double length = std::hypot(coil_radius_m * turn, rise_m * turn / (2.0 * std::numbers::pi));
     const double bar = std::numbers::pi * coil_tube_radius_m * coil_tube_radius_m * length;
-    // The control points are outside the bar by 9 % of its cross section. Cells cut off its round corners, as
-    // rings have only about ten nodes.
+    // The bar's cross section is 9 % smaller than the circle of its control points. The lattice also cuts off
+    // the bar's round corners, because rings of the lattice have only about ten nodes.
     EXPECT_NEAR(volume_of(mesh.value()) / bar, 0.8, 0.15) << degrees << " degrees";
   }
 }

@@ -77,7 +77,7 @@ TEST(CompositeSprings, InSeriesEachHalfStretchesByItsOwnModulus) {
   const SpringLattice lattice = drawn_bar(composite(long_bar(), elastic_material(4e3, 0.3, 1000.0),
                                                     elastic_material(1.2e4, 0.4, 1000.0), in_far_half),
                                           20.0);
-  // The bound allows for strains of 5e-3 and the terms of second order of the springs.
+  // The bound allows for second-order terms of the springs at strains of 5e-3.
   EXPECT_NEAR(strain_between(lattice, 4, 9) / (20.0 / 4e3), 1.0, 0.01);
   EXPECT_NEAR(strain_between(lattice, 15, 21) / (20.0 / 1.2e4), 1.0, 0.01);
 }
@@ -193,7 +193,8 @@ TEST(CompositeSprings, EachMaterialIsDampedByItsOwnTime) {
     const double little = energy_left(2e-5, 2e-5, of_second), much = energy_left(3e-4, 3e-4, of_second);
     EXPECT_LT(much, 0.7 * little);
     const double mixed = energy_left(2e-5, 3e-4, of_second);
-    // At the time of measurement waves have not crossed the few cells between the halves.
+    // At the time of measurement, waves have not crossed the few cells between the moving nodes and the other
+    // half.
     EXPECT_NEAR(mixed / (of_second ? much : little), 1.0, 0.05);
   }
 }
@@ -231,9 +232,9 @@ TEST(CompositeSprings, OnlyThePlasticHalfKeepsItsLength) {
   EXPECT_NEAR(strain_between(lattice, 15, 21), 0.0, 2e-3);
 }
 
-// A bar of two materials is held stretched, and one half creeps and yields to the other half. In the end,
-// half of its shear stress is gone and none of its pressure. With K = E / 1.2 and half the shear modulus,
-// G = E / 5.2, its modulus is 9 K G / (3 K + G) = 0.536 E.
+// A bar of two materials is held stretched, and its gel half creeps. In the end, the gel has lost half of its
+// shear stress and none of its pressure. With K = E / 1.2 and half the shear modulus, G = E / 5.2, Young's
+// modulus of the gel is then 9 K G / (3 K + G) = 0.536 E.
 TEST(CompositeSprings, OnlyTheGelCreeps) {
   Material gel = elastic_material(4e3, 0.3, 1000.0), rubber = elastic_material(4e3, 0.3, 1000.0);
   gel.relaxing_fraction = 0.5;
@@ -255,7 +256,7 @@ TEST(CompositeSprings, OnlyTheGelCreeps) {
 }
 
 // The number of substeps that a tick chooses is stable for any two damping times. With the longest damping
-// time, stability also needs the larger inertia of strained nodes.
+// time, stability also requires the increased inertia of strained nodes.
 TEST(CompositeSprings, StayStableHoweverTheyAreDamped) {
   const DenormalsFlushed flushed;
   for (const double first_time_s : {0.0, 1e-4, damping_time_range_s.high}) {
@@ -333,7 +334,7 @@ TEST(CompositeSprings, ABlockSlidesByTheFrictionsOfItsBase) {
   smooth.damping_time_s = 7e-5;
   smooth.friction = 0.1;
   for (const double rough : {0.1, 0.5, 1.2}) {
-    // The region covers the middle three of seven rows, which bear half of the weight.
+    // The region covers the central three of seven rows, which bear half of the weight.
     MaterialRegion middle;
     middle.region.along = {0.3, 0.7};
     middle.friction = rough;

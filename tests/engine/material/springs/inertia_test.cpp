@@ -38,8 +38,9 @@ TEST(Inertia, IsTheLeastWithWhichASubstepIsStable) {
       EXPECT_EQ(lattice.inertia_scale(), 1.0);
       scale_inertia(lattice);
       EXPECT_GT(lattice.inertia_scale(), 10.0);
-      // The bounds for cells and for springs agree at the step for which the inertia was scaled. The
-      // tolerance covers single precision: the difference of two long times has only few correct digits.
+      // At the step for which the inertia was scaled, the two bounds of stable_step_s(), for cells and for
+      // springs, agree. The tolerance covers single precision: the second bound is a small difference of two
+      // long times.
       EXPECT_NEAR(lattice.stable_step_s(rest_stability_fraction) / inertia_step_s, 1.0, 1e-3)
           << poissons_ratio << ", " << damping_time_s;
     }
@@ -52,8 +53,8 @@ TEST(Inertia, OfASoftBodyIsItsMass) {
   EXPECT_EQ(lattice.find_real_time_step_s(inertia_step_s), inertia_step_s);
 }
 
-// The step of real time is the longest one divided by an integer. The next smaller integer would need a
-// larger inertia.
+// In real time, the step is inertia_step_s divided by an integer. Divided by the next smaller integer, the
+// step would require a larger inertia.
 TEST(Inertia, OfRealTimeNeedsAShorterStep) {
   for (const double damping_time_s : {0.0, 1e-4}) {
     SpringLattice lattice = stiff_block(damped_material(0.4, damping_time_s));
@@ -134,7 +135,7 @@ TEST(Inertia, DoesNotChangeTheRestShape) {
 
 // Half the substep needs a quarter of the inertia, so that the block swings twice as fast.
 TEST(Inertia, DeterminesTheTimeOfASwing) {
-  // Returns the number of ticks until the end is farthest, before it swings back by half.
+  // Returns the number of ticks until the end is farthest, found before the end swings back by half.
   const auto count_ticks_to_peak = [](int substeps) {
     const std::vector<double> swing = pull_end(substeps, 200, 0.0);
     std::size_t peak = 0;

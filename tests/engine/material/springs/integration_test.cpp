@@ -38,8 +38,8 @@ double amplitude(const SpringLattice& lattice, const Mode& mode, bool of_velocit
   return sum;
 }
 
-// Returns one cell. At its Poisson's ratio of 1/4 it has no volume force, so the springs damp all of its
-// stiffness.
+// Returns one cell. At its Poisson's ratio of 1/4 it has no volume force, so all of its stiffness comes from
+// springs and is damped.
 SpringLattice one_cell(double damping_time_s) {
   Material material = elastic_material(5000.0, 0.25, 1000.0);
   material.damping_time_s = damping_time_s;
@@ -388,8 +388,8 @@ TEST(Integration, GelCreepsAsItsRelaxationTimeSays) {
   EXPECT_NEAR(all, 0.6, 0.03);
   EXPECT_NEAR(stretched.volume_ratio(), 1.0, 0.02);
   stretched.let_go();
-  // A standard linear solid springs back with the relaxation time divided by the fraction of the stiffness
-  // that remains.
+  // A standard linear solid springs back with a longer time constant: the relaxation time divided by the
+  // fraction of the stiffness that remains.
   const double back_s = gel.relaxation_time_s / (1.0 - gel.relaxing_fraction);
   stretched.relax_for(500);
   EXPECT_NEAR(stretched.kept(), 0.6 * std::exp(-0.5 / back_s), 0.06);

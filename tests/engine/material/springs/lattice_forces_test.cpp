@@ -134,7 +134,7 @@ TEST(LatticeForces, AKickAddsTheWholeImpulse) {
 }
 
 // One pass over the springs gives the same bits as a linearisation followed by a step of the power iteration.
-// It leaves the previous derivatives unchanged if the new ones are not to be stored.
+// If the new derivatives are not to be stored, the pass leaves the previous ones unchanged.
 TEST(LatticeForces, PowerStepsAlongWithALinearisation) {
   for (const double stiffening : {0.0, 20.0, -20.0}) {
     Material material = elastic_material(5000.0, 0.3, 1000.0);
@@ -231,8 +231,8 @@ TEST(LatticeForces, SpringsStiffenAndSoftenWithTheirStrain) {
   EXPECT_NEAR(force_on_corner(100.0, 0.3) / force_on_corner(0.0, 0.3), 2.0, 1e-4);
 }
 
-// Below Poisson's ratio 1/4 the pressure of a dilated cell pulls it further; beyond a dilation of a tenth the
-// pull becomes weaker.
+// Below Poisson's ratio 1/4, the pressure of a dilated cell is a pull that dilates it further. Beyond a
+// dilation of a tenth, this pull becomes weaker.
 TEST(LatticeForces, NegativeVolumeForcesGiveWay) {
   const auto pressure = [](double poisson, double dilation) {
     const Material material = elastic_material(5000.0, poisson, 1000.0);

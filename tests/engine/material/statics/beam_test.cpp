@@ -81,8 +81,8 @@ double linear_sinking_m(const Beam& beam, const CellMatrix& stiffness) {
   return sum;
 }
 
-// Ratio of the deflection with shear to that by Euler and Bernoulli: 1 + 0.75 (h / L)^2 at nu = 1/4, for a
-// beam whose length L is ten times its height h.
+// Ratio of the deflection with shear to the deflection by Euler and Bernoulli: 1 + 0.75 (h / L)^2 at nu =
+// 1/4, for a beam whose length L is ten times its height h.
 constexpr double timoshenko_ratio = 1.0075;
 
 // Springs need many cells through the thickness; hexahedra need one. The beam is ten times as long as high,

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double strain = 1e-6;
 
-// Returns the effective modulus of a stretched bar along z, whose ends are free to slip but which cannot
-// slide or turn as a whole.
+// Returns the effective modulus of a bar that is stretched along z. The ends are free to slip, but the bar
+// cannot slide or turn as a whole.
 double youngs_modulus_along_z(const LatticeMesh& mesh, const LatticeMaterials& materials, CellKind kind) {
   Result<StaticBody> body = StaticBody::make(mesh, materials, kind);
   EXPECT_TRUE(body.ok()) << body.error().message;
@@ -173,8 +173,8 @@ TEST(CompositeStatics, OneCellOfABlockBendsAsItsLayersDo) {
   ImplicitStep step;
   step.drag_per_s = 40.0;
   for (int tick = 0; tick < 1500; ++tick) body.step(step);
-  // The cell treats the shear as uniform through the thickness, in faces and core: it shows 1 % of the
-  // deflection from shear instead of 2.7 %.
+  // The cell treats the shear as uniform through the thickness, in faces and core. Shear therefore accounts
+  // for 1 % of its deflection, instead of 2.7 %.
   EXPECT_NEAR(-body.displacement(block.node_count() - 1).y() / Sandwich::sinking_m(), 1.0, 0.025);
 }
 

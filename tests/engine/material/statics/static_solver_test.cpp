@@ -254,7 +254,8 @@ TEST(StaticSolver, RefusesMoreWorkThanItsLimit) {
   EXPECT_TRUE(rest(4).ok());
 }
 
-// Stops a solve at each of its progress reports in turn. Some of the reports are within one factorisation.
+// Stops solves at different progress reports, from the first to one of the last. Some of the reports are
+// within one factorisation.
 TEST(StaticSolver, StopsWithinAFactorisation) {
   const LatticeMesh mesh = box_mesh({0.02, 0.02, 0.02}, {10, 10, 10});
   const StaticBody body = body_of(mesh, elastic_material(1e5, 0.3, 1000.0), CellKind::hexahedra);

@@ -18,8 +18,9 @@ double size_of(const ImplicitShape& shape) {
   return make_signed_distance(shape)->bounds().size();
 }
 
-// Checks that the solid is on one side of the tangent plane at the foot, and that the foot is on the surface.
-// Outside the solid, both together prove the distance. Inside, they prove that it is a local minimum.
+// Checks that the solid is on one side of the tangent plane at the foot (the nearest surface point), and that
+// the foot is on the surface. Outside the solid, these two facts prove the distance. Inside, they prove only
+// a local minimum.
 void expect_proven(const ImplicitShape& shape, const Vector3& point, double tolerance,
                    double inside_tolerance) {
   const auto solid = make_signed_distance(shape);
@@ -104,7 +105,7 @@ TEST(ImplicitShapes, KeepWhatASignedDistancePromises) {
                   .ok());
 }
 
-// The ellipsoids are thin discs and needles; points are on their axes, in the centre and beside the rim.
+// Tests thin discs, needles and a sphere, at points on their axes, in the centre and beside the rim.
 TEST(ImplicitShapes, EllipsoidsOfAnyAxesKeepTheirDigits) {
   const Vector3 kinds[] = {{0.1, 1e-4, 0.1}, {1e-4, 0.1, 1e-4}, {0.1, 0.01, 1e-4}, {0.01, 0.01, 0.01}};
   const double shares[] = {0.0, 1e-12, 1e-6, 0.5, 1.0 - 1e-9, 1.0, 1.5, 30.0};

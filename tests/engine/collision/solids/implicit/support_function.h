@@ -1,5 +1,5 @@
-// Properties of a convex solid that do not need its distance function: its support function, and the distance
-// found from that by a search over all directions.
+// Properties of a convex solid that do not need its distance function: its support function, and its distance
+// from a point, found from the support function by a search over all directions.
 #pragma once
 
 #include "engine/collision/solids/implicit_shapes.h"
@@ -12,7 +12,7 @@ namespace spoonbill {
 double support(const ImplicitShape& shape, const Vector3& direction);
 
 // Returns the maximum of direction . point - support(direction), which is the signed distance of a convex
-// solid. Searches many directions, then finer around the best of them, so the result is a lower bound.
+// solid. The search tries many directions, then finer ones around the best, so the result is a lower bound.
 double distance_by_support(const ImplicitShape& shape, const Vector3& point);
 
 // Returns a valid shape of 1 to 100 mm, possibly thin. `kind` selects among the convex kinds except the
@@ -23,7 +23,7 @@ inline constexpr int convex_shape_kinds = 7;
 // Returns a direction of unit length; random_in_cube() returns a point in the unit cube.
 Vector3 random_direction(Random& random);
 Vector3 random_in_cube(Random& random);
-// Returns a rotation about any axis by less than half a turn.
+// Returns a rotation about a random axis by less than half a turn.
 Quaternion random_turn(Random& random);
 
 }  // namespace spoonbill
