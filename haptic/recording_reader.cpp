@@ -204,7 +204,8 @@ Result<ReadHeader> read_header(const Line& line, const std::string& source) {
   auto header = header_from_json(json.value(), location);
   if (!header.ok()) return header.error();
   ReadHeader read{std::move(header).value(), {}};
-  // The conversion of an old document gives the tool as many substeps as it had iterations.
+  // A converted tool has one substep for each of its former iterations, so its `substeps` is the number of
+  // iterations.
   if (is_old_document(json.value()["document"])) {
     read.old_commands.emplace(read.header.document.scene.tool.substeps);
   }

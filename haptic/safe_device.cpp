@@ -87,7 +87,7 @@ void ramp(SafetyState& state, const DeviceSpecification& specification, SafeForc
   }
 }
 
-// Returns the requested force within the limits on force, speed and workspace, ramped in.
+// Returns the requested force, ramped in and reduced by the limits on force, speed and workspace.
 Vector3 limit_force(const SafetyState& state, const DeviceSpecification& specification,
                     const SafetyInput& input, double speed_m_per_s, SafeForce& safe) {
   const double limit_n = specification.maximum_force_n;

@@ -1,5 +1,5 @@
-// A 3Dconnexion SpaceMouse: a cap that a hand pushes and turns in six directions, without force feedback.
-// Its motion is read with libspnav from the daemon spacenavd.
+// A 3Dconnexion SpaceMouse: a cap that a hand pushes and turns in six degrees of freedom, without force
+// feedback. Its motion is read with libspnav from the daemon spacenavd.
 #pragma once
 
 #include <cstdint>

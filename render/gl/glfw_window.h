@@ -46,8 +46,8 @@ class GlfwWindow final : public GlContext {
   // Shows the frame and waits for the next refresh of the display if the driver can. Requires make_current().
   void swap() override;
 
-  // Size of the window in screen coordinates, which are also the unit of the pointer's position. On X11 they
-  // are pixels, but not everywhere.
+  // Size of the window in screen coordinates, which are also the unit of the pointer's position. On X11
+  // screen coordinates are pixels; on other systems they may differ from pixels.
   int width() const;
   int height() const;
   // Resizes the window, in screen coordinates. The display may delay or refuse the change.

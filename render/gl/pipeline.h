@@ -100,7 +100,7 @@ struct GlFunctions {
 Result<GlFunctions> load_gl_functions(const GlContext& context);
 
 // Owns a GL object and deletes it in the destructor, when the context must be current. Movable, not copyable.
-// The function table must outlive it.
+// The function table must outlive the handle.
 class GlHandle {
  public:
   using Destroy = void (*)(const GlFunctions& gl, GLuint id);

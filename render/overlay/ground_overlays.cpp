@@ -18,7 +18,8 @@ constexpr float line_width_px = 1.0f;
 constexpr int pieces_per_line = 12;
 
 constexpr double bar_width_fraction = 0.17;
-constexpr double bar_height_fraction = 0.87;  // height of the bar in the free rectangle, from its top
+constexpr double bar_height_fraction =
+    0.87;  // distance of the bar from the top of the free rectangle / height of the rectangle
 constexpr float bar_width_px = 2.2f;
 
 std::uint8_t faded(double alpha, double distance_m, double radius_m) {
@@ -103,7 +104,7 @@ std::optional<ScaleBar> ground_scale_bar(const Camera& camera, const Viewport& v
 
 void append_scale_bar(const ScaleBar& bar, const Camera& camera, std::vector<OverlayLine>& lines) {
   const Eigen::Matrix3d axes = eye_axes(camera);
-  // Ticks on the ground, across the bar.
+  // The ticks at the ends of the bar are on the ground and perpendicular to the bar.
   const Vector3 across = axes.col(0).cross(Vector3::UnitY());
   const Vector3 tick = 0.045 * bar.length_m * across;
   const auto add = [&](const Vector3& a, const Vector3& b) {

@@ -70,8 +70,8 @@ class ToolBuffers {
 
   bool empty() const { return mesh_.indices.empty(); }
 
-  // Draws, with the program in use, the triangles that face the eye, from back to front. `eye_m` is in the
-  // frame of the tool.
+  // Draws the tool with the program in use. If the mesh is not convex, draws only the triangles that face the
+  // eye, from back to front. `eye_m` is in the frame of the tool.
   void draw(const Eigen::Vector3f& eye_m);
 
  private:

@@ -12,7 +12,7 @@
 
 namespace spoonbill {
 
-// An attribute of an instance. Unsigned bytes are normalised to 0 to 1.
+// An attribute of an instance. Unsigned bytes are mapped to the range from 0 to 1.
 struct InstanceAttribute {
   GLint components = 1;
   GLenum type = GL_FLOAT;
