@@ -54,10 +54,8 @@ inline constexpr Range<double> device_speed_range_m_per_s{1e-2, 100.0};
 // Returns an error that names the first field outside its range.
 Status check_specification(const DeviceSpecification& specification);
 
-inline constexpr std::uint32_t button_main =
-    1u;  // while it is pressed, the tool grips the material and can pull it
-inline constexpr std::uint32_t button_hover =
-    2u;  // set while the hand only points, like a mouse, without contact
+inline constexpr std::uint32_t button_main = 1u;   // pressed: the tool grips the material and can pull it
+inline constexpr std::uint32_t button_hover = 2u;  // set: the hand only points, like a mouse, without contact
 
 // Largest valid coordinate of a reading, farther from the origin than any device reaches.
 inline constexpr std::int64_t reading_limit_nm = 10'000'000'000;

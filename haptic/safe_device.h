@@ -1,7 +1,7 @@
 // The safety chain between the force that the coupling requests and the hand. It keeps faults of the program
 // from injuring the hand.
 //
-// SafeDevice is the only code that sets the force of a device, both live and in lock-step, so no force
+// SafeDevice is the only code that sets the force of a device, in a live session and in a replay, so no force
 // reaches a hand unchecked. make_safe() applies these steps in every tick:
 //   1. A fault gives zero force within that tick: a value that is not finite, a stale simulation, a stall, a
 //      loop that misses most of its ticks, a hand that moves impossibly fast, a released dead-man button, a

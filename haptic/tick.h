@@ -1,6 +1,6 @@
 // One tick of touch: takes a device reading, advances the simulation and computes the force.
 //
-// tick() depends only on its arguments: it does not allocate, lock, read a clock or throw. The 1 kHz thread
+// tick() depends only on its arguments, and does not allocate, lock, read a clock or throw. The 1 kHz thread
 // and a replay call the same code and get the same bits.
 #pragma once
 

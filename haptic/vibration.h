@@ -1,7 +1,7 @@
 // Detection of vibration in a requested force, by comparing the force with itself one period earlier.
 //
 // For each period of L ticks, from 2 to 66, the force is compared with itself L ticks before. The comparison
-// covers n periods, at least three and at least 75 ticks. With the deviation a(t) of the force f(t) from its
+// covers at least three periods and at least 75 ticks. With the deviation a(t) of the force f(t) from its
 // mean over the period that contains t, the mismatch is
 //
 //   d(L) = mean |f(t) - f(t - L)|^2 / (2 mean |a(t)|^2)

@@ -18,8 +18,8 @@ constexpr float line_width_px = 1.0f;
 constexpr int pieces_per_line = 12;
 
 constexpr double bar_width_fraction = 0.17;
-constexpr double bar_height_fraction =
-    0.87;  // distance of the bar from the top of the free rectangle / height of the rectangle
+// Distance of the bar from the top of the free rectangle, as a fraction of the rectangle's height.
+constexpr double bar_height_fraction = 0.87;
 constexpr float bar_width_px = 2.2f;
 
 std::uint8_t faded(double alpha, double distance_m, double radius_m) {

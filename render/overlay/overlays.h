@@ -72,7 +72,8 @@ void append_fixed_marks(const LatticeSnapshot& lattice, bool inner, std::vector<
 // Appends a red disc for each touched node.
 void append_touched_marks(const LatticeSnapshot& lattice, std::vector<OverlayMark>& marks);
 
-// Appends the edges between neighbouring nodes on the outside of the lattice, or all edges if `inner`.
+// Appends the edges between neighbouring nodes that are on the surface of the body or next to it, or all
+// edges if `inner`.
 void append_lattice_lines(const LatticeSnapshot& lattice, bool inner, std::vector<OverlayLine>& lines);
 
 // The boundaries of the lattice's hexahedra on the surface of the body (Fig. 11 of Pungotra et al. 2013).

@@ -33,8 +33,8 @@ SamplingLevel uniform_sampling_level(const SurfaceSnapshot& surface, int pieces)
 
 struct SamplingTarget {
   double longest_edge_px = 48.0;
-  double largest_sagitta_px =
-      0.3;  // distance of a chord from its arc; with 4 samples per pixel, larger ones show
+  // Distance of a chord from its arc. With 4 samples per pixel, larger distances are visible.
+  double largest_sagitta_px = 0.3;
 };
 
 // Maximum number of cells of one surface. Without a limit, all of a large surface seen from close up would be

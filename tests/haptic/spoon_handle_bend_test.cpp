@@ -26,7 +26,7 @@ Vector3 ring_centre(const Surface& surface, double v) {
   return sum;
 }
 
-// Returns the angle in degrees by which the centre line between two stations points below the horizontal.
+// Returns the angle in degrees by which the centre line between two values of v points below the horizontal.
 double turned(const Surface& surface, double from_v, double to_v) {
   const Vector3 way = ring_centre(surface, to_v) - ring_centre(surface, from_v);
   return std::atan2(-way.y(), way.x()) * 180.0 / std::numbers::pi;
