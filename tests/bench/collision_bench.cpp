@@ -13,7 +13,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr int controls = 28, levels = 3;  // 25 elements per side, 2^3 cells per element
+constexpr int controls = 28, levels = 3;  // 25 elements per side, 2^3 cells per side of an element
 constexpr std::size_t quads = 200;
 constexpr double radius_m = 0.05, depth_m = 0.004;
 
@@ -104,7 +104,8 @@ void sphere_fcl(benchmark::State& state) {
   state.counters["contacts"] = static_cast<double>(contacts);
 }
 
-// The rounded end of a thumb is pressed 1 mm into the bundled handle, which yields, as in a tick.
+// A sphere as large as the end of a thumb is 1 mm deep in the bundled handle, whose shape changes between
+// queries, as it does between ticks.
 void handle_sphere(benchmark::State& state) {
   const Result<Document> document = read_document(SPOONBILL_ASSETS "/models/spoon-handle.json");
   if (!document) return state.SkipWithError(document.error().message.c_str());

@@ -8,7 +8,8 @@
 
 namespace spoonbill {
 
-// The tables hold one row per sample and one column per control point, in row-major order.
+// Sizes of a sheet and tables of its basis functions. Each table has one row per sample and one column per
+// control point, in row-major order.
 struct DenseSheet {
   int samples = 0;   // number of samples in each direction
   int controls = 0;  // number of control points in each direction

@@ -18,7 +18,7 @@ namespace {
 using FclBox = fcl::AABB<float>;
 using FclTurnedBox = fcl::OBBRSS<float>;
 
-constexpr int controls = 28, levels = 3;  // 25 elements per side, 2^3 cells per element
+constexpr int controls = 28, levels = 3;  // 25 elements per side, 2^3 cells per side of an element
 constexpr std::size_t quads = 200;
 constexpr double depth_m = 0.004;
 

@@ -1,5 +1,5 @@
-// A display in memory (Xvfb) for tests of windows. DISPLAY names it while the object exists. Only one may
-// exist at a time.
+// A display in memory (Xvfb) for tests of windows. The environment variable DISPLAY names the display while
+// the object exists. Only one object may exist at a time.
 #pragma once
 
 #include <sys/types.h>
