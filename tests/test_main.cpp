@@ -42,7 +42,8 @@ class CaseReport final : public testing::EmptyTestEventListener {
   }
 
  private:
-  // Writes the line in one call: a crash could lose a buffer, or a forked child could write it twice.
+  // Writes the line in one call, without a buffer: a crash could lose a buffered line, and a forked child
+  // could write it a second time.
   void write_line(const char* verdict, double seconds, const testing::TestInfo& test) const {
     if (file_ < 0 || getpid() != owner_) return;
     const std::string line = std::string(verdict) + " " + std::to_string(seconds) + " " +

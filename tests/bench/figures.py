@@ -27,7 +27,7 @@ SPHERE_PEERS = ("sphere_fcl_boxes", "sphere_fcl_turned_boxes")
 SURFACES_PEERS = ("surfaces_fcl_boxes", "surfaces_fcl_turned_boxes")
 
 # Names of Google Benchmark's cases for each figure, by the figure's name, or by its name and case.
-# Each row has our case, then those of its peers. The fastest peer is compared.
+# Each row has our case first, then the cases of the peers. Our case is compared with the fastest peer.
 PAIRS = {
     "eval_vs_sisl": ("evaluate_ours/200/8", "evaluate_sisl/200/8"),
     "eval_vs_occt": ("evaluate_ours/200/8", "evaluate_occt_cached/200/8"),
