@@ -87,8 +87,8 @@ struct DeviceReading {
 
 // A haptic device, or a simulated substitute for a haptic device.
 //
-// Each class has a factory function that opens the device on a thread that may block. If this fails, the
-// returned Error states what is missing. The destructor closes the device.
+// Each derived class has a factory function that opens the device on a thread that may block. If this fails,
+// the returned Error states what is missing. The destructor closes the device.
 //
 // read() and set_force() must not allocate, lock, block or throw. The ticking thread calls them; the owner of
 // the device may call them before that thread starts and after it has ended. The watchdog

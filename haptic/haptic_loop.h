@@ -34,8 +34,8 @@ void sleep_until_ns(std::int64_t deadline_ns);
 // Meant for threads that only watch the haptic thread.
 void make_ahead_of_haptic_thread(std::thread& thread);
 
-// A lock-free histogram of durations. Exactly one thread calls add(). Any thread may read. A value that is
-// being added at the same time may be missing from what it reads.
+// A lock-free histogram of durations. Exactly one thread calls add(). Any thread may call the other
+// functions, whose results may lack a duration that is being added at the same time.
 class DurationHistogram {
  public:
   // Adds a duration. Negative durations count as zero.
@@ -82,13 +82,13 @@ struct LoopFigures {
   std::uint64_t ticks = 0;   // completed calls
   std::uint64_t late = 0;    // calls that began more than half a period after their deadline
   std::uint64_t missed = 0;  // dropped periods
-  double rate_hz = 0.0;      // tick rate over the last whole second, or since the start
+  double rate_hz = 0.0;      // tick rate over the last whole second; before the first, since the start
   // Quantiles of the delay from the deadline to the start of a tick, including dropped periods. Their
   // relative error is below 1/16.
   double lateness_p50_s = 0.0;
   double lateness_p99_s = 0.0;
   double lateness_p999_s = 0.0;
-  // Run time of one call of the function.
+  // Mean and 99th percentile of the run time of a call of the function.
   double work_mean_s = 0.0;
   double work_p99_s = 0.0;
   // True while the thread has first-in-first-out scheduling, ahead of every ordinary thread. Becomes false

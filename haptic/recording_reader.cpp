@@ -38,8 +38,8 @@ class LineReader {
  public:
   LineReader(std::istream& in, std::string source, std::size_t bytes_limit);
 
-  // Returns the next line, or nothing at the end of the stream. Errors: a longer line, a stream longer than
-  // the limit, a read error.
+  // Returns the next line, or nothing at the end of the stream. Errors: a line or a stream that exceeds its
+  // limit, a read error.
   Result<std::optional<Line>> next(std::size_t line_bytes_limit);
 
  private:

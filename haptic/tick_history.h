@@ -9,7 +9,8 @@
 
 namespace spoonbill {
 
-// Ticks of the last 100 ms, one bit per millisecond. Plain data; starts as if no tick had been missed.
+// Ticks of the last 100 ms, and of the 10 ms before them, with one bit per millisecond. Plain data; starts as
+// if no tick had been missed.
 class TickHistory {
  public:
   static constexpr std::size_t window_ms = 100;

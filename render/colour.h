@@ -33,7 +33,7 @@ inline constexpr Colour symmetry_plane{38, 92, 168, 210};  // drawn dash-dotted
 inline constexpr Colour tool{52, 118, 204};
 inline constexpr Colour ground_line{70, 78, 88};
 inline constexpr Colour scale_bar{48, 54, 62};
-inline constexpr Colour hull{96, 58, 160, 170};             // drawn as thin lines from point to point
+inline constexpr Colour hull{96, 58, 160, 170};             // drawn as thin lines
 inline constexpr Colour parameter_range{0, 124, 132};       // drawn as thick borders on the surface
 inline constexpr Colour active_sphere{178, 34, 116};        // drawn as translucent shells
 inline constexpr Colour active_second_sphere{20, 92, 168};  // drawn as shells, for a second surface
@@ -49,9 +49,9 @@ inline constexpr Colour text{38, 43, 50};
 // The look of a material. Affects drawing only, not the physics.
 struct SurfaceLook {
   Eigen::Vector3f base_colour = {0.5f, 0.5f, 0.5f};  // linear reflectance; metals: tint of the reflection
-  float roughness = 0.6f;                            // 0 mirror .. 1 chalk
+  float roughness = 0.6f;                            // 0: mirror, 1: chalk
   float metalness = 0.0f;                            // 0 or 1
-  float translucency = 0.0f;                         // 0 opaque .. 1 clear
+  float translucency = 0.0f;                         // 0: opaque, 1: clear
 };
 
 // Returns the look of the first word in the table of known words that the material's name contains

@@ -15,8 +15,8 @@ namespace {
 constexpr int late_weight = 2;
 constexpr int late_limit = 12;
 
-// A frame has spare capacity if its time is at most this fraction of the available time; by index of the
-// current quality. Multisampling and shadows multiply the time of a frame by 1.5 to 2 each, and fine
+// A frame has spare capacity if its time is at most this fraction of the available time. Entry i is for the
+// quality with number i. Multisampling and shadows multiply the time of a frame by 1.5 to 2 each, and fine
 // tessellation multiplies it by less.
 constexpr std::array<double, 4> spare_fraction = {0.0, 0.45, 0.65, 0.65};
 

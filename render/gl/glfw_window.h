@@ -25,9 +25,9 @@ namespace spoonbill {
 class GlfwWindow final : public GlContext {
  public:
   // Makes a window that is hidden until show(), so that no empty frame appears. Width and height, 1 to 16384,
-  // are for a display of ordinary density: at scale 2 the window gets twice as many pixels. The context is
-  // not current yet. Errors, with the remedy: no display, a display without OpenGL 3.3 core, a second window,
-  // invalid sizes.
+  // are for a display of ordinary density: at scale 2 the window gets twice as many pixels along each side.
+  // The context is not current yet. Errors, with the remedy: no display, a display without OpenGL 3.3 core, a
+  // second window, invalid sizes.
   static Result<std::unique_ptr<GlfwWindow>> make(int width, int height, const std::string& title);
 
   ~GlfwWindow() override;

@@ -28,7 +28,8 @@ std::uint8_t faded(double alpha, double distance_m, double radius_m) {
   return static_cast<std::uint8_t>(std::lround(alpha * (1.0 - t * t * (3.0 - 2.0 * t))));
 }
 
-// Appends one line of the grid at `offset_m` on the other axis, in pieces so that it can fade.
+// Appends a grid line along `axis`, at `offset_m` on the other horizontal axis. The line consists of pieces,
+// so that it can fade out.
 void append_faded_line(int axis, double offset_m, const Vector3& centre, double radius_m, double alpha,
                        std::vector<OverlayLine>& lines) {
   const int other = 2 - axis;

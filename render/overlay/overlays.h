@@ -188,9 +188,10 @@ enum class LabelSymbol { none, square, disc, diamond, line, arrow, sphere, plane
 struct Label {
   std::string text;
   Eigen::Vector2d position_px = Eigen::Vector2d::Zero();  // position of the anchor
-  Eigen::Vector2d anchor = Eigen::Vector2d::Zero();       // in the text's box: 0,0 top left, 1,1 bottom right
-  LabelSymbol symbol = LabelSymbol::none;                 // drawn to the left of the text
-  Colour colour;                                          // colour of the symbol
+  Eigen::Vector2d anchor =
+      Eigen::Vector2d::Zero();             // in the text's box: (0, 0) top left, (1, 1) bottom right
+  LabelSymbol symbol = LabelSymbol::none;  // drawn to the left of the text
+  Colour colour;                           // colour of the symbol
 };
 
 struct OverlayLabels {

@@ -24,7 +24,7 @@ class SurfaceBuffers {
   // overwriting it would wait for the frame that still reads it.
   void upload(const TessellatedSurface& surface);
 
-  // Draws with the program in use.
+  // Draws the surface with the program in use.
   void draw() const;
 
   bool is_closed() const { return closed_; }

@@ -127,8 +127,8 @@ class Strips {
   bool whole_ = false;
 };
 
-// Returns the box around a control net. The lines of the net pass between its points, so enclosing the points
-// alone would not suffice.
+// Returns the box around a control net. The whole box must be drawn, because the lines of the net pass
+// between the control points.
 Box net_box(const SurfaceSnapshot& surface) {
   Box box;
   for (std::size_t i = 0; i < surface.x.size(); ++i) {

@@ -14,9 +14,9 @@ namespace spoonbill {
 
 // The part of the ground that shadows can reach, and the projections of the world onto it.
 //
-// The shadow map covers the ground instead of a plane across the light. A point is projected along the light
-// onto the ground, and its depth is its height. One map therefore serves both the shadow of a body on itself
-// and the shadow on the ground.
+// The shadow map covers the ground, not a plane perpendicular to the light. A point is projected along the
+// light onto the ground, and its depth is its height. One map therefore serves both the shadow of a body on
+// itself and the shadow on the ground.
 struct ShadowArea {
   Eigen::Vector2f corner_m;       // smallest x and z
   float side_m = 0.0f;            // side of the square that the map covers

@@ -79,9 +79,10 @@ class NetLine {
   int stride_;
 };
 
-// Limits of the derivatives along the lines of the net, for each control point of the derivative over all
-// lines. `speed` is the largest length of the first derivative S' in metres per parameter. `bend` is an
-// estimate of the largest component of S'' perpendicular to S', which curves a line.
+// Bounds on the derivatives of a surface along one direction. Entry i of each list is the largest value at
+// control point i of a derivative, over all lines of the net. `speed` bounds the length of the first
+// derivative S' in metres per parameter. `bend` estimates the component of S'' perpendicular to S', which
+// curves a line.
 struct DerivativeBounds {
   std::vector<double> speed;  // control point i acts on spans i + 1 to i + degree
   std::vector<double> bend;   // control point i acts on spans i + 2 to i + degree

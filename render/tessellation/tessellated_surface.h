@@ -33,7 +33,7 @@ SamplingLevel uniform_sampling_level(const SurfaceSnapshot& surface, int pieces)
 
 struct SamplingTarget {
   double longest_edge_px = 48.0;
-  // Distance of a chord from its arc. With 4 samples per pixel, larger distances are visible.
+  // Largest distance of a chord from its arc. With 4 samples per pixel, larger distances are visible.
   double largest_sagitta_px = 0.3;
 };
 
@@ -83,8 +83,8 @@ Status check_net(const SurfaceSnapshot& surface);
 class TessellatedSurface {
  public:
   // Evaluates the surface at a sampling level. Grid, blending matrices and indices are rebuilt only if the
-  // structure of the surface or the level has changed; otherwise nothing is allocated. Errors: a grid that
-  // cannot be built, a control net whose size does not fit its knots.
+  // structure, the knots or the trim of the surface or the level has changed; otherwise nothing is allocated.
+  // Errors: a grid that cannot be built, a control net whose size does not fit its knots.
   Status update(const SurfaceSnapshot& surface, const SamplingLevel& level);
 
   // Updates from a mesh, whose triangles do not depend on a level.
@@ -109,8 +109,8 @@ class TessellatedSurface {
   // Returns whether the surface encloses a volume, so that its inside is never visible.
   bool is_closed() const { return closed_; }
 
-  // Returns whether triangles are cut along trim loops. Samples without a triangle are then outside the
-  // surface.
+  // Returns true if the triangles are cut along trim loops. Samples that no triangle uses are then outside
+  // the trimmed surface.
   bool is_trimmed() const { return trim_ != nullptr; }
 
   Box bounds() const;
@@ -136,7 +136,8 @@ class TessellatedSurface {
   GridSamples<float> samples_;
   std::vector<std::uint32_t> indices_;
   std::shared_ptr<const TrimmedArea> trim_;
-  std::vector<CutVertex> cut_vertices_;  // vertices of trimmed cells; their samples follow those of the grid
+  std::vector<CutVertex>
+      cut_vertices_;  // vertices of trimmed cells, whose samples come after those of the grid
 };
 
 // Returns the box around all surfaces of a snapshot. The surfaces are evaluated, because boxes around control

@@ -48,7 +48,7 @@ struct ToolVertex {
 struct ToolMesh {
   std::vector<ToolVertex> vertices;
   std::vector<std::uint32_t> indices;
-  bool convex = false;  // true if no front face hides another, so that the order of drawing is free
+  bool convex = false;  // true if no front face hides another: triangles may be drawn in any order
 };
 
 // Returns a mesh fine enough for a tool that fills the screen; empty for a sphere of radius 0. Errors: a

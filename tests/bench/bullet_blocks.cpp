@@ -96,7 +96,8 @@ class PositionBased : public BulletBlock {
   int steps_ = 0;
 };
 
-// Returns a stiffness whose fastest mode is well within the stability limit of the explicit step.
+// Returns a spring stiffness at which the fastest vibration is well within the stability limit of an explicit
+// step.
 btScalar stable_stiffness(int count) {
   const btScalar node_kg = mass_kg / std::pow(static_cast<btScalar>(count), 3.0f);
   return 0.01f * node_kg / (step_s * step_s);

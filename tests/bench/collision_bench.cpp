@@ -1,6 +1,7 @@
-// A sphere on a sheet that deforms between queries: our code on the exact surface, FCL on a mesh of 200 x 200
-// quads without knowledge of the grid. Also a sphere on the handle, our code only. Every query receives the
-// deformed shape: control points (with or without samples) for our code, vertices for FCL.
+// Times the contact of a sphere with a sheet that deforms between queries. Our code uses the exact surface,
+// and FCL uses a mesh of 200 x 200 quads without knowledge of the grid. Every query receives the deformed
+// shape: control points (with or without samples) for our code, vertices for FCL. Also times the contact of a
+// sphere with the handle, for our code only.
 #include <benchmark/benchmark.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision.h>

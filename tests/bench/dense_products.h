@@ -1,5 +1,6 @@
-// The straightforward implementation with a matrix library: dense products in single precision, compiled for
-// each instruction set with the flags of our own kernels and selected in the same way.
+// The straightforward evaluation and refit of a sheet with a matrix library: dense products in single
+// precision, compiled for each instruction set with the flags of our own kernels and selected in the same
+// way.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// Tests the SpaceMouse with a simulated daemon on a socket of its own, and the steering of the handle by
-// calculation.
+// Tests the class SpaceMouse with a simulated daemon on a socket of its own, and the function steer() without
+// a daemon.
 #include "haptic/space_mouse.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Tests that the bundled script bends the bundled handle as in the original paper: the settled shape is bent
-// near the fixed part and nearly straight elsewhere.
+// Tests that the bundled script bends the bundled handle as in Pungotra et al. (2013): the settled shape is
+// bent near the fixed part and nearly straight elsewhere.
 #include <gtest/gtest.h>
 
 #include <cmath>

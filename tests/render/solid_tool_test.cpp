@@ -40,7 +40,7 @@ Pose turned(const Vector3& position_m, double angle_rad, const Vector3& axis) {
   return {position_m, Quaternion(Eigen::AngleAxisd(angle_rad, axis.normalized()))};
 }
 
-// The tool's poses are beside the body and clear of it.
+// Poses in which the tool is beside the body and does not touch it.
 const Pose upright = turned({0.030, 0.025, 0.0}, 0.0, Vector3::UnitX());
 const Pose oblique = turned({0.075, 0.028, 0.0}, 1.1, {0.3, 1.0, 0.5});
 

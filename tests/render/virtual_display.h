@@ -14,8 +14,8 @@ namespace spoonbill {
 
 class VirtualDisplay {
  public:
-  // Starts Xvfb under a number that it chooses itself, so that tests can run in parallel. Fails if Xvfb is
-  // not installed or does not start.
+  // Starts Xvfb, which chooses a free display number itself, so that tests can run in parallel. Fails if Xvfb
+  // is not installed or does not start.
   static Result<std::unique_ptr<VirtualDisplay>> start(int width_px, int height_px);
 
   ~VirtualDisplay();
