@@ -178,7 +178,7 @@ class InputSource {
   virtual HandTarget next_target(const HandTarget& current, double elapsed_s) = 0;
 };
 
-// Chooses among input sources: the one used last leads the hand. One owner: the drawing thread.
+// Chooses among input sources: the source used last leads the hand. One owner: the drawing thread.
 class HandInputs {
  public:
   // `leader` leads the hand until another source is used. Every source must outlive its last update().

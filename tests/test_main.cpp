@@ -1,6 +1,6 @@
 // main() of the test programs. If SPOONBILL_CASE_REPORT names a file, each case appends a line to it when it
-// starts and another when it has ended. If the process dies during a case, the file therefore shows which
-// one; tests/run_suite reads it.
+// starts and another line when it has ended. If the process dies during a case, the file therefore shows the
+// name of that case. tests/run_suite reads the file.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>

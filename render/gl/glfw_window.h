@@ -54,7 +54,7 @@ class GlfwWindow final : public GlContext {
   void resize(int width, int height);
 
   // Returns the number of display pixels along one pixel of the interface: 1 on an ordinary display, 2 on a
-  // dense one. Changes when the window moves to another display.
+  // dense display. Changes when the window moves to another display.
   double scale() const;
 
   void show();

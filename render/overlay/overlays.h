@@ -188,8 +188,8 @@ enum class LabelSymbol { none, square, disc, diamond, line, arrow, sphere, plane
 struct Label {
   std::string text;
   Eigen::Vector2d position_px = Eigen::Vector2d::Zero();  // position of the anchor
-  Eigen::Vector2d anchor =
-      Eigen::Vector2d::Zero();             // in the text's box: (0, 0) top left, (1, 1) bottom right
+  // Point of the text's box that is at `position_px`: (0, 0) is the top left corner, (1, 1) the bottom right.
+  Eigen::Vector2d anchor = Eigen::Vector2d::Zero();
   LabelSymbol symbol = LabelSymbol::none;  // drawn to the left of the text
   Colour colour;                           // colour of the symbol
 };

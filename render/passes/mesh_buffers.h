@@ -81,7 +81,8 @@ class ToolBuffers {
   GlHandle vertex_array_;
   GlHandle vertices_;
   GlHandle indices_;
-  std::shared_ptr<const ToolBody> body_;  // shared ownership, so that no other body gets the same address
+  // Shared ownership, so that no other body can get this address, which update() compares.
+  std::shared_ptr<const ToolBody> body_;
   ToolMesh mesh_;
   FacingOrder order_;
 };

@@ -70,7 +70,7 @@ class MeshShading {
   void shade(const MeshSnapshot& mesh, GridSamples<float>& samples) const;
 
  private:
-  // Shared ownership, so that no other mesh gets the same address.
+  // Shared ownership, so that no other mesh can get this address, which matches() compares.
   std::shared_ptr<const std::vector<std::array<std::uint32_t, 3>>> triangles_;
   std::vector<std::uint32_t> indices_;  // index of the drawn vertex of each triangle corner
   std::vector<std::uint32_t> vertex_;   // index of the mesh vertex of each drawn vertex
@@ -95,7 +95,7 @@ class TessellatedSurface {
   const SamplingLevel& level() const { return level_; }
 
   // Positions in metres and unit normals of the vertices. Normals point outward on a closed surface and along
-  // du x dv on an open one.
+  // du x dv on an open surface.
   const GridSamples<float>& samples() const { return samples_; }
   std::size_t vertex_count() const { return samples_.x.size(); }
 
@@ -136,8 +136,7 @@ class TessellatedSurface {
   GridSamples<float> samples_;
   std::vector<std::uint32_t> indices_;
   std::shared_ptr<const TrimmedArea> trim_;
-  std::vector<CutVertex>
-      cut_vertices_;  // vertices of trimmed cells, whose samples come after those of the grid
+  std::vector<CutVertex> cut_vertices_;  // vertices of trimmed cells; their samples come last in samples_
 };
 
 // Returns the box around all surfaces of a snapshot. The surfaces are evaluated, because boxes around control

@@ -167,7 +167,7 @@ TEST(FaultyDevice, NeverPassesTheLimitAndGetsNoForceAfterAnyFault) {
   EXPECT_EQ(run.held, 0U);
   EXPECT_EQ(run.pressed, 0U) << "a reading that is at fault must not press";
   EXPECT_EQ(run.early, 0U) << "the force returns only after ten quiet ticks";
-  // Each case occurred often enough.
+  // Checks that each kind of event occurred often enough.
   EXPECT_GT(run.faults, ticks / 2000);
   EXPECT_GT(run.stops, ticks / 2000);
   EXPECT_GT(run.with_force, ticks / 100);

@@ -175,7 +175,7 @@ TEST(SafetyAtRandom, LimitsHoldWhateverHappens) {
     }
   }
   all.expect_safe();
-  // Each case occurred often enough.
+  // Checks that each kind of event occurred often enough.
   EXPECT_GT(all.faults, ticks / 5000);
   EXPECT_GT(all.buzzes, ticks / 100'000);
   EXPECT_GT(all.with_force, ticks / 40);

@@ -93,7 +93,8 @@ TEST(SpaceMouse, FollowsTheDaemonsEventsUntilItLeaves) {
   EXPECT_FALSE(mouse->poll().has_value());
 }
 
-// A hand resting on the cap does not count as use of the SpaceMouse, nor do buttons other than the main one.
+// A hand resting on the cap does not count as use of the SpaceMouse, nor do buttons other than the main
+// button.
 TEST(SpaceMouse, IsUsedWhileItsCapIsAwayFromRestOrItsMainButtonChanges) {
   Daemon daemon;
   auto mouse = SpaceMouse::open();

@@ -1,4 +1,4 @@
-// Compares pictures with the approved ones in screenshots/ by their worst block of 16 x 16 pixels. The
+// Compares pictures with the approved pictures in screenshots/ by their worst block of 16 x 16 pixels. The
 // pictures show a bend in the default view, the stages of a contact, and presses into materials. A picture
 // that differs is written to picture-failures/ of the build folder, with the approved picture and their
 // difference. tests/approve replaces the approved pictures by those that the program draws.
@@ -66,7 +66,7 @@ class MomentPictures : public ::testing::Test {
     return std::make_shared<FramePainter>(std::move(painter).value());
   }
 
-  // A replay that can continue from one moment to a later one. The states up to each moment must have the
+  // A replay that can continue from one moment to a later moment. The states up to each moment must have the
   // hashes in the recording.
   class Replay {
    public:
