@@ -56,7 +56,7 @@ WallPress random_press(std::mt19937_64& random) {
 
 struct Energy {
   double given_most_j = 0.0;  // largest net energy that the hand had received at any time
-  double taken_j = 0.0;       // energy that the hand gave to the wall, without what the wall gave back
+  double taken_j = 0.0;       // all energy that the wall took; energy that it gave back is not subtracted
 };
 
 // Moves a hand from above the wall, whose surface is at `surface_m`, into the wall and out again. `wall`
