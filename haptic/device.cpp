@@ -11,10 +11,10 @@ namespace {
 constexpr double nanometres_per_metre = 1e9;
 constexpr double billion = 1e9;
 
-// Smallest squared length of a quaternion that has a direction.
+// Smallest squared length of a quaternion that can be normalised.
 constexpr double smallest_square = 1e-12;
 
-// Tolerance for the squared length of a unit quaternion; rounding to billionths changes it by up to 4e-9.
+// Tolerance for the squared length of a unit quaternion. Rounding to billionths changes it by at most 2e-9.
 constexpr double unit_square_tolerance = 1e-6;
 
 // Rounds a coordinate to whole nanometres. A coordinate that is not finite becomes an invalid coordinate.

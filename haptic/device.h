@@ -1,7 +1,8 @@
-// The interface of haptic devices: a device reports the pose of the hand and applies a force to it.
+// The interface of haptic devices: a device reports the pose of the hand and applies a force to the hand.
 //
-// One owner: the haptic side of a live session, or the lock-step loop. Frame: x right, y up, z toward the
-// person; metres and newtons.
+// A device has one owner: the thread of a live session that runs the ticks, or the loop that replays or
+// records without a window. Coordinates have x right, y up and z toward the person, in metres; forces are in
+// newtons.
 #pragma once
 
 #include <cstdint>
@@ -29,12 +30,12 @@ struct DeviceSpecification {
   bool workspace_follows_model = false;
 
   // Limits of the safety chain (haptic/safe_device.h).
-  double quiet_force_n = 0.2;  // forces engage after the requested force has stayed below this limit
+  double quiet_force_n = 0.2;  // the force stays off until the requested force has stayed below this limit
   // Time for the force to ramp from zero to full. The short default suits the virtual device, which cannot
   // hurt anybody; use 2 s for real hardware.
   double ramp_time_s = 0.2;
-  // Limit on the change of the force. A hand at maximum speed and maximum stiffness changes the force by 700
-  // N/s, so the limit affects only jumps.
+  // Limit on the rate of change of the force. A hand at maximum speed and maximum stiffness changes the force
+  // by 700 N/s, so the limit affects only jumps.
   double maximum_force_rate_n_per_s = 1000.0;
   double maximum_speed_m_per_s = 1.0;  // the force fades above this speed and is zero at twice the speed
   std::uint32_t dead_man_buttons = 0;  // buttons that must all be pressed for any force; 0: none
@@ -53,8 +54,8 @@ inline constexpr Range<double> device_speed_range_m_per_s{1e-2, 100.0};
 // Returns an error that names the first field outside its range.
 Status check_specification(const DeviceSpecification& specification);
 
-inline constexpr std::uint32_t button_main = 1u;   // grips the material when the tool pulls
-inline constexpr std::uint32_t button_hover = 2u;  // set while the hand only points, like a mouse: no contact
+inline constexpr std::uint32_t button_main = 1u;   // pressed: the tool grips the material and can pull it
+inline constexpr std::uint32_t button_hover = 2u;  // set: the hand only points, like a mouse, without contact
 
 // Largest valid coordinate of a reading, farther from the origin than any device reaches.
 inline constexpr std::int64_t reading_limit_nm = 10'000'000'000;
@@ -65,7 +66,7 @@ struct DeviceReading {
   std::int64_t position_nm[3] = {0, 0, 0};
   std::int64_t orientation_e9[4] = {0, 0, 0, 1'000'000'000};  // x, y, z, w
   std::uint32_t buttons = 0;  // button_main, button_hover, and buttons specific to the device
-  // Number of ticks without a reading since the previous reading. Set by SafeDevice, not by devices.
+  // Number of ticks that the loop missed before this reading. Set by SafeDevice, not by devices.
   std::uint32_t missed = 0;
 
   // Returns true if every coordinate is within reading_limit_nm and the orientation is a unit quaternion.
@@ -73,7 +74,8 @@ struct DeviceReading {
   bool is_valid() const;
   bool has_unit_orientation() const;
 
-  // Returns the pose with the orientation normalised; the identity if the quaternion is zero.
+  // Returns the pose with a normalised orientation. The orientation is the identity if the quaternion is
+  // zero.
   Pose pose() const;
 
   // Rounds a pose to the nearest reading and clamps coordinates to reading_limit_nm. A pose that is not
@@ -85,21 +87,22 @@ struct DeviceReading {
 
 // A haptic device, or a simulated substitute for a haptic device.
 //
-// A factory function of each class opens the device, on a thread that may block, and returns an Error that
-// states what is missing. The destructor closes the device.
+// Each derived class has a factory function that opens the device on a thread that may block. If this fails,
+// the returned Error states what is missing. The destructor closes the device.
 //
-// read() and set_force() must not allocate, lock, block or throw. The ticking thread calls them; its owner
-// may call them before that thread starts and after it has ended. The watchdog (haptic/watched_device.h) sets
-// zero force from its own thread. No two threads call these functions at the same time. A driver with a
-// callback thread or a socket exchanges readings and forces through a TripleBuffer, and drops a force that is
-// not renewed within 50 ms.
+// read() and set_force() must not allocate, lock, block or throw. The ticking thread calls them; the owner of
+// the device may call them before that thread starts and after it has ended. The watchdog
+// (haptic/watched_device.h) sets zero force from its own thread. No two threads call these functions at the
+// same time. A driver with a callback thread or a socket exchanges readings and forces through a
+// TripleBuffer, and drops a force that is not renewed within 50 ms.
 //
 // Only SafeDevice (haptic/safe_device.h) calls set_force().
 class Device {
  public:
   virtual ~Device() = default;
 
-  // Constant during the life of the device; passes check_specification().
+  // Returns the specification, which passes check_specification() and does not change during the life of the
+  // device.
   virtual const DeviceSpecification& specification() const = 0;
 
   // Returns the reading for this tick; called once per tick. Returns nothing if there is no current reading:
@@ -109,8 +112,9 @@ class Device {
   // Sets the force on the hand until the next tick. The force is at most the maximum of the specification.
   virtual void set_force(const Vector3& force_n) = 0;
 
-  // Returns true for a device that plays back readings, which were checked when they were recorded. They
-  // reach the simulation unchanged, and the recording contains the proxy resets that faults caused.
+  // Returns true for a device that plays back recorded readings. The readings were checked when they were
+  // recorded, and they reach the simulation unchanged. The recording also contains the proxy resets that
+  // faults caused.
   virtual bool is_playback() const { return false; }
 };
 

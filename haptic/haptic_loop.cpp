@@ -76,8 +76,8 @@ std::string make_notice(const RealTimeGrant& grant) {
          " to /etc/security/limits.conf and log in again";
 }
 
-// Returns the clock of the loop, which also advances while the machine is suspended. Some containers cannot
-// sleep by it.
+// Returns CLOCK_BOOTTIME, which also advances while the machine is suspended. Some containers cannot sleep by
+// this clock; there, returns CLOCK_MONOTONIC.
 clockid_t loop_clock() {
   static const clockid_t clock = [] {
     const timespec past{};
@@ -175,8 +175,9 @@ double DurationHistogram::mean_s() const noexcept {
          nanosecond_s;
 }
 
-// Only the thread of the loop writes the atomic members, except `stopping`, which the owner writes; any
-// thread may read them. All other members are set before start() returns and are constant until stop().
+// The owner writes `started` and `stopping`, and the owner and the watcher write `fifo`. Only the thread of
+// the loop writes the other atomic members and the histograms. Any thread may read all of these. All other
+// members are set before start() returns and are constant until stop().
 struct HapticLoop::State {
   std::function<void(const LoopTick&)> body;
   std::int64_t period_ns = 0;

@@ -5,10 +5,11 @@
 //   ticks      [0]          [1........................]  [4]       [5]
 //                                        ^ dropped    ^ late, but by less than a period
 //
-// The clock also runs while the machine is suspended, so a suspension is a gap like any other.
+// The clock also runs while the machine is suspended, so a suspension is treated like any other delay.
 //
-// A tick that is late by a whole period or more is dropped and never caught up; the next tick receives the
-// number of dropped ticks. The function must not lock, allocate, access files or block in any other way.
+// If the thread is late by one or more whole periods, the ticks of those periods are dropped and never caught
+// up. The next tick receives their number. The function must not lock, allocate, access files or block in any
+// other way.
 #pragma once
 
 #include <array>
@@ -29,26 +30,27 @@ namespace spoonbill {
 std::int64_t boot_time_ns();
 void sleep_until_ns(std::int64_t deadline_ns);
 
-// Requests first-in-first-out scheduling with a higher priority than the haptic thread. For threads that only
-// watch the haptic thread.
+// Requests first-in-first-out scheduling for `thread`, with a higher priority than that of the haptic thread.
+// Meant for threads that only watch the haptic thread.
 void make_ahead_of_haptic_thread(std::thread& thread);
 
-// A lock-free histogram of durations. Exactly one thread calls add(). Any thread may read; values being added
-// may not yet be included.
+// A lock-free histogram of durations. Exactly one thread calls add(). Any thread may call the other
+// functions, whose results may lack a duration that is being added at the same time.
 class DurationHistogram {
  public:
   // Adds a duration. Negative durations count as zero.
   void add(std::int64_t duration_ns) noexcept;
 
-  // Returns the quantile of the added durations for `fraction` (0 to 1), accurate within 1/16; 0 if the
-  // histogram is empty.
+  // Returns the quantile of the added durations for `fraction` (0 to 1), with a relative error below 1/16.
+  // Returns 0 if the histogram is empty.
   double quantile_s(double fraction) const noexcept;
 
   double mean_s() const noexcept;
   std::uint64_t count() const noexcept { return count_.load(std::memory_order_relaxed); }
 
  private:
-  // Sixteen bins for each octave. Below sixteen nanoseconds, one bin for each nanosecond.
+  // The histogram has sixteen bins for each octave. Below sixteen nanoseconds, it has one bin for each
+  // nanosecond.
   static constexpr std::size_t bins_per_octave = 16;
   static constexpr std::size_t bin_count = 61 * bins_per_octave;
 
@@ -62,8 +64,8 @@ class DurationHistogram {
 
 inline constexpr Range<double> loop_period_range_s{1e-4, 1.0};
 
-// Longest run of one tick with first-in-first-out scheduling. A thread whose tick takes longer would keep the
-// whole machine waiting, so it gets ordinary scheduling for the rest of its life.
+// Longest time that a tick may take under first-in-first-out scheduling. A thread whose tick takes longer
+// would keep the whole machine waiting, so it gets ordinary scheduling for the rest of its life.
 inline constexpr double longest_real_time_tick_s = 0.1;
 
 struct LoopSettings {
@@ -80,13 +82,13 @@ struct LoopFigures {
   std::uint64_t ticks = 0;   // completed calls
   std::uint64_t late = 0;    // calls that began more than half a period after their deadline
   std::uint64_t missed = 0;  // dropped periods
-  double rate_hz = 0.0;      // tick rate over the last whole second, or since the start
-  // Quantiles of the delay from the deadline to the start of a tick, including dropped periods; accurate
-  // within 1/16.
+  double rate_hz = 0.0;      // tick rate over the last whole second; before the first, since the start
+  // Quantiles of the delay from the deadline to the start of a tick, including dropped periods. Their
+  // relative error is below 1/16.
   double lateness_p50_s = 0.0;
   double lateness_p99_s = 0.0;
   double lateness_p999_s = 0.0;
-  // Run time of the function.
+  // Mean and 99th percentile of the run time of a call of the function.
   double work_mean_s = 0.0;
   double work_p99_s = 0.0;
   // True while the thread has first-in-first-out scheduling, ahead of every ordinary thread. Becomes false
@@ -96,13 +98,14 @@ struct LoopFigures {
   std::string notice;          // one line to show to the user once; empty if everything was permitted
 };
 
-// The haptic thread, which this object owns. At most one loop of a process should be real-time, because
-// locked memory affects the whole process.
+// Owner of the haptic thread. At most one loop of a process should be real-time, because locked memory
+// affects the whole process.
 class HapticLoop {
  public:
   // Calls `body` on a new thread, with denormal numbers flushed to zero, until stop(). `body` must not throw:
   // an exception ends the program (std::terminate). Errors: a period outside its range, an empty function, a
-  // thread that cannot be started. Refused real-time scheduling is not an error but a notice.
+  // thread that cannot be started. If the system refuses real-time scheduling, the loop runs without it, and
+  // LoopFigures::notice reports this.
   static Result<HapticLoop> start(const LoopSettings& settings, std::function<void(const LoopTick&)> body);
 
   HapticLoop(HapticLoop&&) noexcept;

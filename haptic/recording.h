@@ -10,25 +10,26 @@
 //    "buttons":[...],"missed":[...]}                                                motion (on one line)
 //   {"end":true,"ticks":4300,"state_hash":"fedcba9876543210"}                       last line
 //
-// The last line also has "missed":N if a live recording missed N periods of 1 ms: the session then took N ms
+// The last line also has "missed":N if the live session missed N periods of 1 ms. The session then took N ms
 // longer than its number of ticks.
 //
 // Faults of the device and the program are recorded by their effects, so that a session with faults replays
-// to the same states. Without a valid reading the tool only points (button_hover). A reset of the proxy and
-// the switch of the force are commands.
+// to the same states. Without a valid reading the tool only points (button_hover). Resetting the proxy and
+// switching the force on or off are recorded as commands.
 //
-// Version 1. In a recording whose document has an old version, the commands are converted like the document
-// (old_documents.h); its state hashes are those of the former steps. Lines are in the order of their ticks.
-// Within a tick the order is: state hash, commands, motion. The state hash is that of the simulation after
-// ticks 0 to tick - 1, before any command of this tick. A motion line covers `ticks` readings from `tick` on.
-// It ends at the next multiple of 100, or earlier before a command or the end, so that the same recording
-// always has the same lines.
+// The version of the format is 1. If the document of a recording has an old version, the reader converts the
+// document and the commands (old_documents.h). The replay of such a recording has other states than those
+// whose hashes were recorded. Lines are in the order of their ticks. Within a tick the order is: state hash,
+// commands, motion. The state hash is that of the simulation after ticks 0 to tick - 1, before any command of
+// this tick. A motion line covers `ticks` readings from `tick` on. It ends at the next multiple of 100, or
+// earlier before a command or the end, so that the same recording always has the same lines.
 //
-// dx_nm, dy_nm and dz_nm are the differences of DeviceReading::position_nm to the previous reading (before
-// tick 0: the default reading), dq_e9 those of orientation_e9 (x, y, z, w). Each field is omitted if all its
-// numbers are zero. `buttons` lists the buttons of each reading, not their differences, and is omitted while
-// they do not change. `missed` lists DeviceReading::missed and is omitted if all are zero, as in lock-step
-// recordings and in recordings older than this field. The hash of the last line is that of the final state.
+// dx_nm, dy_nm and dz_nm are the differences between DeviceReading::position_nm and that of the previous
+// reading; before tick 0, that is the default reading. dq_e9 contains the differences of orientation_e9 (x,
+// y, z, w). Each field is omitted if all its numbers are zero. `buttons` lists the buttons of each reading,
+// not their differences, and is omitted while they do not change. `missed` lists DeviceReading::missed. It is
+// omitted if all its numbers are zero, as in recordings that were not made live and in recordings older than
+// this field. The hash of the last line is that of the final state.
 //
 // device: name, maximum_force_n, maximum_stiffness_n_per_m, maximum_damping_n_s_per_m, workspace_radius_m,
 // position_resolution_m, senses_orientation, actuates_torque. Optional, with the defaults of
@@ -83,21 +84,22 @@ struct Recording {
   std::vector<TimedCommand> commands;   // in order; commands at tick readings.size() come after all ticks
   std::vector<Checkpoint> checkpoints;
   std::optional<Checkpoint> end;  // empty if the recording is truncated
-  std::uint64_t missed = 0;       // periods of 1 ms without a tick while it was recorded live
+  std::uint64_t missed = 0;       // periods of 1 ms without a tick during the live session
   std::string notice;             // one line for the user; empty if the recording is complete
 };
 
 // Reads a recording. A recording that is truncated anywhere after its first line is read up to the cut. Any
-// other deviation from the format above is an error that names line and field. So is exceeding a limit: 10
-// million ticks, 1 GiB, positions within 10 m, unit quaternions.
+// other deviation from the format above is an error that names line and field. A recording is also refused if
+// it is longer than 10 million ticks or 1 GiB, or contains a position beyond 10 m or an orientation that is
+// not a unit quaternion.
 Result<Recording> read_recording(const std::filesystem::path& file);
 Result<Recording> read_recording(std::istream& in, const std::string& source);
 
 // Writes a recording while the session runs. Each complete line is passed to the operating system at once, so
 // that a killed program loses at most 100 ticks.
 //
-// One owner, never the haptic thread: writing may block. After an error, every later call returns the same
-// error.
+// A writer has one owner, which must not be the haptic thread, because writing may block. After an error,
+// every later call returns the same error.
 //
 //   while (...) {
 //     if (writer.checkpoint_due()) writer.checkpoint(simulation.state_hash());
@@ -114,10 +116,11 @@ class RecordingWriter {
   static Result<RecordingWriter> create(const std::filesystem::path& file, const RecordingHeader& header,
                                         const OutputOptions& options = {});
 
-  // One line for the user if a crash left a FILE.part, which create() has renamed; otherwise empty.
+  // Returns one line for the user if an earlier recording had left a FILE.part, which create() has renamed.
+  // Otherwise returns an empty string.
   const std::string& notice() const;
 
-  // Name of the file to which the recording is written until commit().
+  // Returns the name of the file to which the recording is written until commit().
   const std::filesystem::path& written_file() const;
 
   RecordingWriter(RecordingWriter&&) noexcept;
@@ -132,7 +135,8 @@ class RecordingWriter {
   bool checkpoint_due() const;
   Status checkpoint(std::uint64_t state_hash);
 
-  // Writes a command that applies before the next tick: an object with a text "command" and without "tick".
+  // Writes a command that applies before the next tick. The command is a JSON object with a text "command"
+  // and without "tick".
   Status command(const Json& command);
 
   Status reading(const DeviceReading& reading);

@@ -11,7 +11,8 @@ namespace spoonbill {
 
 namespace {
 
-// Largest difference of two valid positions, far above any difference of two orientations.
+// Largest difference between coordinates of two valid positions. Differences between valid orientations are
+// far smaller.
 constexpr std::int64_t delta_limit = 2 * reading_limit_nm;
 
 constexpr const char* position_fields[3] = {"dx_nm", "dy_nm", "dz_nm"};
@@ -34,7 +35,7 @@ bool all_zero(const Json& list) {
   return std::all_of(list.begin(), list.end(), [](const Json& item) { return item == 0; });
 }
 
-// Returns the running sums of a list of differences, starting from `value`. Empty after an error.
+// Returns the running sums of a list of differences, starting from `value`; an empty list after an error.
 std::vector<std::int64_t> read_sums(FieldReader& reader, const std::string& field, const Json& list,
                                     std::int64_t value, std::int64_t limit) {
   std::vector<std::int64_t> sums;

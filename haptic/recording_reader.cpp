@@ -38,8 +38,8 @@ class LineReader {
  public:
   LineReader(std::istream& in, std::string source, std::size_t bytes_limit);
 
-  // Returns the next line, or nothing at the end of the stream. Errors: a longer line, a stream longer than
-  // the limit, a read error.
+  // Returns the next line, or nothing at the end of the stream. Errors: a line or a stream that exceeds its
+  // limit, a read error.
   Result<std::optional<Line>> next(std::size_t line_bytes_limit);
 
  private:
@@ -204,7 +204,8 @@ Result<ReadHeader> read_header(const Line& line, const std::string& source) {
   auto header = header_from_json(json.value(), location);
   if (!header.ok()) return header.error();
   ReadHeader read{std::move(header).value(), {}};
-  // The conversion of an old document gives the tool as many substeps as it had iterations.
+  // A converted tool has one substep for each of its former iterations, so its `substeps` is the number of
+  // iterations.
   if (is_old_document(json.value()["document"])) {
     read.old_commands.emplace(read.header.document.scene.tool.substeps);
   }

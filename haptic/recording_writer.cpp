@@ -24,7 +24,7 @@ struct RecordingWriter::State {
   Status failure;  // the first error, which persists
   bool finished = false;
   std::string notice;
-  // Locked by every member function, because the thread that handles signals may write `pending`.
+  // Locked by every member function that writes, because the thread that handles signals may call leave().
   std::timed_mutex mutex;
   UnfinishedFile unfinished;  // writes the pending readings when a signal ends the process
 
@@ -47,7 +47,8 @@ struct RecordingWriter::State {
   }
 
   // Writes the pending readings and returns a line for the user that names the file. Called by the thread
-  // that ends the process. If the owner is writing at the same time, waits up to 200 ms for it.
+  // that ends the process. If the owner is writing at the same time, waits for it up to 200 ms; after that,
+  // the pending readings are not written.
   std::string leave() {
     const std::unique_lock lock(mutex, std::chrono::milliseconds(200));
     if (lock.owns_lock() && failure.ok() && !finished) [[maybe_unused]]
@@ -56,7 +57,8 @@ struct RecordingWriter::State {
            out.written_file().string() + ", which can be replayed";
   }
 
-  // Returns an error if the recording has failed or is finished. Every member function calls it first.
+  // Returns an error if the recording has failed or is finished. Called first by each function that adds a
+  // line.
   Status ready() {
     if (failure.ok() && finished)
       return fail(ErrorCode::internal, "the recording is finished; nothing can be added");
@@ -74,8 +76,8 @@ Status check_header(const Json& header, const std::string& name) {
   return read_back.ok() ? Status() : Status(read_back.error());
 }
 
-// Checks that the line can be read back: numbers must be finite, and nesting must not be deeper than the
-// reader accepts.
+// Checks that the line is not too long and can be read back: numbers must be finite, and nesting must not be
+// deeper than the reader accepts.
 Status check_line(const Json& line, const std::string& source) {
   const std::string text = json_to_line(line);
   if (text.size() + 1 >= recording_line_bytes_limit) {

@@ -51,7 +51,7 @@ std::uint32_t find_faults(const SafetyState& state, const DeviceSpecification& s
 constexpr std::uint32_t faults_with_proxy_reset =
     safety_flag_not_finite | safety_flag_stalled | safety_flag_jumped;
 
-// Resets the chain, apart from the position and the ticks, and returns zero force.
+// Resets the chain, apart from the position of the hand and the history of ticks, and returns zero force.
 SafeForce cut(SafetyState& state, const SafetyInput& input, std::uint32_t faults) {
   const TickHistory ticks = state.ticks;
   state = SafetyState{};
@@ -87,7 +87,7 @@ void ramp(SafetyState& state, const DeviceSpecification& specification, SafeForc
   }
 }
 
-// Returns the requested force within the limits on force, speed and workspace, ramped in.
+// Returns the requested force, ramped in and reduced by the limits on force, speed and workspace.
 Vector3 limit_force(const SafetyState& state, const DeviceSpecification& specification,
                     const SafetyInput& input, double speed_m_per_s, SafeForce& safe) {
   const double limit_n = specification.maximum_force_n;

@@ -1,24 +1,24 @@
 // The safety chain between the force that the coupling requests and the hand. It keeps faults of the program
 // from injuring the hand.
 //
-// SafeDevice is the only code that sets the force of a device, both live and in lock-step, so no force
+// SafeDevice is the only code that sets the force of a device, in a live session and in a replay, so no force
 // reaches a hand unchecked. make_safe() applies these steps in every tick:
 //   1. A fault gives zero force within that tick: a value that is not finite, a stale simulation, a stall, a
 //      loop that misses most of its ticks, a hand that moves impossibly fast, a released dead-man button, a
 //      device without a valid reading. A force that the user has switched off counts as a fault.
 //   2. The force stays off until the requested force has been small for some ticks, so that a hand that
 //      starts inside the material is not thrown out; then the force ramps in.
-//   3. Its norm is limited to the maximum of the device.
-//   4. It fades for a hand that is too fast or outside the workspace.
-//   5. Its change per tick is limited.
+//   3. The norm of the force is limited to the maximum of the device.
+//   4. The force fades if the hand is too fast or outside the workspace.
+//   5. The change of the force per tick is limited.
 //   6. A requested force that vibrates faster than a hand moves (haptic/vibration.h) is cut. Vibration is
 //      detected before the limits of steps 3 to 5, which would hide it.
-// After a fault or a cut, the chain restarts at step 2. Only a cut may change the force by more than the
-// limit of step 5.
+// After a fault of step 1 or a vibration of step 6, the chain restarts at step 2. Only these two may change
+// the force by more than the limit of step 5.
 //
-// The order of the steps and the quiet force follow cGenericTool of CHAI3D; the other limits belong to the
-// device. The state hash excludes the chain, because the coupling (haptic/tick.h), not the chain, moves the
-// material.
+// The order of the steps and the quiet force follow cGenericTool of CHAI3D; the other limits are properties
+// of the device. The state hash excludes the state of the chain, because the coupling (haptic/tick.h), not
+// the chain, moves the material.
 #pragma once
 
 #include <cstdint>
@@ -35,30 +35,30 @@ namespace spoonbill {
 enum SafetyFlag : std::uint32_t {
   safety_flag_none = 0,
   safety_flag_cut = 1u << 0,  // a fault made the force zero in this tick
-  // Faults; each stays set until the full force is back.
+  // Faults. The flag of a fault stays set until the force is back at full strength.
   safety_flag_not_finite = 1u << 1,
   safety_flag_stale = 1u << 2,
   safety_flag_stalled = 1u << 3,
   safety_flag_buzzing = 1u << 4,
   safety_flag_dead_man = 1u << 5,
-  // Conditions of this tick.
+  // Conditions of the current tick, which are not faults.
   safety_flag_waiting = 1u << 6,
   safety_flag_ramping = 1u << 7,
   safety_flag_force_limited = 1u << 8,
   safety_flag_fast = 1u << 9,
   safety_flag_outside = 1u << 10,
   safety_flag_change_limited = 1u << 11,
-  // Further faults; each stays set until the full force is back.
+  // Further faults. The flag of a fault stays set until the force is back at full strength.
   safety_flag_no_device = 1u << 12,
   safety_flag_jumped = 1u << 13,
   safety_flag_off = 1u << 14,
   safety_flag_slow = 1u << 15,
-  // Condition of this tick: the stiffness of the coupling is reduced (haptic/tick.h).
+  // Condition of the current tick: the stiffness of the coupling is reduced (haptic/tick.h).
   safety_flag_softened = 1u << 16,
 };
 
-// Number of ticks between two calls that counts as a stall. In that time a hand moves by several millimetres,
-// so the force is no longer valid. Shorter gaps only lower the speed that is computed from two positions.
+// Number of ticks between two calls of make_safe() from which the gap counts as a stall. In that time a hand
+// moves by several millimetres, so the force is no longer valid.
 inline constexpr std::uint64_t stall_ticks = 10;
 
 // Tick rate below which the force is cut, counted over the last 100 ms.
@@ -98,7 +98,7 @@ struct SafetyState {
   double gain = 0.0;                  // progress of the ramp, 0 to 1
   std::uint32_t cause = 0;            // faults that caused the last restart
   Vector3 force_n = Vector3::Zero();  // force of the last tick
-  bool position_known = false;        // false without a valid position in the last tick
+  bool position_known = false;        // true if the last tick had a valid position
   Vector3 position_m = Vector3::Zero();
   VibrationState vibration;  // history of the requested force since the chain engaged
   TickHistory ticks;         // history of the ticks since the last stall
@@ -124,22 +124,22 @@ std::string safety_text(std::uint32_t flags);
 // reset to the position of the hand, and the force returns as after any other fault. After a stall the proxy
 // is reset in the same tick.
 //
-// A recording contains these replaced readings and proxy resets. The readings of a playback device are
+// A recording contains the replacement readings and the proxy resets. The readings of a playback device are
 // therefore not changed again.
 //
-// One owner, the owner of the device. Does not allocate, lock or read a clock.
+// Must have the same owner as the device. Does not allocate, lock or read a clock.
 class SafeDevice {
  public:
-  // The device must outlive this object. All limits come from its specification, which must pass
+  // The device must outlive this object. All limits come from the device's specification, which must pass
   // check_specification(). The workspace has the radius of the specification and is centred on the first
-  // valid reading. Until the device has answered for the first time, read() returns `last`, which must be
-  // valid.
+  // valid reading. Until the device has answered for the first time, read() returns the pose of `last`, which
+  // must be valid.
   explicit SafeDevice(Device& device, const DeviceReading& last = {});
   ~SafeDevice();  // leaves the device without force
   SafeDevice(const SafeDevice&) = delete;
   SafeDevice& operator=(const SafeDevice&) = delete;
 
-  // Moves the workspace, in scene coordinates, or resizes it.
+  // Moves or resizes the workspace. The centre is in scene coordinates.
   void set_workspace_centre(const Vector3& centre_m) {
     workspace_centre_m_ = centre_m;
     state_.position_known = false;

@@ -15,7 +15,7 @@ namespace spoonbill {
 
 namespace {
 
-// Returns the minimum-jerk fraction at time t in 0 to 1: starts and ends at rest without a jump in
+// Returns the minimum-jerk curve at time t, from 0 to 1. The curve starts and ends at rest, without a jump in
 // acceleration.
 double ease(double t) {
   return t * t * t * (10.0 + t * (6.0 * t - 15.0));

@@ -17,8 +17,9 @@
 // Steps run one after another; start_mm must be the first motion. Commands and grips take no time and happen
 // at the end of the step before them. A step with "at_s" waits until that time. A move starts and ends at
 // rest (minimum jerk). "turn" and "turn_to" are rotations from the world axes, not from the previous
-// orientation. Times are whole milliseconds. Commands with former fields are converted (see old_documents.h)
-// with the number of iterations of the script's own tool.
+// orientation. Times are whole milliseconds. Commands with fields of old documents are converted (see
+// old_documents.h). The conversion uses the number of iterations that an earlier command of the script gave
+// the tool, or 6 if there is none.
 #pragma once
 
 #include <cstdint>

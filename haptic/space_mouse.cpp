@@ -37,7 +37,8 @@ bool daemon_has_gone() {
   return count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR);
 }
 
-// Returns 0 within the dead zone and grows from there with the square to 1 or -1.
+// Returns 0 within the dead zone. Beyond it, the result has the sign of the displacement, and its magnitude
+// grows with the square of the distance from the dead zone, up to 1.
 double shaped(double displacement, double dead_zone) {
   const double beyond = (std::abs(displacement) - dead_zone) / (1.0 - dead_zone);
   return beyond > 0.0 ? std::copysign(std::min(beyond * beyond, 1.0), displacement) : 0.0;

@@ -1,5 +1,5 @@
-// A 3Dconnexion SpaceMouse: a cap that a hand pushes and turns in six directions, without force feedback.
-// Its motion is read with libspnav from the daemon spacenavd.
+// A 3Dconnexion SpaceMouse: a cap that a hand pushes and turns in six degrees of freedom, without force
+// feedback. Its motion is read with libspnav from the daemon spacenavd.
 #pragma once
 
 #include <cstdint>
@@ -61,7 +61,7 @@ struct Steering {
   double dead_zone = 0.08;           // displacements below this count as zero, because hands rest on the cap
 };
 
-// Returns the target `elapsed_s` later. Beyond the dead zone the speed grows with the square of the
+// Returns the target as it is after `elapsed_s`. Beyond the dead zone the speed grows with the square of the
 // displacement, for fine work near rest. Rotations are about the world axes. The buttons of the motion
 // replace those of the target. The time is clamped to the range from 0 to 0.1 s, because the program may have
 // paused.

@@ -100,7 +100,7 @@ TickResult couple(CouplingState& coupling, const DeviceSpecification& specificat
 
 TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpecification& specification,
                 const DeviceReading& reading) {
-  const DenormalsFlushed flushed;  // decaying forces must be the same on every thread
+  const DenormalsFlushed flushed;  // makes decaying forces the same on every thread
   scale_stiffness(coupling, specification, reading.missed);
   const double stiffness = coupling.stiffness_scale * specification.maximum_stiffness_n_per_m;
   const double scale = simulation.scene().sculpting.force_scale;

@@ -1,7 +1,7 @@
 // One tick of touch: takes a device reading, advances the simulation and computes the force.
 //
-// A pure function of its arguments: it does not allocate, lock, read a clock or throw. The 1 kHz thread and
-// the lock-step replay call the same code and get the same bits.
+// tick() depends only on its arguments, and does not allocate, lock, read a clock or throw. The 1 kHz thread
+// and a replay call the same code and get the same bits.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ struct CouplingState {
   TickHistory ticks;
   double stiffness_scale = 1.0;
   double length_m = 0.0;    // distance to the proxy in the last tick
-  double withheld_j = 0.0;  // energy of the spring that its softening has withheld from the hand
+  double withheld_j = 0.0;  // energy that the reduction of the stiffness has withheld from the hand
 };
 
 struct TickResult {

@@ -9,11 +9,12 @@
 
 namespace spoonbill {
 
-// Ticks of the last 100 ms, one bit per millisecond. Plain data; starts as if no tick had been missed.
+// Ticks of the last 100 ms, and of the 10 ms before them, with one bit per millisecond. Plain data; starts as
+// if no tick had been missed.
 class TickHistory {
  public:
   static constexpr std::size_t window_ms = 100;
-  // Longest hold (time between two ticks) that is measured; a longer hold is a stall.
+  // Longest hold (time between two ticks) that is measured. A hold of this length or longer is a stall.
   static constexpr std::size_t longest_hold_ms = 10;
 
   TickHistory() { ticked_.set(); }
@@ -25,7 +26,7 @@ class TickHistory {
     ticked_.set(0);
   }
 
-  // Returns the longest time between two ticks, in milliseconds, of which the later tick is within the
+  // Returns the longest time, in milliseconds, between two successive ticks of which the later is within the
   // window. It is 1 if no tick was missed, and at most longest_hold_ms.
   std::size_t find_longest_hold() const {
     std::size_t longest = 1;
@@ -58,7 +59,7 @@ class TickHistory {
     return mask;
   }
 
-  Bits ticked_;  // bit n: a tick n milliseconds ago
+  Bits ticked_;  // bit n is set if a tick ran n milliseconds ago
 };
 
 }  // namespace spoonbill

@@ -31,8 +31,8 @@ const VibrationState::Sample& at(const VibrationState& state, int ticks_ago) {
   return state.samples[(state.count - 1 - static_cast<std::uint64_t>(ticks_ago)) % VibrationState::capacity];
 }
 
-// Returns the mismatch below which a period counts as repeated: at most that of a sine of `slowest_hz`. For a
-// phase error x, that mismatch is 1 - cos(x), approximated by x^2 / 2.
+// Returns the mismatch below which the force counts as repeating with this period. It is at most the mismatch
+// of a sine of `slowest_hz`, which is 1 - cos(x) for the phase error x and is approximated by x^2 / 2.
 double mismatch_limit(int period) {
   const double phase_error = 2.0 * std::numbers::pi * (1.0 - period * tick_s * slowest_hz);
   return std::min(largest_mismatch, 0.5 * phase_error * phase_error);

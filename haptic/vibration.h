@@ -1,7 +1,7 @@
 // Detection of vibration in a requested force, by comparing the force with itself one period earlier.
 //
 // For each period of L ticks, from 2 to 66, the force is compared with itself L ticks before. The comparison
-// covers n periods, at least three and at least 75 ticks. With the deviation a(t) of the force f(t) from its
+// covers at least three periods and at least 75 ticks. With the deviation a(t) of the force f(t) from its
 // mean over the period that contains t, the mismatch is
 //
 //   d(L) = mean |f(t) - f(t - L)|^2 / (2 mean |a(t)|^2)
@@ -16,10 +16,10 @@
 //   - strong: the root mean square of a(t) exceeds the quiet force;
 //   - lasting: the newest and the oldest third of the periods each have at least 0.7 of the mean |a(t)|^2,
 //     unlike the first ticks of a pulse and the bounces after a tap, which die down;
-//   - not a pattern that the hand crosses, such as ridges, or one ridge again and again with a tremor: the
-//     hand is within 2.5 mm of its position a period before (root mean square). This condition does not apply
-//     if the root mean square of a(t) exceeds 0.6 of the maximum force. Such a force reverses, because a
-//     contact only pushes and its a(t) reaches at most half the maximum.
+//   - not caused by the hand that moves across a pattern, such as ridges, or trembles over one ridge: the
+//     root mean square of the hand's displacement over one period is below 2.5 mm. The force of a contact
+//     only pushes, so the root mean square of its a(t) is at most half of the maximum force. If it exceeds
+//     0.6 of the maximum force, the force reverses, and this condition does not apply.
 //
 // A pulse does not repeat. A steady vibration is recognised within 150 ms of its first tick from 22 Hz on and
 // within 100 ms from 50 Hz on; between 16 and 22 Hz it takes three periods.
@@ -49,9 +49,10 @@ struct VibrationLimits {
   double maximum_force_n = 3.3;  // largest force of the device
 };
 
-// Adds the force that the coupling requests in this tick, before any limit, and the position of the hand, and
-// returns whether the force vibrates. Both must be finite. `dropped_ticks` is the number of ticks before this
-// one without a force. They count as ticks with the last force, at most `capacity` times.
+// Adds the force that the coupling requests in this tick, before any limit, and the position of the hand.
+// Returns true if the force vibrates. Force and position must be finite. `dropped_ticks` is the number of
+// ticks without a force before this one. The last force counts once for each of them, at most `capacity`
+// times.
 //
 // Tries an eighth of the periods in each tick, so that a tick costs a few microseconds. A vibration is
 // therefore recognised at most 7 ticks late. Does not allocate, lock, read a clock or throw.

@@ -40,8 +40,8 @@ struct HandTarget {
 
 bool is_finite(const HandTarget& target);
 
-// A handle of known mass, pulled toward a target by a simulated hand and pushed by the force. Because the
-// force moves the handle, passivity can be tested, and recordings contain the resulting motion.
+// A handle of known mass. A simulated hand pulls it toward a target, and the force of set_force() pushes it.
+// Because the force moves the handle, passivity can be tested, and recordings contain the resulting motion.
 //
 // Uses basic arithmetic only, no functions of the mathematics library, so that the same targets and forces
 // give the same bits on every machine. The orientation follows the target at once: forces exert no torque.
@@ -132,7 +132,7 @@ class TargetFollower {
   // Starts moving toward `target`. A target that is not finite is ignored.
   void aim(const HandTarget& target);
 
-  // Returns the target of the next tick.
+  // Advances by one tick and returns the target of that tick.
   HandTarget step();
 
  private:
@@ -178,7 +178,7 @@ class InputSource {
   virtual HandTarget next_target(const HandTarget& current, double elapsed_s) = 0;
 };
 
-// Chooses among input sources: the one used last leads the hand. One owner: the drawing thread.
+// Chooses among input sources: the source used last leads the hand. One owner: the drawing thread.
 class HandInputs {
  public:
   // `leader` leads the hand until another source is used. Every source must outlive its last update().

@@ -52,7 +52,8 @@ class WatchedDevice : public Device {
   void stop();
 
  private:
-  // Exclusive use of the device for the life of this object; empty if the other thread is using the device.
+  // Claims exclusive use of the device until destruction. Converts to false if the other thread is using the
+  // device.
   class Claim {
    public:
     explicit Claim(std::atomic<bool>& busy)

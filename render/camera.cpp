@@ -11,8 +11,8 @@ namespace {
 
 constexpr double filled_fraction = 2.0 / 3.0;
 
-// Depth range relative to the distance. It includes a tool near the eye and the ground far behind the model,
-// with depth steps below a micrometre at arm's length.
+// Depth range, as multiples of the camera's distance from its target. It includes a tool near the eye and the
+// ground far behind the model, with depth steps below a micrometre at arm's length.
 constexpr double near_ratio = 0.05;
 constexpr double far_ratio = 20.0;
 
@@ -25,8 +25,8 @@ Eigen::Vector2d free_centre(const Viewport& viewport) {
   return {r.x + 0.5 * r.width, r.y + 0.5 * r.height};
 }
 
-// Returns the smallest distance at which every corner is within a rectangle at the centre of the free
-// rectangle. The sides of this rectangle are filled_fraction of those of the free rectangle.
+// Returns the smallest distance at which every corner of the box is within a rectangle at the centre of the
+// free rectangle. The sides of this rectangle are filled_fraction of those of the free rectangle.
 double fitting_distance(const Camera& camera, const Box& box, const Viewport& viewport) {
   const Eigen::Matrix3d axes = eye_axes(camera);
   const double focal = focal_px(camera, viewport);
@@ -42,8 +42,8 @@ double fitting_distance(const Camera& camera, const Box& box, const Viewport& vi
   return distance;
 }
 
-// Returns the offset, in pixels, of the centre of the projected corners from the centre of the free
-// rectangle.
+// Returns the offset, in pixels, of the centre of the projected corners of the box from the centre of the
+// free rectangle.
 Eigen::Vector2d projected_offset(const Camera& camera, const Box& box, const Viewport& viewport) {
   Box2 pixels;
   for (int i = 0; i < 8; ++i) {
@@ -107,8 +107,8 @@ Camera frame(const Camera& camera, const Box& box, const Viewport& viewport) {
   Camera framed = camera;
   framed.target_m = box.centre();
   const double smallest_distance = 1e-3;
-  // The centre of the projection moves with the distance, because perspective enlarges the near side. Twelve
-  // iterations converge below a hundredth of a pixel.
+  // The centre of the projected box moves with the distance, because perspective enlarges the near side.
+  // Twelve iterations converge below a hundredth of a pixel.
   for (int round = 0; round < 12; ++round) {
     framed.distance_m = std::max(smallest_distance, fitting_distance(framed, box, viewport));
     const Eigen::Vector2d offset =

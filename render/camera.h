@@ -10,7 +10,7 @@
 namespace spoonbill {
 
 // A camera that looks at a target from a distance. At yaw = pitch = 0 the eye is in front (+z) and looks
-// along -z; yaw turns it around y toward +x, pitch raises it.
+// along -z. Yaw turns the eye around y toward +x, and pitch raises the eye.
 struct Camera {
   Vector3 target_m = Vector3::Zero();
   double distance_m = 0.3;
@@ -68,7 +68,8 @@ struct Ray {
 };
 Ray ray_through(const Camera& camera, const Viewport& viewport, const Eigen::Vector2d& pixel);
 
-// Returns the point of the horizontal plane at `height_m` that a pixel shows; empty above the horizon.
+// Returns the point of the horizontal plane at `height_m` that a pixel shows; empty if the pixel does not
+// show it.
 std::optional<Vector3> point_on_height(const Camera& camera, const Viewport& viewport,
                                        const Eigen::Vector2d& pixel, double height_m);
 

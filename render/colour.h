@@ -33,10 +33,10 @@ inline constexpr Colour symmetry_plane{38, 92, 168, 210};  // drawn dash-dotted
 inline constexpr Colour tool{52, 118, 204};
 inline constexpr Colour ground_line{70, 78, 88};
 inline constexpr Colour scale_bar{48, 54, 62};
-inline constexpr Colour hull{96, 58, 160, 170};             // drawn as thin lines from point to point
+inline constexpr Colour hull{96, 58, 160, 170};             // drawn as thin lines
 inline constexpr Colour parameter_range{0, 124, 132};       // drawn as thick borders on the surface
 inline constexpr Colour active_sphere{178, 34, 116};        // drawn as translucent shells
-inline constexpr Colour active_second_sphere{20, 92, 168};  // drawn as shells of the second surface
+inline constexpr Colour active_second_sphere{20, 92, 168};  // drawn as shells, for a second surface
 inline constexpr Colour rejected_sphere{92, 100, 112, 90};  // drawn as faint shells
 inline constexpr Colour active_triangle{246, 196, 24, 205};
 inline constexpr Colour triangle_edge{120, 84, 0};
@@ -48,14 +48,14 @@ inline constexpr Colour text{38, 43, 50};
 
 // The look of a material. Affects drawing only, not the physics.
 struct SurfaceLook {
-  Eigen::Vector3f base_colour = {0.5f, 0.5f, 0.5f};  // linear reflectance; for metals the tint of the mirror
-  float roughness = 0.6f;                            // 0 mirror .. 1 chalk
+  Eigen::Vector3f base_colour = {0.5f, 0.5f, 0.5f};  // linear reflectance; metals: tint of the reflection
+  float roughness = 0.6f;                            // 0: mirror, 1: chalk
   float metalness = 0.0f;                            // 0 or 1
-  float translucency = 0.0f;                         // 0 opaque .. 1 clear
+  float translucency = 0.0f;                         // 0: opaque, 1: clear
 };
 
-// Returns the look of the first known word in the material's name ("modelling-clay", "steel-304"). Other
-// names get a neutral matt grey.
+// Returns the look of the first word in the table of known words that the material's name contains
+// ("modelling-clay", "steel-304"). Upper and lower case are equal. Other names get a neutral matt grey.
 SurfaceLook find_material_look(std::string_view name);
 
 }  // namespace spoonbill

@@ -62,7 +62,8 @@ void PngEncoder::filter(const Image& image, int channels) {
 
 // Compresses at level 1; higher levels take longer and save one per cent.
 Result<std::size_t> PngEncoder::compress() {
-  // Incompressible data is stored in blocks of up to 65535 bytes with five bytes of header each.
+  // The buffer must also hold incompressible rows. They are stored in blocks of up to 65535 bytes, each with
+  // a header of five bytes.
   constexpr std::size_t zlib_wrapping = 64;
   compressed_.resize(filtered_.size() + filtered_.size() / 4096 + zlib_wrapping);
   isal_zstream stream;

@@ -1,7 +1,7 @@
 // Draws the Dear ImGui interface in any GL context.
 //
-// The packaged ImGui backend loads its functions from libGL, which an offscreen context does not use.
-// Therefore it is not used here. The program owns the ImGui context; this pass does not access it.
+// The packaged ImGui backend is not used: it loads its functions from libGL, which an offscreen context does
+// not use. The program owns the ImGui context; this pass does not access it.
 #pragma once
 
 #include <imgui.h>

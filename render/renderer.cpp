@@ -20,8 +20,8 @@ namespace {
 
 constexpr std::size_t font_bytes_limit = std::size_t{256} << 20;
 
-// Character ranges: Latin-1, Greek, general punctuation, superscripts, arrows and mathematical signs. ImGui
-// stores the pointer.
+// Character ranges: Latin-1, Greek, general punctuation, superscripts, arrows and mathematical signs. The
+// array must persist, because ImGui stores a pointer to it.
 constexpr ImWchar glyph_ranges[] = {0x0020, 0x00ff, 0x0370, 0x03ff, 0x2010, 0x2030, 0x2070, 0x209f,
                                     0x2190, 0x2194, 0x2212, 0x2212, 0x2248, 0x2265, 0};
 
@@ -29,7 +29,7 @@ ImFont* add_size(ImFontAtlas& atlas, const std::string& file, float size_px) {
   ImFontConfig config;
   config.OversampleH = 2;
   config.OversampleV = 1;
-  // The atlas reads the file when it is built, after this function has returned, so it owns a copy.
+  // The atlas gets a copy of the file, because it reads the file only after this function has returned.
   void* copy = IM_ALLOC(file.size());
   std::memcpy(copy, file.data(), file.size());
   return atlas.AddFontFromMemoryTTF(copy, static_cast<int>(file.size()), size_px, &config, glyph_ranges);

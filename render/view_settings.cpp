@@ -15,9 +15,9 @@ namespace {
 constexpr int late_weight = 2;
 constexpr int late_limit = 12;
 
-// Largest time of a frame, as a fraction of the available time, at which the next better quality is tried; by
-// index of the current quality. Samples and shadow increase the cost by half to twice, fine tessellation by
-// less.
+// A frame has spare capacity if its time is at most this fraction of the available time. Entry i is for the
+// quality with number i. Multisampling and shadows multiply the time of a frame by 1.5 to 2 each, and fine
+// tessellation multiplies it by less.
 constexpr std::array<double, 4> spare_fraction = {0.0, 0.45, 0.65, 0.65};
 
 constexpr int minimum_patience_frames = 120;   // two seconds; the initial value

@@ -60,8 +60,8 @@ double ground_below(const Box& model);
 // Drawing qualities, from best to worst.
 enum class FrameQuality { full, no_samples, no_shadow, coarse };
 
-// Reduces the drawing quality to hold the frame rate. A pure policy on measured frame times: it reads no
-// clock. One owner: the drawing thread.
+// Reduces the drawing quality to hold the frame rate. Its decisions depend only on the times that it
+// receives; it reads no clock. One owner: the drawing thread.
 //
 //   FrameBudget budget;
 //   budget.apply(settings);                  // before each frame

@@ -1,6 +1,6 @@
 // main() of the test programs. If SPOONBILL_CASE_REPORT names a file, each case appends a line to it when it
-// starts and another when it has ended. If the process dies during a case, the file therefore shows which
-// one; tests/run_suite reads it.
+// starts and another line when it has ended. If the process dies during a case, the file therefore shows the
+// name of that case. tests/run_suite reads the file.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -42,7 +42,8 @@ class CaseReport final : public testing::EmptyTestEventListener {
   }
 
  private:
-  // Writes the line in one call: a crash could lose a buffer, or a forked child could write it twice.
+  // Writes the line in one call, without a buffer: a crash could lose a buffered line, and a forked child
+  // could write it a second time.
   void write_line(const char* verdict, double seconds, const testing::TestInfo& test) const {
     if (file_ < 0 || getpid() != owner_) return;
     const std::string line = std::string(verdict) + " " + std::to_string(seconds) + " " +

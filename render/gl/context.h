@@ -70,8 +70,8 @@ class OsmesaContext final : public GlContext {
 // A shared library opened by name when it is needed, not at program start. OSMesa depends on LLVM, whose
 // relocations alone take longer than most commands of the program.
 //
-// The library stays open until the process ends, because drivers do not support unloading and reopening is
-// free. Usable from any thread.
+// The library stays open until the process ends: drivers do not support unloading, and opening the library
+// again costs nothing. May be used from any thread.
 class SharedLibrary {
  public:
   // Opens a library. `file` is the name for the dynamic linker ("libOSMesa.so.8") and `package` the Debian

@@ -25,9 +25,9 @@ namespace spoonbill {
 class GlfwWindow final : public GlContext {
  public:
   // Makes a window that is hidden until show(), so that no empty frame appears. Width and height, 1 to 16384,
-  // are for a display of ordinary density: at scale 2 the window gets twice as many pixels. The context is
-  // not current yet. Errors, with the remedy: no display, a display without OpenGL 3.3 core, a second window,
-  // invalid sizes.
+  // are for a display of ordinary density: at scale 2 the window gets twice as many pixels along each side.
+  // The context is not current yet. Errors, with the remedy: no display, a display without OpenGL 3.3 core, a
+  // second window, invalid sizes.
   static Result<std::unique_ptr<GlfwWindow>> make(int width, int height, const std::string& title);
 
   ~GlfwWindow() override;
@@ -46,15 +46,15 @@ class GlfwWindow final : public GlContext {
   // Shows the frame and waits for the next refresh of the display if the driver can. Requires make_current().
   void swap() override;
 
-  // Size of the window in screen coordinates, which are also the unit of the pointer's position. On X11 they
-  // are pixels, but not everywhere.
+  // Size of the window in screen coordinates, which are also the unit of the pointer's position. On X11
+  // screen coordinates are pixels; on other systems they may differ from pixels.
   int width() const;
   int height() const;
   // Resizes the window, in screen coordinates. The display may delay or refuse the change.
   void resize(int width, int height);
 
   // Returns the number of display pixels along one pixel of the interface: 1 on an ordinary display, 2 on a
-  // dense one. Changes when the window moves to another display.
+  // dense display. Changes when the window moves to another display.
   double scale() const;
 
   void show();

@@ -100,7 +100,7 @@ struct GlFunctions {
 Result<GlFunctions> load_gl_functions(const GlContext& context);
 
 // Owns a GL object and deletes it in the destructor, when the context must be current. Movable, not copyable.
-// The function table must outlive it.
+// The function table must outlive the handle.
 class GlHandle {
  public:
   using Destroy = void (*)(const GlFunctions& gl, GLuint id);
@@ -166,7 +166,8 @@ class Program {
 };
 
 enum class Depth { off, test, test_and_write };
-enum class Blend { off, premultiplied, maximum };  // premultiplied: source over; maximum: per channel
+// `premultiplied` blends the source over the destination; `maximum` keeps the larger value of each channel.
+enum class Blend { off, premultiplied, maximum };
 enum class Cull { off, back, front };
 
 // The fixed-function state of a draw call. Every pass sets the complete state, so that no pass depends on an

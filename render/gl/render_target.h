@@ -29,14 +29,16 @@ class RenderTarget {
   int height_px() const { return height_px_; }
   int samples() const { return samples_; }
 
-  // Binds the scene and clears its colour and depth in these areas. Pixels outside the areas belong to an
-  // earlier frame.
+  // Binds the scene layer and clears its colour and depth in these areas. Pixels outside the areas keep their
+  // values from an earlier frame.
   void begin_scene(std::span<const PixelArea> areas) const;
 
-  // Binds the frame, which has no depth buffer. Every pixel must be written first.
+  // Binds the frame layer, which has no depth buffer. Its pixels are not cleared, so the first pass must
+  // write all of them.
   void begin_frame() const;
 
-  // Premultiplied colours of the scene: a multisample texture, or a plain one without samples.
+  // Premultiplied colours of the scene: a multisample texture, or an ordinary texture if there are no
+  // samples.
   GLuint scene_texture() const { return scene_colour_.id(); }
   GLenum scene_texture_kind() const { return samples_ > 0 ? GL_TEXTURE_2D_MULTISAMPLE : GL_TEXTURE_2D; }
 

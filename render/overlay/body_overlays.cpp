@@ -19,7 +19,7 @@ Eigen::Vector3f node(const LatticeSnapshot& lattice, std::size_t i) {
   return {lattice.x[i], lattice.y[i], lattice.z[i]};
 }
 
-// Increments of the node index along the three directions.
+// Increments of the node index along the three directions of the lattice.
 struct Strides {
   std::size_t step[3];
   explicit Strides(const LatticeSnapshot& lattice)
@@ -27,7 +27,7 @@ struct Strides {
              static_cast<std::size_t>(lattice.count[2]), 1} {}
 };
 
-// Calls visit(axis, node, neighbour) for every edge.
+// Calls visit(axis, node, neighbour) for every edge of the lattice.
 template <class Visit>
 void for_each_edge(const LatticeSnapshot& lattice, Visit visit) {
   const Strides strides(lattice);
@@ -95,7 +95,7 @@ void visit_boundary(const LatticeSnapshot& lattice, const Visit& visit) {
 
 constexpr float net_width_px = 1.1f;
 
-// Radius of the diamonds in the world; at 0, their size is constant on the screen.
+// Radius in metres of the diamonds at control points. A radius of 0 makes their size on the screen constant.
 constexpr float net_radius_m = 0.0f;
 constexpr float net_radius_px = 2.0f;
 
@@ -155,7 +155,7 @@ void append_cell_lines(const LatticeSnapshot& lattice, const Eigen::Vector3f& ey
       edges.push_back({low, high, is_near});
     }
   });
-  // The near edge of two equal edges is sorted first and is kept.
+  // If an edge occurs both as near and as far, the near entry is sorted first and is kept.
   std::sort(edges.begin(), edges.end(), [](const Edge& one, const Edge& other) {
     if (one.from != other.from) return one.from < other.from;
     if (one.to != other.to) return one.to < other.to;

@@ -13,7 +13,7 @@ constexpr float range_width_px = 2.4f;
 constexpr float triangle_edge_width_px = 1.0f;
 constexpr float normal_width_px = 1.3f;
 constexpr float contact_radius_m = 0.00015f;
-constexpr double short_normal = 0.6;  // length relative to the normal of the deepest contact
+constexpr double short_normal = 0.6;  // length of the other normals, relative to that of the deepest contact
 constexpr std::size_t maximum_arrows = 24;
 
 void add_line(const Vector3& start, const Vector3& end, Colour colour, float width_px,
@@ -64,8 +64,8 @@ bool is_shown(const ViewSettings& settings) {
   return settings.stages && settings.overlays.contact_stage != ContactStage::none;
 }
 
-// Returns the last point at which a ray from the tool's centre leaves the tool or its bounding box. For a
-// soft tool, returns the tool's position instead.
+// Returns the point at which a ray from the tool's centre leaves the bounding box of a rigid solid tool, or
+// the ball of a round tool. For a soft tool, returns the tool's position.
 Vector3 find_arrow_start(const Snapshot& snapshot, const Vector3& direction) {
   const ToolSnapshot& tool = snapshot.tool;
   const ToolBody* body = rigid_body(tool);

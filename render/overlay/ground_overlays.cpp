@@ -18,7 +18,8 @@ constexpr float line_width_px = 1.0f;
 constexpr int pieces_per_line = 12;
 
 constexpr double bar_width_fraction = 0.17;
-constexpr double bar_height_fraction = 0.87;  // height of the bar in the free rectangle, from its top
+// Distance of the bar from the top of the free rectangle, as a fraction of the rectangle's height.
+constexpr double bar_height_fraction = 0.87;
 constexpr float bar_width_px = 2.2f;
 
 std::uint8_t faded(double alpha, double distance_m, double radius_m) {
@@ -27,7 +28,8 @@ std::uint8_t faded(double alpha, double distance_m, double radius_m) {
   return static_cast<std::uint8_t>(std::lround(alpha * (1.0 - t * t * (3.0 - 2.0 * t))));
 }
 
-// Appends one line of the grid at `offset_m` on the other axis, in pieces so that it can fade.
+// Appends a grid line along `axis`, at `offset_m` on the other horizontal axis. The line consists of pieces,
+// so that it can fade out.
 void append_faded_line(int axis, double offset_m, const Vector3& centre, double radius_m, double alpha,
                        std::vector<OverlayLine>& lines) {
   const int other = 2 - axis;
@@ -103,7 +105,7 @@ std::optional<ScaleBar> ground_scale_bar(const Camera& camera, const Viewport& v
 
 void append_scale_bar(const ScaleBar& bar, const Camera& camera, std::vector<OverlayLine>& lines) {
   const Eigen::Matrix3d axes = eye_axes(camera);
-  // Ticks on the ground, across the bar.
+  // The ticks at the ends of the bar are on the ground and perpendicular to the bar.
   const Vector3 across = axes.col(0).cross(Vector3::UnitY());
   const Vector3 tick = 0.045 * bar.length_m * across;
   const auto add = [&](const Vector3& a, const Vector3& b) {

@@ -65,7 +65,7 @@ void add_stage(const Snapshot& snapshot, const ViewSettings& settings, const Vie
   label.position_px = {free.x + 0.5 * free.width, top + 18.0 * settings.interface_scale};
   label.anchor = {0.5, 0.0};
   labels.push_back(label);
-  // Only the arrows of the deepest contact get names, because more names would overlap.
+  // Only the three arrows of the first contact get names, because more names would overlap.
   const std::vector<OverlayArrow> arrows = contact_arrows(snapshot, settings);
   for (std::size_t k = 0; k < std::min<std::size_t>(arrows.size(), 3); ++k) {
     const auto start = project(settings.camera, viewport, arrows[k].start_m);

@@ -40,7 +40,7 @@ struct OverlayMark {
   float shape = 0.0f;       // a MarkShape
 };
 
-// A translucent sphere with an outline. A faint colour is drawn as an outline only.
+// A translucent sphere with an outline. If its colour is faint, only the outline is drawn.
 struct OverlayShell {
   Eigen::Vector3f centre_m = Eigen::Vector3f::Zero();
   float radius_m = 0.0f;
@@ -59,20 +59,21 @@ struct OverlayArrow {
   const char* name;
 };
 
-// Lattice and control net: body_overlays.cpp.
+// Overlays of the lattice and of the control net, defined in body_overlays.cpp.
 
 // Returns the smallest of the three mean edge lengths along the directions of the lattice, in metres: the
 // space available for marks. Zero for a lattice without edges.
 float mean_edge_m(const LatticeSnapshot& lattice);
 
-// Appends a green square for each fixed node of the shell, or for every fixed node if `inner` (Fig. 7 of
-// Pungotra et al. 2013).
+// Appends a green square for each fixed node on the surface of the body or next to it, or for every fixed
+// node if `inner` (Fig. 7 of Pungotra et al. 2013).
 void append_fixed_marks(const LatticeSnapshot& lattice, bool inner, std::vector<OverlayMark>& marks);
 
 // Appends a red disc for each touched node.
 void append_touched_marks(const LatticeSnapshot& lattice, std::vector<OverlayMark>& marks);
 
-// Appends the edges between neighbouring nodes of the shell, or all edges if `inner`.
+// Appends the edges between neighbouring nodes that are on the surface of the body or next to it, or all
+// edges if `inner`.
 void append_lattice_lines(const LatticeSnapshot& lattice, bool inner, std::vector<OverlayLine>& lines);
 
 // The boundaries of the lattice's hexahedra on the surface of the body (Fig. 11 of Pungotra et al. 2013).
@@ -82,8 +83,8 @@ struct CellLines {
   std::vector<OverlayLine> far;
 };
 
-// Appends each edge of the outer faces once. All edges are near if the lattice is a box around a triangle
-// mesh.
+// Appends each edge of the outer faces of the lattice once. All edges are near if the lattice is a box around
+// a triangle mesh.
 void append_cell_lines(const LatticeSnapshot& lattice, const Eigen::Vector3f& eye_m, CellLines& lines);
 
 // Appends the rows and columns of the control net as thin lines, closed in periodic directions, with a
@@ -91,12 +92,12 @@ void append_cell_lines(const LatticeSnapshot& lattice, const Eigen::Vector3f& ey
 void append_control_net(const SurfaceSnapshot& surface, std::vector<OverlayLine>& lines,
                         std::vector<OverlayMark>& marks);
 
-// Fixing planes and plane of symmetry: plane_overlays.cpp.
+// Overlays of the fixing planes and of the plane of symmetry, defined in plane_overlays.cpp.
 
 using PlaneCorners = std::array<Vector3, 4>;  // in order around a rectangle
 
-// Returns an upright rectangle in a fixing plane. It is around the fixed nodes, because these do not move
-// while the body bends, or around the box of the body if no node is fixed.
+// Returns an upright rectangle in a fixing plane. It encloses the fixed nodes, because these do not move
+// while the body bends. If no node is fixed, it encloses the box of the body.
 PlaneCorners fixing_plane_corners(const PlaneSnapshot& plane, const std::vector<BodySnapshot>& bodies,
                                   const Box& body);
 
@@ -113,7 +114,7 @@ PlaneCorners symmetry_plane_corners(const PlaneSnapshot& plane, const Box& body)
 // Appends the dash-dotted border of a plane of symmetry, as in engineering drawings.
 void append_symmetry_plane(const PlaneCorners& corners, std::vector<OverlayLine>& lines);
 
-// Force and contacts: contact_overlays.cpp.
+// Overlays of the force and of the contacts, defined in contact_overlays.cpp.
 
 // The force on the hand as an arrow from the tool.
 struct ForceArrow {
@@ -142,10 +143,10 @@ struct StageShapes {
   std::vector<OverlayArrow> arrows;
 };
 
-// Returns the shapes of the selected stage; empty without stages.
+// Returns the shapes of the selected stage of the contact search. There are none if `settings` has no stages.
 StageShapes stage_shapes(const Snapshot& snapshot, const ViewSettings& settings);
 
-// Returns arrows for the normal and the tangents at the deepest contact of each region.
+// Returns arrows for the normal and the two tangents at the deepest contact of each contact region.
 std::vector<OverlayArrow> contact_arrows(const Snapshot& snapshot, const ViewSettings& settings);
 
 // Returns a sentence that describes the selected stage; empty if no stage is shown.
@@ -154,7 +155,7 @@ std::optional<std::string> stage_caption(const ViewSettings& settings);
 // Returns the box around all shapes.
 Box bounding_box(const StageShapes& shapes);
 
-// Ground grid and scale bar: ground_overlays.cpp.
+// Overlays of the ground, defined in ground_overlays.cpp: the grid and the scale bar.
 
 // Appends the lines of the ground grid, at multiples of a round length that suits the distance of the camera.
 // Every fifth line is stronger, and all lines fade out around the target of the camera.
@@ -171,7 +172,7 @@ struct ScaleBar {
 };
 
 // Returns a scale bar on the ground in the lower centre of the free rectangle. Empty if the ground is not
-// visible there.
+// visible there, or if its visible part is far behind the model.
 std::optional<ScaleBar> ground_scale_bar(const Camera& camera, const Viewport& viewport, double ground_y_m);
 
 // Appends the bar with a tick at each end.
@@ -180,16 +181,17 @@ void append_scale_bar(const ScaleBar& bar, const Camera& camera, std::vector<Ove
 // Returns the largest of 1, 2, 5 times a power of ten that does not exceed `length`, which must be positive.
 double round_length_below(double length);
 
-// Labels and legend: labels.cpp.
+// Labels and legend, defined in labels.cpp.
 
 enum class LabelSymbol { none, square, disc, diamond, line, arrow, sphere, plane };
 
 struct Label {
   std::string text;
   Eigen::Vector2d position_px = Eigen::Vector2d::Zero();  // position of the anchor
-  Eigen::Vector2d anchor = Eigen::Vector2d::Zero();       // in the text's box: 0,0 top left, 1,1 bottom right
-  LabelSymbol symbol = LabelSymbol::none;                 // drawn to the left of the text
-  Colour colour;                                          // colour of the symbol
+  // Point of the text's box that is at `position_px`: (0, 0) is the top left corner, (1, 1) the bottom right.
+  Eigen::Vector2d anchor = Eigen::Vector2d::Zero();
+  LabelSymbol symbol = LabelSymbol::none;  // drawn to the left of the text
+  Colour colour;                           // colour of the symbol
 };
 
 struct OverlayLabels {

@@ -61,7 +61,7 @@ PlaneCorners make_corners(const PlaneSnapshot& plane, const PlaneAxes& axes, Box
 constexpr double symmetry_overhang_fraction = 0.12;
 constexpr float symmetry_width_px = 1.4f;
 constexpr int dashes_along_longest_side = 24;
-// Dash and dot, as fractions of a period with gaps between them.
+// Extent of the dash and of the dot within one period of the line, as fractions of the period.
 constexpr double dash_fraction = 0.55;
 constexpr double dot_start = 0.72, dot_end = 0.83;
 

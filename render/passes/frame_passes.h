@@ -17,7 +17,7 @@ class BackgroundPass {
  public:
   explicit BackgroundPass(const GlFunctions& gl) : gl_(&gl) {}
 
-  // Writes every pixel of the target's frame and leaves it bound.
+  // Writes every pixel of the target's frame layer and leaves this layer bound.
   void draw(const RenderTarget& target);
 
  private:

@@ -36,9 +36,10 @@ extern const char* const whole_viewport_vertex_glsl;
 // The declaration of the uniform toward_key. It must precede sphere_shadow_glsl and studio_light_glsl.
 extern const char* const key_light_glsl;
 
-// Functions for the shadow of the round tool: the fractions of key light and sky that reach a point past the
-// tool. The shadow is exact in the centre and softens with the distance to the sphere. The occlusion of the
-// sky is the exact formula for a sphere above a plane. Uniforms: tool_centre, tool_radius (0 without a tool).
+// Functions for the shadow of the tool, which is a sphere here: the fractions of key light and sky light that
+// reach a point past the sphere. The edge of the shadow softens with the distance to the sphere. The
+// occlusion of the sky approximates the exact formula for a sphere above a plane. Uniforms: tool_centre,
+// tool_radius (0 without a tool).
 extern const char* const sphere_shadow_glsl;
 
 // Functions for the lights and materials of the studio. studio_light() returns the light from a surface point

@@ -24,7 +24,7 @@ class SurfaceBuffers {
   // overwriting it would wait for the frame that still reads it.
   void upload(const TessellatedSurface& surface);
 
-  // Draws with the program in use.
+  // Draws the surface with the program in use.
   void draw() const;
 
   bool is_closed() const { return closed_; }
@@ -70,8 +70,8 @@ class ToolBuffers {
 
   bool empty() const { return mesh_.indices.empty(); }
 
-  // Draws, with the program in use, the triangles that face the eye, from back to front. `eye_m` is in the
-  // frame of the tool.
+  // Draws the tool with the program in use. If the mesh is not convex, draws only the triangles that face the
+  // eye, from back to front. `eye_m` is in the frame of the tool.
   void draw(const Eigen::Vector3f& eye_m);
 
  private:
@@ -81,7 +81,8 @@ class ToolBuffers {
   GlHandle vertex_array_;
   GlHandle vertices_;
   GlHandle indices_;
-  std::shared_ptr<const ToolBody> body_;  // shared ownership, so that no other body gets the same address
+  // Shared ownership, so that no other body can get this address, which update() compares.
+  std::shared_ptr<const ToolBody> body_;
   ToolMesh mesh_;
   FacingOrder order_;
 };

@@ -150,7 +150,8 @@ void main() {
 }
 )";
 
-// Draws the near half of the sphere by the ray through the pixel. A faint colour is drawn as an outline only.
+// Draws the near half of the sphere by the ray through the pixel. If the colour is faint, draws only the
+// outline.
 constexpr const char* shell_fragment_source = R"(
 uniform mat4 world_to_clip;
 uniform vec3 eye;

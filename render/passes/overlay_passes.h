@@ -12,7 +12,7 @@
 
 namespace spoonbill {
 
-// An attribute of an instance. Unsigned bytes are normalised to 0 to 1.
+// An attribute of an instance. Unsigned bytes are mapped to the range from 0 to 1.
 struct InstanceAttribute {
   GLint components = 1;
   GLenum type = GL_FLOAT;
@@ -27,7 +27,8 @@ class InstancedQuads {
   InstancedQuads(const GlFunctions& gl, std::size_t instance_bytes,
                  std::initializer_list<InstanceAttribute> attributes);
 
-  // Draws with the program in use. `Instance` has the size and layout of the attributes.
+  // Draws a quad for each instance, with the program in use. `Instance` must have the size and the layout
+  // that the constructor received.
   template <class Instance>
   void draw(const std::vector<Instance>& instances) const {
     draw(instances.data(), instances.size());

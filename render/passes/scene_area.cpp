@@ -14,8 +14,8 @@ namespace {
 constexpr int strip_width_px = 64;
 constexpr double margin_px = 14.0;  // space for marks and line widths, at an interface scale of 1
 
-// Vertical strips that grow to enclose the projected shapes. If a point cannot be projected, they cover the
-// whole viewport.
+// Vertical strips that grow to enclose the projected shapes. If a point cannot be projected, the strips cover
+// the whole viewport.
 class Strips {
  public:
   explicit Strips(const FrameView& view)
@@ -23,8 +23,8 @@ class Strips {
         margin_px_(static_cast<float>(margin_px) * view.interface_scale),
         heights_(static_cast<std::size_t>((view.viewport.width_px + strip_width_px - 1) / strip_width_px)) {}
 
-  // Collects points and marks the box around their projections. The box contains the projection of the
-  // points' convex hull.
+  // Collects points. The destructor lets the strips grow to enclose the box around the projected points. The
+  // box contains the projection of the points' convex hull.
   class Hull {
    public:
     explicit Hull(Strips& strips) : strips_(strips) {}
@@ -57,7 +57,8 @@ class Strips {
     const GridSamples<float>& at = surface.samples();
     const std::vector<std::uint32_t>& indices = surface.indices();
     if (surface.is_mesh() || surface.is_trimmed()) return include_each_triangle(at, indices);
-    // Each cell of the grid has two triangles.
+    // Each cell of the grid has two triangles. The corners 0, 1, 2 and 5 of the six are the corners of the
+    // cell.
     for (std::size_t first = 0; first + 5 < indices.size(); first += 6) {
       Hull hull(*this);
       for (const std::size_t corner : {0, 1, 2, 5}) {
@@ -126,7 +127,8 @@ class Strips {
   bool whole_ = false;
 };
 
-// Returns the box around a control net, whose lines join distant points.
+// Returns the box around a control net. The whole box must be drawn, because the lines of the net pass
+// between the control points.
 Box net_box(const SurfaceSnapshot& surface) {
   Box box;
   for (std::size_t i = 0; i < surface.x.size(); ++i) {

@@ -13,12 +13,13 @@ namespace {
 constexpr float arrow_width_px = 5.0f;
 constexpr float smallest_tool_px = 5.0f;
 constexpr float stage_arrow_px = 3.0f;
-// Distance by which shapes of a contact stage are lifted above the chords of the surface.
+// Distance by which shapes of a contact stage are moved toward the eye, to be in front of the drawn triangles
+// of the surface.
 constexpr float stage_lift_m = 0.0004f;
 constexpr float ghost_translucency = 0.85f;
 
-// Lift of marks above the surface, as a fraction of a lattice cell. Marks stay visible above the chords of a
-// curved surface, and marks on the far side stay hidden.
+// Distance by which marks are moved toward the eye, as a fraction of a lattice cell. Marks on a curved
+// surface stay in front of its drawn triangles, and marks on the far side stay hidden.
 constexpr float lift_fraction_of_cell = 0.4f;
 constexpr float lift_without_lattice_m = 0.0002f;
 
@@ -27,13 +28,14 @@ float lift_m(const Snapshot& snapshot) {
   return cell > 0.0f ? lift_fraction_of_cell * cell : lift_without_lattice_m;
 }
 
-// Returns the length in metres that `pixels` pixels have at the distance of a point.
+// Returns the length in metres, at the distance of a point, of `pixels` pixels times the interface scale.
 float pixels_at(const FrameView& view, const Eigen::Vector3f& point_m, float pixels) {
   const float depth = (point_m - view.eye_m).norm();
   return pixels * view.interface_scale * depth / view.pixel_depth_ratio;
 }
 
-// Returns the sphere that approximates the shadow of a solid: the ball in the centre of its box.
+// Returns the sphere that approximates the shadow of a solid: the largest ball inside its box, around the
+// box's centre.
 ToolSphere ball_in_box(const Box& box, const ToolFrame& frame) {
   const Vector3 centre = frame.origin_m + frame.axes * box.centre();
   return {centre.cast<float>(), static_cast<float>(0.5 * box.extent().minCoeff())};

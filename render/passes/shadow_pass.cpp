@@ -23,8 +23,9 @@ constexpr const char* shadow_depth_fragment_glsl = R"(
 void main() {}
 )";
 
-// Draws the occluders of the ground, with MAX blending. Red: the key light is blocked. Green: the height of
-// the highest occluder. Blue: how close the lowest occluder overhead is.
+// Draws the objects that hide light from the ground, with MAX blending. Red is 1 where the key light is
+// blocked, green is the height of the highest object, and blue is the closeness of the lowest object
+// overhead.
 constexpr const char* shadow_cover_vertex_glsl = R"(
 uniform mat4 to_clip;
 uniform float ground_height;
@@ -53,10 +54,10 @@ void main() {
 )";
 
 // Computes the light on the ground: a percentage-closer soft shadow of the key light, and the occlusion of
-// the sky nearby. The source follows sphere_shadow_glsl. The taps form a golden-angle spiral and read the mip
-// level whose texels are about as wide as the gap between taps. A coarse level, whose four texels cover all
-// taps, shows where there is no occluder. The loops are skipped there, which saves most of the time on a
-// software renderer.
+// the sky nearby. This source must be appended to sphere_shadow_glsl. The taps (texture reads) form a
+// golden-angle spiral and read the mip level whose texels are about as wide as the gap between taps. A coarse
+// level, whose four texels cover all taps, shows where nothing hides the light. The loops are skipped there,
+// which saves most of the time on a software renderer.
 constexpr const char* ground_light_fragment_glsl = R"(
 uniform sampler2D cover;
 uniform vec2 corner;
@@ -172,7 +173,7 @@ Eigen::Matrix4f ground_projection(const ShadowArea& area, const Eigen::Vector3f&
   return m;
 }
 
-// The rectangle of the ground that shadows and contact shadows can reach.
+// The rectangle of the ground that shadows of the key light and the darkening below the bodies can reach.
 struct Footprint {
   FloatBox2 box;
 

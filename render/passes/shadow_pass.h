@@ -14,9 +14,9 @@ namespace spoonbill {
 
 // The part of the ground that shadows can reach, and the projections of the world onto it.
 //
-// The shadow map covers the ground instead of a plane across the light. A point is projected along the light
-// onto the ground, and its depth is its height. One map therefore serves both the shadow of a body on itself
-// and the shadow on the ground.
+// The shadow map covers the ground, not a plane perpendicular to the light. A point is projected along the
+// light onto the ground, and its depth is its height. One map therefore serves both the shadow of a body on
+// itself and the shadow on the ground.
 struct ShadowArea {
   Eigen::Vector2f corner_m;       // smallest x and z
   float side_m = 0.0f;            // side of the square that the map covers
@@ -27,16 +27,17 @@ struct ShadowArea {
   Eigen::Matrix4f sky_to_clip;  // maps the world to the map of occluders above the ground, seen from below
 };
 
-// Tangent of half the angle of the key light: the rate at which shadows soften with distance.
+// Tangent of half the angle that the key light subtends: the rate at which shadows soften with distance.
 inline constexpr float key_light_spread = 0.17f;
 
-// Computes the shadow area. The corner moves in steps of texels and the side in eighths of the size, so that
-// edges do not crawl while the scene moves slightly. The area includes the ground around the tool, although
-// the tool is not drawn into the map. Either box may be empty. toward_key points above the horizon.
+// Computes the shadow area. The corner moves in steps of whole texels, and the side has eight sizes per
+// octave, so that edges do not crawl while the scene moves slightly. The area includes the ground around the
+// tool, although the tool is not drawn into the map. Either box may be empty. toward_key points above the
+// horizon.
 ShadowArea shadow_area(const Box& body, const Box& tool, float ground_y_m, const Eigen::Vector3f& toward_key,
                        int map_side_px);
 
-// The round tool in the form that the shaders use.
+// The sphere that represents the tool in the shaders.
 struct ToolSphere {
   Eigen::Vector3f centre_m = Eigen::Vector3f::Zero();
   float radius_m = 0.0f;  // 0 without a tool

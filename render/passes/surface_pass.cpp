@@ -23,8 +23,8 @@ void main() {
 }
 )";
 
-// The constant `opaque` is prepended. Five bilinear comparisons blur the edge of the shadow over about a
-// millimetre; the offset along the normal prevents self-shadowing.
+// Fragment shader of a body. The constant `opaque` must be prepended to the source. Five bilinear comparisons
+// blur the edge of the shadow over about a millimetre; the offset along the normal prevents self-shadowing.
 constexpr const char* body_fragment_source = R"(
 uniform sampler2DShadow key_map;
 uniform mat4 key_to_clip;

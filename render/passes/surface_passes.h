@@ -17,7 +17,7 @@
 
 namespace spoonbill {
 
-// Draws the surface of a body in the light of the studio.
+// Draws the surface of a body, lit by the studio lights.
 class SurfacePass {
  public:
   static Result<SurfacePass> make(const GlFunctions& gl);

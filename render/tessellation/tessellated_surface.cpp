@@ -21,7 +21,7 @@ Eigen::Vector3d vertex(const GridSamples<float>& samples, std::size_t i) {
   return {samples.x[i], samples.y[i], samples.z[i]};
 }
 
-// Cosine of 40 degrees. Faces that meet at a larger angle have an edge between them.
+// Cosine of 40 degrees. Faces that meet at a larger angle have a sharp edge between them.
 constexpr float smooth_cosine = 0.766F;
 
 Eigen::Vector3f position(const MeshSnapshot& mesh, std::uint32_t vertex) {
@@ -52,8 +52,8 @@ class CornerGroups {
 
 constexpr std::array<int, 10> piece_steps = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32};
 
-// Range of the ratio of needed pieces to previous pieces in which the previous number is kept; see
-// choose_sampling_level().
+// A polynomial span keeps its previous number of pieces while the ratio of the needed number to the previous
+// number is in this range; see choose_sampling_level().
 constexpr double tolerated_excess = 1.15;
 constexpr double tolerated_waste = 0.4;
 
@@ -79,9 +79,10 @@ class NetLine {
   int stride_;
 };
 
-// Bounds for each control point of the derivatives, over all lines of the net. `speed` bounds the length of
-// the first derivative S' in metres per parameter. `bend` bounds the component of S'' perpendicular to S',
-// which curves a line.
+// Bounds on the derivatives of a surface along one direction. Entry i of each list is the largest value at
+// control point i of a derivative, over all lines of the net. `speed` bounds the length of the first
+// derivative S' in metres per parameter. `bend` estimates the component of S'' perpendicular to S', which
+// curves a line.
 struct DerivativeBounds {
   std::vector<double> speed;  // control point i acts on spans i + 1 to i + degree
   std::vector<double> bend;   // control point i acts on spans i + 2 to i + degree
@@ -116,7 +117,7 @@ DerivativeBounds derivative_bounds(const SurfaceSnapshot& surface, bool along_u)
   return bounds;
 }
 
-// Returns the maximum over the control points from `first` to `last` that exist.
+// Returns the largest of the values from index `first` to `last`. Indices that do not exist are skipped.
 double maximum_over(const std::vector<double>& values, int first, int last) {
   double maximum = 0.0;
   for (int i = std::max(first, 0); i <= last && i < static_cast<int>(values.size()); ++i) {
@@ -251,7 +252,7 @@ void TessellatedSurface::build_indices(bool u_wraps, bool v_wraps) {
   }
 }
 
-// Returns whether the first or last line across a direction has shrunk to a point.
+// Returns true if the line at row or column `at` has shrunk to a point.
 bool TessellatedSurface::is_edge_collapsed(bool along_u, int at) const {
   const int rows = grid_->rows(), columns = grid_->columns();
   const int count = along_u ? columns : rows;

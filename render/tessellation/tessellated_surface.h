@@ -17,10 +17,11 @@
 
 namespace spoonbill {
 
-// The fineness of a tessellation: the number of pieces of each polynomial span. Numbers change in steps of a
-// half or a third, so that the grid seldom changes. The ends of every span are vertices.
+// The fineness of a tessellation: the number of pieces into which each polynomial span is divided. The
+// numbers are 1, 2, 3, 4, 6, 8, 12 and so on, so that the grid seldom changes. The ends of every span are
+// vertices.
 struct SamplingLevel {
-  // Pieces of each span between the breakpoints of a direction; empty before the first choice.
+  // Number of pieces of each span between the breakpoints of a direction; empty before the first choice.
   std::vector<int> u_pieces;
   std::vector<int> v_pieces;
 
@@ -32,7 +33,8 @@ SamplingLevel uniform_sampling_level(const SurfaceSnapshot& surface, int pieces)
 
 struct SamplingTarget {
   double longest_edge_px = 48.0;
-  double largest_sagitta_px = 0.3;  // distance of a chord from its arc; 4 samples per pixel show about this
+  // Largest distance of a chord from its arc. With 4 samples per pixel, larger distances are visible.
+  double largest_sagitta_px = 0.3;
 };
 
 // Maximum number of cells of one surface. Without a limit, all of a large surface seen from close up would be
@@ -40,9 +42,9 @@ struct SamplingTarget {
 inline constexpr std::int64_t sampling_cell_limit = 1'000'000;
 
 // Returns the level at which no edge and no sagitta exceeds the target, estimated from the control points of
-// the derivatives. The pieces of a span in `previous` are kept while they are neither too coarse nor more
-// than about twice as fine as needed. A slowly changing shape then does not flicker between levels. The level
-// is coarser if the cells would exceed the limit. The size of the net must fit the knots.
+// the derivatives. A span keeps its number of pieces in `previous` while that is between 0.87 and 2.5 times
+// the needed number. A slowly changing shape then does not flicker between levels. The level is coarser if
+// the number of cells would exceed sampling_cell_limit. The size of the net must fit the knots.
 SamplingLevel choose_sampling_level(const SurfaceSnapshot& surface, double pixels_per_metre,
                                     const SamplingLevel& previous, const SamplingTarget& target = {});
 
@@ -50,14 +52,14 @@ SamplingLevel choose_sampling_level(const SurfaceSnapshot& surface, double pixel
 // direction appears once. `pieces` has one entry per span.
 std::vector<double> drawing_parameters(const KnotVector& knots, const std::vector<int>& pieces);
 
-// Computes the vertices and normals of a deforming mesh, smooth where adjacent faces are nearly parallel and
-// with an edge elsewhere. One owner, one thread.
+// Computes the vertices and normals of a deforming mesh. The mesh appears smooth where adjacent faces meet at
+// an angle of up to 40 degrees, and has a sharp edge elsewhere. One owner, one thread.
 class MeshShading {
  public:
   // Returns whether the shading was built for these triangles.
   bool matches(const MeshSnapshot& mesh) const { return mesh.triangles == triangles_; }
 
-  // Finds the edges in the current shape of the mesh. They remain edges while the mesh deforms.
+  // Finds the sharp edges in the current shape of the mesh. They remain sharp edges while the mesh deforms.
   void rebuild(const MeshSnapshot& mesh);
 
   // Vertex indices, three per triangle, counter-clockwise seen from outside.
@@ -68,7 +70,7 @@ class MeshShading {
   void shade(const MeshSnapshot& mesh, GridSamples<float>& samples) const;
 
  private:
-  // Shared ownership, so that no other mesh gets the same address.
+  // Shared ownership, so that no other mesh can get this address, which matches() compares.
   std::shared_ptr<const std::vector<std::array<std::uint32_t, 3>>> triangles_;
   std::vector<std::uint32_t> indices_;  // index of the drawn vertex of each triangle corner
   std::vector<std::uint32_t> vertex_;   // index of the mesh vertex of each drawn vertex
@@ -81,8 +83,8 @@ Status check_net(const SurfaceSnapshot& surface);
 class TessellatedSurface {
  public:
   // Evaluates the surface at a sampling level. Grid, blending matrices and indices are rebuilt only if the
-  // structure of the surface or the level has changed; otherwise nothing is allocated. Errors: a grid that
-  // cannot be built, a control net whose size does not fit its knots.
+  // structure, the knots or the trim of the surface or the level has changed; otherwise nothing is allocated.
+  // Errors: a grid that cannot be built, a control net whose size does not fit its knots.
   Status update(const SurfaceSnapshot& surface, const SamplingLevel& level);
 
   // Updates from a mesh, whose triangles do not depend on a level.
@@ -93,7 +95,7 @@ class TessellatedSurface {
   const SamplingLevel& level() const { return level_; }
 
   // Positions in metres and unit normals of the vertices. Normals point outward on a closed surface and along
-  // du x dv on an open one.
+  // du x dv on an open surface.
   const GridSamples<float>& samples() const { return samples_; }
   std::size_t vertex_count() const { return samples_.x.size(); }
 
@@ -101,14 +103,14 @@ class TessellatedSurface {
   // coincident vertices, some of whose triangles have no area.
   const std::vector<std::uint32_t>& indices() const { return indices_; }
 
-  // Number of rebuilds of the indices; buffers upload them when it has changed.
+  // Number of rebuilds of the indices. GL buffers upload the indices when it has changed.
   std::uint64_t topology_version() const { return topology_version_; }
 
   // Returns whether the surface encloses a volume, so that its inside is never visible.
   bool is_closed() const { return closed_; }
 
-  // Returns whether triangles are cut along trim loops. Samples without a triangle are then outside the
-  // surface.
+  // Returns true if the triangles are cut along trim loops. Samples that no triangle uses are then outside
+  // the trimmed surface.
   bool is_trimmed() const { return trim_ != nullptr; }
 
   Box bounds() const;
@@ -134,7 +136,7 @@ class TessellatedSurface {
   GridSamples<float> samples_;
   std::vector<std::uint32_t> indices_;
   std::shared_ptr<const TrimmedArea> trim_;
-  std::vector<CutVertex> cut_vertices_;  // vertices of trimmed cells; their samples follow those of the grid
+  std::vector<CutVertex> cut_vertices_;  // vertices of trimmed cells; their samples come last in samples_
 };
 
 // Returns the box around all surfaces of a snapshot. The surfaces are evaluated, because boxes around control

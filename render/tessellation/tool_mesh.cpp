@@ -51,7 +51,7 @@ struct SolidBox {
 constexpr int around = 96;  // pieces of a circle; a multiple of four, so that its widest points are vertices
 constexpr int quarter = around / 4;
 
-// Cosine and sine of a piece of the circle, exact where it crosses an axis.
+// Cosine and sine of the angle at which a piece of the circle starts. They are exact on the axes.
 struct Turn {
   double cosine, sine;
 };
@@ -79,12 +79,12 @@ std::uint32_t add_vertex(const Vector3& position_m, const Vector3& normal, ToolM
 
 void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, ToolMesh& mesh) {
   const auto at = [&](std::uint32_t i) { return mesh.vertices[i].position_m; };
-  if (at(a) == at(b) || at(b) == at(c) || at(c) == at(a)) return;  // at a pole
+  if (at(a) == at(b) || at(b) == at(c) || at(c) == at(a)) return;  // the triangle is at a pole
   for (const std::uint32_t corner : {a, b, c}) mesh.indices.push_back(corner);
 }
 
-// Joins `rows` rings of `around` vertices about the y axis, starting at vertex `first`. In the profile, with
-// the axis on the left, the outside is on the right when going from ring to ring.
+// Joins `rows` rings of `around` vertices about the y axis, starting at vertex `first`. If the profile is
+// drawn to the right of the axis, the outside must be on the right of the path from ring to ring.
 void join_rows(std::uint32_t first, int rows, ToolMesh& mesh) {
   for (int row = 0; row + 1 < rows; ++row) {
     for (int i = 0; i < around; ++i) {
@@ -117,7 +117,7 @@ double signed_power(double x, double exponent) {
   return std::copysign(std::pow(std::abs(x), exponent), x);
 }
 
-// Returns a mesh over the two angles of Barr (1981), with his z as y.
+// Returns a mesh of a superquadric over the two angles of Barr (1981), with Barr's z axis as y.
 ToolMesh superquadric(const SuperquadricShape& shape) {
   const Vector3& size = shape.semi_axes_m;
   const double e1 = shape.exponent_along, e2 = shape.exponent_around;

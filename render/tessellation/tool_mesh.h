@@ -33,8 +33,8 @@ struct ToolFrame {
 ToolFrame tool_frame(const Snapshot& snapshot);
 ToolFrame mirrored_tool_frame(const Snapshot& snapshot);
 
-// Returns the point at which a ray from the centre of the box leaves the box. `direction` is a unit vector of
-// the world.
+// Returns the point at which a ray from the centre of the box leaves the box, in world coordinates. `box` is
+// in the coordinates of `frame`, and `direction` is a unit vector in world coordinates.
 Vector3 find_exit_point(const Box& box, const ToolFrame& frame, const Vector3& direction);
 
 struct ToolVertex {
@@ -48,7 +48,7 @@ struct ToolVertex {
 struct ToolMesh {
   std::vector<ToolVertex> vertices;
   std::vector<std::uint32_t> indices;
-  bool convex = false;  // true if no front face hides another, so that the order of drawing is free
+  bool convex = false;  // true if no front face hides another: triangles may be drawn in any order
 };
 
 // Returns a mesh fine enough for a tool that fills the screen; empty for a sphere of radius 0. Errors: a

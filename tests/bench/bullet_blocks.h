@@ -20,10 +20,11 @@ class BulletBlock {
   virtual bool sane() const = 0;
 };
 
-// Uses position-based dynamics with one iteration per step.
+// Returns a block that uses position-based dynamics with one iteration per step.
 std::unique_ptr<BulletBlock> bullet_position_based_block(int count);
 
-// Uses the deformable body's explicit scheme with mass-spring and gravity forces.
+// Returns a block that uses the explicit scheme of Bullet's deformable bodies, with spring and gravity
+// forces.
 std::unique_ptr<BulletBlock> bullet_explicit_block(int count);
 
 }  // namespace spoonbill

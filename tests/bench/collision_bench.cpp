@@ -1,6 +1,7 @@
-// A sphere on a sheet that deforms between queries: our code on the exact surface, FCL on a mesh of 200 x 200
-// quads without knowledge of the grid. Also a sphere on the handle, our code only. Every query receives the
-// deformed shape: control points (with or without samples) for our code, vertices for FCL.
+// Times the contact of a sphere with a sheet that deforms between queries. Our code uses the exact surface,
+// and FCL uses a mesh of 200 x 200 quads without knowledge of the grid. Every query receives the deformed
+// shape: control points (with or without samples) for our code, vertices for FCL. Also times the contact of a
+// sphere with the handle, for our code only.
 #include <benchmark/benchmark.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision.h>
@@ -13,7 +14,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr int controls = 28, levels = 3;  // 25 elements per side, 2^3 cells per element
+constexpr int controls = 28, levels = 3;  // 25 elements per side, 2^3 cells per side of an element
 constexpr std::size_t quads = 200;
 constexpr double radius_m = 0.05, depth_m = 0.004;
 
@@ -104,7 +105,8 @@ void sphere_fcl(benchmark::State& state) {
   state.counters["contacts"] = static_cast<double>(contacts);
 }
 
-// The rounded end of a thumb is pressed 1 mm into the bundled handle, which yields, as in a tick.
+// A sphere as large as the end of a thumb is 1 mm deep in the bundled handle, whose shape changes between
+// queries, as it does between ticks.
 void handle_sphere(benchmark::State& state) {
   const Result<Document> document = read_document(SPOONBILL_ASSETS "/models/spoon-handle.json");
   if (!document) return state.SkipWithError(document.error().message.c_str());

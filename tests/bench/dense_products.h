@@ -1,5 +1,6 @@
-// The straightforward implementation with a matrix library: dense products in single precision, compiled for
-// each instruction set with the flags of our own kernels and selected in the same way.
+// The straightforward evaluation and refit of a sheet with a matrix library: dense products in single
+// precision, compiled for each instruction set with the flags of our own kernels and selected in the same
+// way.
 #pragma once
 
 #include <memory>
@@ -8,7 +9,8 @@
 
 namespace spoonbill {
 
-// The tables hold one row per sample and one column per control point, in row-major order.
+// Sizes of a sheet and tables of its basis functions. Each table has one row per sample and one column per
+// control point, in row-major order.
 struct DenseSheet {
   int samples = 0;   // number of samples in each direction
   int controls = 0;  // number of control points in each direction

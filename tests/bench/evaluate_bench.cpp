@@ -1,5 +1,5 @@
-// Points and unit normals of a bicubic sheet on a whole grid: our code, SISL, OpenCASCADE, dense Eigen
-// matrices. Arguments: samples per side, control points per side.
+// Times the evaluation of points and unit normals of a bicubic sheet on a whole grid, by our code, SISL,
+// OpenCASCADE and dense Eigen matrices. Arguments: samples per side, control points per side.
 #include <benchmark/benchmark.h>
 #include <sisl.h>
 
@@ -98,7 +98,7 @@ void evaluate_eigen(benchmark::State& state) {
   }
 }
 
-// SISL's own grid evaluation, s1506; its first parameter runs fastest.
+// A surface for SISL's grid evaluation, s1506, in which the first parameter varies fastest.
 struct Sisl {
   explicit Sisl(const Surface& sheet) : knots(sheet.u.knots()) {
     const int side = sheet.net.rows, order = sheet.u.degree() + 1;
@@ -144,7 +144,8 @@ void evaluate_sisl(benchmark::State& state) {
   }
 }
 
-// Fills both lists in row-major order, from any class with OpenCASCADE's D1 function.
+// Fills the points and normals of `out` in row-major order. `surface` is of any OpenCASCADE class that has
+// the function D1().
 template <class Evaluable>
 void evaluate_with_d1(const Evaluable& surface, const std::vector<double>& parameters, Interleaved& out) {
   std::size_t k = 0;
@@ -185,7 +186,8 @@ void evaluate_occt_cached(benchmark::State& state) {
   time_d1(state, sheet, GeomAdaptor_Surface(opencascade_sheet(sheet)));
 }
 
-// The first sizes vary the grid with a small net; the others vary the net with one grid.
+// The first sizes vary the number of samples for one number of control points, and the others vary the number
+// of control points for one number of samples.
 void sizes(benchmark::internal::Benchmark* bench) {
   bench->Unit(benchmark::kMicrosecond);
   for (const int samples : {25, 50, 100, 200, 400, 1000}) bench->Args({samples, 8});

@@ -47,8 +47,8 @@ void refit(fcl::BVHModel<Volume>& mesh, const FclPoints& vertices) {
   mesh.endReplaceModel(true, true);
 }
 
-// FCL copies a mesh of boxes at each query. An allocator that returned the pages to the system each time
-// would double FCL's cost.
+// Makes the allocator keep freed pages. FCL copies a mesh of boxes at each query, and returning the pages to
+// the system each time would double its cost.
 inline void keep_freed_pages() {
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);

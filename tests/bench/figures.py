@@ -27,7 +27,7 @@ SPHERE_PEERS = ("sphere_fcl_boxes", "sphere_fcl_turned_boxes")
 SURFACES_PEERS = ("surfaces_fcl_boxes", "surfaces_fcl_turned_boxes")
 
 # Names of Google Benchmark's cases for each figure, by the figure's name, or by its name and case.
-# Each row has our case, then those of its peers. The fastest peer is compared.
+# Each row has our case first, then the cases of the peers. Our case is compared with the fastest peer.
 PAIRS = {
     "eval_vs_sisl": ("evaluate_ours/200/8", "evaluate_sisl/200/8"),
     "eval_vs_occt": ("evaluate_ours/200/8", "evaluate_occt_cached/200/8"),
@@ -64,8 +64,8 @@ LATE = "p99 of how late a tick begins, as above; "
 FCL = ("ours on the true surface, every triangle of FCL's contacts in it; FCL: the faster of AABB and OBBRSS, f32, "
        "refitted, which knows nothing of the grid; ")
 SPHERE = "a sheet of 200 x 200 cells deforms, then all contacts with a sphere; " + FCL
-SURFACES = "a sheet of 200 x 200 cells deforms, then all contacts with another; " + FCL
-GIVEN = "both are given the vertices, ours the control points too, which tell how far the surface leaves them"
+SURFACES = "a sheet of 200 x 200 cells deforms, then all contacts with another sheet; " + FCL
+GIVEN = "both receive the vertices; ours also receives the control points, which bound the surface between them"
 
 SPRINGS12 = "one step, 12^3 nodes, 18,788 springs; "
 SPRINGS24 = "one step, 24^3 nodes, 164,588 springs; "

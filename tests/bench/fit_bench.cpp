@@ -1,6 +1,6 @@
-// Surfaces from points: a scan of 100,000 points fitted with 24 x 24 control points, without given
-// parameters; and a grid of points with known parameters, compared with OpenCASCADE's approximation of the
-// same grid.
+// Times the fit of surfaces with 24 x 24 control points: to a scan of 100,000 points without given
+// parameters, and to a grid of points with known parameters. The fit to the grid is compared with
+// OpenCASCADE's approximation of the same grid.
 #include <benchmark/benchmark.h>
 
 #include <GeomAPI_PointsToBSplineSurface.hxx>

@@ -1,5 +1,5 @@
-// Writing a frame of 1280 x 720 as PNG: our encoder with the settings for image sequences, and the encoder of
-// stb_image_write. The frame is the approved picture of the settled bend.
+// Times the encoding of a frame of 1280 x 720 pixels as PNG, by our encoder and by that of stb_image_write.
+// The frame is the approved picture of the settled bend.
 #include <benchmark/benchmark.h>
 
 #define STB_IMAGE_WRITE_STATIC

@@ -1,4 +1,4 @@
-// Presses that the tick's benchmarks run: a simulation, and the hand's input tick by tick.
+// Presses that the tick's benchmarks run. A press is a scene and the hand's input in each tick.
 #pragma once
 
 #include <filesystem>

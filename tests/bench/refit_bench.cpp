@@ -1,5 +1,5 @@
-// Control points from a grid of samples: our code, the same product with dense Eigen matrices, and
-// OpenCASCADE's approximation. Arguments: samples per side, control points per side.
+// Times the computation of control points from a grid of samples, by our code, by the same product with dense
+// Eigen matrices, and by OpenCASCADE's approximation. Arguments: samples per side, control points per side.
 #include <benchmark/benchmark.h>
 
 #include <GeomAPI_PointsToBSplineSurface.hxx>
@@ -47,7 +47,7 @@ std::vector<AlignedVector<float>> padded(const Case& which, int stride) {
   return all;
 }
 
-// Refits a displacement, which has three coordinates.
+// Refits the three coordinates of a displacement, one after another.
 template <class Refit, class Samples>
 void displace(Refit& refit, const Samples& coordinates, std::vector<float>& controls) {
   for (const auto& samples : coordinates) refit.control_displacement(samples.data(), controls.data());

@@ -84,7 +84,7 @@ class Measurements:
 
     @functools.cache
     def loop(self, load):
-        """Returns the lateness of our loop, then of cyclictest under the same load (None if it is not permitted)."""
+        """Returns the lateness of our loop, and that of cyclictest under the same load (None if cyclictest fails)."""
         ours = json.loads(output_of([self.build / "tests/bench/loop_bench", LOOP_SECONDS, "loop", load]))
         if ours["notice"]:
             say(ours["notice"])
@@ -329,7 +329,7 @@ def arguments():
     parser.add_argument("--growth", action="store_true", help="also measure how cost grows, for tests/bench/plot")
     parser.add_argument("--build", type=Path, help=argparse.SUPPRESS)
     parser.add_argument("--check", action="store_true", help=argparse.SUPPRESS)
-    parser.add_argument("names", nargs="*", metavar="NAME", help="what to measure; all unless told")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="figure to measure; default: all")
     options = parser.parse_args()
     for name in options.names:
         if name not in NAMES:

@@ -1,6 +1,6 @@
-// One step of a block of count^3 mass points with springs along edges, face diagonals and body diagonals. Our
-// code also limits speeds and tracks the highest frequency, as in a tick. `springs_full` adds everything that
-// a material can have: the volume force of each cell, damping, and plastic flow. Argument: nodes per side.
+// Times one step of a block of count^3 mass points with springs along edges, face diagonals and body
+// diagonals. Our code also limits speeds and tracks the highest frequency, as in a tick. `springs_full` adds
+// the volume force of each cell, damping, and plastic flow. Argument: nodes per side.
 #include <benchmark/benchmark.h>
 
 #include "engine/base/processor.h"

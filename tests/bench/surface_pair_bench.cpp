@@ -1,5 +1,6 @@
-// Two sheets, one of which deforms between queries: our code on the exact surfaces, FCL on meshes of 200 x
-// 200 quads. Also two nets that cross each other, our code only.
+// Times the contact of two sheets, one of which deforms between queries. Our code uses the exact surfaces,
+// and FCL uses meshes of 200 x 200 quads. Also times the contact of two surfaces that cross each other, for
+// our code only.
 #include <benchmark/benchmark.h>
 #include <fcl/narrowphase/collision.h>
 
@@ -18,7 +19,7 @@ namespace {
 using FclBox = fcl::AABB<float>;
 using FclTurnedBox = fcl::OBBRSS<float>;
 
-constexpr int controls = 28, levels = 3;  // 25 elements per side, 2^3 cells per element
+constexpr int controls = 28, levels = 3;  // 25 elements per side, 2^3 cells per side of an element
 constexpr std::size_t quads = 200;
 constexpr double depth_m = 0.004;
 
@@ -116,7 +117,7 @@ void surfaces_fcl(benchmark::State& state) {
   state.counters["contacts"] = static_cast<double>(contacts);
 }
 
-// Both nets move, and they cross each other from side to side.
+// Both surfaces move, and they cross each other from side to side.
 void nets_crossing(benchmark::State& state) {
   constexpr int side = 30;
   const auto crossing = [](double amplitude) {

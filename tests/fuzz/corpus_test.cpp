@@ -12,7 +12,7 @@
 
 namespace spoonbill {
 
-// Google Test prints a parameter by a function of this name.
+// Google Test calls a function of this name to print a parameter.
 void PrintTo(const FuzzTarget& target, std::ostream* out) {
   *out << target.name;
 }

@@ -70,7 +70,8 @@ TEST(DamagedRecording, AnyBytesChanged) {
   const std::size_t header = text.find('\n');
   std::mt19937_64 random(9);
   for (int i = random_cases(is_full_run() ? 20'000 : 6'000, 60'000); i > 0; --i) {
-    // Most damage is after the header, because the document's tests already damage headers.
+    // Most damage is after the header, because the tests of documents already damage the document in the
+    // header.
     expect_recording_or_line(damaged(text, i % 8 == 0 ? 0 : header, random));
   }
 }

@@ -65,7 +65,7 @@ class FaultyDevice : public Device {
 
   void set_force(const Vector3& force_n) override { force_n_ = force_n; }
 
-  // Moves the hand by the distance of a millisecond, more slowly than any speed limit.
+  // Moves the hand by the distance that it covers in a millisecond. Its speed is below the device's limit.
   void move() {
     if (random_.once_in(200)) target_y_m_ = random_.uniform(-0.004, 0.004);
     position_m_.y() += std::clamp(target_y_m_ - position_m_.y(), -2e-4, 2e-4);
@@ -120,13 +120,13 @@ struct FaultyRun {
     quiet_ticks = is_fault ? 0 : quiet_ticks + 1;
     faults += is_fault;
     not_cut += is_fault && has_force;
-    // After a stall, a jump may be a true motion of the hand, so it may press.
+    // After a stall, a jump may be a true motion of the hand, so its reading may press.
     pressed += device.fails() && !is_late && (reading.buttons & button_hover) == 0;
     early += quiet_ticks <= 10 && has_force;
     with_force += has_force;
   }
 
-  // Runs a millisecond of the device.
+  // Advances the device by a millisecond. If `loop_runs`, the loop runs a tick.
   void run(bool loop_runs) {
     now_ns += device_tick_ns;
     device.move();
@@ -139,7 +139,7 @@ struct FaultyRun {
     judge();
   }
 
-  // Suspends the machine while the force is held. The watchdog is the first to run afterwards.
+  // Suspends the machine while the device holds the force. The watchdog is the first to run afterwards.
   void suspend() {
     const std::uint64_t ticks = 10 + random.bits() % 100'000;
     now_ns += static_cast<std::int64_t>(ticks) * device_tick_ns;
@@ -167,7 +167,7 @@ TEST(FaultyDevice, NeverPassesTheLimitAndGetsNoForceAfterAnyFault) {
   EXPECT_EQ(run.held, 0U);
   EXPECT_EQ(run.pressed, 0U) << "a reading that is at fault must not press";
   EXPECT_EQ(run.early, 0U) << "the force returns only after ten quiet ticks";
-  // Each case occurred often enough.
+  // Checks that each kind of event occurred often enough.
   EXPECT_GT(run.faults, ticks / 2000);
   EXPECT_GT(run.stops, ticks / 2000);
   EXPECT_GT(run.with_force, ticks / 100);

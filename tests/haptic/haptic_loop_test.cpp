@@ -128,8 +128,8 @@ TEST(HapticLoop, RefusesWhatItCannotRun) {
   EXPECT_EQ(Refusal(loop), Refusal(ErrorCode::out_of_range, "period_s"));
 }
 
-// Runs in a process that has given up root's rights. Exits with 0 if the loop runs and reports both the
-// missing right and the remedy.
+// Gives up root's rights and runs the loop. Exits with 0 if the loop runs and reports both the missing right
+// and the remedy.
 void run_without_rights() {
   const rlimit none{0, 0};
   setrlimit(RLIMIT_RTPRIO, &none);

@@ -1,5 +1,5 @@
-// Tests presses of a 10 mm sphere into blocks of different materials by the bundled scripts: clay keeps the
-// dent, silicone springs back, gelatin creeps.
+// Tests presses of a sphere of 10 mm diameter into blocks of different materials by the bundled scripts: clay
+// keeps the dent, silicone springs back, gelatin creeps.
 #include <gtest/gtest.h>
 
 #include <algorithm>

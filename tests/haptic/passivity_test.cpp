@@ -55,8 +55,8 @@ WallPress random_press(std::mt19937_64& random) {
 }
 
 struct Energy {
-  double given_most_j = 0.0;  // largest energy given to the hand so far, at any time
-  double taken_j = 0.0;       // total energy that the wall took, for comparison
+  double given_most_j = 0.0;  // largest net energy that the hand had received at any time
+  double taken_j = 0.0;       // all energy that the wall took; energy that it gave back is not subtracted
 };
 
 // Moves a hand from above the wall, whose surface is at `surface_m`, into the wall and out again. `wall`
@@ -111,7 +111,7 @@ Energy press_rigid_wall(const WallPress& press, double stiffness_n_per_m,
       next_hold);
 }
 
-// A hand of 0.2 kg and 3 N s/m is lighter and less damped than a measured one, which makes it harder to keep
+// A hand of 0.2 kg and 3 N s/m is lighter and less damped than measured hands, and therefore harder to keep
 // passive. Van Beek et al. (Scientific Reports 5:18004, 2015) measured 0.55 kg, 6.5 N s/m and 135 N/m at an
 // arm's end. A hand adds no energy of its own at these frequencies (Hogan, ICRA 1989).
 TEST(Passivity, AWallWhoseForceIsHeldForSeveralTicksGivesBackNoMoreThanItTook) {

@@ -1,7 +1,8 @@
 // Tests random strokes on one to three bodies with any material and any panel setting. The hand moves at up
 // to 5 m/s; bodies may be without fixed nodes, and materials may change during a stroke. All numbers of
-// documents, frames and the panel must stay finite. Bodies that are not free must stay near their places. No
-// cell of a single body may stay inverted, and the requested force must never exceed the device's limit.
+// documents, frames and the panel must stay finite. Bodies that are not free must stay near their initial
+// positions. No cell of a single body may stay inverted, and the requested force must never exceed the
+// device's limit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -94,8 +95,8 @@ Scene random_stroke_scene(Random& random, const std::vector<Material>& bundled, 
 }
 
 constexpr double fastest_m_per_s = 5.0;
-// The hand stays in a box with these half sides around the body's centre, and so does material that it pulls
-// out.
+// Half the sides of a box around the body's centre. The hand stays in this box, and so does material that it
+// pulls out.
 const Vector3 roam_m(0.06, 0.03, 0.03);
 const Vector3 centre_m(0.03, 0.0, 0.0);
 
@@ -279,7 +280,8 @@ void try_strokes(std::uint64_t seed, int strokes, int most_bodies, int stroke_ti
     EXPECT_LE(watched.strongest_n, watched.limit_n * (1.0 + 1e-12));
     touched += watched.touches > 0;
   }
-  // A hand that wanders for half a second misses more often than one that wanders for two.
+  // A hand that wanders for half a second misses the bodies more often than a hand that wanders for two
+  // seconds.
   EXPECT_GE(touched, std::max(1, strokes / 4));
 }
 

@@ -91,8 +91,8 @@ class RandomInput {
 };
 
 // Returns true if the input is a fault, computed without the safety chain. `last_m` is the position of the
-// previous tick; its coordinates are not finite if that one was invalid. `tick_count` is the number of ticks
-// in the last 100 ms.
+// previous tick; its coordinates are not finite if that tick had no valid position. `tick_count` is the
+// number of ticks in the last 100 ms.
 bool is_fault(const DeviceSpecification& specification, const SafetyInput& input, const Vector3& last_m,
               std::size_t tick_count) {
   if (input.stale || !input.requested_n.allFinite() || !input.position_m.allFinite()) return true;
@@ -175,7 +175,7 @@ TEST(SafetyAtRandom, LimitsHoldWhateverHappens) {
     }
   }
   all.expect_safe();
-  // Each case occurred often enough.
+  // Checks that each kind of event occurred often enough.
   EXPECT_GT(all.faults, ticks / 5000);
   EXPECT_GT(all.buzzes, ticks / 100'000);
   EXPECT_GT(all.with_force, ticks / 40);

@@ -42,7 +42,7 @@ SafetyState pressing_state(double x_n) {
 TEST(Safety, ForcesAreOffUntilTheWantedForceHasBeenSmallForAWhile) {
   SafetyState state;
   for (int tick = 0; tick < 5000; ++tick) {
-    // The force is small every seventh tick, but never for several ticks in a row.
+    // The force is large in every seventh tick, so it is never small for ten ticks in a row.
     const SafeForce safe = make_safe(state, device, wanting(tick % 7 == 0 ? 3.0 : 0.1));
     ASSERT_EQ(safe.force_n, Vector3::Zero());
     ASSERT_EQ(safe.flags, safety_flag_waiting);

@@ -24,7 +24,8 @@ std::uint64_t pretended_hash(std::uint64_t tick);
 Status write_sample_recording(const std::filesystem::path& file, const std::vector<DeviceReading>& readings,
                               bool finish);
 
-// Replays a recording and writes it as a new recording.
+// Writes the header, commands and readings of a recording to a new file, with pretended_hash() at the
+// checkpoints.
 Status write_again(const Recording& recording, const std::filesystem::path& file);
 
 }  // namespace spoonbill

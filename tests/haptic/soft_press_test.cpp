@@ -67,7 +67,7 @@ TEST(SoftPress, AMeshGivesWayTooAndComesBack) {
   VirtualDevice device = VirtualDevice::make(script.hand, script.start).value();
   CouplingState coupling;
   Snapshot snapshot;
-  // Returns the distance of the egg's lowest point below the hand.
+  // Returns how far the lowest point of the egg is below the hand.
   const auto hangs_m = [&](double hand_m) {
     simulation.write_snapshot(snapshot);
     const std::vector<float>& y = snapshot.bodies.back().mesh.y;

@@ -1,5 +1,5 @@
-// Tests the SpaceMouse with a simulated daemon on a socket of its own, and the steering of the handle by
-// calculation.
+// Tests the class SpaceMouse with a simulated daemon on a socket of its own, and the function steer() without
+// a daemon.
 #include "haptic/space_mouse.h"
 
 #include <gtest/gtest.h>
@@ -93,7 +93,8 @@ TEST(SpaceMouse, FollowsTheDaemonsEventsUntilItLeaves) {
   EXPECT_FALSE(mouse->poll().has_value());
 }
 
-// A hand resting on the cap does not count as use of the SpaceMouse, nor do buttons other than the main one.
+// A hand resting on the cap does not count as use of the SpaceMouse, nor do buttons other than the main
+// button.
 TEST(SpaceMouse, IsUsedWhileItsCapIsAwayFromRestOrItsMainButtonChanges) {
   Daemon daemon;
   auto mouse = SpaceMouse::open();

@@ -1,5 +1,5 @@
-// Tests that the bundled script bends the bundled handle as in the original paper: the settled shape is bent
-// near the fixed part and nearly straight elsewhere.
+// Tests that the bundled script bends the bundled handle as in Pungotra et al. (2013): the settled shape is
+// bent near the fixed part and nearly straight elsewhere.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ Vector3 ring_centre(const Surface& surface, double v) {
   return sum;
 }
 
-// Returns the angle in degrees by which the centre line between two stations points below the horizontal.
+// Returns the angle in degrees by which the centre line between two values of v points below the horizontal.
 double turned(const Surface& surface, double from_v, double to_v) {
   const Vector3 way = ring_centre(surface, to_v) - ring_centre(surface, from_v);
   return std::atan2(-way.y(), way.x()) * 180.0 / std::numbers::pi;

@@ -36,8 +36,8 @@ TEST(Tick, NoContactNoForce) {
   }
 }
 
-// The haptic thread flushes denormal numbers, but the thread of a lock-step replay does not. A fading force
-// must reach 0 in both threads; otherwise a live recording would not replay to the same states.
+// The haptic thread flushes denormal numbers, but the thread of a replay does not. A fading force must be the
+// same in both threads; otherwise a live recording would not replay to the same states.
 TEST(Tick, AFadingForceIsTheSameWhetherTheThreadFlushesDenormalsOrNot) {
   CouplingState fading[2];
   for (const int which : {0, 1}) {
@@ -68,7 +68,8 @@ TEST(Tick, PushedMaterialPushesBackAndTheForceScalesIt) {
     force[which] = result.force_n.y();
   }
   EXPECT_GT(force[0], 1e-4);
-  // The ratio is not exact, because the proxy is a little farther off the surface.
+  // The ratio is not exactly 2: at the larger force scale the coupling is softer, so the tool presses a
+  // little less on the material.
   EXPECT_NEAR(force[1] / force[0], 2.0, 0.1);
 }
 

@@ -1,5 +1,5 @@
-// Tests bodies that nothing fixes, under the press of a hand: they keep their position, follow the tool, and
-// move only as far as the setting permits.
+// Tests bodies without fixed nodes that a tool presses. They yield to the tool. As a whole they keep their
+// position, unless the setting `free` lets them move.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -47,8 +47,8 @@ TEST(VirtualDevice, FollowsTheClosedForm) {
   }
 }
 
-// The hand lags behind a target that accelerates, and is ahead of one that slows down, by the force of its
-// inertia divided by the stiffness, m a / k. It does not ring.
+// The hand lags behind a target that accelerates, and is ahead of a target that slows down, by the force of
+// its inertia divided by the stiffness, m a / k. It does not ring.
 TEST(VirtualDevice, FollowsItsTarget) {
   VirtualDevice device = device_at_origin();
   const double highest_acceleration = 0.02 * 6.0 / (0.5 * 0.5);

@@ -1,4 +1,4 @@
-// Compares pictures with the approved ones in screenshots/ by their worst block of 16 x 16 pixels. The
+// Compares pictures with the approved pictures in screenshots/ by their worst block of 16 x 16 pixels. The
 // pictures show a bend in the default view, the stages of a contact, and presses into materials. A picture
 // that differs is written to picture-failures/ of the build folder, with the approved picture and their
 // difference. tests/approve replaces the approved pictures by those that the program draws.
@@ -28,9 +28,9 @@
 namespace spoonbill {
 namespace {
 
-// Largest allowed mean difference of a block's channels, in 8-bit steps. Rasterisers on other processors
-// differ by less than a third of it. The smallest change that must be detected differs by more than twice as
-// much.
+// Largest allowed mean difference of a block's channels, in 8-bit steps. Pictures of rasterisers on other
+// processors differ by less than a third of this limit. The smallest change that must be detected differs by
+// more than twice this limit.
 constexpr double tolerance = 2.0;
 
 constexpr int width_px = 1280, height_px = 720;
@@ -66,8 +66,8 @@ class MomentPictures : public ::testing::Test {
     return std::make_shared<FramePainter>(std::move(painter).value());
   }
 
-  // A replay that can go on from one moment to a later one. The states up to each moment must be those that
-  // the recording has.
+  // A replay that can continue from one moment to a later moment. The states up to each moment must have the
+  // hashes in the recording.
   class Replay {
    public:
     explicit Replay(const char* recording) {
@@ -118,8 +118,8 @@ class MomentPictures : public ::testing::Test {
     std::shared_ptr<FramePainter> painter_ = make_painter();
   };
 
-  // Returns the state at a moment. The cases share one replay of a recording, which begins again for a moment
-  // that is over.
+  // Returns the state at a moment. The test cases share one replay of each recording. If the replay has
+  // passed the moment, it restarts.
   static const Stage& stage_of(const Moment& moment) {
     static std::map<std::string, Replay> replays;
     static std::map<std::pair<std::string, double>, Stage> stages;
@@ -301,8 +301,8 @@ TEST_F(MaterialPictures, GelatinComesBackSlowly) {
   compare_moment({"gelatin-let-go", 0.72, "gelatin-press"});
 }
 
-// Tests pictures of the boundaries of hexahedra in a translucent body, through which those on the far side
-// are visible.
+// Tests pictures of the boundaries of hexahedra in a translucent body. The boundaries on the far side are
+// visible through the body.
 using LatticePictures = MomentPictures;
 
 TEST_F(LatticePictures, CellsOfJelly) {

@@ -12,7 +12,7 @@ inline constexpr int comparison_block_px = 16;
 struct BlockDifference {
   // Largest mean absolute difference of a channel in any block, in 8-bit steps (0 to 255).
   double worst = 0.0;
-  int x_px = 0;  // x_px and y_px: top left corner of that block
+  int x_px = 0;  // x_px and y_px: top left corner of the worst block
   int y_px = 0;
 };
 

@@ -75,8 +75,8 @@ TEST(FrameBudget, QualityComesBackWhenThereIsRoom) {
   EXPECT_EQ(budget.quality(), FrameQuality::full);
 }
 
-// A frame without multisampling seems to leave enough time for it, but a frame with it takes too long.
-// Attempts become rarer.
+// A frame without multisampling seems to leave enough time for multisampling, but a frame with multisampling
+// takes too long. Attempts to raise the quality must become rarer.
 TEST(FrameBudget, AMisjudgedRoomIsTriedLessAndLess) {
   FrameBudget budget(frame_s);
   const Machine misjudged{{0.030, 0.005, 0.004, 0.003}};

@@ -169,7 +169,7 @@ TEST(ShadowArea, HoldsWhatTheLightCarriesToTheGround) {
   for (int i = 0; i < 8; ++i) {
     const Eigen::Vector4f clip = area.key_to_clip * body.corner(i).cast<float>().homogeneous();
     EXPECT_LT(clip.head<3>().cwiseAbs().maxCoeff(), 1.0f);
-    // A point and its shadow on the ground are in the same texel.
+    // A point and its shadow on the ground have the same position in the map.
     const Eigen::Vector3f top = body.corner(i).cast<float>();
     const Eigen::Vector3f shadow = top - toward_key * (top.y() / toward_key.y());
     const Eigen::Vector4f shadow_clip = area.key_to_clip * shadow.homogeneous();
@@ -204,8 +204,8 @@ LatticeSnapshot block_of_nodes(int ni, int nj, int nk) {
   return block;
 }
 
-// A cube is seen from beyond a corner: nine of its edges belong to the three faces towards the eye, and three
-// edges belong only to the other faces.
+// A cube seen from beyond a corner has nine edges on the three faces towards the eye, and three edges that
+// are only on the other faces.
 TEST(CellLines, AreNearWhereAFaceLooksAtTheEye) {
   CellLines of_corner, of_face;
   append_cell_lines(block_of_nodes(2, 2, 2), {5.0f, 4.0f, 3.0f}, of_corner);
@@ -217,7 +217,8 @@ TEST(CellLines, AreNearWhereAFaceLooksAtTheEye) {
   for (const OverlayLine& line : of_face.near) EXPECT_EQ(line.start_m.z(), 1.0f);
 }
 
-// Each outer edge is listed once: the hull has twice as many edges as faces, by Euler's formula.
+// Each outer edge is listed once. A face has four edges, and each edge is on two faces, so there are twice as
+// many edges as faces.
 TEST(CellLines, AreTheOuterEdgesEachOnce) {
   CellLines lines;
   append_cell_lines(block_of_nodes(12, 12, 12), {50.0f, 40.0f, 30.0f}, lines);

@@ -64,8 +64,8 @@ SurfaceSnapshot snapshot_of(const Surface& surface) {
   return snapshot;
 }
 
-// Returns lattice nodes. In each section, the boundary of the square grid is on the surface, and its inner
-// nodes are between boundary and axis.
+// Returns lattice nodes. In each section, the outermost nodes of the rectangular grid are on the surface, and
+// the inner nodes are between the surface and the axis.
 LatticeSnapshot make_lattice(const Surface& surface, const SampleSceneOptions& options) {
   LatticeSnapshot lattice;
   lattice.count[0] = options.through;

@@ -40,7 +40,7 @@ Pose turned(const Vector3& position_m, double angle_rad, const Vector3& axis) {
   return {position_m, Quaternion(Eigen::AngleAxisd(angle_rad, axis.normalized()))};
 }
 
-// The tool's poses are beside the body and clear of it.
+// Poses in which the tool is beside the body and does not touch it.
 const Pose upright = turned({0.030, 0.025, 0.0}, 0.0, Vector3::UnitX());
 const Pose oblique = turned({0.075, 0.028, 0.0}, 1.1, {0.3, 1.0, 0.5});
 
@@ -163,7 +163,7 @@ TEST(SolidTool, TheMirroredFrameIsTheReflectionOfTheTool) {
 }
 
 // If S is the reflection, a mesh with vertices S v in the mirrored pose is the mirror image of the mesh with
-// vertices v. Its frame stays right-handed.
+// vertices v. The frame of the mirrored pose is right-handed.
 TEST_F(SolidToolPicture, TheMirrorImageLooksLikeAMirroredMesh) {
   const Symmetry symmetry{true, {0.05, 0.0, 0.0}, Vector3::UnitX()};
   const Pose pose = turned({0.085, 0.030, 0.0}, 0.7, {0.2, 1.0, 0.3});
@@ -202,7 +202,7 @@ TEST_F(SolidToolPicture, ASoftMeshIsDrawnWhereItsVerticesAre) {
   BodySnapshot& body = snapshot.bodies.emplace_back();
   body.mesh.triangles = triangles;
   for (int corner = 0; corner < 8; ++corner) {
-    // Bit k of a corner's number is its side along axis k.
+    // Bit k of a corner's number is set if the corner is on the positive side along axis k.
     const Vector3 local(corner & 1 ? half_m.x() : -half_m.x(), corner & 2 ? half_m.y() : -half_m.y(),
                         corner & 4 ? half_m.z() : -half_m.z());
     const Eigen::Vector3f at = (frame.origin_m + frame.axes * local).cast<float>();

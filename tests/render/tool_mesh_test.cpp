@@ -92,9 +92,9 @@ Vector3 corner(const ToolMesh& mesh, std::size_t index) {
   return mesh.vertices[mesh.indices[index]].position_m.cast<double>();
 }
 
-// Counts the directed edges of the mesh. Vertices in the same position count as one, because those along an
-// edge of the solid are doubled, and a pole is a row of them. In these solids, single precision resolves
-// positions to a hundredth of a micrometre.
+// Counts the directed edges of the mesh. Vertices in the same position count as one, because the vertices
+// along an edge of the solid occur twice, and a pole is a row of vertices. In these solids, single precision
+// resolves positions to a hundredth of a micrometre.
 std::map<std::pair<int, int>, int> directed_tool_edges(const ToolMesh& mesh) {
   std::map<std::tuple<long, long, long>, int> places;
   const auto place_of = [&](std::size_t index) {
@@ -240,7 +240,7 @@ TEST(FacingOrder, GivesWhatFacesTheEyeFromFarToNear) {
     Eigen::Vector3f middle = Eigen::Vector3f::Zero();
     for (std::size_t c = 0; c < 3; ++c) middle += mesh.vertices[indices[t + c]].position_m / 3.0F;
     const float distance_m = (middle - eye).norm();
-    // The order may be wrong by a ten-thousandth of the depth.
+    // The order may be wrong by a ten-thousandth of the torus's depth.
     EXPECT_LT(distance_m, last_m + 0.022F * 1e-4F);
     last_m = distance_m;
   }

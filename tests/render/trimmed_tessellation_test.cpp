@@ -18,8 +18,9 @@
 namespace spoonbill {
 namespace {
 
-// Returns the area outside a clockwise hole about the centre of the domain, whose radius is a fifth of the
-// domain. `turns` moves the hole along u, across the seam, as a fraction of the period.
+// Returns the area outside a clockwise circular hole, whose radius is a fifth of the domain. The centre of
+// the hole is at the fraction `turns` of the domain along u and at half of it along v. If `turns` is near 0,
+// the hole crosses the seam.
 std::shared_ptr<const TrimmedArea> hole_in(const SurfaceSnapshot& surface, double turns) {
   const double u = surface.u.domain_start(), u_length = surface.u.domain_end() - u;
   const double v = surface.v.domain_start(), v_length = surface.v.domain_end() - v;
@@ -61,7 +62,7 @@ TEST(TrimmedTessellation, TrianglesFaceOutwardUpToTheRim) {
         const std::uint32_t* corner = surface.indices().data() + t;
         const Vector3 a = vertex(surface, corner[0]);
         const Vector3 face = (vertex(surface, corner[1]) - a).cross(vertex(surface, corner[2]) - a);
-        // Smaller triangles are skipped: their area is as small as the rounding error of single precision.
+        // Very small triangles are skipped: their area is as small as the rounding error of single precision.
         if (face.norm() < 1e-10) continue;
         const auto& s = surface.samples();
         for (int c = 0; c < 3; ++c) {

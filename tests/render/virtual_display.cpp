@@ -27,7 +27,7 @@ namespace {
   _exit(127);
 }
 
-// Returns a line without its end, or nothing if the pipe is closed first.
+// Returns a line without its newline; an empty text if the pipe is closed before the line ends.
 std::string read_line(int pipe) {
   std::string line;
   char letter = 0;

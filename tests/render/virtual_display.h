@@ -1,5 +1,5 @@
-// A display in memory (Xvfb) for tests of windows. DISPLAY names it while the object exists. Only one may
-// exist at a time.
+// A display in memory (Xvfb) for tests of windows. The environment variable DISPLAY names the display while
+// the object exists. Only one object may exist at a time.
 #pragma once
 
 #include <sys/types.h>
@@ -14,8 +14,8 @@ namespace spoonbill {
 
 class VirtualDisplay {
  public:
-  // Starts Xvfb under a number that it chooses itself, so that tests can run in parallel. Fails if Xvfb is
-  // not installed or does not start.
+  // Starts Xvfb, which chooses a free display number itself, so that tests can run in parallel. Fails if Xvfb
+  // is not installed or does not start.
   static Result<std::unique_ptr<VirtualDisplay>> start(int width_px, int height_px);
 
   ~VirtualDisplay();

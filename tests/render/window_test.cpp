@@ -20,8 +20,8 @@ namespace {
 
 constexpr int width = 640, height = 360;
 
-// Largest difference allowed in any block between two rasterisers, as in the comparison with the approved
-// pictures.
+// Largest difference allowed in any block between the pictures of two rasterisers; the comparison with the
+// approved pictures has the same limit.
 constexpr double tolerance = 2.0;
 
 ViewSettings settings_for(const Snapshot& snapshot, int width_px, int height_px) {
