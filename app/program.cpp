@@ -37,18 +37,21 @@ std::vector<CommandEntry> add_commands(const OptionSet& root) {
   return entries;
 }
 
+// Returns the exit code of a command that has written its output.
+int finish_output(Console& console) {
+  console.out.flush();
+  if (console.out) return exit_done;
+  console.err << "spoonbill: standard output could not be written\n";
+  return exit_failed;
+}
+
 int run_command(const CommandEntry& entry, Console& console) {
   const Status status = entry.run(console);
   if (!status) {
     console.err << "spoonbill: " << one_line(status.error().message) << '\n';
     return exit_failed;
   }
-  console.out.flush();
-  if (!console.out) {
-    console.err << "spoonbill: standard output could not be written\n";
-    return exit_failed;
-  }
-  return exit_done;
+  return finish_output(console);
 }
 
 }  // namespace
@@ -63,7 +66,7 @@ int run_program(const std::vector<std::string>& arguments, Console& console, con
   switch (parsed.outcome) {
     case CommandLine::Outcome::answered:
       console.out << parsed.text;
-      return exit_done;
+      return finish_output(console);
     case CommandLine::Outcome::wrong_use:
       console.err << parsed.text;
       return exit_wrong_use;

@@ -106,10 +106,10 @@ std::vector<sock_filter> reader_filter() {
 Status confine_reader() {
   std::vector<sock_filter> filter = reader_filter();
   const sock_fprog program{static_cast<unsigned short>(filter.size()), filter.data()};
-  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 ||
-      syscall(__NR_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_TSYNC, &program) != 0) {
-    return no_filter(std::generic_category().message(errno));
-  }
+  if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return no_filter(std::generic_category().message(errno));
+  const long failed = syscall(__NR_seccomp, SECCOMP_SET_MODE_FILTER, SECCOMP_FILTER_FLAG_TSYNC, &program);
+  if (failed > 0) return no_filter("thread " + std::to_string(failed) + " has a filter of its own");
+  if (failed != 0) return no_filter(std::generic_category().message(errno));
   return {};
 }
 

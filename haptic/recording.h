@@ -112,7 +112,7 @@ class RecordingWriter {
  public:
   // Creates the file and writes the header. The recording is written as FILE.part, which can be replayed too,
   // and becomes FILE at commit(). Errors: a path that cannot be written, another program that records to the
-  // same file (ErrorCode::unavailable), a document that could not be read back.
+  // same file (ErrorCode::in_use), a document that could not be read back.
   static Result<RecordingWriter> create(const std::filesystem::path& file, const RecordingHeader& header,
                                         const OutputOptions& options = {});
 

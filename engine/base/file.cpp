@@ -229,7 +229,7 @@ bool has_name(int descriptor, const std::filesystem::path& file) {
 
 Error held_by_another(const std::filesystem::path& file) {
   return {
-      ErrorCode::unavailable,
+      ErrorCode::in_use,
       file.string() + ": another program is writing it; wait until it has finished or choose another name"};
 }
 

@@ -63,7 +63,7 @@ class OutputFile {
 
   // Creates a file that other programs may read while it grows. All bytes that write() has accepted survive a
   // crash of this program. The file grows as FILE.part and becomes FILE at commit(); without commit() it
-  // remains FILE.part. Refuses a file that another process is growing (ErrorCode::unavailable). If a crash
+  // remains FILE.part. Refuses a file that another process is growing (ErrorCode::in_use). If a crash
   // has left a FILE.part, renames that file (see kept_aside()).
   static Result<OutputFile> create_growing(const std::filesystem::path& file,
                                            const OutputOptions& options = {});

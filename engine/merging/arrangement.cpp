@@ -320,9 +320,9 @@ std::vector<std::optional<GridCell>> place_patches(std::size_t count, const std:
   return cells;
 }
 
-Error layout_error(int patch, const char* what) {
-  return Error(ErrorCode::mismatch, "patch " + std::to_string(patch + 1) + " " + what +
-                                        "; merge patches that make a row or a full grid, or name the edges");
+Error layout_error(const std::string& what) {
+  return Error(ErrorCode::mismatch,
+               what + "; merge patches that make a row or a full grid, or name the edges");
 }
 
 // Sorts the matches between patches that are not neighbours in the grid. Such matches close the grid if there
@@ -374,13 +374,13 @@ Result<Arrangement> fill_cells(Arrangement arrangement, const std::vector<std::o
   for (std::size_t p = 0; p < cells.size(); ++p) {
     const int cell = arrangement.cell(cells[p]->a - low_a, cells[p]->b - low_b);
     if (arrangement.patches[cell] >= 0) {
-      return layout_error(static_cast<int>(p), "is in the same cell as another one");
+      return layout_error("patch " + std::to_string(p + 1) + " is in the same cell as another one");
     }
     arrangement.patches[cell] = static_cast<int>(p);
     arrangement.orientations[cell] = cells[p]->orientation;
   }
   for (const int patch : arrangement.patches) {
-    if (patch < 0) return layout_error(static_cast<int>(cells.size()) - 1, "leaves a gap in the grid");
+    if (patch < 0) return layout_error("the patches leave a gap in their grid");
   }
   return arrangement;
 }
@@ -411,7 +411,7 @@ Result<Arrangement> arrange(const std::vector<Surface>& patches, const std::vect
   auto cells = place_patches(patches.size(), matches);
   int low_a = 0, low_b = 0, high_a = 0, high_b = 0;
   for (std::size_t p = 0; p < cells.size(); ++p) {
-    if (!cells[p]) return layout_error(static_cast<int>(p), "is connected to no other patch");
+    if (!cells[p]) return layout_error("patch " + std::to_string(p + 1) + " is connected to no other patch");
     low_a = std::min(low_a, cells[p]->a);
     high_a = std::max(high_a, cells[p]->a);
     low_b = std::min(low_b, cells[p]->b);

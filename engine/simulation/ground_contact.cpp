@@ -261,6 +261,13 @@ void BodyGroundContact::update_skin_offset(const BodyFootings& footings, double 
   footing.skin_m += fraction * (skin_m - followed_m - footing.skin_m);
 }
 
+void BodyGroundContact::forget() {
+  contacts_.forget();
+  for (BodyFootings& body : bodies_) {
+    for (Footing& footing : body.footings) footing.is_near = false;
+  }
+}
+
 void BodyGroundContact::find(int index, const BodyState& body, const Ground& ground, double reach_m,
                              double time_s) {
   BodyFootings& footings = bodies_[static_cast<std::size_t>(index)];

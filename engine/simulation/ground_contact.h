@@ -62,6 +62,9 @@ class BodyGroundContact {
   void find(std::span<const BodyState> bodies, const Ground& ground, const Vector3& gravity_m_per_s2,
             double time_s);
 
+  // Forgets the forces of the contacts and the positions of the skin, as after a jump of the bodies.
+  void forget();
+
   // Visits everything that the next tick depends on.
   template <class Visitor>
   void visit_state(Visitor&& visit) const {

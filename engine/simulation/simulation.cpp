@@ -347,8 +347,7 @@ std::uint64_t Simulation::state_hash() const {
     }
   }
   if (s.scene.ground) {
-    s.ground_contact.contacts().visit_state(
-        [&](const double* data, std::size_t count) { hash.add(data, count); });
+    s.ground_contact.visit_state([&](const double* data, std::size_t count) { hash.add(data, count); });
   }
   s.between.visit_state([&](const double* data, std::size_t count) { hash.add(data, count); });
   add_to_hash(s.tool, hash);
@@ -382,7 +381,7 @@ Status Simulation::restore(const ShapeState& shape) {
     if (body.solver()) body.solver()->adopt_shape(body.lattice);
     body.update_skin();
   }
-  state_->ground_contact.contacts().forget();
+  state_->ground_contact.forget();
   state_->between.forget();
   state_->tool.contact.release();
   state_->mirrored.contact.release();

@@ -125,10 +125,12 @@ TEST(Program, AFileThatMayNotGrowIsAFailureThatLeavesNothing) {
 
 TEST(Program, AFullStandardOutputIsAFailure) {
   const Workplace place;
-  const Outcome outcome = run_process(
-      "/bin/sh", {"-c", "\"$0\" sample \"$1\" --out - >/dev/full", program, place.text("model.json")});
-  EXPECT_EQ(outcome.code, exit_failed);
-  EXPECT_EQ(outcome.err, "spoonbill: standard output could not be written\n");
+  for (const std::string& command :
+       {"sample " + place.text("model.json") + " --out -", std::string("--help"), std::string("--version")}) {
+    const Outcome outcome = run_process("/bin/sh", {"-c", "\"$0\" " + command + " >/dev/full", program});
+    EXPECT_EQ(outcome.code, exit_failed) << command;
+    EXPECT_EQ(outcome.err, "spoonbill: standard output could not be written\n") << command;
+  }
 }
 
 }  // namespace

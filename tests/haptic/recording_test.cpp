@@ -259,7 +259,7 @@ TEST(RecordingWriter, RefusesAFileThatAnotherWrites) {
   ASSERT_TRUE(first->reading({}).ok());
   const auto second = RecordingWriter::create(file, sample_header());
   ASSERT_FALSE(second.ok());
-  EXPECT_EQ(second.error().code, ErrorCode::unavailable);
+  EXPECT_EQ(second.error().code, ErrorCode::in_use);
   ASSERT_TRUE(first->finish(7).ok());
   ASSERT_TRUE(first->commit().ok());
   const auto recording = read_recording(file);

@@ -44,7 +44,7 @@ void PairStages::add_contacts(const Surface& first, const Surface& second, const
                               const PairResult& result, ContactStages& stages) {
   const bool near = std::isfinite(result.distance_m);
   if (!result.touching && !near) return;
-  proximity_->find(first, second, query.reach_m, query.second_closed ? 1.0 : -1.0);
+  proximity_->find(first, second, query.reach_m);
   stages.overflow |= proximity_->overflow();
   for (const NearPoint& point : proximity_->first_points()) {
     append(StageContact{contact_at(first, {point.u, point.v, point.point_m, point.gap_m})}, stages.contacts,

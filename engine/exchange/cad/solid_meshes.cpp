@@ -354,7 +354,12 @@ class SolidMesher {
   }
 
   CadSolids release_solids() {
-    std::sort(result_.loose.begin(), result_.loose.end());
+    // A surface may have faces in several solids, of which some have a mesh.
+    std::set<std::size_t> loose(result_.loose.begin(), result_.loose.end());
+    for (const CadSolid& solid : result_.solids) {
+      for (const std::size_t index : solid.surface_indices) loose.erase(index);
+    }
+    result_.loose.assign(loose.begin(), loose.end());
     return std::move(result_);
   }
 

@@ -111,7 +111,7 @@ Result<SpringLattice> SpringLattice::make(const LatticeMesh& mesh, const Lattice
   lattice.kernels_->measure_rest_volumes(lattice.view());
   lattice.fix_nodes(std::vector<std::uint8_t>(static_cast<std::size_t>(mesh.node_count()), 0));
   lattice.set_damping(sum);
-  lattice.measure_fastest_square();
+  lattice.rest_modes_.push_back(lattice.measure_fastest_mode());
   return lattice;
 }
 
@@ -175,7 +175,7 @@ void SpringLattice::allocate(const LatticeMesh& mesh) {
 }
 
 // Measures the square of the largest angular frequency by power iteration at the present shape.
-void SpringLattice::measure_fastest_square() {
+SpringLattice::RestMode SpringLattice::measure_fastest_mode() {
   const LatticeView lattice = view();
   for (int n = 0; n < mesh_.node_count(); ++n) {
     const int representative = mesh_.joined(n);
@@ -188,6 +188,7 @@ void SpringLattice::measure_fastest_square() {
   for (int step = 0; step < frequency_steps; ++step) {
     fastest_square_ = kernels_->power_step(lattice, node_mass_.data());
   }
+  return {spring_weight_, fastest_square_, power_x_, power_y_, power_z_};
 }
 
 // Returns a copy without displacements and velocities, with the rest lengths at construction, every node free
@@ -201,30 +202,37 @@ SpringLattice SpringLattice::at_rest() const {
     copy.rest_length_[d] = copy.first_rest_length_[d];
     std::fill(copy.square_difference_[d].begin(), copy.square_difference_[d].end(), 0.0f);
   }
+  copy.kernels_->measure_rest_volumes(copy.view());
   copy.inertia_scale_ = 1.0f;
   copy.contact_inverse_mass_ = 0.0f;
   copy.fix_nodes(std::vector<std::uint8_t>(static_cast<std::size_t>(mesh_.node_count()), 0));
   return copy;
 }
 
-// Returns fastest_square() of the lattice at rest with an inertia scale of 1 and with the springs weighted
-// for substeps of step_s.
-double SpringLattice::rest_square(double step_s) {
-  const double weight = spring_weight(step_s);
-  for (const auto& [measured_weight, square] : rest_squares_) {
-    if (measured_weight == weight) return square;
+// Returns the mode for springs of this weight (see LatticeView::spring_weight). It is measured only once.
+const SpringLattice::RestMode& SpringLattice::find_rest_mode(float weight) {
+  for (const RestMode& mode : rest_modes_) {
+    if (mode.spring_weight == weight) return mode;
   }
   SpringLattice copy = at_rest();
-  copy.spring_weight_ = static_cast<float>(weight);
-  copy.measure_fastest_square();
-  rest_squares_.emplace_back(weight, copy.fastest_square());
-  return rest_squares_.back().second;
+  copy.spring_weight_ = weight;
+  return rest_modes_.emplace_back(copy.measure_fastest_mode());
+}
+
+// Tracks the mode from now on, at the present inertia scale.
+void SpringLattice::adopt_mode(const RestMode& mode) {
+  spring_weight_ = mode.spring_weight;
+  fastest_square_ = mode.fastest_square / inertia_scale_;
+  power_x_ = mode.power_x;
+  power_y_ = mode.power_y;
+  power_z_ = mode.power_z;
 }
 
 double SpringLattice::find_inertia_scale(double step_s) {
   SPOONBILL_ASSERT(step_s > 0.0);
   const double used = step_s / (2.0 * rest_stability_fraction);
-  return std::max(1.0, used * used * rest_square(step_s));
+  const RestMode& mode = find_rest_mode(static_cast<float>(spring_weight(step_s)));
+  return std::max(1.0, used * used * static_cast<double>(mode.fastest_square));
 }
 
 double SpringLattice::find_real_time_step_s(double longest_s) {
@@ -244,16 +252,7 @@ double SpringLattice::find_real_time_step_s(double longest_s) {
 void SpringLattice::set_inertia(double scale, double step_s) {
   SPOONBILL_ASSERT(scale >= 1.0 && step_s > 0.0);
   const auto weight = static_cast<float>(spring_weight(step_s));
-  if (weight != spring_weight_) {
-    SpringLattice copy = at_rest();
-    copy.spring_weight_ = weight;
-    copy.measure_fastest_square();
-    spring_weight_ = weight;
-    fastest_square_ = copy.fastest_square_ / inertia_scale_;
-    power_x_ = copy.power_x_;
-    power_y_ = copy.power_y_;
-    power_z_ = copy.power_z_;
-  }
+  if (weight != spring_weight_) adopt_mode(find_rest_mode(weight));
   const auto rounded = static_cast<float>(scale);
   fastest_square_ *= inertia_scale_ / rounded;
   inertia_scale_ = rounded;

@@ -153,6 +153,14 @@ class SpringLattice {
   bool set_shape(std::span<const float> shape);
 
  private:
+  using Floats = AlignedVector<float>;
+  // The fastest mode of the lattice at rest with an inertia scale of 1.
+  struct RestMode {
+    float spring_weight;
+    float fastest_square;
+    Floats power_x, power_y, power_z;  // vector of the power iteration
+  };
+
   SpringLattice() = default;
   void allocate(const LatticeMesh& mesh);
   struct Assembly;
@@ -164,8 +172,9 @@ class SpringLattice {
   void store_stiffening(const Assembly& sum);
   void store_flow_and_creep(const Assembly& sum);
   void set_damping(const Assembly& sum);
-  void measure_fastest_square();
-  double rest_square(double step_s);
+  RestMode measure_fastest_mode();
+  const RestMode& find_rest_mode(float weight);
+  void adopt_mode(const RestMode& mode);
   SpringLattice at_rest() const;
   void find_active_blocks();
   float free_inverse_mass(int node) const;
@@ -174,8 +183,6 @@ class SpringLattice {
   bool reform_springs(int node, const Vector3& move, Reforming& next) const;
   bool reform_cells(int node, const Vector3& move, Reforming& next) const;
   void apply_reforming(const Reforming& next);
-
-  using Floats = AlignedVector<float>;
 
   LatticeMesh mesh_;
   LatticeReport report_;
@@ -187,9 +194,7 @@ class SpringLattice {
   float damping_time_ = 0.0f, step_damping_time_ = 0.0f;
   float contact_inverse_mass_ = 0.0f;
   bool has_applied_force_ = false, flows_ = false, creeps_ = false, is_damped_further_ = false;
-  // Cache of rest_square(): pairs of a spring weight and the fastest_square() of the lattice at rest for that
-  // weight, at an inertia scale of 1.
-  std::vector<std::pair<double, double>> rest_squares_;
+  std::vector<RestMode> rest_modes_;  // one for each spring weight that was needed
   int fixed_count_ = 0, padded_count_ = 0;
   std::vector<int> seam_;  // pairs of joined nodes, see LatticeView::seam
   int offset_[lattice_direction_count] = {};

@@ -236,6 +236,28 @@ TEST(OnGround, AHandleThatFallsComesToRestOnItsSkin) {
   }
 }
 
+// An undone stroke moves the bodies at once. The filter on the height of the skin then starts again.
+TEST(OnGround, ForgetsWhereTheSkinWas) {
+  Scene scene = falling_handle(1e4);
+  const std::vector<BodyState> bodies = [&] {
+    std::vector<BodyState> made;
+    made.push_back(make_body_state(scene.bodies[0], {}, best_instruction_set()).value());
+    return made;
+  }();
+  const ControlNet& net = bodies[0].mapping().current().net;
+  scene.ground->point_m.y() = *std::min_element(net.y.begin(), net.y.end());
+  BodyGroundContact contact(bodies);
+  const auto count_skin_heights = [&] {
+    int heights = 0;
+    contact.visit_state([&](const double*, std::size_t count) { heights += count == 1 ? 1 : 0; });
+    return heights;
+  };
+  contact.find(bodies, *scene.ground, g_m_per_s2 * -Vector3::UnitY(), tick_s);
+  EXPECT_GT(count_skin_heights(), 0);
+  contact.forget();
+  EXPECT_EQ(count_skin_heights(), 0);
+}
+
 // Round bodies do not start to roll by themselves.
 TEST(OnGround, ASoftHandleAtRestStaysThere) {
   Simulation simulation = simulate(falling_handle(1e4));

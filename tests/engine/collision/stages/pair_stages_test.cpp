@@ -124,6 +124,18 @@ TEST_F(CrossingTubes, HaveContactsOnBoth) {
   }
 }
 
+// An open surface has the same outside as a closed one: points in front of it have a gap, not a depth.
+TEST(PairStages, OfAnOpenSurfaceHaveGapsInFrontOfIt) {
+  const Surface thick = round_tube(thick_m, 0.06);
+  Surface beside = thick;
+  for (double& y : beside.net.y) y += 2.0 * thick_m + 0.5 * margin_m;
+  PairStages finder = PairStages::make(thick, beside).value();
+  ContactStages stages;
+  finder.add(thick, beside, margin_m, true, false, stages);
+  ASSERT_FALSE(stages.contacts.empty());
+  for (const StageContact& contact : stages.contacts) EXPECT_LT(contact.at.depth_m, 0.0);
+}
+
 TEST(PairStages, OfSurfacesApartEndAtTheFirst) {
   const Surface thick = round_tube(thick_m, 0.06);
   Surface far = thick;
