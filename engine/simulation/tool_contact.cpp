@@ -453,7 +453,7 @@ namespace {
 // Gap beyond the tool's movement, in lattice cells, up to which points between samples are pushed.
 constexpr double between_margin_cells = 0.1;
 // Largest depth, in lattice cells, to which a sphere may reach between pushed points.
-constexpr double largest_reach_cells = 0.02;
+constexpr double largest_reach_cells = 0.005;
 // Largest number of parts into which the side of a patch between samples is divided.
 constexpr int most_parts = 8;
 
@@ -516,18 +516,15 @@ void ToolContact::add_pushes_between_samples(int body, const BodyState& state, d
 // and would dent a plastic body unevenly.
 void ToolContact::add_sphere_pushes(int body, const BodyState& state, const ToolHold& hold) {
   BodyContact& contact = contacts_[body];
-  if (is_small(state)) {
-    const SurfaceContact& nearest = contact.collision.nearest;
-    const std::size_t point = track_nearest(body, state, hold.reach_m);
-    overflow_ |= !constraints_.add_plane_push(body, state.lattice, state.mapping().at(nearest.u, nearest.v),
-                                              -nearest.normal, shape_.radius_m, key_of(point));
-  } else {
-    add_pushes_between_samples(body, state, hold.reach_m);
-  }
   for (const NearSample& sample : contact.collider.near_samples()) {
     overflow_ |=
         !constraints_.add_push(body, state.lattice, state.mapping().sample(sample.index), sample.index);
   }
+  if (!is_small(state)) return add_pushes_between_samples(body, state, hold.reach_m);
+  const SurfaceContact& nearest = contact.collision.nearest;
+  const std::size_t point = track_nearest(body, state, hold.reach_m);
+  overflow_ |= !constraints_.add_plane_push(body, state.lattice, state.mapping().at(nearest.u, nearest.v),
+                                            -nearest.normal, shape_.radius_m, key_of(point));
 }
 
 // Adds a push whose plane is offset by the gap of the surface. The embedded point itself has a slightly

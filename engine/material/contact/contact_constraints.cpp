@@ -111,6 +111,7 @@ void ContactConstraints::start(std::span<const LatticeView> lattices, ToolState&
   if (motion_.carried.body >= 0) tool_impulse_[motion_.carried.body] += h_s * carried_force_;
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[c];
+    constraint.drag_ns.setZero();
     if (constraint.force_n > 0.0) start_push(lattices[constraint.body], constraint, tool, h_s);
   }
 }
@@ -208,8 +209,10 @@ void ContactConstraints::solve_push(const LatticeView& lattice, Constraint& cons
   const double started = h * constraint.force_n, pushed = push->normal_impulse(h, pace, cap, started);
   if (constraint.keeps_force) constraint.force_n = pushed / h;
   if (pushed == 0.0 && started == 0.0) return;
-  exchange(lattice, constraint, tool,
-           (pushed - started) * push->normal - push->drag(constraint.friction * pushed));
+  const Vector3 dragged = push->drag(constraint.friction * pushed, constraint.drag_ns);
+  const Vector3 impulse = (pushed - started) * push->normal - (dragged - constraint.drag_ns);
+  if (constraint.keeps_force) constraint.drag_ns = dragged;
+  exchange(lattice, constraint, tool, impulse);
 }
 
 void ContactConstraints::solve_grip(const LatticeView& lattice, Constraint& constraint, ToolState& tool,

@@ -137,7 +137,8 @@ class ContactConstraints {
     // True if the next push starts from this push's force. False on lattices that the implicit solver moves:
     // their contact mass is an estimate, and a kept force would amplify its error.
     bool keeps_force = false;
-    double force_n = 0.0;  // push in the last substep
+    double force_n = 0.0;               // push in the last substep
+    Vector3 drag_ns = Vector3::Zero();  // friction impulse in this substep; only if `keeps_force`
     bool acted = false;
   };
   bool add(const Constraint& constraint, const SpringLattice& lattice);

