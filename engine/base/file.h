@@ -75,8 +75,7 @@ class OutputFile {
   // Returns the path to which write() writes: FILE.part for a growing file, a temporary name for a file made
   // by create(), or FILE itself for a device or pipe.
   const std::filesystem::path& written_file() const { return written_; }
-  // Returns the new name that create_growing() gave to an older FILE.part; empty if there was no older
-  // FILE.part.
+  // Returns the new name that create_growing() gave to an older FILE.part; empty if it renamed none.
   const std::filesystem::path& kept_aside() const { return kept_aside_; }
 
   Status write(std::string_view bytes);

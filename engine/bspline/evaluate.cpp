@@ -171,8 +171,8 @@ void GridEvaluator<Real>::set_up_rows(const GridDirection& u) {
 }
 
 // Stores the blending matrix A_v as dense blocks, so that loads are contiguous however few samples a span
-// has. The last block is padded with copies of the last sample column, so that the padding never looks like a
-// sample without a normal.
+// has. The last block is padded with copies of the last sample column. The padding then lacks a normal only
+// if that column does.
 template <class Real>
 void GridEvaluator<Real>::set_up_columns(const GridDirection& v) {
   const double length = v.knots.domain_length();

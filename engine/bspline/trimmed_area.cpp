@@ -198,8 +198,9 @@ int TrimmedArea::winding(double u, double v) const {
   return number;
 }
 
-// Sorts the edges into columns of equal width in u. Returns false if the edges span so many columns that the
-// lists need much memory. A single column always succeeds.
+// Sorts the edges into columns of equal width in u. Returns false if an edge spans more than
+// max_mean_listings columns on average, because the lists would need much memory. A single column always
+// succeeds.
 bool TrimmedArea::fill_columns(std::size_t columns) {
   column_starts_.assign(columns + 1, 0);
   const auto visit = [&](const auto& add) {
@@ -399,7 +400,8 @@ class Cutter {
     if (piece.corners.front() == piece.corners.back()) piece.corners.pop_back();
     if (piece.corners.size() < 3) return;
     for (const Eigen::Vector2d& corner : piece.corners) {
-      // A crossing of two grid lines needs no entry, because every piece that touches it has a corner there.
+      // A crossing of two grid lines needs no entry in on_u_line_ and on_v_line_, because every piece that
+      // touches the crossing has a corner there.
       if (u_.find_line(corner.x()) >= 0 && v_.find_line(corner.y()) >= 0) continue;
       on_u_line_[u_.merge_seam(corner.x())].insert(corner.y());
       if (v_.find_line(corner.y()) >= 0) on_v_line_[v_.merge_seam(corner.y())].insert(corner.x());

@@ -123,7 +123,7 @@ RingArc ring_arc(const Surface& surface, const Ring& ring, const CrossSection& s
   const auto point = [&](int s) -> const Vector3& {
     return ring.points[static_cast<std::size_t>(s % ring_samples)];
   };
-  // Returns a value that changes from negative to positive or zero at crossing q.
+  // Returns a value for sample s that changes from negative to positive or zero at crossing q.
   const auto side = [&](int q, int s) {
     const Vector3 axes[4] = {section.e2, -section.e1, -section.e2, section.e1};
     return axes[q % 4].dot(point(s) - ring.centre);
