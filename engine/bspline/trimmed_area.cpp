@@ -335,7 +335,8 @@ double v_at(const TrimmedArea::Edge& edge, double u) {
   return edge.from.y() + (u - edge.from.x()) / (edge.to.x() - edge.from.x()) * (edge.to.y() - edge.from.y());
 }
 
-// Lower or upper side of a piece of a cell, given by its v at the two values of u between which the piece is.
+// Lower or upper side of a piece of a cell, a straight line. The piece is between two values of u; v_first
+// and v_last are the values of v on the line at the lower and the higher of them.
 struct CutSide {
   double v_first, v_last;
 };

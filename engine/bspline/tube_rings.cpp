@@ -14,7 +14,8 @@ namespace spoonbill {
 namespace {
 
 constexpr int along_samples = 400;
-// Smallest perimeter of a rim, as a fraction of the largest perimeter near the same pole.
+// Smallest perimeter of a rim (where a cap of the tube ends), as a fraction of the largest perimeter near the
+// same pole.
 constexpr double rim_fraction = 0.85;
 
 std::size_t near_rim(const Profile& profile, bool from_end) {

@@ -79,10 +79,10 @@ struct CrossSection {
 // Returns the axes and extents of a ring's section perpendicular to `axis`.
 CrossSection principal_axes(const Ring& ring, const Vector3& axis);
 
-// Width and thickness from which the numbers of lattice cells are chosen. They are those of the section at
-// half length, unless the width or the thickness varies by more than a factor of 2.5 along the body, as in a
-// spoon. The geometric mean of the smallest and the largest value is then used, because the value at half
-// length would give slender cells elsewhere.
+// Width and thickness from which the numbers of lattice cells are chosen. Each is that of the section at half
+// length, unless it varies by more than a factor of 2.5 along the body, as in a spoon. It is then the
+// geometric mean of its smallest and largest values, because the value at half length would give slender
+// cells elsewhere.
 struct Extents {
   double width, thickness;
   bool bent = false;  // true if any section between the rims is bent

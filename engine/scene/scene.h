@@ -92,7 +92,8 @@ inline constexpr auto fields_of<Symmetry> = std::to_array<Field<Symmetry>>({
     direction_field("normal", &Symmetry::normal),
 });
 
-// Refuses more bodies than can be simulated together; the error explains how to select some.
+// Refuses a scene without bodies, and more bodies than can be simulated together. The error for too many
+// bodies explains how to select some.
 Status check_body_count(const Scene& scene);
 
 // Returns an error that names the first field out of range, with its value and its range.

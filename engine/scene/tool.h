@@ -54,7 +54,7 @@ struct ToolActionRow {
   const char* label;  // label in the panel
   const char* help;   // one sentence without a full stop
   // True if the tool grips the surface at the first contact and holds it until the button is released. False
-  // if the tool releases the surface when it moves away.
+  // if the surface is released when the tool moves away.
   bool grips;
   bool allows_soft_tool;
   ToolAction inverse;  // action while Ctrl is down; equal to `action` if there is no inverse

@@ -19,8 +19,8 @@ struct TubeSize {
   double half_width_m = 0.005, half_height_m = 0.005;
 };
 
-// Makes a closed tube. Refuses sizes out of range and a curve that bends too sharply for the section, and
-// reports where.
+// Makes a closed tube. Refuses sizes out of range. Refuses a curve that bends too sharply for the section;
+// the error states the position of the bend.
 Result<ExactShape> tube_shape(const TubeSize& size);
 
 // Sections of a loft. Each section lists its points in order, without repeating the first point. In a loft of
