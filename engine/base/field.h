@@ -290,7 +290,8 @@ constexpr auto choice_field(const char* name, std::span<const char* const> names
   return Field<Object>{{.name = name, .help = help, .choices = names}, choice};
 }
 
-// Returns the field of a struct's member. The call does not compile if the table has no such field.
+// Returns the entry of fields_of<Object> for a member of the struct. The call does not compile if the table
+// has no such entry.
 template <class Object, class Value>
 consteval const Field<Object>& field_of(Value Object::*member) {
   for (const Field<Object>& field : fields_of<Object>) {

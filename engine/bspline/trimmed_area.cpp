@@ -22,10 +22,10 @@ using Polygon = std::vector<Eigen::Vector2d>;
 
 constexpr std::size_t column_count_limit = 1024;
 constexpr std::size_t max_mean_listings = 16;  // largest mean number of columns for one edge
-// Limits for the sampling of winding numbers beside a loop. The first is the largest number of the loop's
-// edges that are sampled. The second is the distance of the samples from the edges, in domain lengths; it is
-// larger than rounding errors, but smaller than the overlap that touching loops may have.
+// Largest number of a loop's edges beside which winding numbers are sampled.
 constexpr std::size_t sampled_edge_count = 32;
+// Distance from an edge at which winding numbers are sampled, in domain lengths. It is larger than rounding
+// errors, but smaller than the overlap that touching loops may have.
 constexpr double sample_offset = 1e-9;
 
 // Wraps a parameter into a periodic domain. Clamps it into an open domain, away from the ends by at least 2
@@ -155,7 +155,8 @@ Status TrimmedArea::compute_level(const std::vector<std::vector<Eigen::Vector2d>
                        " and trim loop 0 keep different parts; outer loops must run counter-clockwise and "
                        "holes clockwise"};
     }
-    // Nothing remains on the right of a loop, except the part inside another loop that shares the edge.
+    // The part on the right of a loop is cut away, except where another loop shares the edge and keeps that
+    // part.
     const auto beyond = windings_beside(polygons[k], -sample_offset);
     if (level_ < 0 || level_ > 1 || (!beyond.contains(-level_) && !beyond.contains(1 - level_))) {
       return Error{ErrorCode::duplicate,

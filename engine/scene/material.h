@@ -26,7 +26,8 @@ struct Material {
   double damping_time_s = 0.0;
   bool plastic = false;
   double yield_strain = 0.0;  // deviatoric strain of a spring above which its rest length flows
-  // Rate at which a spring's rest length flows, in real time, per unit of strain beyond the yield strain.
+  // Rate at which a spring's rest length flows, per unit of strain beyond the yield strain and per second of
+  // real time.
   double flow_rate_per_s = 0.0;
   double hardening = 0.0;  // growth of the yield strain per unit of permanent strain
   // Coefficient b of the factor by which a spring's stiffness changes with its strain e. For b > 0 the spring

@@ -40,8 +40,8 @@ struct ToolParameter {
   Range<double> range{0.0, 0.0};
 };
 
-// Key of the window, a digit or a capital letter. It selects the action of the ToolActionRow together with a
-// kind of tool.
+// Key of the window, a digit or a capital letter. It selects the action of the ToolActionRow that contains
+// it, together with a kind of tool.
 struct ToolKey {
   const char* key = nullptr;  // null if there is no key
   ToolKind kind = ToolKind::sphere;
