@@ -11,8 +11,8 @@ namespace spoonbill {
 
 inline constexpr std::size_t cache_line_bytes = 64;
 
-// Allocates memory that starts on a cache line. If loads start at multiples of their own size from there,
-// none of them straddles two cache lines.
+// Allocates memory that starts at a multiple of cache_line_bytes, so that an aligned vector load never
+// straddles two cache lines.
 template <class T>
 struct CacheLineAllocator {
   using value_type = T;

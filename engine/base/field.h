@@ -59,7 +59,7 @@ constexpr Range<int> whole(Range<double> range) {
 
 inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-// All properties of a field except the pointer to its member.
+// Properties of a field that do not depend on the type of its struct.
 struct FieldForm {
   const char* name = nullptr;  // name in files
   const char* help = "";       // a phrase without a full stop; empty if the name is self-explanatory
@@ -77,7 +77,8 @@ struct FieldForm {
   std::span<const char* const> choices = {};  // names of an enumeration's values, in their order
 };
 
-// Functions that get and set an enumeration whose values are 0, 1, 2, ...
+// Functions that get and set a member of an enumeration type as a number. The values of the enumeration are
+// 0, 1, 2, ...
 template <class Object>
 struct ChoiceMember {
   std::size_t (*get)(const Object&);
@@ -158,7 +159,7 @@ struct Field {
   }
   bool applies(const Object& object) const { return applies_to == nullptr || applies_to(object); }
 
-  // Returns a copy of the field that files may omit. Each function below also returns a copy with one
+  // Returns a copy of this field that is marked as optional. Each function below also returns a copy with one
   // property changed.
   constexpr Field optional() const {
     Field field = *this;
@@ -289,7 +290,8 @@ constexpr auto choice_field(const char* name, std::span<const char* const> names
   return Field<Object>{{.name = name, .help = help, .choices = names}, choice};
 }
 
-// Returns the field of a struct's member. The call does not compile if the table has no such field.
+// Returns the entry of fields_of<Object> for a member of the struct. The call does not compile if the table
+// has no such entry.
 template <class Object, class Value>
 consteval const Field<Object>& field_of(Value Object::*member) {
   for (const Field<Object>& field : fields_of<Object>) {
@@ -301,9 +303,9 @@ consteval const Field<Object>& field_of(Value Object::*member) {
 // Returns the name under which messages report the field in SI units, such as "radius_m" for "radius_mm".
 std::string name_in_si(const FieldForm& form);
 
-// Returns an error unless the value is within its range; a direction must be a unit vector. The message
-// consists of `about` (such as "tool: "), the field's name in SI units, the value and the range. Error::field
-// is the name that the field has in files.
+// Returns an error if the value is outside its range or, for a direction, is not a unit vector. The message
+// starts with `about`, such as "tool: ", and states the field's name in SI units, the value and what is
+// required. Error::field is the name that the field has in files.
 Status check_value(const std::string& about, const FieldForm& form, double value, Range<double> range);
 Status check_value(const std::string& about, const FieldForm& form, int value, Range<double> range);
 Status check_value(const std::string& about, const FieldForm& form, const Vector3& value);

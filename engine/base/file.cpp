@@ -201,8 +201,8 @@ Result<OutputFile> OutputFile::create(const std::filesystem::path& file, Mode mo
   }
   Status opened = mode == Mode::growing ? out.open_growing() : out.open_whole();
   if (!opened) return opened.error();
-  // The umask may have removed permissions of the replaced file when open() created the new one, so they are
-  // set again.
+  // open() has created the new file with default permissions. The file gets the permissions of the file that
+  // it replaces.
   if (replaces && ::fchmod(out.descriptor_, static_cast<mode_t>(status.permissions()) & 0777) != 0) {
     return out.write_error("cannot be given its permissions");
   }

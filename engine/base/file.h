@@ -75,13 +75,12 @@ class OutputFile {
   // Returns the path to which write() writes: FILE.part for a growing file, a temporary name for a file made
   // by create(), or FILE itself for a device or pipe.
   const std::filesystem::path& written_file() const { return written_; }
-  // Returns the new name that create_growing() gave to an older FILE.part; empty if there was no older
-  // FILE.part.
+  // Returns the new name that create_growing() gave to an older FILE.part; empty if it renamed none.
   const std::filesystem::path& kept_aside() const { return kept_aside_; }
 
   Status write(std::string_view bytes);
 
-  // Waits until everything written is on the disk; returns at once for a pipe.
+  // Writes the buffered bytes and waits until the file is on the disk. For a pipe there is no such wait.
   Status flush();
 
   // Publishes the file under its name and closes it. No other call may follow.
@@ -118,8 +117,8 @@ class OutputFile {
 Status write_file(const std::filesystem::path& file, std::string_view bytes,
                   Durability durability = Durability::now, const OutputOptions& options = {});
 
-// Same as write_file(), but keeps the replaced content as FILE.bak; for files that a user edits. Refuses to
-// replace anything but a regular file.
+// Same as write_file(), but keeps the replaced content as FILE.bak; for files that a user edits. If a person
+// gave the name (NamedBy), refuses to replace anything but a regular file.
 Status replace_file(const std::filesystem::path& file, std::string_view bytes,
                     const OutputOptions& options = {});
 

@@ -51,8 +51,8 @@ Status check_position(const std::string& field, const Vector3& position_m);
 // Returns an error unless the vector has length 1 within 1e-6, which allows for normals written as decimals.
 Status check_unit(const std::string& field, const Vector3& vector);
 
-// An axis-aligned box from `low` to `high`, both included; metres by default. A default-constructed box is
-// empty and grows with the points that it includes.
+// An axis-aligned box from `low` to `high`, both included, in metres unless stated otherwise. A
+// default-constructed box is empty; include() makes it grow.
 template <class Vector>
 struct AlignedBox {
   using Scalar = typename Vector::Scalar;

@@ -25,10 +25,10 @@ std::string length_text(double length_m);
 std::string position_text(const Vector3& point_m);
 
 // Returns the text with dangerous characters in JSON's escaped form, such as "\u001b". Dangerous characters
-// could control a terminal, end its line or reorder its display: control characters (U+0000 to U+001F, U+007F
-// to U+009F), direction marks and line separators. Names in files can contain all of these. A byte that is
-// not UTF-8 becomes "\u00" and its two hexadecimal digits. A valid JSON document without line breaks and tabs
-// stays valid.
+// could control a terminal, break a line or reorder the text on the screen: control characters (U+0000 to
+// U+001F, U+007F to U+009F), direction marks and line separators. Names in files can contain all of these. A
+// byte that is not UTF-8 becomes "\u00" and its two hexadecimal digits. A valid JSON document without line
+// breaks and tabs stays valid.
 std::string escaped(std::string_view text);
 
 // Returns the text with "?" in place of each character that escaped() would escape.

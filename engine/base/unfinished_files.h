@@ -16,7 +16,7 @@ namespace spoonbill {
 class UnfinishedFile {
  public:
   // Function that removes or completes the file when the process stops early, and returns one line for the
-  // user or an empty text. It is not called on the thread that writes the file.
+  // user or an empty text. It may be called while another thread is writing the file.
   using Ending = std::function<std::string()>;
 
   UnfinishedFile() = default;                           // makes an object without an entry

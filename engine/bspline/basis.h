@@ -18,9 +18,9 @@ struct BasisFunctions {
   std::array<std::array<double, max_degree + 1>, max_basis_derivative + 1> values{};
 };
 
-// Returns the nonzero basis functions at u, which must be in the domain; derivatives above the degree are
-// zero (Eq. 2 of Pungotra et al. 2013 with half-open spans, the last one closed; Piegl and Tiller 1997,
-// algorithm A2.3). Does not allocate.
+// Returns the nonzero basis functions at u, which must be in the domain (Eq. 2 of Pungotra et al. 2013; Piegl
+// and Tiller 1997, algorithm A2.3). A span includes its start but not its end; only the last span includes
+// both. Derivatives of an order above the degree are zero. Does not allocate.
 BasisFunctions basis_functions(const KnotVector& knots, double u);
 
 // Computes only the span and values[0], with the same bits as basis_functions().
@@ -31,10 +31,11 @@ using BlossomWeights = std::array<double, max_degree + 1>;
 
 // Returns the blossom of a polynomial piece at the arguments, as weights of the piece's control points. The
 // blossom is the symmetric multi-affine function that equals the polynomial where all arguments are equal.
-// Its values at consecutive knots are control points, which serves to convert between knot vectors (Ramshaw
-// 1989). `span` is a result of find_span(). The number of arguments must be from the degree to max_degree. If
-// there are more arguments than the degree, the blossom is that of the same polynomial raised to the higher
-// degree: the mean over all subsets of as many arguments as the original degree. Does not allocate.
+// Its values at `degree` consecutive knots are control points; this property is used to convert between knot
+// vectors (Ramshaw 1989). `span` is a result of find_span(). The number of arguments must be from the degree
+// to max_degree. If there are more arguments than the degree, the blossom is that of the same polynomial
+// raised to the higher degree: the mean of the original blossom over all subsets with as many arguments as
+// the original degree. Does not allocate.
 BlossomWeights blossom(const KnotVector& knots, int span, std::span<const double> arguments);
 
 // Parallel lines of control points. The next point of a line is `along` elements further in memory, the next

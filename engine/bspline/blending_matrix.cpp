@@ -44,9 +44,9 @@ BlendingMatrix blending_matrix(const KnotVector& knots, std::span<const double> 
 
 namespace {
 
-// Smallest usable diagonal entry of R in a QR factorization, relative to the largest entry. For usable
-// samplings up to degree 9 this ratio stays above 1e-8; for singular samplings of periodic directions it is
-// about 1e-16.
+// Smallest usable diagonal entry of R in a QR factorization, relative to the largest diagonal entry. For
+// usable samplings up to degree 9 this ratio stays above 1e-8; for singular samplings of periodic directions
+// it is about 1e-16.
 constexpr double rank_tolerance = 1e-12;
 
 // QR factorization with column pivoting by Householder reflections. Written by hand, because the order of
@@ -190,7 +190,8 @@ Status check_open(const KnotVector& knots, const std::vector<double>& samples) {
 }
 
 // Matches control points to samples in cyclic order, starting with control point 0 and sample `offset`; the
-// numbering of samples continues from one period to the next. Returns the number of control points matched.
+// numbering of samples continues from one period to the next. Returns the number of control points that were
+// matched before the first one without a sample.
 int count_matched(const KnotVector& knots, const std::vector<double>& samples, int offset) {
   const double period = knots.domain_length();
   const int count = static_cast<int>(samples.size());

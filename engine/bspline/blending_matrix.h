@@ -23,7 +23,7 @@ struct BlendingMatrix {
   int columns = 0;
   int bandwidth = 0;
   std::vector<int> first;      // first column of each row, before wrapping
-  std::vector<double> values;  // nonzero entries: rows * bandwidth, row-major
+  std::vector<double> values;  // entries of the band: rows * bandwidth, row-major
 
   // Returns the column of entry k of a row.
   int column(int row, int k) const { return (first[row] + k) % columns; }
@@ -44,9 +44,9 @@ Status check_schoenberg_whitney(const KnotVector& knots, std::span<const double>
 
 // Returns the pseudo-inverse A^+ (columns x rows) by QR; never by inverting A^T A, which squares the
 // condition number. Refuses samples that do not determine the control points: fewer samples than control
-// points, a gap, or a singular periodic sampling. For evenly spaced periodic knots, a sampling is singular if
-// there are as many samples as control points, their number is even, and an even degree is sampled at the
-// knots or an odd degree midway between them.
+// points, a gap (see check_schoenberg_whitney()), or a singular periodic sampling. For evenly spaced periodic
+// knots, a sampling is singular if there are as many samples as control points, their number is even, and an
+// even degree is sampled at the knots or an odd degree midway between them.
 Result<Eigen::MatrixXd> pseudo_inverse(const KnotVector& knots, std::span<const double> parameters);
 
 // Constraints of a fit in one direction.
@@ -61,8 +61,9 @@ struct RefitConstraints {
 
 // Returns the matrix that computes control points (rows) from samples (columns) under constraints. Rows of
 // fixed control points are zero. Rows of interpolated ends copy their sample. All other rows are A_free^+ (1
-// - A_ends S), where S selects the end samples. Without constraints the result is pseudo_inverse(). Refuses
-// samples that do not determine the control points.
+// - A_ends S). A_free and A_ends are the columns of the blending matrix for the free and for the interpolated
+// control points, and S selects the samples at the interpolated ends. Without constraints the result is
+// pseudo_inverse(). Refuses samples that do not determine the control points.
 Result<Eigen::MatrixXd> constrained_inverse(const KnotVector& knots, std::span<const double> parameters,
                                             const RefitConstraints& constraints);
 

@@ -171,8 +171,8 @@ void GridEvaluator<Real>::set_up_rows(const GridDirection& u) {
 }
 
 // Stores the blending matrix A_v as dense blocks, so that loads are contiguous however few samples a span
-// has. The last block is padded with copies of the last sample column, so that the padding never looks like a
-// sample without a normal.
+// has. The last block is padded with copies of the last sample column. The padding then lacks a normal only
+// if that column does.
 template <class Real>
 void GridEvaluator<Real>::set_up_columns(const GridDirection& v) {
   const double length = v.knots.domain_length();
@@ -256,9 +256,9 @@ auto GridEvaluator<Real>::collapsed_edges(const NetView<Real>& net, Real reach) 
   return edges;
 }
 
-// Returns a value of |du x dv|^2 above which every sample has a normal according to the kernels. They test
-// whether |du x dv|^2 exceeds noise(du)^2 |dv|^2 + noise(dv)^2 |du|^2. The returned value is at least the
-// smallest normal number, because smaller numbers may be rounding errors of underflow.
+// Returns a value of |du x dv|^2 above which every sample has a normal according to the kernels. The kernels
+// test whether |du x dv|^2 exceeds noise(du)^2 |dv|^2 + noise(dv)^2 |du|^2. The returned value is at least
+// the smallest normal number, because smaller numbers may be rounding errors of underflow.
 template <class Real>
 Real GridEvaluator<Real>::regularity_bound(const NetView<Real>& net, double largest_coordinate) const {
   const int rows = grid_->u.knots.control_point_count(), columns = net.columns;
@@ -327,8 +327,8 @@ EvaluateRow<Real> GridEvaluator<Real>::row_task(int row) const {
 
 // Computes a row and returns the number of its samples without a normal. If all samples have normals for
 // certain, the row is written directly, and its padding overwrites the start of the next row, which is
-// computed later. Otherwise only whole blocks are written directly. The remaining columns and the limit
-// columns are computed in the spare row and copied.
+// computed later. Otherwise only whole blocks are written directly. The columns after the last whole block
+// and the limit columns (see set_up_limit_columns()) are computed in the spare row and copied.
 template <class Real>
 int GridEvaluator<Real>::compute_row(const EvaluateRow<Real>& task, int row, const CollapsedEdges& edges,
                                      GridSamples<Real>& samples) {

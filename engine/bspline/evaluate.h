@@ -72,8 +72,8 @@ class GridEvaluator {
   // Sum of the magnitudes of the basis functions' derivatives, for each row (u) or column (v) of samples.
   std::vector<double> u_magnitude_, v_magnitude_;
   DerivativeBound u_bound_, v_bound_;
-  // Number of blocks for the grid's columns and two more columns, in which normals at collapsed edges are
-  // computed.
+  // Number of blocks (of evaluate_block columns) for the grid's columns and two more. The normals at
+  // collapsed edges are computed in these two columns.
   int blocks_ = 0;
   std::vector<EvaluateReach> reaches_;
   AlignedVector<Real> v_values_, v_derivatives_;

@@ -44,7 +44,7 @@ struct EvaluateRow {
   const Real* derivatives;
   Real du_noise_squared;         // squared rounding error of du in this row
   const Real* dv_noise_squared;  // squared rounding error of dv in each column
-  Real surely_regular;           // bound of |du x dv|^2; above it, no product is rounding error
+  Real surely_regular;           // if |du x dv|^2 is above this, it is not rounding error
 };
 
 // Destinations of a row of samples; no alignment is required.

@@ -18,8 +18,8 @@
 
 namespace spoonbill {
 
-// One direction of a grid. Immutable once made, so that any thread may read it. Making one is too slow for a
-// tick.
+// One direction of a grid. Immutable once made, so that any thread may read it. Its construction is too slow
+// for a tick.
 struct GridDirection {
   KnotVector knots;
   std::vector<double> parameters;  // parameters of the samples: strictly increasing, in the domain
@@ -29,8 +29,8 @@ struct GridDirection {
 
   // Returns the number of cells; each cell is between two neighbouring parameters.
   int cell_count() const { return static_cast<int>(parameters.size()) - 1; }
-  // Returns the cell that contains the parameter: the first or the last cell for a parameter outside the
-  // sampled range.
+  // Returns the index of the cell that contains the parameter. For a parameter outside the sampled range,
+  // returns the index of the nearest cell.
   int find_cell(double parameter) const;
   // Returns the index of a cell, wrapped across the seam of a periodic direction; returns -1 beyond an open
   // end.
@@ -60,8 +60,9 @@ std::vector<double> uniform_parameters(const KnotVector& knots, int count);
 std::vector<double> uniform_parameters_without_seam(const KnotVector& knots, int count);
 
 // Parameters of a grid with nested levels: each polynomial piece is cut into pieces_per_span * 2^levels equal
-// parts, both domain ends included. Level l (0 = coarsest) has every 2^(levels - l)-th parameter. No cell has
-// a knot inside. The blending matrices of a coarse level consist of rows of the finest level's matrices.
+// parts, both domain ends included. Level l (0 = coarsest) has every 2^(levels - l)-th parameter. No cell of
+// any level has a knot inside. The blending matrices of a coarse level consist of rows of the finest level's
+// matrices.
 struct NestedParameters {
   int levels = 0;
   std::vector<double> parameters;
@@ -72,8 +73,8 @@ struct NestedParameters {
 NestedParameters nested_parameters(const KnotVector& knots, int pieces_per_span, int levels);
 
 // Points at the parameters u[i], v[j], with the index i * v.size() + j. The parameters must increase strictly
-// within the domain. The fit is well conditioned if there are at least twice as many parameters as control
-// points in each direction.
+// within the domain. A fit to the points (fit_grid()) is well conditioned if there are at least twice as many
+// parameters as control points in each direction.
 struct PointGrid {
   std::vector<double> u, v;
   std::vector<Vector3> points_m;

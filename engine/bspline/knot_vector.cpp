@@ -81,8 +81,8 @@ std::optional<Error> periodic_multiplicity_error(const std::vector<double>& knot
 }
 
 // Extends the knots of one period on both sides. The new knots are computed from the differences between
-// knots and the seam. Knots that coincide at one end of the period then coincide exactly at the other end,
-// and the sequence never decreases.
+// knots and the seam. Equal knots are then exactly equal in every period, also at the seam, and the sequence
+// never decreases.
 std::vector<double> extend_periodic(const std::vector<double>& knots, int degree) {
   const int r = static_cast<int>(knots.size()) - 1;
   const double start = knots.front(), end = knots.back(), period = end - start;

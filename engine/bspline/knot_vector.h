@@ -36,9 +36,9 @@ class KnotVector {
   static Result<KnotVector> open(int degree, std::vector<double> knots);
 
   // Makes a periodic knot vector for r >= 2 control points from the r + 1 knots of one period; the last knot
-  // is the first plus the period. B_i starts at knot i, and B_i(u) = B_0((u - i + r) mod r) for uniform knots
-  // (Eq. 3 of Pungotra et al. 2013, but with modulus r; with their modulus r + 1, the sum of the basis
-  // functions falls to 1/3 at the seam).
+  // is the first plus the period. The support of basis function B_i starts at knot i. For the knots 0, 1,
+  // ..., r, B_i(u) = B_0((u - i + r) mod r). This is Eq. 3 of Pungotra et al. (2013), but with modulus r:
+  // with their modulus r + 1, the sum of the basis functions falls to 1/3 at the seam.
   static Result<KnotVector> periodic(int degree, std::vector<double> knots);
 
   // Makes evenly spaced knots over the domain [0, 1].
@@ -71,11 +71,11 @@ class KnotVector {
   std::vector<double> breakpoints() const;
 
   // Returns u wrapped (periodic; the end maps to the start) or clamped (open) into the domain. NaN maps to
-  // the start, so that every result is within the knots.
+  // the start, so that the result is always in the domain.
   double into_domain(double u) const;
 
-  // Returns the index k into extended_knots() with extended[k] <= u < extended[k + 1]; the last span is
-  // closed. u must be in the domain.
+  // Returns the index k into extended_knots() with extended[k] <= u < extended[k + 1]. The end of the domain
+  // belongs to the last span. u must be in the domain.
   int find_span(double u) const;
 
   // Returns the index of the control point that belongs to basis function j (0..degree) of a span.

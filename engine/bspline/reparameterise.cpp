@@ -57,8 +57,9 @@ std::vector<double> with_knot(const KnotVector& knots, double knot) {
 }
 
 // Repeats the period several times and inserts the knot into the central period and into every other period
-// in which an inserted knot affects the central one. Outermost periods without the knot make each inserted
-// knot an inner knot. Returns the lines of the central period.
+// in which an inserted knot changes lines of the central period. The outermost periods receive no knot, so
+// that each inserted knot has at least `degree` knots on either side. Returns the lines of the central
+// period.
 std::vector<ControlLine> insert_into_periodic(const KnotVector& knots, const std::vector<ControlLine>& lines,
                                               double knot) {
   const int degree = knots.degree(), count = knots.control_point_count();

@@ -116,7 +116,7 @@ SurfacePoint evaluate(const Surface& surface, double u, double v) {
 
 Vector3 position(const Surface& surface, double u, double v) {
   SPOONBILL_ASSERT_DEBUG(has_matching_net(surface));
-  // basis_values() sets only values[0]; nothing else is read here.
+  // basis_values() sets only the span and values[0]; the derivatives are not read here.
   BasisFunctions bu, bv;
   basis_values(surface.u, surface.u.into_domain(u), bu);
   basis_values(surface.v, surface.v.into_domain(v), bv);
@@ -151,16 +151,16 @@ constexpr double product_noise = 16.0 * std::numeric_limits<Real>::epsilon();
 
 // Distance from an edge, in domain lengths. The edge counts as collapsed if du x dv grows by more than its
 // value at the edge over this distance. The control points of a collapsed edge need not coincide exactly,
-// because after a refit in single precision they coincide only to about 1e-7. The normals around the
-// remaining hole would otherwise be arbitrary.
+// because after a refit in single precision they coincide only to about 1e-7. The edge is then the border of
+// a tiny hole, around which du x dv has an arbitrary direction.
 constexpr double hole = 1e-6;
 
-// Distances from an edge, in domain lengths. If the first-order growth of du x dv vanishes at the edge too,
-// the normal is taken from points at these distances inside.
+// Distances in domain lengths, the smallest first. If du x dv and its growth from the edge both vanish at a
+// point, the normal is taken from a point at one of these distances, towards the midpoint of the domain.
 constexpr double steps_inside[] = {0x1p-14, 0x1p-10, 0x1p-6};
 
-// Derivatives for parameters scaled to a domain of length 1, and an upper bound of |du x dv|. The bound
-// follows from the control points that affect the point.
+// Derivatives at a surface point for parameters scaled to a domain of length 1, and an upper bound of |du x
+// dv|. The bound is computed from the control points that affect the surface point.
 struct LimitTangents {
   Vector3 du = Vector3::Zero(), dv = Vector3::Zero();
   Vector3 duu = Vector3::Zero(), duv = Vector3::Zero(), dvv = Vector3::Zero();
@@ -237,7 +237,8 @@ Growth growth_from_edge(const LimitTangents& t, int inward_u, int inward_v) {
           inward_v * (t.duv.cross(t.dv) + t.du.cross(t.dvv))};
 }
 
-// Returns u moved toward the midpoint of the domain, so that it stays inside.
+// Returns u moved by the fraction `step` of the domain toward the midpoint of the domain, so that it stays
+// inside.
 double step_from(const KnotVector& knots, double u, double step) {
   const double length = knots.domain_length();
   return u + (u - knots.domain_start() < 0.5 * length ? step : -step) * length;

@@ -95,9 +95,9 @@ SurfacePoint evaluate(const Surface& surface, double u, double v);
 // Returns only the position, with the same bits as evaluate(), at two fifths of the cost.
 Vector3 position(const Surface& surface, double u, double v);
 
-// Returns the unit normal along du x dv. At poles and collapsed edges, where du x dv vanishes, returns the
-// limit from inside the surface. Returns zero if there is no limit, because the surface is only a point or a
-// line.
+// Returns the unit normal along du x dv. At an edge that is a single point, such as a pole, du x dv vanishes;
+// the function then returns the limit from inside the surface. Returns zero if there is no limit, because the
+// surface is only a point or a line.
 Vector3 unit_normal(const Surface& surface, double u, double v);
 
 // Returns a bound, in metres, of how far a surface point moves when one parameter changes by the length of

@@ -171,7 +171,7 @@ double second_derivative_bound(const TrimLoop& loop, int span, const Eigen::Vect
   return largest;
 }
 
-// Number and error of the chords that replace one polynomial piece. They are evenly spaced in the parameter.
+// The evenly spaced chords that replace one polynomial piece of a loop: their number and error.
 struct PieceChords {
   int count = 1;
   double error_fraction = 0.0;  // largest distance of a chord from the curve, as a fraction of the domain

@@ -1,6 +1,7 @@
-// Trim loops, and the search for crossings of polygons. A trim loop is a closed B-spline curve in the domain
-// of a surface that bounds the part of the surface that remains. Its coordinates are the parameters (u, v),
-// not metres. All functions are pure, may be called from any thread, and are too slow for a tick.
+// Trim loops, and the search for crossings of polygons. A trim loop is a closed B-spline curve in the
+// parameter domain of a surface; its coordinates are the parameters (u, v), not metres. The loops of a
+// surface bound the part of the surface that is kept. All functions are pure, may be called from any thread,
+// and are too slow for a tick.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,9 +22,9 @@ struct PolygonCrossing {
   Eigen::Vector2d near;
 };
 
-// Returns a pair of crossing edges of the polygons, if any. Edges that only touch, within `tolerance` (above
-// 0) along each axis, do not cross. The time grows with the number of pairs of edges whose ranges of x
-// overlap.
+// Returns a pair of crossing edges of the polygons, if any. Edges that only touch do not cross. `tolerance`
+// is the gap at which edges still touch, given for each axis; it must be above 0. The time grows with the
+// number of pairs of edges whose ranges of x overlap.
 std::optional<PolygonCrossing> find_crossing(const std::vector<std::vector<Eigen::Vector2d>>& polygons,
                                              const Eigen::Vector2d& tolerance);
 
@@ -59,10 +60,11 @@ Result<TrimLoop> make_trim_loop(const KnotVector& along_u, const KnotVector& alo
 // Returns the point of the curve at a parameter of its own domain.
 Eigen::Vector2d position(const TrimLoop& loop, double parameter);
 
-// Returns the corners of a polygon that is within trim_chord_fraction of the loop. Each corner occurs once;
-// none is outside the domain of an open direction. Every polynomial piece of the curve is divided evenly. A
-// chord over a parameter range of length h deviates from the curve by at most h^2 / 8 times the largest
-// second derivative, for which the control points of the derivative give a bound.
+// Returns the corners of a polygon that is within trim_chord_fraction of the loop; only a loop with very
+// distant control points may be farther away (see polygon_error_fraction()). Each corner occurs once; none is
+// outside the domain of an open direction. Every polynomial piece of the curve is divided evenly. A chord
+// over a parameter range of length h deviates from the curve by at most h^2 / 8 times the largest second
+// derivative, for which the control points of the derivative give a bound.
 std::vector<Eigen::Vector2d> to_polygon(const TrimLoop& loop, const KnotVector& along_u,
                                         const KnotVector& along_v);
 

@@ -22,10 +22,10 @@ using Polygon = std::vector<Eigen::Vector2d>;
 
 constexpr std::size_t column_count_limit = 1024;
 constexpr std::size_t max_mean_listings = 16;  // largest mean number of columns for one edge
-// Limits for the sampling of winding numbers beside a loop. The first is the largest number of the loop's
-// edges that are sampled. The second is the distance of the samples from the edges, in domain lengths; it is
-// larger than rounding errors, but smaller than the overlap that touching loops may have.
+// Largest number of a loop's edges beside which winding numbers are sampled.
 constexpr std::size_t sampled_edge_count = 32;
+// Distance from an edge at which winding numbers are sampled, in domain lengths. It is larger than rounding
+// errors, but smaller than the overlap that touching loops may have.
 constexpr double sample_offset = 1e-9;
 
 // Wraps a parameter into a periodic domain. Clamps it into an open domain, away from the ends by at least 2
@@ -155,7 +155,8 @@ Status TrimmedArea::compute_level(const std::vector<std::vector<Eigen::Vector2d>
                        " and trim loop 0 keep different parts; outer loops must run counter-clockwise and "
                        "holes clockwise"};
     }
-    // Nothing remains on the right of a loop, except the part inside another loop that shares the edge.
+    // The part on the right of a loop is cut away, except where another loop shares the edge and keeps that
+    // part.
     const auto beyond = windings_beside(polygons[k], -sample_offset);
     if (level_ < 0 || level_ > 1 || (!beyond.contains(-level_) && !beyond.contains(1 - level_))) {
       return Error{ErrorCode::duplicate,
@@ -198,8 +199,9 @@ int TrimmedArea::winding(double u, double v) const {
   return number;
 }
 
-// Sorts the edges into columns of equal width in u. Returns false if the edges span so many columns that the
-// lists need much memory. A single column always succeeds.
+// Sorts the edges into columns of equal width in u. Returns false if an edge spans more than
+// max_mean_listings columns on average, because the lists would need much memory. A single column always
+// succeeds.
 bool TrimmedArea::fill_columns(std::size_t columns) {
   column_starts_.assign(columns + 1, 0);
   const auto visit = [&](const auto& add) {
@@ -334,7 +336,8 @@ double v_at(const TrimmedArea::Edge& edge, double u) {
   return edge.from.y() + (u - edge.from.x()) / (edge.to.x() - edge.from.x()) * (edge.to.y() - edge.from.y());
 }
 
-// Lower or upper side of a piece of a cell, given by its v at the two values of u between which the piece is.
+// Lower or upper side of a piece of a cell, a straight line. The piece is between two values of u; v_first
+// and v_last are the values of v on the line at the lower and the higher of them.
 struct CutSide {
   double v_first, v_last;
 };
@@ -399,7 +402,8 @@ class Cutter {
     if (piece.corners.front() == piece.corners.back()) piece.corners.pop_back();
     if (piece.corners.size() < 3) return;
     for (const Eigen::Vector2d& corner : piece.corners) {
-      // A crossing of two grid lines needs no entry, because every piece that touches it has a corner there.
+      // A crossing of two grid lines needs no entry in on_u_line_ and on_v_line_, because every piece that
+      // touches the crossing has a corner there.
       if (u_.find_line(corner.x()) >= 0 && v_.find_line(corner.y()) >= 0) continue;
       on_u_line_[u_.merge_seam(corner.x())].insert(corner.y());
       if (v_.find_line(corner.y()) >= 0) on_v_line_[v_.merge_seam(corner.y())].insert(corner.x());

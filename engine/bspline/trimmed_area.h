@@ -92,8 +92,8 @@ class GridLines {
   int find_cell(double parameter) const;
   // Returns the index of the line exactly at a parameter, or -1 if no line is there.
   int find_line(double parameter) const;
-  // Returns the start of the period for the end of the period, if the grid has a single line at the seam.
-  // Returns any other parameter unchanged.
+  // If the parameter is the end of the period and the grid has a single line at the seam, returns the start
+  // of the period. Otherwise returns the parameter unchanged.
   double merge_seam(double parameter) const;
 
  private:

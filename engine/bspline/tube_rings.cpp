@@ -14,7 +14,8 @@ namespace spoonbill {
 namespace {
 
 constexpr int along_samples = 400;
-// Smallest perimeter of a rim, as a fraction of the largest perimeter near the same pole.
+// Smallest perimeter of a rim (where a cap of the tube ends), as a fraction of the largest perimeter near the
+// same pole.
 constexpr double rim_fraction = 0.85;
 
 std::size_t near_rim(const Profile& profile, bool from_end) {
@@ -123,7 +124,7 @@ RingArc ring_arc(const Surface& surface, const Ring& ring, const CrossSection& s
   const auto point = [&](int s) -> const Vector3& {
     return ring.points[static_cast<std::size_t>(s % ring_samples)];
   };
-  // Returns a value that changes from negative to positive or zero at crossing q.
+  // Returns a value for sample s that changes from negative to positive or zero at crossing q.
   const auto side = [&](int q, int s) {
     const Vector3 axes[4] = {section.e2, -section.e1, -section.e2, section.e1};
     return axes[q % 4].dot(point(s) - ring.centre);

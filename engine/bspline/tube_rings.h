@@ -1,5 +1,5 @@
-// Rings of a closed tube, which are its lines of constant v, the profile of the rings along the tube, and the
-// positions of lattice nodes on the rings.
+// Rings of a closed tube, a profile of the tube, and the positions of lattice nodes on the rings. A ring is a
+// line of constant v. The profile lists the centres and perimeters of rings along the tube.
 #pragma once
 
 #include <algorithm>
@@ -41,8 +41,8 @@ struct Ring {
 // Samples the ring of a surface at v. The surface must be periodic along u.
 Ring sample_ring(const Surface& surface, double v);
 
-// The centre line of a tube at many stations: for each, the v, distance from the first pole, perimeter and
-// centre of the ring there.
+// Stations along the centre line of a tube. For each station: v, the distance from the first pole along the
+// centre line, and the perimeter and centre of the ring at v.
 struct Profile {
   std::vector<double> v, distance, perimeter;
   std::vector<Vector3> centre;
@@ -61,8 +61,9 @@ struct Rims {
 Rims near_rims(const Profile& profile);
 
 // Returns, for each end of the tube, the first station from which the tube advances at least as fast as its
-// mean radius (perimeter / 2 pi) grows. The search begins at the station that protrudes farthest. If the end
-// of a body is hollow around the pole, the cap therefore extends over the edge of the hollow to the side.
+// mean radius (perimeter / 2 pi) grows. The search begins at the station that protrudes farthest at that end.
+// If the end of a body is hollow around the pole, the cap therefore extends over the edge of the hollow to
+// the side.
 Rims shoulder_rims(const Profile& profile);
 
 // Returns, for each end of the tube, the rim of `a` or `b` that is farther from the pole.
@@ -78,10 +79,10 @@ struct CrossSection {
 // Returns the axes and extents of a ring's section perpendicular to `axis`.
 CrossSection principal_axes(const Ring& ring, const Vector3& axis);
 
-// Width and thickness from which the numbers of lattice cells are chosen. They are those of the section at
-// half length, unless the width or the thickness varies by more than a factor of 2.5 along the body, as in a
-// spoon. The geometric mean of the smallest and the largest value is then used, because the value at half
-// length would give slender cells elsewhere.
+// Width and thickness from which the numbers of lattice cells are chosen. Each is that of the section at half
+// length, unless it varies by more than a factor of 2.5 along the body, as in a spoon. It is then the
+// geometric mean of its smallest and largest values, because the value at half length would give slender
+// cells elsewhere.
 struct Extents {
   double width, thickness;
   bool bent = false;  // true if any section between the rims is bent
@@ -91,9 +92,9 @@ struct Extents {
 Extents lattice_extents(const Surface& surface, const Profile& profile, const Rims& rims,
                         const CrossSection& centre_section);
 
-// Parameters u of the lattice nodes around a ring, in the direction of u. A section has ni x nj nodes, of
-// which 2 (ni - 1) + 2 (nj - 1) are on the ring. The first parameter is that of the corner node (ni - 1, nj -
-// 1), which is between the axes +e1 and +e2 of the section.
+// Parameters u of the lattice nodes around a ring, in the order of increasing u. A section has ni x nj nodes,
+// of which 2 (ni - 1) + 2 (nj - 1) are on the ring. The first parameter is that of the corner node (ni - 1,
+// nj - 1), which is between the axes +e1 and +e2 of the section.
 struct RingParameters {
   std::vector<double> u;
 };

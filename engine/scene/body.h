@@ -20,10 +20,11 @@
 namespace spoonbill {
 
 // Parameters of the self-organising map that spreads a lattice's inner nodes (Kohonen 1990). Points of the
-// body are drawn at random. For each point x, the node nearest to x moves towards x, and so do the nodes
-// around it: a node w at the grid distance d moves by the vector (x - w) times rate * exp(-d^2 / 2 s^2). The
-// rate and the neighbourhood s shrink geometrically from their first to their last values. If s is below
-// about one grid step, neighbours no longer follow, and the map can stay folded (Erwin et al. 1992).
+// body are drawn at random. For each point x, the node nearest to x moves towards x, and the nodes around the
+// nearest node follow it. A node w that is d grid steps from the nearest node moves by the vector (x - w)
+// times rate * exp(-d^2 / (2 s^2)). The rate and the width s of the neighbourhood shrink geometrically from
+// their first to their last values. If s is below about one grid step, neighbours no longer follow, and the
+// map can stay folded (Erwin et al. 1992).
 struct FeatureMapSettings {
   int draws_per_node = 500;  // number of random points drawn for each inner node
   double first_rate = 0.1, last_rate = 0.01;
@@ -54,7 +55,8 @@ struct LatticeRequest {
   // - tubes and rings: across (first, second) and along (third) the body;
   // - triangle meshes and bodies in a box of cells (box_lattice.h): x, y and z;
   // - open shells: along u, through the thickness, along v;
-  // - closed shells: around, through and along the shell; the first node around also counts as the last.
+  // - closed shells: around, through and along the shell; the count around includes the node at the seam
+  //   twice.
   std::optional<std::array<int, 3>> counts;
   // Settings of the map that spreads the inner nodes of a tube after transfinite interpolation has placed
   // them. If empty, the nodes stay where interpolation placed them.

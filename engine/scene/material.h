@@ -26,7 +26,8 @@ struct Material {
   double damping_time_s = 0.0;
   bool plastic = false;
   double yield_strain = 0.0;  // deviatoric strain of a spring above which its rest length flows
-  // Rate at which a spring's rest length flows, in real time, per unit of strain beyond the yield strain.
+  // Rate at which a spring's rest length flows, per unit of strain beyond the yield strain and per second of
+  // real time.
   double flow_rate_per_s = 0.0;
   double hardening = 0.0;  // growth of the yield strain per unit of permanent strain
   // Coefficient b of the factor by which a spring's stiffness changes with its strain e. For b > 0 the spring
@@ -39,8 +40,8 @@ struct Material {
   double friction = 0.0;  // Coulomb friction coefficient of the surface
 };
 
-// Range of Young's modulus, from the softest gel to beyond diamond. Within this range and those of the other
-// properties, every solver stays finite.
+// Range of Young's modulus, from the softest gel to beyond diamond. If all properties of a material are
+// within their ranges, every solver stays finite.
 inline constexpr Range<double> youngs_modulus_range_pa{1.0, 1e12};
 inline constexpr Range<double> poissons_ratio_range{0.0, 0.49};
 // Smallest Poisson's ratio of plastic, creeping and stiffening materials, which are simulated with springs.
@@ -119,9 +120,9 @@ struct BodyRegion {
 
 bool contains(const BodyRegion& region, const BodyCoordinates& point);
 
-// Returns an error unless all fractions are from 0 to 1, the lower ends of `along` and `depth_m` are not
-// above the upper ends, the depths are at least 0, and the ends of `around` differ. The error names the
-// field.
+// Returns an error that names the first invalid field. All fractions must be from 0 to 1, and depths must be
+// at least 0. The lower ends of `along` and `depth_m` must not be above the upper ends. The ends of `around`
+// must differ.
 Status check_region(const BodyRegion& region);
 
 // Region of a body whose material or friction differs from the rest of the body.

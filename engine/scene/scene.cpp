@@ -43,7 +43,8 @@ Status check_symmetry(const Symmetry& symmetry) {
 Status check_tool_and_symmetry(const Tool& tool, const Symmetry& symmetry) {
   if (tool.kind != ToolKind::solid || !tool.body->soft) return {};
   if (!row_of(tool.action).allows_soft_tool) {
-    return Error{ErrorCode::unsupported, "tool: a soft tool can only push; make it rigid to pull", "action"};
+    return Error{ErrorCode::unsupported, "tool: a soft tool can only push; make it rigid for other actions",
+                 "action"};
   }
   if (symmetry.on) {
     return Error{ErrorCode::unsupported,

@@ -29,8 +29,9 @@ struct Sculpting {
   // If true, a body that nothing fixes may move away. If false, such a body keeps its mean position and
   // orientation, provided that there is neither gravity nor ground (keeps_place()).
   bool free = false;
-  // If true, every body has its true inertia, and a tick takes as many substeps as that needs. If false,
-  // inertia is scaled up until the tool's number of substeps suffices (SpringLattice::set_inertia()).
+  // If true, every body has its true inertia, and a tick takes as many substeps as stability then requires.
+  // If false, inertia is scaled up until the tool's number of substeps suffices
+  // (SpringLattice::set_inertia()).
   bool real_time = false;
 };
 
@@ -63,7 +64,7 @@ inline bool keeps_place(const Scene& scene) {
   return keeps_place(scene.sculpting, scene.ground.has_value());
 }
 
-// Limits that files, commands and the panel enforce. Within them every solver stays finite.
+// Limits that files, commands and the panel enforce. Within these limits every solver stays finite.
 inline constexpr Range<int> body_count_range{1, 1000};  // number of bodies in a document
 // Number of bodies that can be simulated together.
 inline constexpr Range<int> sculpted_body_count_range{1, 8};
@@ -91,7 +92,8 @@ inline constexpr auto fields_of<Symmetry> = std::to_array<Field<Symmetry>>({
     direction_field("normal", &Symmetry::normal),
 });
 
-// Refuses more bodies than can be simulated together; the error explains how to select some.
+// Refuses a scene without bodies, and more bodies than can be simulated together. The error for too many
+// bodies explains how to select some.
 Status check_body_count(const Scene& scene);
 
 // Returns an error that names the first field out of range, with its value and its range.

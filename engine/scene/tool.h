@@ -1,8 +1,8 @@
 // The sculpting tool: its shape, its action and its material. Plain data; lengths in metres.
 //
 // The table `tool_actions` defines the actions for files, commands, the panel, keys, help and JSON schema. A
-// new action needs an enumerator and a row here, and a kernel in engine/simulation/tool_step.cpp for the
-// tick.
+// new action needs an enumerator and a row here, and a kernel in engine/simulation/tool_step.cpp, which
+// performs the action in a tick.
 #pragma once
 
 #include <array>
@@ -40,7 +40,8 @@ struct ToolParameter {
   Range<double> range{0.0, 0.0};
 };
 
-// Key that selects, in the window, a kind of tool together with the action: a digit or a capital letter.
+// Key of the window, a digit or a capital letter. It selects the action of the ToolActionRow that contains
+// it, together with a kind of tool.
 struct ToolKey {
   const char* key = nullptr;  // null if there is no key
   ToolKind kind = ToolKind::sphere;
@@ -53,7 +54,7 @@ struct ToolActionRow {
   const char* label;  // label in the panel
   const char* help;   // one sentence without a full stop
   // True if the tool grips the surface at the first contact and holds it until the button is released. False
-  // if the tool releases the surface when it moves away.
+  // if the surface is released when the tool moves away.
   bool grips;
   bool allows_soft_tool;
   ToolAction inverse;  // action while Ctrl is down; equal to `action` if there is no inverse
@@ -174,11 +175,11 @@ struct ToolBody {
 struct Tool {
   ToolKind kind = ToolKind::sphere;
   ToolAction action = ToolAction::push;
-  // Radius of a sphere; 0 for a point. For a solid: radius of the area that it smooths around the surface
-  // point nearest to it.
+  // Radius of a sphere; 0 for a point. For a solid that smooths: radius of the smoothed area around the
+  // surface point nearest to the tool.
   double radius_m = 0.008;
   int substeps = 6;  // steps of the springs per tick, 1 to 8; with more steps, bodies respond faster
-  // Required for the kind `solid`; may be kept while another kind is in use.
+  // Body of the tool. Required for the kind `solid`; may be kept while another kind is in use.
   std::shared_ptr<const ToolBody> body = {};
 };
 

@@ -57,8 +57,8 @@ std::optional<Vector3> pole_normal(const ExactShape& shape, bool at_start);
 
 // Range of the sizes of stock shapes.
 inline constexpr Range<double> shape_size_range_m{1e-4, 10.0};
-// Smallest radius of a rounded edge, as a fraction of the shortest side of the shape. Sharper edges need more
-// control points than a stock shape has.
+// Smallest radius of a rounded edge, as a fraction of the shortest side of the shape. Sharper edges would
+// need more control points than a fit may use.
 inline constexpr double min_rounding_fraction = 0.01;
 // Default radius of a rounded edge, as a fraction of the shortest side of the shape.
 inline constexpr double default_rounding_fraction = 0.1;

@@ -268,8 +268,9 @@ std::vector<double> midpoints(const std::vector<double>& parameters, const Shape
   return result;
 }
 
-// Returns the largest error of a fit in u alone or v alone, for each parameter in this direction. Only the
-// component of the error along the normal counts, unless `keeps_parameters` is true.
+// Fits the shape in u alone (`along_u`) or in v alone, on the lines of the other parameter given by `lines`.
+// Returns the largest error at each parameter of the fitted direction. Only the component of the error along
+// the normal counts, unless `keeps_parameters` is true.
 Result<DirectionError> error_along(const ExactShape& shape, bool along_u, const ShapeKnots& knots,
                                    const std::vector<double>& lines, bool keeps_parameters,
                                    FitRounds& rounds) {

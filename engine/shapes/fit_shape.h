@@ -37,8 +37,8 @@ class ShapeKnots {
   // open domain; the seam of a periodic domain occurs once.
   std::vector<double> parameters(int in_each_span) const;
 
-  // Divides the cells whose error is above `allowed_m` into more spans, whose number follows from the
-  // degree's order of convergence. Cells with a much smaller error than the worst cell must wait for a later
+  // Divides the cells whose error is above `allowed_m` into more spans. Their number follows from the order
+  // of convergence, degree + 1. Cells with a much smaller error than the worst cell must wait for a later
   // call. `at` are the parameters of the errors. Returns true if an error is above `allowed_m`.
   bool refine(const std::vector<double>& at, const std::vector<double>& error_m, double allowed_m);
   // Adds a span to the cell with the largest error.
@@ -71,8 +71,8 @@ struct ShapeFit {
   // True if the surface must match the shape at equal parameters, so that a displacement along the shape also
   // counts as an error. Needed for shapes whose edges must stay where they are.
   bool keeps_parameters = false;
-  // Numbers of control points along u and v, which are placed where the shape needs them. If given, the
-  // tolerance is ignored.
+  // Numbers of control points along u and v, which are placed where the shape needs them. If given,
+  // `tolerance_m` and `min_spans` are ignored.
   std::optional<std::array<int, 2>> control_counts = {};
   Progress progress = {};  // can cancel the fit
 };

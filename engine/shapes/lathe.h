@@ -52,7 +52,7 @@ ExactShape revolved_shape(Meridian meridian);
 // becomes a pole, where the profile is horizontal. If both ends are on the axis, the shape is closed. If a
 // profile ends at its first point, off the axis, the shape is a ring, which is closed in both directions. Any
 // other shape is open, with normals that point away from the axis. Refuses too few or coincident points,
-// negative radii, and a profile that crosses the axis or itself.
+// negative radii, a size out of range, and a profile that crosses the axis or itself.
 Result<ExactShape> lathe_shape(const std::vector<MeridianPoint>& profile_m);
 
 }  // namespace spoonbill

@@ -396,7 +396,7 @@ Result<ExactShape> make_shape(const TorusSize& size) {
 double shape_reach(const SphereSize& size) {
   return size.radius_m;
 }
-// The reach of a convex shape is the radius of its roundings (see reach_m()).
+// The reach of a convex shape is the smallest radius of its roundings (see reach_m()).
 double shape_reach(const BoxSize& size) {
   return size.rounding_m;
 }

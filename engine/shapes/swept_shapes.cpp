@@ -331,7 +331,7 @@ class LoftCap {
 
   double length_m() const { return length_m_; }
 
-  // Returns the point on line u at a fraction of the cap: 0 at the ring, 1 at the pole.
+  // Returns the point on the line of constant u at a fraction of the cap: 0 at the end ring, 1 at the pole.
   Vector3 at(double u, double fraction) const {
     const Vector3 start = sides_->at(u, rim()), tangent = leaving(u);
     const double slope = std::max(tangent.dot(outward_), 0.2);

@@ -19,8 +19,8 @@ struct TubeSize {
   double half_width_m = 0.005, half_height_m = 0.005;
 };
 
-// Makes a closed tube. Refuses sizes out of range and a curve that bends too sharply for the section, and
-// reports where.
+// Makes a closed tube. Refuses sizes out of range. Refuses a curve that bends too sharply for the section;
+// the error states the position of the bend.
 Result<ExactShape> tube_shape(const TubeSize& size);
 
 // Sections of a loft. Each section lists its points in order, without repeating the first point. In a loft of
@@ -35,10 +35,10 @@ struct LoftSections {
 };
 
 // Makes a surface from a smooth curve through the points of each section, and smooth curves across the
-// sections. Sections may be reversed, and closed sections may start at another point, so that successive
-// sections match as closely as possible. If both ends of the shape are closed, its normals point outward.
-// Refuses fewer than two sections, sections of too few points, successive sections with the same centre, and
-// sizes out of range.
+// sections. Reverses sections, and starts closed sections at another point, where this makes successive
+// sections match more closely. If both ends of the shape are closed, its normals point outward. Refuses fewer
+// than two sections, sections of too few points, successive sections with the same centre, and sizes out of
+// range.
 Result<ExactShape> loft_shape(LoftSections sections);
 
 }  // namespace spoonbill
