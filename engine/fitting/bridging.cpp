@@ -142,9 +142,8 @@ std::vector<std::uint32_t> order_ring(const FitPoints& points, const std::vector
   return best;
 }
 
-// Returns true if the ring runs counterclockwise seen from outside, with the remaining surface on its right.
-// Each node votes with its normal. Without normals, the area that the ring encloses as seen from `towards`
-// decides.
+// Returns true if the ring runs counterclockwise around the opening, seen from outside the body. Each node
+// votes with its normal. Without normals, the area that the ring encloses as seen from `towards` decides.
 bool runs_counterclockwise(const FitPoints& points, const std::vector<std::uint32_t>& ring,
                            const ShortestPaths& paths, double reach, const Vector3& towards) {
   const PointGraph& graph = points.graph;
@@ -221,8 +220,8 @@ NearestPair nearest_pair(const PointGraph& a, const PointGraph& b) {
   return pair;
 }
 
-// Combines two components without adding edges between them. Spanning nodes get the last numbers. `index_a`
-// and `index_b` receive the new number of each node.
+// Combines two components without adding edges between them. Nodes that span holes or gaps get the last
+// numbers. `index_a` and `index_b` receive the new number of each node.
 FitPoints combine(const FitPoints& a, const FitPoints& b, std::vector<std::uint32_t>& index_a,
                   std::vector<std::uint32_t>& index_b) {
   FitPoints both = a;

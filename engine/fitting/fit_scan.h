@@ -20,7 +20,8 @@ enum class IslandChoice { largest, bridge, all };
 struct FitRequest {
   FitSettings settings;
   std::optional<ShapeKind> kind;  // kind of shape; default: detected
-  // Treatment of several components. Default: fit the largest, which must contain half of the scan.
+  // Treatment of several components. Default: fit the largest, which must contain half of the distinct
+  // points.
   std::optional<IslandChoice> islands;
 };
 

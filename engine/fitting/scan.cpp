@@ -101,7 +101,8 @@ Scan average_groups(const Scan& scan, const VoxelGroups& groups) {
 namespace {
 
 constexpr std::size_t neighbours_per_point = 8, plane_neighbours = 16;
-// Number of standard deviations beyond which a point is an outlier. Scanner noise stays within three.
+// A point is an outlier if the mean distance to its neighbours exceeds the median of these means by more than
+// this number of standard deviations. Scanner noise stays within three.
 constexpr double outlier_deviations = 6.0;
 // Largest spacing of points on a surface, relative to the median. From voxel to voxel, the sampling density
 // of one surface does not drop faster than this.
@@ -310,8 +311,8 @@ class RingPlane {
     normal_ = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
   }
 
-  // Returns true if at least half of the vertices behind the ring are close to the ring's plane, and at least
-  // a quarter of them are farther out than the ring.
+  // Returns true if the surface goes on flat around the ring: at least half of the vertices of the second
+  // ring, `behind`, are close to this ring's plane, and at least a quarter are farther out than this ring.
   bool is_continued_by(const Scan& mesh, const VertexRing& behind) const {
     std::vector<double> out, off;
     for (const std::uint32_t vertex : behind) {

@@ -46,8 +46,8 @@ Result<CadFileContent> write_cad(const CadModel& model, const CadWriting& writin
                                  const Progress& progress = {});
 
 // Joins the surfaces that have the same CadSurface::solid into solids, as write_cad() does, and meshes these
-// solids. All other surfaces are returned as loose. So are surfaces that OpenCASCADE cannot join, and the
-// surfaces of a solid without a watertight mesh; a note reports these two. Refused: more triangles than the
+// solids. All other surfaces are returned as loose. Surfaces that OpenCASCADE cannot join are loose too, as
+// are the surfaces of a solid without a watertight mesh; notes report them. Refused: more triangles than the
 // limit.
 Result<CadSolids> mesh_solids(const CadModel& model, const SolidMeshing& meshing,
                               const Progress& progress = {});

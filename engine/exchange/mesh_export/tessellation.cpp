@@ -324,7 +324,7 @@ class Welding {
     return (u_closed_ || (first_row_ && last_row_)) && (v_closed_ || (first_column_ && last_column_));
   }
 
-  // Returns the grid index of the vertex that replaces (i, j).
+  // Returns the index of the grid point that replaces the corner (i, j) of the cells.
   std::size_t vertex(std::size_t i, std::size_t j) const {
     if (u_closed_ && i == rows_ - 1) i = 0;
     if (v_closed_ && j == columns_ - 1) j = 0;
