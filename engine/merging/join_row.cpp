@@ -328,8 +328,8 @@ Result<double> measured_deviation_m(const Surface& merged, const std::vector<Sur
   return largest;
 }
 
-// Returns the tolerance that remains for fitting the joints, at least 5 % of the whole. At a joint that is
-// not bridged, each edge moves by half the gap.
+// Returns the part of the tolerance that is available for fitting the joints, at least 5 % of the whole. At a
+// joint that is not bridged, each edge moves by half the gap.
 double tolerance_left_m(const PreparedRow& row, const JoinRequest& request) {
   double gap_m = 0.0;
   for (const JointMeasure& joint : row.joints) gap_m = std::max(gap_m, joint.bridged ? 0.0 : joint.gap_m);
