@@ -22,15 +22,16 @@ struct SurfaceStructure {
 // Points to fit, with parameters and weights of the same length. Points with a NaN parameter are skipped.
 //
 // The fit minimises the weighted squared distances at the parameters plus the thin-plate energy of each span:
-// sum w |S(u, v) - p|^2 + mean(w) sum over spans f [(|S_uu| du^2)^2 + 2 (|S_uv| du dv)^2 + (|S_vv| dv^2)^2] A
-// span is a rectangle of (u, v) between successive knots, with the sides du and dv; mean(w) is the sum of all
-// weights divided by the number of spans. The fairness f has one value for each span; v varies fastest.
+//   sum w |S(u, v) - p|^2
+//     + mean(w) sum over spans f [(|S_uu| du^2)^2 + 2 (|S_uv| du dv)^2 + (|S_vv| dv^2)^2]
+// A span is a rectangle of (u, v) between successive knots, with the sides du and dv; mean(w) is the sum of
+// all weights divided by the number of spans. The fairness f has one value for each span; v varies fastest.
 // Normal equations are accurate enough for scans; they stay definite if f is above 1e-9.
 //
 // Each pole is pulled to the mean of the ring of control points next to it, and the rings around it are
-// pulled to ellipses, as on a surface with a tangent plane at the pole. An elliptic ring satisfies S = a + b
-// cos 2 pi u + c sin 2 pi u and S_u + S_uuu / (2 pi)^2 = 0. A Fourier component of order n around the pole is
-// penalised by the square of n^3 - n.
+// pulled to ellipses, as on a surface with a tangent plane at the pole. An elliptic ring satisfies
+//   S = a + b cos 2 pi u + c sin 2 pi u    and    S_u + S_uuu / (2 pi)^2 = 0.
+// A Fourier component of order n around the pole is penalised by the square of n^3 - n.
 struct ScatteredData {
   std::span<const Vector3> points_m;
   std::span<const Vector2> uv;

@@ -485,9 +485,8 @@ struct PartShape {
 constexpr int few_spans = 4, local_spans = 48;
 
 Error not_fitted(const Error& error, double fraction, double tolerance_m) {
-  return error.in("the kept part of a patch, to be fitted within " +
-                  short_length_text(fraction * tolerance_m) + " of the tolerance of " +
-                  short_length_text(tolerance_m));
+  return error.in("the kept part of a patch, whose fit may use " + short_length_text(fraction * tolerance_m) +
+                  " of the tolerance of " + short_length_text(tolerance_m));
 }
 
 Error not_reached(bool with_fillet) {
