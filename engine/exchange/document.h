@@ -1,6 +1,6 @@
 // Reader and writer of documents, materials and commands. A document is a scene and its view, stored as
-// human-readable JSON with lengths in mm. Fields marked "optional" may be missing; the value after the mark
-// is the default.
+// human-readable JSON with lengths in mm. Fields marked "optional" may be missing; the text after the mark is
+// the default value, or what a missing field means.
 //
 //   {"spoonbill_document": 3,
 //    "name": "spoon handle",

@@ -54,8 +54,8 @@ struct ScanFit {
   // Numbers of points that no body uses, by reason: merged with another point, outliers, points of tiny
   // components, and points of components that were not fitted.
   std::size_t joined = 0, outliers = 0, dust = 0, other_islands = 0;
-  // Number of cloud points whose normals were flipped to agree with their neighbours. Flipping is needed when
-  // all normals face the scanner.
+  // Number of cloud points whose normals were flipped to agree with neighbouring normals. Flipping is needed
+  // when all normals face the scanner.
   std::size_t flipped_normals = 0;
 };
 

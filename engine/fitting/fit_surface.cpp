@@ -762,7 +762,7 @@ Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisatio
   struct Trial {
     double agreement, fairness_factor;
     std::size_t cusps;      // largest number of cusps of an accepted result, which has no folds
-    double error_fraction;  // limit for the error of an accepted result, relative to the size
+    double error_fraction;  // limit for the error of an accepted result, relative to the scan's size
   };
   constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
   constexpr std::array trials{Trial{0.0, 1.0, 0, 0.005}, Trial{-0.3, 1.0, 0, 0.005},

@@ -14,8 +14,8 @@ namespace spoonbill {
 
 struct FitSettings {
   int control_u = 24, control_v = 24;  // largest numbers of control points
-  // Largest distance of points, except outliers, at which the fit stops adding control points. 0: the fit
-  // always uses the full number.
+  // The fit stops adding control points when no point, except outliers, is farther from the surface than
+  // this. 0: the fit always uses the full number of control points.
   double tolerance_m = 0.0;
   Progress progress = {};  // a stop request makes the fit fail
 };

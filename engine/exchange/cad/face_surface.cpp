@@ -278,7 +278,8 @@ Result<FaceSurface> convert(const TopoDS_Face& face, double scale, double tolera
 
 constexpr int place_samples = 8;
 
-// Returns the mean of samples of the face's edges, in the face's unit; nullopt if no edge has a curve.
+// Returns the mean of samples of the face's edges, in the face's unit; nullopt if no edge has a curve or if
+// the mean is not finite.
 std::optional<gp_XYZ> find_centre(const TopoDS_Face& face) {
   gp_XYZ sum(0.0, 0.0, 0.0);
   int count = 0;
