@@ -34,7 +34,8 @@ struct CadSurface {
 
 struct CadModel {
   std::vector<CadSurface> surfaces;
-  std::string unit;  // unit of the file's numbers: "mm", "inch", or as the file names it
+  // Unit of the file's numbers, such as "mm", "inch" or, for a unit without a known name, "3 mm".
+  std::string unit;
   bool unit_declared = true;
   std::vector<std::string> notes;  // one line each
 };

@@ -337,7 +337,8 @@ Result<FitPoints> join_at(const FitPoints& a, const FitPoints& b, const NearestP
 }
 
 // Returns true if more than a third of a loop's nodes are far from all other components: farther than a
-// quarter of the loop's diameter. The ends on both sides of a gap in one body are nearer to each other.
+// quarter of the loop's diameter. Ends that face each other across a gap in one body are nearer to each other
+// than that.
 bool is_free_end(const FitPoints& island, const BoundaryLoop& loop, const NearestPoints& others) {
   constexpr double most_distance_ratio = 0.25, most_node_fraction = 1.0 / 3.0;
   const double far = most_distance_ratio * loop.length_m / M_PI;

@@ -396,9 +396,9 @@ Status SurfaceFitter::point_rounds() {
 }
 
 // Returns the fit. For each point, the closest surface point is searched from the point's parameters and from
-// the nearest sample, and the nearer result counts. One search is not enough, because a point may have kept
-// old parameters or be caught in a local minimum. Normals that are estimated for clouds are used only to
-// count folds: on thin walls some of them belong to the other face, so they must not steer the fit.
+// the nearest sample, and the nearer of the two results counts. One search is not enough, because a point may
+// have kept old parameters or be caught in a local minimum. Normals that are estimated for clouds are used
+// only to count folds: on thin walls some of them belong to the other face, so they must not steer the fit.
 FittedSurface SurfaceFitter::result() {
   const std::size_t count = points_->scan.points_m.size();
   all_.uv.resize(count);

@@ -223,9 +223,9 @@ constexpr double long_ring_edge_ratio = 1.5;
 // Smallest height of a spike relative to the radius of its ring. Tips in an even mesh are lower, since the
 // ring around them is wider.
 constexpr double least_spike_height = 4.0;
-// Limits for the second ring of vertices around a tip, in radii of the first ring. At least a quarter of its
-// vertices must be farther out from the first ring's centre than the first limit, and half of them nearer to
-// the first ring's plane than the second limit.
+// Limits for the second ring of vertices around a tip, in radii of the first ring. At least a quarter of the
+// second ring's vertices must be farther from the first ring's centre than the first limit. At least half of
+// them must be nearer to the first ring's plane than the second limit.
 constexpr double least_outer_radius = 1.2, most_height = 0.6;
 constexpr std::size_t most_measured = 1'000'000;
 

@@ -25,9 +25,9 @@ struct IntersectionMerge {
 // first. The first patch keeps its parameters in the direction around it. If the first patch crosses a closed
 // body beside its poles, the body is resampled along lines from the intersection to the far pole.
 //
-// Fails if a line of constant u does not cross the other patch, if the lines do not follow each other along
-// the intersection, if a patch leaves a closed body after entering it, or if the fillet does not fit. The
-// message names a position where possible.
+// Fails if a line of constant u does not cross the other patch, if the lines of both patches are not in the
+// same order along the intersection, if a patch leaves a closed body after entering it, or if the fillet does
+// not fit. The message names a position where possible.
 Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& second,
                                          const IntersectionRequest& request);
 

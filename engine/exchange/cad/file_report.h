@@ -14,7 +14,8 @@ namespace spoonbill {
 
 // Unit of length of a file.
 struct FileUnit {
-  std::string name;          // "mm", "inch", or as the file names it
+  // Such as "mm" or "inch"; a multiple of mm, such as "3 mm", if the unit has no known name.
+  std::string name;
   double millimetres = 1.0;  // length in millimetres that OpenCASCADE assumed for one unit
   bool declared = false;
 };
