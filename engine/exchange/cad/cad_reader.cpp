@@ -305,7 +305,7 @@ double find_scale(const FileUnit& unit, const CadReading& reading) {
   return unit.declared ? 1e-3 : 1e-3 / unit.millimetres;
 }
 
-// Largest deviation of trim loops that is reported. Larger deviations are reported as this value.
+// Larger deviations of trim loops are reported as this value.
 constexpr double trim_deviation_limit_m = 1e6;
 
 CadSurface make_cad_surface(const NamedFace& face, FaceSurface found) {

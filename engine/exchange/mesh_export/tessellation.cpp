@@ -333,8 +333,8 @@ class Welding {
     return i * columns_ + j;
   }
 
-  // Returns the largest distance of a corner from its vertex; 0 if the distance is within the rounding of a
-  // file.
+  // Returns the largest distance of a corner of the cells from the grid point that replaces it; 0 if this
+  // distance is within the rounding of files.
   double largest_move_m() const {
     double largest_m = 0.0;
     for (std::size_t i = 0; i < rows_; ++i) {
