@@ -26,7 +26,7 @@ std::size_t character_bytes(const std::string& text, std::size_t start) {
   for (std::size_t k = start + 1; k < start + count; ++k) {
     if ((byte(k) & 0xc0) != 0x80) return 0;
   }
-  // Overlong forms, surrogates and codes beyond Unicode are not UTF-8.
+  // Overlong forms, surrogates and codes above U+10FFFF are not UTF-8.
   const unsigned second = count > 2 ? byte(start + 1) : 0x80;
   if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
       (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f)) {

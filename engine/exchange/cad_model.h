@@ -1,5 +1,5 @@
-// Data exchanged with CAD systems: named surfaces, joined solids, and the options of reading and writing.
-// Plain data without OpenCASCADE.
+// Data exchanged with CAD systems: named surfaces, joined solids, and the options of reading and writing. The
+// types do not depend on OpenCASCADE.
 #pragma once
 
 #include <cstddef>
@@ -23,18 +23,19 @@ struct CadSurface {
   std::vector<TrimLoop> trims;  // loops around the visible part; empty if the whole surface is visible
   // Reason why there are no trims although the file shows only a part of the surface; empty otherwise.
   std::string trim_problem;
-  // Thickness of the material behind the surface, 0 for a surface without a shell. Exported meshes include
-  // the walls of the shell, CAD files do not.
+  // Thickness of a shell whose outer side is the surface; 0 if the body is not a shell. Exported meshes
+  // include the inner side and the walls of the shell, CAD files do not.
   double shell_thickness_m = 0.0;
   // Largest distance between the file's edges and the trim loops. For an untrimmed surface, between the
   // file's edges and the sides of the surface.
   double trim_deviation_m = 0.0;
-  std::string solid = {};  // name of the solid with several faces that has this surface; otherwise empty
+  std::string solid = {};  // name of the solid of several faces to which the surface belongs; otherwise empty
 };
 
 struct CadModel {
   std::vector<CadSurface> surfaces;
-  std::string unit;  // unit of the file's numbers: "mm", "inch", or as the file names it
+  // Unit of the file's numbers, such as "mm", "inch" or, for a unit without a known name, "3 mm".
+  std::string unit;
   bool unit_declared = true;
   std::vector<std::string> notes;  // one line each
 };
@@ -65,8 +66,8 @@ struct CadSolid {
   std::string name;
   // Indices, into CadModel::surfaces, of the faces of this solid and of its cavities; ascending.
   std::vector<std::size_t> surface_indices;
-  TriangleMesh mesh;  // watertight; normals out of the material
-  // Largest distance between a sample of a face or an edge and the mesh triangle that replaces it.
+  TriangleMesh mesh;  // watertight; the normals point out of the material
+  // Largest distance of the mesh from the exact faces and edges, measured at samples.
   double chord_error_m = 0.0;
   double gap_m = 0.0;  // widest gap between two faces that share an edge
   double volume_m3 = 0.0, area_m2 = 0.0;

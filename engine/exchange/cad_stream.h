@@ -13,8 +13,9 @@
 
 namespace spoonbill {
 
-// cad_surface_to_json() and cad_surface_from_json() convert a surface to JSON, in the form of documents, and
-// back. `source` names the CAD file in messages. Refused: a surface that a document could not contain.
+// cad_surface_to_json() and cad_surface_from_json() convert a surface to JSON and back. The geometry has the
+// same form as in a document (document.h). `source` names the CAD file in messages. Refused: a surface that a
+// document could not contain.
 Json cad_surface_to_json(const CadSurface& surface);
 Result<CadSurface> cad_surface_from_json(std::string_view text, const std::string& source);
 

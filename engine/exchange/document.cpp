@@ -68,7 +68,7 @@ std::optional<Body> read_body(FieldReader reader, int version) {
   return body;
 }
 
-// Reads the fields "body" and "other_bodies", the second optional.
+// Reads the field "body" and the optional field "other_bodies".
 std::optional<std::vector<Body>> read_bodies(FieldReader& reader, int version) {
   std::vector<Body> bodies;
   const auto append = [&](std::optional<Body> body) {

@@ -1,6 +1,6 @@
 // Reader and writer of documents, materials and commands. A document is a scene and its view, stored as
-// human-readable JSON with lengths in mm. Fields marked "optional" may be missing; the value after the mark
-// is the default.
+// human-readable JSON with lengths in mm. Fields marked "optional" may be missing; the text after the mark is
+// the default value, or what a missing field means.
 //
 //   {"spoonbill_document": 3,
 //    "name": "spoon handle",
@@ -34,7 +34,7 @@
 //                                                              simulation has at most 8 bodies
 //    "fixing_planes": [{"point_mm": [20, 0, 0], "normal": [1, 0, 0]}],    optional
 //    "tool": {"kind": "sphere", "action": "push", "radius_mm": 8, "substeps": 6,
-//      "solid": {"shape": "box", "half_extents_mm": [4, 3, 10]},  of kind solid; see below
+//      "solid": {"shape": "box", "half_extents_mm": [4, 3, 10]},  for kind "solid"; see below
 //      "soft": {"material": {...}, "lattice": {...},              optional, rigid
 //        "grip": {"point_mm": [0, 1, 0], "normal": [0, -1, 0]}}},   in the tool's frame
 //    "sculpting": {"drag_per_s": 24, "gravity_m_per_s2": [0, 0, 0], "force_scale": 1,
@@ -57,12 +57,12 @@
 // surface except trims. A soft tool is a surface or a closed mesh; its "nodes" count along x, y and z, as in
 // LatticeRequest (body.h). implicit_shapes.h and triangle_mesh.h define the shapes.
 //
-// Versions 1 and 2 are read too: old_documents.h converts their constants, and version 1 had neither trims
-// nor solids. assets/schemas/document.schema.json describes all three versions. Control points are in the
-// world frame, the shape of a tool in the frame of the hand. The headers of engine/scene define the ranges.
-// Knots are from -1e6 to 1e6, and unequal knots are at least 1e-9 of the domain apart. A length is a number
-// of millimetres, or a decimal in quotes if no double of millimetres reads back to the same bits of metres
-// (see length_to_json()). Normals are scaled to unit length.
+// Versions 1 and 2 are read too: old_documents.h converts their constants. In version 1, a body had neither
+// "trims" nor "solid". assets/schemas/document.schema.json describes all three versions. Control points are
+// in the world frame, the shape of a tool in the frame of the hand. The headers of engine/scene define the
+// ranges. Knots are from -1e6 to 1e6, and unequal knots are at least 1e-9 of the domain apart. A length is a
+// number of millimetres. If no double, divided by 1000, gives the exact length in metres, the length is a
+// decimal in quotes (see length_to_json()). Normals are scaled to unit length.
 #pragma once
 
 #include <filesystem>
@@ -86,21 +86,22 @@ struct Document {
   Json view = Json::object();
 };
 
-// Converts JSON to a document. `source` names the file in messages. Unknown fields are refused by name, so
-// that a misspelt field is not silently ignored. Numbers must be finite and within their ranges; the message
-// gives the range.
+// Converts JSON to a document. `source` names the file in messages. Unknown fields are refused, so that a
+// misspelt field is not silently ignored. Numbers must be finite and within their ranges; the message gives
+// the range.
 Result<Document> document_from_json(const Json& json, const std::string& source);
 
-// Converts a document to JSON. Every number reads back to the same bits, so that a document that is read and
-// written has the same bytes.
+// Converts a document to JSON. Every number reads back to the same bits, so that a document that is written,
+// read and written again has the same bytes.
 Json document_to_json(const Document& document);
 
 // Reads a document of at most 64 MiB.
 Result<Document> read_document(const std::filesystem::path& file);
 
 // Writes a document to a temporary file beside `file`, flushes it and renames it, so that a crash leaves
-// either the old or the new document complete; the old one is saved as FILE.bak. A document that could not be
-// read back is refused before any file is touched.
+// either the old or the new document complete. The old document is saved as FILE.bak. A document that could
+// not be read back is refused before any file is touched. A pipe or a device that a person named is written
+// to directly.
 Status write_document(const Document& document, const std::filesystem::path& file,
                       const OutputOptions& options = {});
 
@@ -129,7 +130,8 @@ Result<Material> read_material(const std::filesystem::path& file);
 Result<Command> command_from_json(const Json& json, const std::string& source);
 Json command_to_json(const Command& command);
 
-// Returns true if "command" names a command of the simulation; recordings also contain commands of the view.
+// Returns true if the field "command" names a command of the simulation; recordings also contain commands of
+// the view.
 bool is_simulation_command(const Json& json);
 // Returns the names of all commands of the simulation, separated by ", ", for messages.
 std::string simulation_command_names();

@@ -15,8 +15,8 @@
 
 namespace spoonbill {
 
-// Returns true if the field must be read. A field with a partner is read if its partner is present, an
-// optional field if it is present itself, and any other field always.
+// Returns true if the field must be read. A field whose form names a partner, which is another field, is read
+// if the partner is present. An optional field is read if it is present itself, and any other field always.
 bool is_field_expected(const FieldReader& reader, const FieldForm& form);
 
 // Each read_value() reads one value. A problem is stored in the reader.
@@ -34,7 +34,8 @@ Json value_to_json(const FieldForm& form, int value);
 Json value_to_json(const FieldForm& form, std::uint32_t value);
 Json value_to_json(const FieldForm& form, const Vector3& value);
 
-// Reads all fields of the table, in its order. An optional field that is missing keeps its value in `object`.
+// Reads the fields in fields_of<Object>, in this order. A field that does not apply to the object is skipped.
+// An optional field that is missing keeps its value in `object`.
 template <class Object>
 void read_fields(FieldReader& reader, Object& object) {
   for (const Field<Object>& field : fields_of<Object>) {
@@ -57,8 +58,8 @@ Object read_fields(FieldReader& reader) {
   return object;
 }
 
-// Writes all fields of the table into `json`. An optional field is written only if its value differs from the
-// struct's default.
+// Writes the fields in fields_of<Object> into `json`. A field that does not apply to the object is skipped.
+// An optional field is written only if its value differs from the struct's default.
 template <class Object>
 void add_fields(const Object& object, Json& json) {
   static const Object default_object{};
@@ -76,7 +77,7 @@ void add_fields(const Object& object, Json& json) {
   }
 }
 
-// Returns the variant's alternative with the index `index` in kind_names, with default values.
+// Returns a variant that holds its alternative number `index`, with default values.
 template <class Variant>
 Variant make_kind(std::size_t index) {
   return [&]<std::size_t... indices>(std::index_sequence<indices...>) {

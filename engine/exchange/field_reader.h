@@ -70,8 +70,8 @@ class FieldReader {
   // Refuses fields that were neither read nor ignored.
   void finish();
 
-  // Stores the problem "FILE: path.field message", unless a problem is stored already. The field of the
-  // stored error is the path.
+  // Stores the problem "FILE: path.field message", unless a problem is stored already. The member
+  // Error::field of the stored error is "path.field".
   void refuse(std::string_view field, const std::string& message, ErrorCode code = ErrorCode::out_of_range);
   // Stores the problem "FILE: path message" about the object as a whole, unless one is stored already.
   void refuse(const std::string& message, ErrorCode code = ErrorCode::inconsistent);

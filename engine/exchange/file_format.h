@@ -50,7 +50,8 @@ inline constexpr std::array<FileEnding, 15> file_endings{{{"json", FileFormat::d
                                                           {"asc", FileFormat::point_text},
                                                           {"pts", FileFormat::point_text}}};
 
-// Returns the format that belongs to the ending of the name, in upper or lower case.
+// Returns the format that belongs to the ending of the name, in upper or lower case. Every .json file counts
+// as a document.
 inline FileFormat format_from_name(const std::filesystem::path& file) {
   std::string ending = file.extension().string();
   if (ending.empty()) return FileFormat::unknown;
@@ -63,7 +64,8 @@ inline FileFormat format_from_name(const std::filesystem::path& file) {
   return FileFormat::unknown;
 }
 
-// Returns the usual ending of a format's files, without the dot; empty for FileFormat::unknown.
+// Returns the usual ending of a format's files, without the dot. Empty for FileFormat::unknown, recording,
+// script and material.
 inline std::string_view usual_ending(FileFormat format) {
   for (const FileEnding& known : file_endings) {
     if (known.format == format) return known.ending;

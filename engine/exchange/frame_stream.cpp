@@ -17,7 +17,7 @@ void write_head(std::ostream& out, FrameKind kind, std::uint64_t bytes) {
   write_raw(out, &head, 1);
 }
 
-// Character that precedes the code in the content of a failure frame: "#4 message".
+// Character that precedes the error code in the content of a failure frame: "#4 message".
 constexpr char code_mark = '#';
 
 }  // namespace

@@ -56,9 +56,9 @@ struct Frame {
   std::string content;
 };
 
-// Largest content of a frame that is read as a whole.
+// Largest content, in bytes, of a frame that read_frame() accepts.
 inline constexpr std::uint64_t frame_bytes_limit = std::uint64_t{1} << 30;
-// Longest line of a failure, in bytes.
+// Largest number of bytes in the message of a failure frame; longer messages are cut.
 inline constexpr std::size_t failure_bytes_limit = 400;
 // Message that a child sends if its memory limit is too small for its file.
 inline constexpr const char* bad_allocation = "bad allocation";
@@ -76,7 +76,7 @@ void write_failure(std::ostream& out, const Error& error);
 // Converts the content of a failure frame to an error. The code is `process_failed` if the child sent none.
 Error parse_failure(std::string_view content);
 
-// Returns true if the letters name a kind of frame.
+// Returns true if the value, which may come from another process, is one of the enumerators.
 bool is_known(FrameKind kind);
 
 // Reads exactly `bytes` bytes; returns false if fewer are left.

@@ -25,8 +25,8 @@ constexpr std::size_t complaint_limit = 120;
 constexpr std::size_t page_width = 110;
 constexpr std::size_t excerpt_limit = 40;
 
-// Input iterator that records how far the parser has read, so that a refusal by StrictBuilder can give its
-// position.
+// Input iterator that records how far the parser has read, so that the message of a refusal by StrictBuilder
+// can give the position.
 class TrackedIterator {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -97,7 +97,7 @@ class StrictBuilder : public nlohmann::json_sax<Json> {
 
   ErrorCode code() const { return code_; }
   const std::string& complaint() const { return complaint_; }
-  const std::string& field() const { return field_; }  // the field at fault; empty if the fault is elsewhere
+  const std::string& field() const { return field_; }  // name of a field that is given twice; otherwise empty
   // Offset of a syntax error in bytes; nullopt if the builder itself refused the text.
   std::optional<std::size_t> error_offset() const { return error_offset_; }
   Json release_value() { return std::move(root_); }
@@ -148,7 +148,7 @@ class StrictBuilder : public nlohmann::json_sax<Json> {
 
   Json root_;
   std::vector<Json*> open_;  // containers around the next value, outermost first
-  Json* slot_ = nullptr;     // destination of the next value, which belongs to the last field name
+  Json* slot_ = nullptr;     // value of the last field name, not yet read; null if the next value has no name
   std::size_t values_ = 0;
   ErrorCode code_ = ErrorCode::malformed;
   std::string complaint_;
@@ -179,8 +179,8 @@ std::string escape(const std::string& text) {
   return json_to_line(Json(text));
 }
 
-// Appends the value on one line with a space after each comma and colon. Returns false if `out` would exceed
-// `width`.
+// Appends the value on one line with a space after each comma and colon. Returns false, with only a part
+// appended, as soon as `out` exceeds `width`.
 bool append_spaced(const Json& json, std::size_t width, std::string& out) {
   if (json.is_object() || json.is_array()) {
     out += json.is_object() ? '{' : '[';

@@ -22,7 +22,7 @@ Result<Json> parse_json(std::string_view text, const std::string& source);
 std::string json_to_line(const Json& json);
 
 // Returns the value laid out for people and ending with a newline: a value that fits into 110 columns is on
-// one line, any other is indented by two spaces per level.
+// one line. Any other value has a line for each item, indented by two spaces per level.
 std::string json_to_page(const Json& json);
 
 // Converts a number to JSON, whole numbers without a fraction ("8", not "8.0"). A number that is not finite
@@ -38,7 +38,8 @@ Json length_to_json(double metres);
 // Converts millimetres, given as a number or as a decimal in quotes, to metres; nullopt for any other value.
 std::optional<double> length_from_json(const Json& millimetres);
 
-// Returns a value as messages show it: on one line and at most 40 characters, longer text cut with "...".
+// Returns a value as messages show it. A list is given by its length, an object only as "an object". Any
+// other value is printed, cut with "..." after 40 characters.
 std::string json_excerpt(const Json& json);
 
 }  // namespace spoonbill

@@ -55,8 +55,8 @@ bool begins_as_text_stl(const std::filesystem::path& file) {
   return stream.read(word.data(), static_cast<std::streamsize>(word.size())) && word == "solid";
 }
 
-// Returns the form of a face's corner, such as "#/#" for "7/1" or "#//#" for "7//3"; empty if the corner does
-// not end with a digit.
+// Returns the form of a face's corner in an OBJ file, such as "#/#" for "7/1" or "#//#" for "7//3"; empty if
+// the corner does not end with a digit.
 std::string corner_form(std::string_view corner) {
   std::string form;
   for (const char character : corner) {
@@ -87,7 +87,7 @@ bool has_three_words(std::istream& words) {
   return static_cast<bool>(words >> word >> word >> word);
 }
 
-// File system that contains only one file. Other files that this one names, such as its materials, could be
+// File system that contains only one file. Other files that this file names, such as its materials, could be
 // devices, pipes or secrets.
 class SingleFileIo final : public Assimp::DefaultIOSystem {
  public:

@@ -12,15 +12,16 @@ namespace spoonbill {
 
 // Reads the triangles of an STL, OBJ or PLY file; polygons are triangulated, points and lines are ignored.
 // Coordinates are in the file's own unit (not yet metres); coordinates from STL and OBJ have single
-// precision. Other files that this one names are not opened.
+// precision. Other files that the file names, such as materials, are not opened.
 Result<TriangleMesh> import_mesh(const std::filesystem::path& file);
 
 // Checks that an STL file in text form ends with `endsolid`, with or without a name and a line feed. Binary
 // files are accepted: Assimp checks their length.
 Status check_text_stl(const std::filesystem::path& file);
 
-// Checks the last line of an OBJ file that lacks a line feed: a vertex needs three numbers, a face three or
-// more corners of one form. A file that is cut off between two lines, or within the last number, is accepted.
+// Checks the last line of an OBJ file if no line feed ends it. A vertex or a normal needs three numbers. A
+// face needs three or more corners, all written in the same form, such as "7/1". A file that is cut off
+// between two lines, or within the last number, is accepted.
 Status check_last_obj_line(const std::filesystem::path& file);
 
 }  // namespace spoonbill

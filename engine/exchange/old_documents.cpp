@@ -42,8 +42,8 @@ void replace_field(Json& object, const std::string& old_name, const std::string&
   object = std::move(replaced);
 }
 
-// Refuses the current fields: an old file must have only the former ones, because the two kinds count time
-// differently.
+// Refuses the current fields: an old file must have only the former ones, because the former and the current
+// fields measure time differently.
 void refuse_new_fields(FieldReader& reader, std::initializer_list<const char*> fields) {
   for (const char* field : fields) {
     if (!reader.has(field)) continue;
@@ -109,7 +109,8 @@ void convert_body(FieldReader reader, Json& body, int iterations) {
   });
 }
 
-// Converts a tool and its soft material. Returns the number of iterations, which applies to both.
+// Converts a tool and its soft material. Returns the value of the former field "iterations"; after a problem,
+// default_old_iterations.
 int convert_tool(FieldReader reader, Json& tool) {
   refuse_new_fields(reader, {"substeps"});
   const int iterations = reader.integer("iterations", iterations_range);

@@ -24,10 +24,11 @@ namespace spoonbill {
 inline constexpr int newest_old_document_version = 2;
 inline constexpr int default_old_iterations = 6;
 
-// Returns true if the document's version is one with the former fields.
+// Returns true if the document has version 1 or 2, and thus the former fields.
 bool is_old_document(const Json& document);
 
-// Returns a document of an old version with the current fields; "spoonbill_document" is unchanged.
+// Converts the fields of a document of an old version to the current ones. The field "spoonbill_document",
+// which is the version, stays unchanged.
 Result<Json> convert_old_document(const Json& document, const std::string& source);
 
 // Converts the material of a material file, which has no version. The material is old if it has a damping
@@ -38,7 +39,7 @@ Status convert_old_material(Json& material, const std::string& source);
 // field name. Other commands are left unchanged.
 class OldCommands {
  public:
-  // `iterations` is the number of the tool's iterations before the first command.
+  // `iterations` is the tool's former setting "iterations", which applies until a command changes it.
   explicit OldCommands(int iterations = default_old_iterations) : iterations_(iterations) {}
 
   Status convert(Json& command, const std::string& source);

@@ -119,7 +119,7 @@ std::shared_ptr<const ToolBody> read_tool_body(FieldReader& reader) {
   return body;
 }
 
-// Visitor that converts the solid of a tool.
+// Visitor that converts the solid of a tool to JSON.
 struct ToolSolidToJson {
   Json operator()(const ImplicitShape& shape) const {
     const auto write = []<class Shape>(const Shape& kind) {

@@ -1,6 +1,6 @@
-// Conversion between JSON and the parts of a scene that no table of fields describes completely, for
-// documents and commands. Parts with a table use field_json.h. Each read_ function stores the first problem
-// in its reader. Each add_ or _to_json function is the inverse of a read_ function.
+// Conversion between JSON and the parts of a scene that their table of fields (fields_of in field.h) does not
+// describe completely, for documents and commands. All other parts use field_json.h. Each read_ function
+// stores the first problem in its reader. Each add_ or _to_json function is the inverse of a read_ function.
 #pragma once
 
 #include <vector>

@@ -44,8 +44,8 @@ void append_ring(std::vector<std::uint32_t> ring, const PointGraph& graph,
   boundary_loops.push_back(std::move(loop));
 }
 
-// Divides a closed path into simple loops and appends them: each time the path returns to a node, the part
-// since the last visit is a loop.
+// Divides a closed path into simple loops and appends them: each time the path returns to a node, the part of
+// the path since the last visit to that node is a loop.
 void append_simple_loops(const std::vector<std::uint32_t>& path, const PointGraph& graph,
                          std::vector<BoundaryLoop>& boundary_loops) {
   std::vector<std::uint32_t> open;
@@ -65,8 +65,9 @@ void append_simple_loops(const std::vector<std::uint32_t>& path, const PointGrap
   append_ring(std::move(open), graph, boundary_loops);
 }
 
-// Returns the widest angle around a node, in radians, that contains no node within two edges of it. The angle
-// is measured in the plane of these neighbours. Returns 0 with fewer than three neighbours.
+// Returns the widest angle around a node, in radians, that contains none of the nodes within two edges of
+// this node. The angle is measured in the plane in which these neighbours spread most. Returns 0 with fewer
+// than three neighbours.
 double widest_gap(const PointGraph& graph, std::uint32_t node) {
   std::set<std::uint32_t> near;
   for (const std::uint32_t other : graph.adjacent(node)) {
@@ -204,8 +205,8 @@ std::vector<TriangleCorners> least_area_triangles(const std::vector<Vector3>& pa
   return triangles;
 }
 
-// Completes a ring of nodes: between two consecutive nodes without an edge, inserts their common neighbour on
-// the shortest path, if they have one.
+// Completes a ring of nodes: between two consecutive nodes without an edge, inserts a common neighbour, if
+// they have one. Of several common neighbours, inserts the one that gives the shortest path.
 std::vector<std::uint32_t> fill_steps(const PointGraph& graph, const std::vector<std::uint32_t>& ring) {
   std::vector<std::uint32_t> steps;
   std::set<std::uint32_t> is_taken(ring.begin(), ring.end());

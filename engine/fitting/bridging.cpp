@@ -142,9 +142,8 @@ std::vector<std::uint32_t> order_ring(const FitPoints& points, const std::vector
   return best;
 }
 
-// Returns true if the ring runs counterclockwise seen from outside, with the remaining surface on its right.
-// Each node votes with its normal. Without normals, the area that the ring encloses as seen from `towards`
-// decides.
+// Returns true if the ring runs counterclockwise around the opening, seen from outside the body. Each node
+// votes with its normal. Without normals, the area that the ring encloses as seen from `towards` decides.
 bool runs_counterclockwise(const FitPoints& points, const std::vector<std::uint32_t>& ring,
                            const ShortestPaths& paths, double reach, const Vector3& towards) {
   const PointGraph& graph = points.graph;
@@ -221,8 +220,8 @@ NearestPair nearest_pair(const PointGraph& a, const PointGraph& b) {
   return pair;
 }
 
-// Combines two components without adding edges between them. Spanning nodes get the last numbers. `index_a`
-// and `index_b` receive the new number of each node.
+// Combines two components without adding edges between them. Nodes that span holes or gaps get the last
+// numbers. `index_a` and `index_b` receive the new number of each node.
 FitPoints combine(const FitPoints& a, const FitPoints& b, std::vector<std::uint32_t>& index_a,
                   std::vector<std::uint32_t>& index_b) {
   FitPoints both = a;
@@ -338,7 +337,8 @@ Result<FitPoints> join_at(const FitPoints& a, const FitPoints& b, const NearestP
 }
 
 // Returns true if more than a third of a loop's nodes are far from all other components: farther than a
-// quarter of the loop's diameter. The ends on both sides of a gap in one body are nearer to each other.
+// quarter of the loop's diameter. Ends that face each other across a gap in one body are nearer to each other
+// than that.
 bool is_free_end(const FitPoints& island, const BoundaryLoop& loop, const NearestPoints& others) {
   constexpr double most_distance_ratio = 0.25, most_node_fraction = 1.0 / 3.0;
   const double far = most_distance_ratio * loop.length_m / M_PI;

@@ -98,8 +98,8 @@ std::vector<double> compute_vertex_normals(Scan& scan) {
 }
 
 // Reduces the number of points to the limit by voxels and sums the weights of merged points. In a cloud, a
-// weight is a number of points. Triangles remain, as edges between the points of voxels, unless all their
-// corners are in one voxel.
+// weight is a number of points. Keeps every triangle whose corners are in at least two voxels, because its
+// sides give the edges between the voxels' points.
 void thin(Scan& scan, std::vector<double>& weights, std::vector<std::uint32_t>& representative) {
   if (scan.points_m.size() <= fitted_point_limit + fitted_point_limit / 4) return;
   const VoxelGroups groups = group_by_voxels(scan, voxel_side_for(scan, fitted_point_limit));

@@ -37,10 +37,10 @@ struct FitPoints {
   std::size_t flipped_normals = 0;
 };
 
-// Prepares a scan. In a mesh, joins vertices nearer than a thousandth of the median edge, flattens spikes,
-// refines triangles to the nodes' spacing and computes vertex normals. If there are many points, thins them
-// by voxels. In a cloud, removes outliers and flips inconsistent normals. Fails with fewer than 30 points, or
-// if all points coincide or are collinear.
+// Prepares a scan. In a mesh, joins vertices nearer than a thousandth of the median edge and flattens spikes.
+// Then divides long triangle edges to about the spacing of the graph's nodes, and computes vertex normals. If
+// there are many points, thins them by voxels. In a cloud, removes outliers and flips inconsistent normals.
+// Fails with fewer than 30 points, or if all points coincide or are collinear.
 Result<FitPoints> make_fit_points(Scan scan);
 
 // Replaces the nodes by a subset of the points, without edges, and returns the nodes' parameters. `uv` holds

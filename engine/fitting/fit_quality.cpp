@@ -233,8 +233,9 @@ namespace {
 constexpr int distance_steps = 4;
 constexpr int error_samples_per_span = 4;
 constexpr std::size_t plane_points = 10;
-// Largest distance along the surface, in mean spacings, from a surface sample to the nearest data point at
-// which the sample counts as scanned. If that point is at a boundary, the limit is one mean spacing in space.
+// A surface sample counts as scanned if its distance from the nearest data point, measured along the surface,
+// is at most this number of mean spacings. If that data point is at a boundary, its distance in space must
+// also be at most one mean spacing.
 constexpr double seen_spacings = 3.0;
 
 // Returns true if errors are measured at the fitted points instead of the given ones. This is so for a

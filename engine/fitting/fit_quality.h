@@ -48,7 +48,8 @@ class ClosestParameters {
 
 struct FoldCheck {
   std::size_t samples = 0, folds = 0, cusps = 0;
-  std::vector<bool> span_folds, span_cusps;  // one flag for each pair of spans; v varies fastest
+  // One flag for each rectangle of (u, v) between successive knots; v varies fastest.
+  std::vector<bool> span_folds, span_cusps;
 
   bool is_clean() const { return folds + cusps == 0; }
   bool is_better_than(const FoldCheck& other) const {
@@ -56,8 +57,8 @@ struct FoldCheck {
   }
 };
 
-// Normals of a scan and the surface parameters `uv` of their points. `normals` is empty or as long as `uv`;
-// `are_estimated` is true if the scan had no normals and these are estimates.
+// Normals of a scan and the surface parameters `uv` of their points. `normals` is empty or at least as long
+// as `uv`; `are_estimated` is true if the scan had no normals and these are estimates.
 struct NormalsAtParameters {
   std::span<const Vector2> uv;
   std::span<const Vector3> normals;
@@ -85,8 +86,8 @@ Deviation compute_deviation(std::vector<double> distances_m);
 
 struct FitErrors {
   // Distances from the data points to their closest surface points: data_to_surface excludes strays,
-  // all_to_surface includes them. The data points are the given points or, for a coarse mesh, points all over
-  // it.
+  // all_to_surface includes them. The data points are the given points. For a mesh whose long edges were
+  // divided, they are the vertices after the division.
   Deviation data_to_surface, all_to_surface;
   // Number of strays: given points of zero trust, which are off the surface while their neighbours are not.
   std::size_t strays = 0;

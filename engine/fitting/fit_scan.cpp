@@ -35,8 +35,8 @@ Result<FittedBody> fit_body(FitPoints island, const Parameterisation& start, Fit
   return body;
 }
 
-// Returns true if the points belong to a thin wall with two faces. A fit to both faces then has a much
-// smaller error than a fit of one surface between them.
+// Returns true if the points belong to a thin wall with two faces. The error of a fit to both faces is then
+// at least 20 % smaller than the error of a single surface between the faces.
 bool is_closer_as_wall(const FittedBody& wall, const FittedBody& face) {
   constexpr double fraction = 0.8;
   return wall.errors.data_to_surface.p95_m < fraction * face.errors.data_to_surface.p95_m;

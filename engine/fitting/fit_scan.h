@@ -20,7 +20,8 @@ enum class IslandChoice { largest, bridge, all };
 struct FitRequest {
   FitSettings settings;
   std::optional<ShapeKind> kind;  // kind of shape; default: detected
-  // Treatment of several components. Default: fit the largest, which must contain half of the scan.
+  // Treatment of several components. Default: fit the largest, which must contain half of the distinct
+  // points.
   std::optional<IslandChoice> islands;
 };
 
@@ -53,8 +54,8 @@ struct ScanFit {
   // Numbers of points that no body uses, by reason: merged with another point, outliers, points of tiny
   // components, and points of components that were not fitted.
   std::size_t joined = 0, outliers = 0, dust = 0, other_islands = 0;
-  // Number of cloud points whose normals were flipped to agree with their neighbours. Flipping is needed when
-  // all normals face the scanner.
+  // Number of cloud points whose normals were flipped to agree with neighbouring normals. Flipping is needed
+  // when all normals face the scanner.
   std::size_t flipped_normals = 0;
 };
 

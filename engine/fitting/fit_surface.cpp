@@ -112,7 +112,8 @@ class SurfaceFitter {
   ShapeKind kind_;
   double least_agreement_, fairness_factor_, chosen_fairness_;
   SurfaceStructure structure_;
-  std::vector<double> fairness_;  // fairness of each pair of spans; v varies fastest
+  // Fairness of each rectangle of (u, v) between successive knots; v varies fastest.
+  std::vector<double> fairness_;
   std::vector<double> node_weights_, all_weights_;
   std::vector<Vector3> all_points_m_, all_normals_;
   FittedData nodes_, all_;
@@ -130,7 +131,8 @@ constexpr int point_round_count = 3;
 // Weight of a node that spans a hole, relative to the mean weight. It is small, because the position of such
 // a node is a guess.
 constexpr double spanning_weight = 0.15;
-constexpr double pole_weight = 0.5;  // weight of a pole, relative to all points of a span
+// Weight of a pole, relative to the mean total weight of the points in a span.
+constexpr double pole_weight = 0.5;
 
 const ClosestPoint& nearer(const ClosestPoint& one, const ClosestPoint& other) {
   return other.distance_m < one.distance_m ? other : one;
@@ -258,7 +260,7 @@ void SurfaceFitter::smooth_shifts(const std::vector<Vector2>& before, std::vecto
 }
 
 // Returns true if the point may get the parameters `uv`, because the surface normal there agrees with the
-// point's own normal. Spanning nodes may always move, because their normals are guesses.
+// point's own normal. Nodes that span holes may always move, because their normals are guesses.
 bool SurfaceFitter::can_move_to(const FittedData& data, std::size_t point, const Vector2& uv) const {
   if (least_agreement_ <= -1.0 || point + points_->spanning_nodes >= data.normals.size()) return true;
   const SurfacePoint at = evaluate(surface_, uv.x(), uv.y());
@@ -309,9 +311,9 @@ bool SurfaceFitter::add_control_points() {
   return true;
 }
 
-// Returns true if the surface normals, on average over the nodes, oppose those of the scan. Spanning nodes do
-// not count. Without normals, the sign of the enclosed volume decides for a closed shape, and is_inside_out()
-// for an open one.
+// Returns true if the surface normals, on average over the nodes, oppose those of the scan. Nodes that span
+// holes do not count. Without normals, the sign of the enclosed volume decides for a closed shape, and
+// is_inside_out() for an open one.
 bool SurfaceFitter::has_inward_normals() const {
   double along = 0.0;
   for (std::size_t n = 0; n + points_->spanning_nodes < nodes_.uv.size(); ++n) {
@@ -394,9 +396,9 @@ Status SurfaceFitter::point_rounds() {
 }
 
 // Returns the fit. For each point, the closest surface point is searched from the point's parameters and from
-// the nearest sample, and the nearer result counts. One search is not enough, because a point may have kept
-// old parameters or be caught in a local minimum. Normals that are estimated for clouds are used only to
-// count folds: on thin walls some of them belong to the other face, so they must not steer the fit.
+// the nearest sample, and the nearer of the two results counts. One search is not enough, because a point may
+// have kept old parameters or be caught in a local minimum. Normals that are estimated for clouds are used
+// only to count folds: on thin walls some of them belong to the other face, so they must not steer the fit.
 FittedSurface SurfaceFitter::result() {
   const std::size_t count = points_->scan.points_m.size();
   all_.uv.resize(count);
@@ -439,7 +441,8 @@ constexpr std::size_t held_out_stride = 4;
 // largest fairness within this ratio is chosen.
 constexpr double most_error_ratio = 1.03;
 
-// Sets the fairness of all spans; spans with few data get up to `unseen_fairness` times more.
+// Sets the fairness of all spans; spans with few data get up to `unseen_fairness` times more, and small spans
+// around a pole get less.
 void SurfaceFitter::set_fairness(double fairness, const FittedData& data) {
   const std::size_t u_spans = span_count(structure_.u), v_spans = span_count(structure_.v);
   std::vector<double> weight(u_spans * v_spans, 0.0);
@@ -509,11 +512,12 @@ Status SurfaceFitter::choose_fairness(const FittedData& data) {
 constexpr double huber_deviations = 3.0;
 constexpr double stray_deviations = 5.0, most_strays = 0.15;
 constexpr std::size_t stray_neighbours = 15;
-// Smallest distance at which a point may count as a stray, as a fraction of the size, even if all other
-// points are exactly on the surface.
+// Smallest distance at which a point may count as a stray, as a fraction of the scan's size, even if all
+// other points are exactly on the surface.
 constexpr double least_stray_fraction = 3e-4;
 
-// Distance beyond an open edge within which points still pull the edge outwards, as a fraction of the size.
+// Distance beyond an open edge within which points still pull the edge outwards, as a fraction of the scan's
+// size.
 constexpr double edge_fraction = 0.02;
 
 // Reduces the weights of points that are farther from the surface than nearly all others. At most one point
@@ -621,8 +625,8 @@ void SurfaceFitter::stiffen_faulty_spans() {
   }
 }
 
-// Moves the parameters of nodes in faulty spans towards the mean of their neighbours' parameters. In a
-// harmonic map every node is at this mean, and no parameters cross.
+// Moves the parameters of nodes in faulty spans, and in the spans next to them, towards the mean of their
+// neighbours' parameters. In a harmonic map every node is at this mean, and no parameters cross.
 void SurfaceFitter::relax_faulty_spans(int rounds) {
   const PointGraph& graph = points_->graph;
   const std::size_t count = points_->scan.points_m.size(), spanning = points_->spanning_nodes;
@@ -747,9 +751,10 @@ Status SurfaceFitter::unfold(int relaxation) {
 
 }  // namespace
 
-// Fits with several bounds on the agreement of normals, because the best bound differs from scan to scan. A
-// strict bound keeps points in the folds of the initial parameters; a loose bound lets points move to the
-// other face of a wall. If all results fold or have large errors, a larger fairness is tried.
+// Fits the surface several times, with different bounds on the agreement of normals, because the best bound
+// differs from scan to scan. A strict bound keeps points in the folds of the initial parameters; a loose
+// bound lets points move to the other face of a wall. If all results fold or have large errors, a larger
+// fairness is tried.
 Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
                                   const FitSettings& settings) {
   SPOONBILL_ASSERT(start.uv.size() == points.graph.size());
@@ -757,7 +762,7 @@ Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisatio
   struct Trial {
     double agreement, fairness_factor;
     std::size_t cusps;      // largest number of cusps of an accepted result, which has no folds
-    double error_fraction;  // limit for the error of an accepted result, relative to the size
+    double error_fraction;  // limit for the error of an accepted result, relative to the scan's size
   };
   constexpr std::size_t any = std::numeric_limits<std::size_t>::max();
   constexpr std::array trials{Trial{0.0, 1.0, 0, 0.005}, Trial{-0.3, 1.0, 0, 0.005},

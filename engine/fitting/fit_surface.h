@@ -14,8 +14,8 @@ namespace spoonbill {
 
 struct FitSettings {
   int control_u = 24, control_v = 24;  // largest numbers of control points
-  // Largest distance of points, except outliers, at which the fit stops adding control points. 0: the fit
-  // always uses the full number.
+  // The fit stops adding control points when no point, except outliers, is farther from the surface than
+  // this. 0: the fit always uses the full number of control points.
   double tolerance_m = 0.0;
   Progress progress = {};  // a stop request makes the fit fail
 };
@@ -32,10 +32,10 @@ struct FittedSurface {
 // Fits a cubic surface. `start` holds the initial parameters of the nodes. Alternates between least squares
 // and closest-point parameters, from few control points to many. Knots are added where errors are large, and
 // outliers get less weight (Huber 1964). The fairness is the largest that cross-validation permits, raised
-// further where the surface folds. On thin walls several rules for keeping points on their face are tried,
-// and the best result is returned. Normals point out of closed shapes. On open shapes they agree with the
-// scan's normals. Without such normals they point away from a tube's axis, away from a sheet's hollow side
-// or, on a flat sheet, to +z.
+// further where the surface folds. If the first result folds or has a large error, other rules for keeping
+// points on their face of a thin wall are tried, and the best result is returned. Normals point out of closed
+// shapes. On open shapes they agree with the scan's normals. Without such normals they point away from a
+// tube's axis, away from a sheet's hollow side or, on a flat sheet, to +z.
 Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
                                   const FitSettings& settings);
 

@@ -140,8 +140,8 @@ Vector3 estimate_local_normal(const PointGraph& graph, std::uint32_t node) {
 
 enum class SquareSide : unsigned char { none, left, right };
 
-// A cut along the shortest path between the ends. For each node near the path, `side` tells on which side of
-// the path the node is.
+// A cut along the shortest path between the ends. `side` is the side of the path on which a node near the
+// path is; none for all other nodes.
 struct Cut {
   std::vector<SquareSide> side;
   std::vector<bool> near_pole;

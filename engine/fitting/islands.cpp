@@ -102,9 +102,9 @@ std::vector<double> pair_lengths(const std::vector<Vector3>& nodes_m, const std:
   return lengths;
 }
 
-// Returns the body to which each component belongs. A component that is dust belongs to the body to which its
-// shortest pair of nodes leads, or to no_point if no pair leads to a body. Any other component is a body
-// itself.
+// Returns the body to which each component belongs. A component that is too small for a body (dust) belongs
+// to the body at the other end of its shortest pair of nodes, or to no_point if no pair leads to a body. Any
+// other component is a body itself.
 std::vector<std::uint32_t> assign_bodies(const ConnectedComponents& parts,
                                          const std::vector<std::size_t>& component_points,
                                          const std::vector<NodePair>& pairs,

@@ -16,8 +16,8 @@ namespace spoonbill {
 std::vector<NodePair> remove_gap_pairs(const std::vector<Vector3>& points_m, const VoxelGroups& groups,
                                        const std::vector<Vector3>& nodes_m, std::vector<NodePair> pairs);
 
-// Limits below which a component counts as dust: its weight as a fraction of the largest component's, and its
-// number of nodes.
+// Limits below which a component counts as dust: the weight of its points as a fraction of the largest
+// component's, and its number of nodes.
 inline constexpr double dust_fraction = 0.02;
 inline constexpr std::size_t least_island_nodes = 30;
 

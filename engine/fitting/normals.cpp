@@ -21,8 +21,9 @@ constexpr std::size_t normal_neighbours = 12;
 // Largest length of a pair of neighbours, relative to the median length. Longer pairs are ignored.
 constexpr double longest_pair = 3.0;
 constexpr double opposite_cosine = -0.5;
-// Largest height of a neighbour above a node's tangent plane, relative to its distance, at which it counts as
-// being on the same face. A greater height means that the neighbour is on the other face of a wall.
+// Largest height of a neighbour above or below a node's tangent plane, relative to the distance between the
+// two nodes, at which both count as being on the same face. A greater height means that the neighbour is on
+// the other face of a wall.
 constexpr double most_height_fraction = 0.25;
 // Limits for inconsistent normals; both must be exceeded. The first is the fraction of all pairs that have
 // opposite normals. In some of these opposite pairs, each node is above the tangent plane of the other; in
@@ -199,8 +200,8 @@ std::vector<NodePair> pairs_between(const PointGraph& graph, const std::vector<V
   return pairs;
 }
 
-// Numbers of points of each component at which the surface normal agrees with the node's normal, and at which
-// it opposes it.
+// Numbers of points of each component, by whether the surface normal at the point agrees with the normal of
+// the point's node or opposes it.
 struct Votes {
   std::vector<double> along, against;
 
@@ -242,8 +243,10 @@ std::vector<Vector3> estimate_normals(const FitPoints& points, const Surface& su
 namespace {
 
 constexpr int orientation_samples = 32;
-// A sheet counts as flat if its outward area is below this fraction of the largest possible one. It then does
-// not show clearly which side is hollow. An example is a cap whose height is below a sixtieth of its width.
+// A sheet counts as flat if the sum of offset . area over its samples is below this fraction of the sum of
+// |offset| |area|. The offset is measured from the centre, and the area is a vector along the normal. It is
+// then not clear which side of the sheet is hollow. An example is a cap whose height is below a sixtieth of
+// its width.
 constexpr double flat_cap_fraction = 0.05;
 // Fraction of the mean normal's length below which a component of the mean normal counts as zero.
 constexpr double upright_fraction = 0.1;

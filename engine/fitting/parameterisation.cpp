@@ -267,8 +267,8 @@ Result<Parameterisation> initial_parameterisation(FitPoints& island, ShapeKind k
 namespace {
 
 constexpr double axis_roundness = 0.1;
-// Limits of a thin wall: its largest thickness as a fraction of the size, and the smallest thickness, in
-// raster cells, at which its two faces can be separated.
+// Limits of a thin wall: its largest thickness as a fraction of the shape's size, and the smallest thickness,
+// in raster cells, at which its two faces can be separated.
 constexpr double thin_fraction = 0.1;
 constexpr double separable_cells = 3.0;
 // Mean number of points per raster cell for which the cell size is chosen. The choice assumes that the

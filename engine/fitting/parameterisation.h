@@ -25,9 +25,9 @@ struct Parameterisation {
   std::vector<Vector2> uv;  // parameters of each point, in [0, 1]; NaN where unknown
 };
 
-// Detects the kind of shape from its boundary loops. A shape whose longest loop encloses an area similar to
-// its own is a sheet. A shape with two loops as long as its girth is a tube. Smaller loops are holes of a
-// closed shape.
+// Detects the kind of shape from its boundary loops. A shape with two loops about as long as its girth is a
+// tube. Any other shape is a sheet if the area within its longest loop is more than 30 % of the area of its
+// surface, or 12 % if the normals point inwards. Smaller loops are holes of a closed shape.
 ShapeKind classify_shape(const FitPoints& island);
 
 // Adds nodes over all holes and open ends, and clears the boundary loops.

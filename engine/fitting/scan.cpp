@@ -101,7 +101,8 @@ Scan average_groups(const Scan& scan, const VoxelGroups& groups) {
 namespace {
 
 constexpr std::size_t neighbours_per_point = 8, plane_neighbours = 16;
-// Number of standard deviations beyond which a point is an outlier. Scanner noise stays within three.
+// A point is an outlier if the mean distance to its neighbours exceeds the median of these means by more than
+// this number of standard deviations. Scanner noise stays within three.
 constexpr double outlier_deviations = 6.0;
 // Largest spacing of points on a surface, relative to the median. From voxel to voxel, the sampling density
 // of one surface does not drop faster than this.
@@ -222,9 +223,9 @@ constexpr double long_ring_edge_ratio = 1.5;
 // Smallest height of a spike relative to the radius of its ring. Tips in an even mesh are lower, since the
 // ring around them is wider.
 constexpr double least_spike_height = 4.0;
-// Limits for the second ring of vertices around a tip, in radii of the first ring. At least a quarter of its
-// vertices must be farther out from the first ring's centre than the first limit, and half of them nearer to
-// the first ring's plane than the second limit.
+// Limits for the second ring of vertices around a tip, in radii of the first ring. At least a quarter of the
+// second ring's vertices must be farther from the first ring's centre than the first limit. At least half of
+// them must be nearer to the first ring's plane than the second limit.
 constexpr double least_outer_radius = 1.2, most_height = 0.6;
 constexpr std::size_t most_measured = 1'000'000;
 
@@ -310,8 +311,8 @@ class RingPlane {
     normal_ = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
   }
 
-  // Returns true if at least half of the vertices behind the ring are close to the ring's plane, and at least
-  // a quarter of them are farther out than the ring.
+  // Returns true if the surface goes on flat around the ring: at least half of the vertices of the second
+  // ring, `behind`, are close to this ring's plane, and at least a quarter are farther out than this ring.
   bool is_continued_by(const Scan& mesh, const VertexRing& behind) const {
     std::vector<double> out, off;
     for (const std::uint32_t vertex : behind) {

@@ -51,8 +51,9 @@ std::vector<bool> find_outliers(const std::vector<Vector3>& points_m, const std:
 // that slender, consists of a single fan of triangles, and rises from a plate.
 std::vector<std::uint32_t> level_spikes(Scan& mesh);
 
-// Halves edges until none is longer than `longest_m` or the triangle limit is reached. Both triangles at an
-// edge are split, so that no gap opens. Existing points keep their positions; added points are appended.
+// Halves edges, at most 16 times in succession, until none is longer than `longest_m` or the triangle limit
+// is reached. Both triangles at an edge are split, so that no gap opens. Existing points keep their
+// positions; added points are appended.
 void split_long_edges(std::vector<Vector3>& points_m, std::vector<TriangleCorners>& triangles,
                       double longest_m, std::size_t triangle_limit);
 

@@ -172,8 +172,8 @@ double span_weight(const ScatteredData& data, std::size_t spans) {
   return sum / static_cast<double>(spans);
 }
 
-// Derivatives of the basis functions at the two Gauss points of a span. A derivative of order n is multiplied
-// by the n-th power of the span's length.
+// Values and derivatives of the basis functions at the two Gauss points of a span. A derivative of order n is
+// multiplied by the n-th power of the span's length.
 struct SpanBasis {
   std::array<PieceBasis::Values, 2> at;
 };

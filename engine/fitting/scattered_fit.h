@@ -24,9 +24,9 @@ struct SurfaceStructure {
 // The fit minimises the weighted squared distances at the parameters plus the thin-plate energy of each span:
 //   sum w |S(u, v) - p|^2
 //     + mean(w) sum over spans f [(|S_uu| du^2)^2 + 2 (|S_uv| du dv)^2 + (|S_vv| dv^2)^2]
-// Here mean(w) is the mean weight of the points of a span, and du and dv are the sides of the span. The
-// fairness f has one value for each pair of spans; the span of v varies fastest. Normal equations are
-// accurate enough for scans; they stay definite if f is above 1e-9.
+// A span is a rectangle of (u, v) between successive knots, with the sides du and dv; mean(w) is the sum of
+// all weights divided by the number of spans. The fairness f has one value for each span; v varies fastest.
+// Normal equations are accurate enough for scans; they stay definite if f is above 1e-9.
 //
 // Each pole is pulled to the mean of the ring of control points next to it, and the rings around it are
 // pulled to ellipses, as on a surface with a tangent plane at the pole. An elliptic ring satisfies

@@ -137,10 +137,10 @@ RingFit fit_best(const EdgeRing& a, const EdgeRing& b, std::optional<bool> reque
   return best;
 }
 
-// Returns the best fit of two rings. Coincident rings are compared where they are, which is exact for
+// Returns the best fit of two rings. Coincident rings are compared without a rotation, which is exact for
 // identical rings. Other rings are compared after ring b is rotated to face ring a.
 RingFit fit_best_rotated(const PreparedEdge& a, const PreparedEdge& b, std::optional<bool> requested) {
-  // Largest distance between coincident rings, as a fraction of the ring's radius.
+  // Largest distance between rings that count as coincident, as a fraction of the radius of ring a.
   constexpr double coincidence_fraction = 0.02;
   const EdgeRing ring_a(a);
   EdgeRing ring_b(b);
@@ -277,8 +277,8 @@ struct GridCell {
 
 constexpr bool both[] = {false, true};
 
-// Returns the orientation of a patch that moves its side `side` to `target` and reverses the direction of
-// that side's edge if `reversed` is true; nothing if there is no such orientation.
+// Returns the orientation that moves the side `side` of a patch to `target` and reverses the direction of
+// this side's edge if `reversed` is true; nothing if there is no such orientation.
 std::optional<Orientation> facing(Side side, Side target, bool reversed) {
   for (const bool exchange : both) {
     for (const bool reverse_u : both) {

@@ -44,7 +44,8 @@ struct Orientation {
 
 Surface orient(const Surface& surface, const Orientation& orientation);
 
-// The side to which an orientation moves a given side, and whether it reverses the direction of its edge.
+// The side to which an orientation moves a given side, and whether the orientation reverses the direction of
+// this side's edge.
 struct TurnedSide {
   Side side;
   bool reversed;
@@ -52,7 +53,7 @@ struct TurnedSide {
 TurnedSide turn_side(Side side, const Orientation& orientation);
 
 // Grid of rows x columns cells along u and v. Cell (a, b), at index a * columns + b, holds a patch and its
-// orientation. The first patch is not changed.
+// orientation. The first patch keeps its orientation.
 struct Arrangement {
   int rows = 0, columns = 0;
   std::vector<int> patches;

@@ -247,7 +247,8 @@ Cells cells_along(const KnotVector& knots) {
   return cells;
 }
 
-// Least numbers of samples, needed for strips with few polynomial pieces.
+// Smallest numbers of lines across a strip and of steps along each line at which a strip is sampled. They
+// matter for strips with few polynomial pieces.
 constexpr int least_lines = 32, least_steps = 24;
 
 std::vector<double> sample_lines(const KnotVector& u) {

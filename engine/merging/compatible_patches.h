@@ -19,8 +19,8 @@ struct JoinRequest {
   double blend_m = 0.0;            // length of a blend at joints that lack the continuity; 0 for none
   double twist = 0.0;              // rotation of each ring from its best fit, as a fraction of a turn
   int largest_count = 200;         // largest number of control points in each direction
-  bool shared_parameters = false;  // edges are known to have equal parameters; seams are not searched
-  bool bridges_may_fold = false;   // true if the user has chosen the relative direction of edges
+  bool shared_parameters = false;  // edges have equal parameters and seams; neither is matched
+  bool bridges_may_fold = false;   // true if the user has set the relative direction of edges
   Progress progress = {};          // progress of the whole request
 };
 
@@ -30,7 +30,7 @@ inline constexpr double snap_fraction = 1e-5;
 
 // Returns the seam of the second ring, moved by at most `snap_fraction` of the period so that a knot of the
 // second ring coincides with the first ring's seam. If there is no such knot, the closest pair of knots is
-// made to coincide. Both periods must have the same length.
+// made to coincide, if the same limit permits. Both periods must have the same length.
 double align_seam_to_knots(const KnotVector& first, const KnotVector& second, double seam);
 
 struct SnappedKnots {
@@ -48,11 +48,11 @@ struct CompatiblePatches {
   double deviation_m = 0.0;  // greater than 0 only if parameters were matched or knots snapped
 };
 
-// Makes the patches compatible along u. Edges within the tolerance count as shared, whatever their
-// parameters. The degree along v becomes at least the continuity plus one. The first patch keeps its u
-// domain. The seam of a ring is placed next to the previous ring's seam or at the best fit, and then rotated
-// by the twist. Fails for a closed patch next to an open one, for parameters that cannot be matched within
-// the tolerance, and if too many control points are needed.
+// Makes the patches compatible along u. Edges within three quarters of the tolerance count as shared,
+// whatever their parameters. The degree along v becomes at least the continuity plus one. The first patch
+// keeps its u domain. The seam of a ring is placed next to the previous ring's seam or at the best fit, and
+// then rotated by the twist. Fails for a closed patch next to an open one, for parameters that cannot be
+// matched within the tolerance, and if too many control points are needed.
 Result<CompatiblePatches> make_compatible(std::vector<Surface> patches, const JoinRequest& request);
 
 }  // namespace spoonbill

@@ -65,12 +65,13 @@ class LinesFromLoop {
 struct CrossingPatches {
   Surface first, second;
   // True if the intersection is near the pole at the start of the second patch's v, and does not go around
-  // the pole. Lines then come from LinesFromLoop.
+  // the pole. The lines of the second patch then come from LinesFromLoop.
   bool beside_pole = false;
 };
 
-// Line of the first patch at one u, with its continuation: where it ends on the first patch, and where it
-// starts on the second. With a fillet, an arc is in between.
+// Line that follows the first patch at one u up to the intersection and continues along the second patch: the
+// point where it leaves the first patch, and the point where it starts on the second. With a fillet, an arc
+// connects these points.
 struct CornerLine {
   double first_v = 0.0;
   double second_u = 0.0, second_v = 0.0;
@@ -86,8 +87,8 @@ class CornerLines {
   // Returns the corner line at u; nothing if the line does not cross the second patch or no ball fits.
   const std::optional<CornerLine>& at(double u);
 
-  // Returns the points (u, v) on the second patch at which its lines start, enough of them to resolve the
-  // loop.
+  // Returns points (u, v) of the second patch at which corner lines start on it, enough of them to resolve
+  // the loop.
   std::vector<Eigen::Vector2d> loop_on_second();
 
  private:
@@ -104,8 +105,8 @@ class CornerLines {
 using std::numbers::pi;
 
 // The circle at which the lines become lines of constant u has a radius of circle_ratio times the distance of
-// the loop's farthest point from the near pole. It covers at most most_rest_fraction of the rest of the way
-// to the far pole.
+// the loop's farthest point from the near pole. The radius exceeds this distance by at most
+// most_rest_fraction of the distance that is left to the far pole.
 constexpr double circle_ratio = 1.3, most_rest_fraction = 0.5;
 
 Eigen::Vector2d polar(double radius, double angle) {
@@ -301,8 +302,8 @@ Status check_stays_inside(const Surface& first, const CrossingFinder& other) {
 Error not_side_by_side() {
   return Error(
       ErrorCode::mismatch,
-      "lines of constant u of the two patches are not in the same order along the crossing, as where a "
-      "closed body meets a sheet; exchange u and v of one patch, or merge closed bodies");
+      "lines of constant u of the two patches are not in the same order along the crossing, for example "
+      "because a closed body meets a sheet; exchange u and v of one patch, or merge closed bodies");
 }
 
 Error not_around_centre() {
@@ -409,8 +410,8 @@ CornerLines::CornerLines(const CrossingPatches& patches, double fillet_m)
   choose_sides();
 }
 
-// Chooses the side of each surface on which the ball rolls: the side to which the remaining part of the other
-// surface leads.
+// Chooses the side of each surface on which the ball rolls: the side on which the kept part of the other
+// surface is.
 void CornerLines::choose_sides() {
   const Surface &first = patches_->first, &second = patches_->second;
   const std::vector<LineCrossing> crossings = cross_lines(first, second, second_).crossings;
@@ -456,9 +457,9 @@ std::optional<CornerLine> CornerLines::find(double u) const {
   return CornerLine{contact->v, contact->other_u, contact->other_v, contact->centre_m};
 }
 
-// Fraction of the tolerance for fitting each part. The edges of two parts are then within twice this distance
-// of each other; joining uses the rest of the tolerance. Parts that start beside a pole have a larger
-// fraction, because their curvature is not aligned with their lines.
+// Fraction of the tolerance for fitting each part: the kept part of a patch, or the fillet. The edges of two
+// parts are then within twice this distance of each other; joining uses the rest of the tolerance. Parts that
+// start beside a pole have a larger fraction, because their curvature is not aligned with their lines.
 constexpr double part_fraction = 0.2, askew_fraction = 0.5;
 // Fraction of the work that the fit of one part takes, for the progress. There are at most three parts.
 constexpr double fitted_fraction = 0.25;
@@ -469,11 +470,13 @@ double interpolate(double from, double to, double fraction) {
 
 using LineShape = std::function<Vector3(double u, const CornerLine& line, double s)>;
 
-// Remaining part of a patch as a function of u of the first patch and of the fraction along the part's lines.
+// Shape of the kept part of a patch, or of the fillet. A point of it is given by u of the first patch, which
+// selects a line of the part, and by the fraction of the way along this line.
 struct PartShape {
   LineShape at;
   bool pole_at_start = false, pole_at_end = false;
-  // Fraction of a line's length beyond which a line that starts beside a pole follows a line of the patch.
+  // Fraction of a line's length beyond which a line that starts beside a pole follows a line of constant u of
+  // the patch.
   std::optional<double> bend = {};
 };
 
@@ -482,7 +485,7 @@ struct PartShape {
 constexpr int few_spans = 4, local_spans = 48;
 
 Error not_fitted(const Error& error, double fraction, double tolerance_m) {
-  return error.in("a remaining part of a patch, to fit within " + short_length_text(fraction * tolerance_m) +
+  return error.in("the kept part of a patch, whose fit may use " + short_length_text(fraction * tolerance_m) +
                   " of the tolerance of " + short_length_text(tolerance_m));
 }
 
@@ -589,7 +592,7 @@ Result<Parts> fit_parts(const CrossingPatches& patches, const IntersectionReques
 
 Error edges_apart(double apart_m, double tolerance_m) {
   return Error(ErrorCode::not_converged,
-               "the remaining parts should meet but are up to " + short_length_text(apart_m) +
+               "the kept parts of the patches should meet but are up to " + short_length_text(apart_m) +
                    " apart, too far for the tolerance of " + short_length_text(tolerance_m) +
                    "; choose a larger tolerance",
                "tolerance");

@@ -20,14 +20,14 @@ struct IntersectionMerge {
   bool first_was_inward = false, second_was_inward = false;
 };
 
-// Merges two intersecting patches. Each closed body contributes the part outside the other. Open patches
-// contribute the longer part of their lines. Closed bodies with inward normals are reversed first. The first
-// patch keeps its parameters in the direction around it. If the first patch crosses a closed body beside its
-// poles, the body is resampled along lines from the intersection to the far pole.
+// Merges two intersecting patches. Each patch contributes its part outside the other if the other is a closed
+// body. Otherwise it contributes the longer part of its lines. Closed bodies with inward normals are reversed
+// first. The first patch keeps its parameters in the direction around it. If the first patch crosses a closed
+// body beside its poles, the body is resampled along lines from the intersection to the far pole.
 //
-// Fails if a line of constant u does not cross the other patch, if the lines do not follow each other along
-// the intersection, if a patch leaves a closed body after entering it, or if the fillet does not fit. The
-// message names a position where possible.
+// Fails if a line of constant u does not cross the other patch, if the lines of both patches are not in the
+// same order along the intersection, if a patch leaves a closed body after entering it, or if the fillet does
+// not fit. The message names a position where possible.
 Result<IntersectionMerge> merge_crossing(const Surface& first, const Surface& second,
                                          const IntersectionRequest& request);
 

@@ -41,10 +41,10 @@ Result<JointMeasure> measure(const Surface& before, const Surface& after, const 
 struct JointState {
   bool any_touching = false, any_open = false, all_smooth = true, all_continue_ahead = true;
   double apart_m = 0.0;                      // largest gap in any row
-  double mean_gap_m = 0.0, advance_m = 0.0;  // means over the rows
+  double mean_gap_m = 0.0, advance_m = 0.0;  // means of mean_gap_m() and mean_advance_m() over the rows
   // Length of the shortest polynomial piece beside the joint, in any row.
   double shortest_piece_m = std::numeric_limits<double>::infinity();
-  double speed_before = 0.0, speed_after = 0.0;  // means over the rows
+  double speed_before = 0.0, speed_after = 0.0;  // mean metres per unit of v on both sides of the joint
 };
 
 JointState joint_state(const std::vector<PreparedRow>& rows, std::size_t joint, const JoinRequest& request) {
@@ -328,8 +328,8 @@ Result<double> measured_deviation_m(const Surface& merged, const std::vector<Sur
   return largest;
 }
 
-// Returns the tolerance that remains for fitting the joints, at least 5 % of the whole. At a joint that is
-// not bridged, each edge moves by half the gap.
+// Returns the part of the tolerance that is available for fitting the joints, at least 5 % of the whole. At a
+// joint that is not bridged, each edge moves by half the gap.
 double tolerance_left_m(const PreparedRow& row, const JoinRequest& request) {
   double gap_m = 0.0;
   for (const JointMeasure& joint : row.joints) gap_m = std::max(gap_m, joint.bridged ? 0.0 : joint.gap_m);

@@ -14,7 +14,7 @@ namespace spoonbill {
 // Measures of the joint between two patches of a row. Parameter lengths refer to the patch before the joint.
 struct JointMeasure {
   bool bridged = false;
-  double gap_m = 0.0;          // largest gap between the edges, or the mean gap if it is bridged
+  double gap_m = 0.0;          // largest gap between the edges; mean gap at a bridge
   double gap_parameter = 0.0;  // length of a bridge along v
   // Factor on the length of the next patch's domain, so that the speed is equal on both sides.
   double stretch_of_after = 1.0;
@@ -29,17 +29,17 @@ struct PreparedRow {
   double deviation_m = 0.0;
 };
 
-// Prepares adjacent rows with equal numbers of patches. The patches of a column share the v domain of the
-// first row, and are cut back and joined at the same parameters. They are cut back in two cases: for a
-// requested blend if the joint lacks the continuity, and at small gaps where the patches do not continue
-// straight ahead, far enough to avoid a step. Fails if a joint touches in one row and is open in another
+// Prepares adjacent rows with equal numbers of patches. The patches of a column get the v domain of their
+// patch in the first row, and are cut back and joined at the same parameters. They are cut back in two cases:
+// for a requested blend, if the joint lacks the continuity; and at small gaps where the patches do not
+// continue straight ahead, to avoid a step. Fails if a joint touches in one row and is open in another
 // without a blend, if a blend takes more than half of a patch, or if make_compatible() or bridge_length()
 // fails.
 Result<std::vector<PreparedRow>> prepare_rows(std::vector<std::vector<Surface>> rows,
                                               const JoinRequest& request);
 
 // A joint of the merged surface. The surface differs from the patches between blend_start and blend_end along
-// v; both are equal without a blend or bridge.
+// v. These two parameters are equal if there is no blend or bridge.
 struct Joint {
   double gap_m = 0.0;
   bool bridged = false;

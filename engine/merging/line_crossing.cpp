@@ -29,8 +29,8 @@ Box box_around(const Vector3& a, const Vector3& b) {
   return box_about(std::array{a, b});
 }
 
-// Residual at which Newton's method counts as converged, relative to the surface's size. It is above rounding
-// errors, because grazing crossings leave a larger residual.
+// Residual at which Newton's method counts as converged, relative to the surface's size. It is well above the
+// rounding errors, because a grazing crossing leaves a residual that is larger than these errors.
 constexpr double converged_fraction = 1e-10;
 
 void drop_repeated(std::vector<LineCrossing>& crossings, double nearness) {

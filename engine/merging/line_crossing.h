@@ -23,8 +23,8 @@ class CrossingFinder {
  public:
   explicit CrossingFinder(const Surface& other);
 
-  // Returns the crossings of a line of constant u of `surface`, in order of v. A line that only touches the
-  // surface may be missed.
+  // Returns the crossings of a line of constant u of `surface` with the finder's surface, in order of v. A
+  // line that only touches the finder's surface may be missed.
   std::vector<LineCrossing> intersect_line(const Surface& surface, double u) const;
 
   // Returns the crossings of a straight line in order of distance, up to `length_m` along the unit direction.

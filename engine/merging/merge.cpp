@@ -75,7 +75,7 @@ Result<std::vector<Joined>> join_along_v(const PatchGrid& grid, const JoinReques
   return joined;
 }
 
-// Divides the tolerance and progress that remain among the steps of a merge.
+// Divides the unused tolerance and the rest of the progress among the steps of a merge.
 class ToleranceSteps {
  public:
   ToleranceSteps(const JoinRequest& request, int steps) : request_(request), steps_(steps) {}

@@ -101,8 +101,8 @@ Surface turn_back(const Surface& along, Side side) {
   return across(side) == Direction::u ? exchanged(tube) : tube;
 }
 
-// Returns the cap from the end ring of the tube to the pole. The control points next to the ring continue the
-// sides of the tube.
+// Returns the cap from the end ring of the tube to the pole. In a round cap, the control points next to the
+// ring continue the sides of the tube. In a flat cap, they are on straight lines from the ring to the pole.
 Result<Surface> make_cap(const Surface& tube, double height_m) {
   const double end = tube.v.domain_end();
   const TubeEnd ring = tube_end(tube, Side::v_end);
@@ -248,8 +248,8 @@ std::vector<std::pair<PatchEdge, PatchEdge>> find_nearest_ends(const std::vector
     PatchEdge a, b;
     double cost_m;
   };
-  // Weight of the difference in width. The centre of a flat disc may be as near to a ring as the disc's edge
-  // is; an end of similar width is then preferred.
+  // Weight of the difference in width in the cost of joining two ends. The centre of a flat disc may be as
+  // near to a ring as the disc's edge is; an end of similar width is then preferred.
   constexpr double width_fraction = 0.01;
   std::vector<std::pair<PatchEdge, TubeEnd>> ends;
   for (int p = 0; p < static_cast<int>(tubes.size()); ++p) {

@@ -22,7 +22,8 @@
 namespace spoonbill {
 namespace {
 
-// Parameter at which two smooth parts of a patch meet. Derivatives up to order `continuity` agree across it.
+// Parameter at which two smooth parts of a patch meet, or at which the patch begins or ends. Derivatives up
+// to order `continuity` agree across it.
 struct PatchBreak {
   double parameter;
   int continuity;
@@ -238,7 +239,8 @@ struct Derivatives {
   Vector3 position, first, second;
 };
 
-// One direction of a surface over a box, and a few lines along it on which derivatives are compared.
+// Direction u or v of a surface within a box of parameters. Derivatives are compared on a few lines of the
+// surface that run in this direction.
 class ParameterLine {
  public:
   ParameterLine(const GeomAdaptor_Surface& surface, const ParameterBox& box, bool along_u)

@@ -49,8 +49,8 @@ using SplineGeometry = opencascade::handle<Geom_BSplineSurface>;
 using Polygon = std::vector<Eigen::Vector2d>;
 
 constexpr double vertex_distance_mm = 1e-7;
-// Largest distance between an edge's curve in space and its curve over (u, v). The tolerance is the target;
-// the limit is approached only at kinks.
+// Largest distance between an edge's curve in space and its curve over (u, v). OpenCASCADE aims at the
+// tolerance and exceeds it only at kinks. A larger error than the limit is refused.
 constexpr double curve_tolerance_mm = 1e-6, curve_error_limit_mm = 1e-2;
 constexpr double corner_sine = 1e-4;
 constexpr int degree_limit = 14, segment_limit = 1000;
@@ -59,7 +59,8 @@ const std::vector<double>& along(const TrimLoop& loop, Direction direction) {
   return direction == Direction::u ? loop.u : loop.v;
 }
 
-// Returns the centre of the widest range of a period that no loop reaches; nullopt if loops reach all of it.
+// Returns the centre of the widest range of parameters, within one period, that no loop reaches. Returns
+// nullopt if there is no such range.
 std::optional<double> find_free_seam(const KnotVector& knots, Direction direction,
                                      const std::vector<TrimLoop>& trims) {
   const double start = knots.domain_start(), period = knots.domain_end() - start;

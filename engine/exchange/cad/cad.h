@@ -40,14 +40,14 @@ Result<CadModel> read_cad(const std::filesystem::path& file, const CadReading& r
 // MANIFOLD_SOLID_BREP if the surface closes, otherwise an open shell. In IGES it becomes a named entity: type
 // 186 if the surface closes, 128 if it does not, 144 for each face of a trimmed surface. The faces of one
 // solid are joined under its name where they close. A surface that find_closing() classifies as solid is
-// written exactly closed. Notes report by how much such a surface was open, surfaces that would close but are
-// not written as solids, and bridged gaps between the faces of a solid.
+// written exactly closed. Notes report by how much such a surface was open. They also report surfaces that
+// would close but are not written as solids, and bridged gaps between the faces of a solid.
 Result<CadFileContent> write_cad(const CadModel& model, const CadWriting& writing,
                                  const Progress& progress = {});
 
 // Joins the surfaces that have the same CadSurface::solid into solids, as write_cad() does, and meshes these
-// solids. All other surfaces are returned as loose. So are surfaces that OpenCASCADE cannot join, and the
-// surfaces of a solid without a watertight mesh; a note reports these two. Refused: more triangles than the
+// solids. All other surfaces are returned as loose. Surfaces that OpenCASCADE cannot join are loose too, as
+// are the surfaces of a solid without a watertight mesh; notes report them. Refused: more triangles than the
 // limit.
 Result<CadSolids> mesh_solids(const CadModel& model, const SolidMeshing& meshing,
                               const Progress& progress = {});

@@ -140,7 +140,7 @@ class FaceCollector {
     return is_generic_name(name) ? fallback : name;
   }
 
-  // A solid of more than one face, as a range of the collected faces.
+  // A solid of more than one face. Its faces are those with indices from `first` to `end` - 1 in `found_`.
   struct Solid {
     std::string name;
     std::size_t first = 0, end = 0;
@@ -175,7 +175,8 @@ struct Content {
   LossCount losses = {};
   int external_files = 0;
   int unread_placements = 0;
-  double model_scale = 1.0;  // scale of the model in an IGES file
+  // Size of the model divided by the size of the real object, as stated in an IGES file.
+  double model_scale = 1.0;
 };
 
 OcctDocument new_document() {
@@ -297,14 +298,14 @@ void add_solid_notes(const std::vector<NamedFace>& faces, const std::vector<bool
 }
 
 // Returns the factor from OpenCASCADE's coordinates to metres. OpenCASCADE has multiplied the file's numbers
-// by `unit.millimetres`. The factor undoes this if the caller states another unit, or if the file declares
-// none; the file's unit is then 1 mm.
+// by `unit.millimetres`. The factor undoes this if the caller states a unit. It also does so if the file
+// declares none, and one unit of the file then counts as 1 mm.
 double find_scale(const FileUnit& unit, const CadReading& reading) {
   if (reading.unit_m > 0.0) return reading.unit_m / unit.millimetres;
   return unit.declared ? 1e-3 : 1e-3 / unit.millimetres;
 }
 
-// Largest deviation of trim loops that is reported. Larger deviations are reported as this value.
+// Larger deviations of trim loops are reported as this value.
 constexpr double trim_deviation_limit_m = 1e6;
 
 CadSurface make_cad_surface(const NamedFace& face, FaceSurface found) {

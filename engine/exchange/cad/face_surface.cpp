@@ -47,14 +47,14 @@ std::array<gp_Pnt2d, 4> project_to_sides(const gp_Pnt2d& point, const ParameterB
           gp_Pnt2d(point.X(), box.v_end)};
 }
 
-// Returns the nearest point of a box.
+// Returns the point of a box that is nearest to `point`.
 gp_Pnt2d clamp_into(const gp_Pnt2d& point, const ParameterBox& box) {
   return {std::clamp(point.X(), box.u_start, box.u_end), std::clamp(point.Y(), box.v_start, box.v_end)};
 }
 
 // Returns true if all samples of the edge are on the same side of the box. A sample is on a side if its
-// distance from the side in space is at most `tolerance` or the edge's own tolerance, and its distance in (u,
-// v), if it is inside the box, is at most side_fraction.
+// distance from the side in space is at most `tolerance` or the edge's own tolerance. If the sample is inside
+// the box, its distance from the side in (u, v) must also be at most side_fraction of the box's length.
 bool is_on_side(const TopoDS_Edge& edge, const TopoDS_Face& face, const ParameterBox& box, double tolerance) {
   double first = 0.0, last = 0.0;
   const auto curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
@@ -278,7 +278,8 @@ Result<FaceSurface> convert(const TopoDS_Face& face, double scale, double tolera
 
 constexpr int place_samples = 8;
 
-// Returns the mean of samples of the face's edges, in the face's unit; nullopt if no edge has a curve.
+// Returns the mean of samples of the face's edges, in the face's unit; nullopt if no edge has a curve or if
+// the mean is not finite.
 std::optional<gp_XYZ> find_centre(const TopoDS_Face& face) {
   gp_XYZ sum(0.0, 0.0, 0.0);
   int count = 0;

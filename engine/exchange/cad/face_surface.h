@@ -23,14 +23,15 @@ struct FaceSurface {
 
 // Converts a face. Planes, B-spline and Bezier surfaces that are not rational, and extrusions of lines and of
 // curves that are not rational are converted exactly. All other surfaces are approximated, as are surfaces of
-// a degree above max_degree or with too many control points. A B-spline surface with trim loops stays whole;
-// any other surface is cut to the face's range of parameters. The range ends where a polynomial surface ends,
-// even if edges overshoot this end. `scale` is the length of one unit of the face in metres. Refused: a face
-// without a surface or of infinite extent, a tolerance that needs too many control points.
+// a degree above max_degree or with too many control points. A trimmed B-spline surface that is not rational
+// stays whole, unless the face crosses its seam. Any other surface is cut to the face's range of parameters.
+// The range ends where a polynomial surface ends, even if edges overshoot this end. `scale` is the length of
+// one unit of the face in metres. Refused: a face without a surface or of infinite extent, a tolerance that
+// needs too many control points.
 Result<FaceSurface> convert_face(const TopoDS_Face& face, double scale, double tolerance_m);
 
 // Returns the centre of the face's edges as "(1, 2, 3) mm", so that a person can find the face. Returns an
-// empty text if no edge has finite coordinates.
+// empty text if no edge has a curve, or if a coordinate is not finite.
 std::string face_place_text(const TopoDS_Face& face, double scale);
 
 }  // namespace spoonbill

@@ -14,7 +14,9 @@ namespace spoonbill {
 
 // Unit of length of a file.
 struct FileUnit {
-  std::string name;          // "mm", "inch", or as the file names it
+  // Name of the unit, such as "mm" or "inch". A unit without a known name is given as a length, such as "3
+  // mm".
+  std::string name;
   double millimetres = 1.0;  // length in millimetres that OpenCASCADE assumed for one unit
   bool declared = false;
 };

@@ -34,8 +34,8 @@ namespace {
 // approximated faces.
 constexpr double tolerances_mm[] = {1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1};
 
-// Width up to which gaps between two faces are not reported. The limit is higher if the faces deviate more
-// from the originals.
+// Width up to which gaps between two faces are not reported. The limit is twice the largest deviation of a
+// face from its original, if that is more.
 constexpr double expected_gap_m = 2e-5;
 constexpr int gap_samples = 16;
 

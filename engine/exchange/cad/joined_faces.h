@@ -12,14 +12,16 @@
 namespace spoonbill {
 
 struct JoinedSolid {
-  TopoDS_Solid shape;              // the solid, including its cavities
-  double gap_m = 0.0;              // widest gap between two faces at a shared edge
-  std::vector<std::size_t> parts;  // indices of the parts whose faces form the solid
+  TopoDS_Solid shape;  // the solid, including its cavities
+  double gap_m = 0.0;  // widest gap between two faces at a shared edge
+  // Indices, in the argument of join_faces(), of the surfaces that form the solid.
+  std::vector<std::size_t> parts;
 };
 
 struct JoinedFaces {
   std::vector<JoinedSolid> solids;
-  std::vector<std::size_t> loose;  // indices of the parts that belong to no solid
+  // Indices, in the argument of join_faces(), of the surfaces that belong to no solid.
+  std::vector<std::size_t> loose;
 };
 
 // Joins faces to solids by sewing their edges. Edges may be up to 0.1 mm apart, because approximated faces
@@ -30,7 +32,7 @@ Result<JoinedFaces> join_faces(const std::vector<const CadSurface*>& parts);
 
 // Returns notes about the joined faces of the solid `name`, one line each. They report bridged gaps that are
 // wider than the approximation of two faces explains, and the number of loose faces. `loose_outcome` is
-// appended to the latter, for example "; they are written one by one".
+// appended to the note about loose faces, for example "; they are written one by one".
 std::vector<std::string> describe_joining(const JoinedFaces& joined, const std::string& name,
                                           const std::vector<const CadSurface*>& parts,
                                           const std::string& loose_outcome);

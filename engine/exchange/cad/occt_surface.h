@@ -38,7 +38,8 @@ struct ClosedSurface {
 };
 
 // Closes a surface that find_closing() classifies as solid: its seams become periodic and its poles single
-// points. Any other surface, or a surface that cannot be closed within the tolerance, is returned unchanged.
+// points. A seam or a pole that cannot be closed within the tolerance stays as it is. Any other surface is
+// returned unchanged.
 ClosedSurface close_exactly(const Surface& surface);
 
 // Returns the Greville parameters, one for each control point. Interpolation at these parameters is well

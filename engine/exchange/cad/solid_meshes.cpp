@@ -45,8 +45,9 @@ struct ShapeMesh {
 
 // Largest angle between neighbouring triangles of a face, in radians.
 constexpr double angle_limit = 0.5;
-// initial_fraction is the deflection of the first try as a fraction of the chord error; meshes may exceed
-// their deflection. smallest_step is the smallest ratio of a deflection to that of the previous try.
+// initial_fraction is the deflection (OpenCASCADE's target for the chord error) of the first try, as a
+// fraction of the requested chord error. It is below 1, because meshes may exceed their deflection. Each
+// further try multiplies the deflection by a factor from smallest_step to initial_fraction.
 constexpr double initial_fraction = 0.7, smallest_step = 0.2;
 constexpr int try_limit = 6;
 // Number of sampling intervals on a side of a triangle.
@@ -65,7 +66,7 @@ struct MeshedFace {
   std::size_t first = 0;  // index of the face's first node among the nodes of all faces
 };
 
-// Nodes of an edge in one face, and their parameters along the curve of the edge.
+// Nodes of an edge in the mesh of one face, and their parameters along the curve of the edge.
 struct MeshedEdge {
   TopoDS_Edge edge;
   std::vector<std::size_t> nodes;
@@ -84,7 +85,8 @@ MeshedEdge collect_edge(const MeshedFace& meshed, const TopoDS_Edge& edge, const
 // Nodes of all faces of a meshed shape, and the edges that join them.
 class MeshNodes {
  public:
-  // Collects the nodes of a shape. Returns false if a face has no triangles.
+  // Collects the nodes of a shape. Returns false if a face has no surface, or no triangles with parameters
+  // (u, v).
   bool collect(const TopoDS_Shape& shape) {
     for (TopExp_Explorer each(shape, TopAbs_FACE); each.More(); each.Next()) {
       TopLoc_Location location;
@@ -354,7 +356,7 @@ class SolidMesher {
   }
 
   CadSolids release_solids() {
-    // A surface may have faces in several solids, of which some have a mesh.
+    // A surface with faces in several solids is not loose if one of these solids has a mesh.
     std::set<std::size_t> loose(result_.loose.begin(), result_.loose.end());
     for (const CadSolid& solid : result_.solids) {
       for (const std::size_t index : solid.surface_indices) loose.erase(index);

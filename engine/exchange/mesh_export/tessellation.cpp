@@ -324,7 +324,7 @@ class Welding {
     return (u_closed_ || (first_row_ && last_row_)) && (v_closed_ || (first_column_ && last_column_));
   }
 
-  // Returns the grid index of the vertex that replaces (i, j).
+  // Returns the index of the grid point that replaces the corner (i, j) of the cells.
   std::size_t vertex(std::size_t i, std::size_t j) const {
     if (u_closed_ && i == rows_ - 1) i = 0;
     if (v_closed_ && j == columns_ - 1) j = 0;
@@ -333,8 +333,8 @@ class Welding {
     return i * columns_ + j;
   }
 
-  // Returns the largest distance of a corner from its vertex; 0 if the distance is within the rounding of a
-  // file.
+  // Returns the largest distance of a corner of the cells from the grid point that replaces it; 0 if this
+  // distance is within the rounding of files.
   double largest_move_m() const {
     double largest_m = 0.0;
     for (std::size_t i = 0; i < rows_; ++i) {

@@ -19,7 +19,7 @@ std::string_view extract_line(std::string_view& text);
 // blanks and any of the separators.
 std::string_view extract_word(std::string_view& text, std::string_view separators = {});
 
-// Parses "1.5", "-2e3", "nan" or "inf"; nullopt for any other word.
+// Parses a number, such as "1.5", "-2e3", "nan" or "inf"; nullopt for any other word.
 std::optional<double> parse_number(std::string_view word);
 std::optional<std::uint64_t> parse_count(std::string_view word);
 

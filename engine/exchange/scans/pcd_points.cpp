@@ -20,7 +20,9 @@ struct PcdField {
   std::string_view name;
   NumberType type = NumberType::float32;
   std::uint64_t count = 1;
-  std::size_t offset = 0;  // position of the first number within a point, in bytes or, for text, in numbers
+  // Position of the field's first number. In text it counts numbers within a point, in binary form bytes
+  // within a point, in compressed form bytes within the decompressed data.
+  std::size_t offset = 0;
 };
 
 struct PcdHeader {

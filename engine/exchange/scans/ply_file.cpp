@@ -38,7 +38,8 @@ class PlyNumbers {
     return true;
   }
 
-  // Reads a length that is a whole number and not longer than the rest of the file.
+  // Reads the number of items of a list. It must be whole and at most the number of bytes that remain in the
+  // file.
   bool read_length(NumberType type, std::size_t& length) {
     double number = 0.0;
     if (!read(type, number) || !(number >= 0.0) || number > static_cast<double>(rest_.size())) return false;

@@ -86,7 +86,7 @@ std::optional<PlyFormat> find_format(std::string_view name) {
 }
 
 // Removes the next line and returns it. If the first line of the header ends with a lone carriage return, all
-// its lines do. A line feed right after the header is then the first byte of the data.
+// lines of the header do. A line feed right after the header is then the first byte of the data.
 std::string_view extract_header_line(std::string_view& rest, bool ends_with_return) {
   if (!ends_with_return) return extract_line(rest);
   const std::size_t end = std::min(rest.find('\r'), rest.size());

@@ -168,7 +168,7 @@ Result<PointCloud> parse_text_points(std::string_view bytes) {
   bool has_heading = false;
   std::optional<double> promised;  // number of points that the line before the first point states
   bytes = without_byte_order_mark(bytes);
-  // True while columns 4 to 6 of all points have length 1.
+  // True while the vector in columns 4 to 6 has length 1 for all points so far.
   bool are_unit_normals = true;
   while (!bytes.empty()) {
     const std::string_view line = extract_line(bytes);

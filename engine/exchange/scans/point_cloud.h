@@ -16,7 +16,7 @@ namespace spoonbill {
 
 // Largest number of points that is read from a file.
 inline constexpr std::size_t point_limit = 5'000'000;
-// Largest file of points, in bytes: five million lines of numbers with colours and normals.
+// Largest size of a file of points, in bytes; enough for point_limit lines of text with colours and normals.
 inline constexpr std::size_t point_file_bytes_limit = std::size_t{1} << 30;
 
 struct PointCloud {
@@ -47,16 +47,16 @@ class PointCollector {
 };
 
 // Reads the points of a PCD file (version 0.5 to 0.7): text, binary, or binary compressed. The fields
-// normal_x, normal_y and normal_z are its normals. Refused: POINTS that are not WIDTH times HEIGHT, fewer or
+// normal_x, normal_y and normal_z are the normals. Refused: POINTS that are not WIDTH times HEIGHT, fewer or
 // more points than the header names.
 Result<PointCloud> parse_pcd_points(std::string_view bytes);
 
 // Reads one point from each line: x, y, z separated by blanks, commas or semicolons. Three further columns
 // are the normal if they have length 1 in all lines. Between semicolons, "12,5" is a number with a decimal
-// comma. Ignored: other columns, comments (#, //), a byte order mark, and one line of words or of the number
-// of points before the first point. Refused: a stated number that differs from the number of points. Also
-// refused: a comma within a word where blanks separate the words, because it may be a separator or a decimal
-// comma.
+// comma. Ignored: other columns, comments (#, //) and a byte order mark. One line before the first point may
+// name the columns or state the number of points. Refused: a stated number that differs from the number of
+// points. Also refused: a comma within a word where blanks separate the words, because it may be a separator
+// or a decimal comma.
 Result<PointCloud> parse_text_points(std::string_view bytes);
 
 // Reads the `v` lines of an OBJ file. Its `vn` lines are the normals if there is one for each point.
