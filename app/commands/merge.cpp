@@ -52,7 +52,8 @@ struct MergeOptions {
 
 // The input of a merge.
 struct MergeParts {
-  std::optional<Document> first;  // first document, whose material, tool and view the merged document takes
+  // First document. The merged document takes its material and its tool, and its view if there is one patch.
+  std::optional<Document> first;
   std::vector<Body> bodies;
   std::vector<Surface> patches;  // surfaces of the bodies, resampled so that they have no trims
   double untrimmed_m = 0.0;      // largest deviation that removing the trims caused
@@ -200,7 +201,8 @@ void add_unused_blends(const std::vector<MergedJoint>& joints, std::vector<std::
   }
 }
 
-// Returns the centres of the four quarters of every knot span that overlaps the range.
+// Returns the centres of the four quarters of every knot span that overlaps or touches the range from `start`
+// to `end`.
 std::vector<double> sample_spans(const KnotVector& knots, double start, double end) {
   constexpr int parts = 4;
   const std::vector<double> ends = knots.breakpoints();
@@ -214,7 +216,7 @@ std::vector<double> sample_spans(const KnotVector& knots, double start, double e
   return parameters;
 }
 
-// Returns the smallest concave radius of curvature on the fillet and at its ends.
+// Returns the smallest concave radius of curvature at samples of the fillet and of the knot spans beside it.
 double tightest_radius_m(const Surface& merged, const Joint& corner) {
   double least = std::numeric_limits<double>::infinity();
   const KnotVector &u = merged.u, &v = merged.v;
@@ -322,7 +324,8 @@ Result<MergeParts> read_parts(const MergeOptions& options) {
   return parts;
 }
 
-// Merges crossing patches one after the other. Each merge may use an equal fraction of the tolerance.
+// Merges crossing patches one after the other. Each merge may use an equal part of the tolerance that is left
+// after the trims were removed.
 Result<MergeOutcome> merge_crossing_patches(const MergeParts& parts, const MergeOptions& options,
                                             MergeRequest request, const Progress& progress) {
   const std::vector<Surface>& patches = parts.patches;

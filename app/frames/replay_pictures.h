@@ -24,8 +24,8 @@
 namespace spoonbill {
 
 // Removes the marks (requests for files) from the session. Writes the requested documents into the folder and
-// returns the names of the requested screenshots, which must show the next frame. If there is no folder,
-// writes nothing and returns no names.
+// returns the names of the requested screenshots. The caller must write the next picture that it draws under
+// these names. If there is no folder, writes nothing and returns no names.
 Result<std::vector<std::string>> consume_marks(Session& session,
                                                const std::optional<std::filesystem::path>& folder);
 

@@ -27,7 +27,7 @@ struct Notice {
   std::string text;
 };
 
-// Messages to the user. Only threads that may wait add one, never the haptic thread. Thread-safe.
+// Messages to the user. Thread-safe. The haptic thread must not call add(), because the call may wait.
 class Notices {
  public:
   void add(Notice::Kind kind, std::string text) {
@@ -102,7 +102,7 @@ struct RecordedTicks {
 using JournalEntry = std::variant<std::monostate, RecordingStart, RecordedReading, RecordedCommand,
                                   RecordedReset, RecordedForceSwitch, RecordedState>;
 
-// A document's scene at one tick, passed from the haptic thread to be saved.
+// A document's scene at one tick, which the haptic thread passes to the journal.
 struct LiveScene {
   std::string title;
   Scene scene;
@@ -212,7 +212,8 @@ class Journal {
   std::uint64_t autosave_document_ = 0;  // number of the document that autosave_ holds
   std::uint64_t saved_change_ = 0;       // LiveScene::change of the last saved scene
 
-  // recording_ and the four members that follow are used only by the journal's thread.
+  // recording_ and the four members that follow are used only by the journal's thread until stop() has ended
+  // it.
   std::unique_ptr<RecordingWriter> recording_;
   std::uint64_t autosaved_change_ = 0;
   bool autosave_failed_ = false;

@@ -261,8 +261,8 @@ void add_material_facts(FactSheet& facts, const Material& material) {
   facts.add("Material", material_text(material), "material", material_to_json(material));
 }
 
-// Distances of trim loops from the edges in a CAD file that are below this limit are rounding errors of the
-// file.
+// The distance between a trim loop and the edge in the CAD file is shown only from this limit on. Smaller
+// distances are rounding errors of the file.
 constexpr double shown_trim_deviation_m = 1e-9;
 
 void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces) {
