@@ -336,8 +336,7 @@ class ShapeJob {
   bool stopped_ = false;
 };
 
-// Returns an error if the surface intersects itself, as it may do for unsuitable centre lines and
-// profiles.
+// Returns an error if the surface intersects itself, as it may do for unsuitable centre lines and profiles.
 Status check_self_intersection(const Surface& surface, bool closed, ShapeJob& job) {
   const auto grid = make_nested_grid(surface.u, surface.v, 0);
   if (!grid) return grid.error();

@@ -75,7 +75,7 @@ struct ShownFrame {
   std::vector<std::array<double, 2>> answers_px;  // button centres of the open question
   double pointer_x_px = 0.0;
   double pointer_y_px = 0.0;
-  double hand_lag_m = 0.0;  // distance from the device's position to the mouse's target
+  double hand_lag_m = 0.0;  // distance between the device and the position that the mouse sets
 };
 
 // Log of the frames shown, one JSON object per line. `spoonbill edit` writes it if the environment contains

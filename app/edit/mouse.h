@@ -125,10 +125,11 @@ class MouseHand : public InputSource {
 
  private:
   struct Press {
-    Vector3 anchor_m;   // position of the tool at the start of the press
-    Vector3 inward;     // unit vector into the body; zero if the press began beside the body
-    Vector3 pointer_m;  // point under the pointer at the start, in the plane through anchor_m parallel to the
-                        // screen
+    Vector3 anchor_m;  // position of the tool at the start of the press
+    Vector3 inward;    // unit vector into the body; zero if the press began beside the body
+    // Point under the pointer at the start of the press, in the plane through anchor_m parallel to the
+    // screen.
+    Vector3 pointer_m;
     double depth_m = 0.0;
     int frames = 0;
   };

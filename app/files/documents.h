@@ -32,9 +32,9 @@ std::vector<std::string> shipped_material_names();
 // as "clay" for modelling-clay. The error lists all names.
 Result<Material> shipped_material(const std::string& name);
 
-// Returns a document with one body around the surface. A plane fixes a tenth of the body's height at its
-// foot or, if the body is flat, a tenth of its length at the left end. The radius of the ball tool follows
-// from the body's size, and the force scale makes the forces perceptible. `shell_thickness_m`: see Body.
+// Returns a document with one body around the surface. A plane fixes a tenth of the body's height at its foot
+// or, if the body is flat, a tenth of its length at the left end. The radius of the ball tool follows from
+// the body's size, and the force scale makes the forces perceptible. `shell_thickness_m`: see Body.
 Document starting_document(const std::string& name, Surface surface, const Material& material,
                            std::optional<double> shell_thickness_m = {});
 
@@ -71,8 +71,8 @@ Result<Document> make_cad_document(const CadModel& model, const std::string& nam
 
 struct FittedDocument {
   Document document;
-  std::vector<std::string>
-      notes;  // notes on bodies that cannot be simulated, on bodies in a box of cells, on too many bodies
+  // Notes on bodies that cannot be simulated, on bodies that get a box of cells, and on too many bodies.
+  std::vector<std::string> notes;
 };
 
 // Returns a starting_document() of clay bodies for a fitted scan. Closed surfaces become solids. Other

@@ -19,8 +19,8 @@
 
 namespace spoonbill {
 
-// Returns the box around all control nets and meshes of a snapshot. The box of the initial
-// state determines the camera and the ground in all frames of a replay.
+// Returns the box around all control nets and meshes of a snapshot. The box of the initial state determines
+// the camera and the ground in all frames of a replay.
 Box framed_box(const Snapshot& start);
 
 // Returns the settings that show the view choice in a frame of this size, with room for the panel. With these

@@ -217,8 +217,8 @@ void Journal::store(const LiveScene& scene) {
   if (autosave_) autosave_->remove();
 }
 
-// Returns true if the save may replace its file. The content of a file that cannot be read
-// counts as unknown, so the file is not replaced.
+// Returns true if the save may replace its file. The content of a file that cannot be read counts as unknown,
+// so the file is not replaced.
 bool Journal::may_replace(const SaveRequest& save) {
   std::error_code ignored;
   if (save.replaced == Replaced::any || !std::filesystem::is_regular_file(save.file, ignored)) return true;

@@ -1,5 +1,5 @@
-// The journal of a live session, which writes recordings, documents and autosaves on its own thread, because
-// the disk may be slow; the exporter to foreign formats; and the notices to the user.
+// The journal of a live session, which writes recordings, documents and autosaves. It has its own thread,
+// because the disk may be slow. Also contains the exporter to foreign formats and the notices to the user.
 #pragma once
 
 #include <atomic>

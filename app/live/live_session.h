@@ -53,8 +53,8 @@ class LiveSession {
   void leave_recording_unpublished() { journal_.leave_recordings_unpublished(); }
 
   // Saves the document that the last frame shows, in the state of the next tick. consume_saved_document() and
-  // the notices report the result. Fails if another document was opened in the meantime. If `replaced` does
-  // not allow the file to be replaced, consume_save_conflict() reports it.
+  // the notices report the result. The save fails if another document was opened in the meantime. If
+  // `replaced` does not allow the file to be replaced, consume_save_conflict() reports it.
   bool save(std::filesystem::path file, Replaced replaced = Replaced::known);
   std::optional<SavedDocument> consume_saved_document() { return journal_.consume_saved_document(); }
   std::optional<std::filesystem::path> consume_save_conflict() { return journal_.consume_save_conflict(); }

@@ -231,8 +231,8 @@ double share_within(const ScanFit& fit, double tolerance_m) {
     const std::vector<double>& distances = body.errors.distance_m;
     const auto near = std::count_if(distances.begin(), distances.end(),
                                     [&](double distance) { return distance <= tolerance_m; });
-    // The distances of a coarse mesh belong to samples all over it, so their number differs from that of its
-    // points.
+    // If the scan is a coarse mesh, the distances are those of samples all over the mesh, not those of its
+    // points. The two numbers then differ.
     if (!distances.empty()) {
       within += static_cast<double>(body.points_m.size()) * static_cast<double>(near) /
                 static_cast<double>(distances.size());

@@ -83,8 +83,8 @@ struct Session {
   // Requests for files that consume_marks() has not consumed yet. A new one replaces one of the same kind and
   // name.
   std::vector<FileMark> marks;
-  bool keeps_documents =
-      true;  // false if documents will not be written; the documents in `marks` are then empty
+  // False if documents will not be written; the documents in `marks` are then empty.
+  bool keeps_documents = true;
   // Document of the last request to save one; null if anything has changed since.
   std::shared_ptr<const Document> saved = {};
   std::size_t saves_at_tick = 0;  // number of different documents saved at this tick
