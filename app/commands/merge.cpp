@@ -35,7 +35,7 @@ constexpr Range<double> twist_range{-1.0, 1.0};
 constexpr Range<int> model_count_range{1, 64};
 // Fraction of the tolerance that resampling a trimmed patch may use.
 constexpr double untrimming_fraction = 0.25;
-// A fillet tighter than this fraction of the requested radius gets a note.
+// A fillet whose smallest radius is below this fraction of the requested radius gets a note.
 constexpr double tight_fillet_fraction = 0.8;
 
 struct MergeOptions {
@@ -62,7 +62,8 @@ struct MergeParts {
 
 struct MergeOutcome {
   Merged merged;
-  // corners[k] is between patches[k + 1] and the result of merging patches[0] to patches[k].
+  // corners[k] describes the corner between patches[k + 1] and the result of merging patches[0] to
+  // patches[k].
   std::vector<Joint> corners;
   std::vector<std::string> tight_fillets;     // notes on fillets that are tighter than requested
   std::vector<std::size_t> reversed_patches;  // indices of patches whose normals pointed inwards
@@ -190,7 +191,7 @@ void add_corners(FactSheet& facts, const std::vector<Joint>& corners) {
   facts.add("", "", "joints", list);
 }
 
-// Adds a note for each joint that did not use the requested blend.
+// Adds a note for each joint to which the requested blend was not applied.
 void add_unused_blends(const std::vector<MergedJoint>& joints, std::vector<std::string>& notes) {
   for (const MergedJoint& merged : joints) {
     if (merged.joint.cut_back_m > 0.0) continue;

@@ -26,7 +26,7 @@ class EditedDocument {
   // Moves the recovered document to another name, so that this session can autosave, and returns that name.
   Result<std::filesystem::path> set_recovered_aside() const;
 
-  // Returns true if another window had the file open when this one opened it.
+  // Returns true if another window had the file open when this window opened it.
   bool is_open_elsewhere() const { return claim_ && claim_->is_open_elsewhere(); }
 
   // Ends autosaving, because the user discards the unsaved changes. Only work that was recovered and has not

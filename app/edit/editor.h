@@ -125,7 +125,7 @@ class Editor {
   HandInputs inputs_;  // refers to hand_ and space_mouse_
   double strength_m_ = 0.004;
   std::optional<Tool> before_stroke_;  // tool to restore after a stroke with Ctrl or Shift
-  bool stroke_began_here_ = false;     // true if the button was pressed on the picture, not on the panel
+  bool stroke_began_here_ = false;     // true if the left button was pressed on the picture
   FrameBudget budget_;
   LivePlots plots_;
   MessageLine messages_;

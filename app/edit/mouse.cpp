@@ -92,8 +92,8 @@ Vector3 position(const GridSamples<float>& samples, std::size_t i) {
   return {samples.x[i], samples.y[i], samples.z[i]};
 }
 
-// Returns half of the longest edge that starts at the first corner of a triangle. One of these edges is the
-// diagonal of a cell.
+// Returns half the length of the longest edge among those that start at the first corner of a triangle. The
+// diagonals of the cells are among these edges.
 double ball_radius(const TessellatedSurface& surface) {
   double longest_squared = 0.0;
   const auto& corners = surface.indices();

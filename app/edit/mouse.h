@@ -28,7 +28,7 @@ inline constexpr std::array<const char*, 3> navigation_names = {"rhino", "blende
 // Returns the preset of this name.
 Result<NavigationPreset> find_navigation(const std::string& name);
 
-// State of the mouse in a frame. Positions in pixels from the upper left corner.
+// State of the mouse in a frame. Positions are in pixels from the upper left corner of the window.
 struct Pointer {
   Eigen::Vector2d position_px = Eigen::Vector2d::Zero();
   Eigen::Vector2d moved_px = Eigen::Vector2d::Zero();  // motion since the last frame

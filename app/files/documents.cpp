@@ -30,8 +30,8 @@ constexpr double tool_fraction = 0.15;
 constexpr double target_force_n = 1.5;
 // Fraction of the body's extent that is fixed by the plane of a new document.
 constexpr double fixed_fraction = 0.1;
-// A body whose height is below this fraction of its median extent is fixed at its end along x, not at its
-// foot.
+// A body whose height is below this fraction of the median of its extents is fixed at its end along x, not at
+// its foot.
 constexpr double flat_fraction = 0.25;
 
 constexpr double stock_shape_tolerance_m = 1e-4;

@@ -23,8 +23,8 @@ namespace spoonbill {
 // the camera and the ground in all frames of a replay.
 Box framed_box(const Snapshot& start);
 
-// Returns the settings that show the view choice in a frame of this size, with room for the panel. With these
-// settings, the tessellation of a frame does not depend on earlier frames.
+// Returns the settings for drawing the chosen view in a frame of this size, with room for the panel. With
+// these settings, the tessellation of a frame does not depend on earlier frames.
 ViewSettings frame_view(const ViewChoice& choice, const Box& framed, int width_px, int height_px);
 
 // Paints snapshots into images. A painter must be used on the thread that made it.

@@ -107,7 +107,7 @@ struct PictureRequest {
   // Receives the frames and the contact sheet. If empty, none are written.
   std::optional<std::filesystem::path> folder;
   std::optional<std::filesystem::path> video;
-  bool replaces_read_only = false;  // also replaces read-only files of earlier runs
+  bool replaces_read_only = false;  // if true, read-only files of earlier runs are replaced too
 };
 
 // Writes the pictures of a replay. Used by one thread.

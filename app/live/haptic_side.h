@@ -178,7 +178,7 @@ class HapticSide {
   std::unique_ptr<Device> device_;
   WatchedDevice watched_device_;
   SafeDevice safe_device_;  // the only access to the device
-  bool force_on_ = true;    // the user's choice, which stays when another session takes over
+  bool force_on_ = true;    // true if the user has the force switched on; outlives the session
 
   LiveExchange* exchange_;
   Journal* journal_;

@@ -93,7 +93,7 @@ struct RecordedState {
   std::uint64_t missed = 0;  // valid if `last` is true: periods without a tick during the recording
 };
 
-// Number of ticks of a recording, and of periods of 1 ms without a tick during it.
+// Number of ticks of a recording, and number of periods of 1 ms without a tick while it was recorded.
 struct RecordedTicks {
   std::uint64_t ticks = 0;
   std::uint64_t missed = 0;
@@ -164,7 +164,8 @@ class Journal {
   // Returns true if a recording has been abandoned since the last call.
   bool consume_recording_failure() { return recording_failed_.exchange(false, std::memory_order_acq_rel); }
 
-  // Sets the view that is saved with documents. Called by the main thread, as are all functions after it.
+  // Sets the view that is saved with documents. The main thread calls this function and all public functions
+  // below it.
   void set_view(Json view);
   // Sets the autosave of the document with this number (LiveFrame::document); an empty value disables
   // autosaving. The previous autosave file is removed.

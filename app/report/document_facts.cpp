@@ -145,8 +145,8 @@ Json add_body_facts(FactSheet& facts, const std::string& label, const Body& body
   return json;
 }
 
-// Adds the members of a single body to the top level of the JSON. Its name becomes "body" there, because
-// "name" is the name of the document.
+// Adds the members of a single body to the top level of the JSON. The member "name" becomes "body" there,
+// because "name" is the name of the document.
 void add_single_body(FactSheet& facts, const Json& body) {
   for (const auto& [field, value] : body.items()) facts.add("", "", field == "name" ? "body" : field, value);
 }

@@ -30,7 +30,7 @@ void add_size_fact(FactSheet& facts, const Box& extent);
 
 void add_material_facts(FactSheet& facts, const Material& material);
 
-// Adds each surface of a CAD model, and the size of all of them.
+// Adds each surface of a CAD model, and the size of all surfaces together.
 void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces);
 
 // Adds the unit of a file; `declared` is false if the file does not name one.
@@ -40,9 +40,9 @@ void add_unit_facts(FactSheet& facts, const std::string& unit, bool declared);
 // the material's, and Poisson's ratio.
 void add_elasticity_facts(FactSheet& facts, const Simulation& simulation);
 
-// Adds the lattice, mass and solver of each body. `snapshot` is that of the initial state of a simulation of
-// these bodies. In the JSON these facts are the list "simulated", and the members of a single body are also
-// at the top level.
+// Adds the lattice, mass and solver of each body. `snapshot` shows the initial state of a simulation of these
+// bodies. In the JSON these facts are the list "simulated", and the members of a single body are also at the
+// top level.
 void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot, const std::vector<Body>& bodies);
 
 // Adds the quality of the cells of each lattice. A feature map, if a body has one, distributes the nodes

@@ -41,8 +41,9 @@ void add_scan_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit);
 // errors of all bodies together.
 void add_fit_facts(FactSheet& facts, const ScanFit& fit, double tolerance_m);
 
-// Writes a binary PLY file in metres. Each point of the scan, or of samples all over it if it is a mesh, has
-// its distance_mm and a colour from dark violet (0) through green to yellow (`full_m` and beyond).
+// Writes a binary PLY file in metres. Its points are those of the scan or, if the scan is a coarse mesh,
+// samples all over the mesh. Each point has its distance_mm and a colour from dark violet (0) through green
+// to yellow (`full_m` and beyond).
 Status write_error_cloud(const ScanFit& fit, double full_m, const std::filesystem::path& file,
                          const OutputOptions& options = {});
 
