@@ -188,7 +188,7 @@ class HapticSide {
   bool last_tick_failed_ = false;
   bool recording_ = false;
   std::uint64_t recorded_ticks_ = 0;
-  std::uint64_t recorded_missed_ = 0;  // periods without a tick since the first tick of the recording
+  std::uint64_t recorded_missed_ = 0;  // periods of 1 ms without a tick since the first tick of the recording
   bool state_recorded_ = false;        // true if the state hash at recorded_ticks_ is recorded
 
   std::uint64_t session_count_ = 0;

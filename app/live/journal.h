@@ -90,7 +90,7 @@ struct RecordedForceSwitch {
 struct RecordedState {
   std::uint64_t state_hash = 0;
   bool last = false;         // true if this entry ends the recording
-  std::uint64_t missed = 0;  // valid if `last` is true: periods without a tick during the recording
+  std::uint64_t missed = 0;  // periods of 1 ms without a tick during the recording; valid if `last` is true
 };
 
 // Number of ticks of a recording, and number of periods of 1 ms without a tick while it was recorded.
