@@ -37,7 +37,7 @@ std::vector<CommandEntry> add_commands(const OptionSet& root) {
   return entries;
 }
 
-// Returns the exit code of a command that has written its output.
+// Flushes the output of a command that has succeeded, and returns the exit code.
 int finish_output(Console& console) {
   console.out.flush();
   if (console.out) return exit_done;

@@ -38,7 +38,8 @@ struct CollideOptions {
   bool json = false;
 };
 
-// Number of times that each element is halved: contact regions are resolved to a quarter of an element.
+// Number of times that each element is halved along u and along v. Contact regions are resolved to a quarter
+// of an element's side.
 constexpr int collision_levels = 2;
 
 // One side of a collision: the bodies of a document, or a mesh.
@@ -68,8 +69,8 @@ Box pose_box(const Box& box, const Pose& pose) {
   return {centre - half, centre + half};
 }
 
-// Combines the answers of pairs of bodies: the models touch if a pair of bodies does; otherwise the nearest
-// pair gives their distance.
+// Combines the answers for the pairs of bodies of two models. The models touch if any pair touches.
+// Otherwise, their distance is that of the nearest pair.
 class CombinedAnswer {
  public:
   CombinedAnswer(std::vector<std::string> names_a, std::vector<std::string> names_b)
@@ -185,8 +186,8 @@ Result<CollisionAnswer> collide_mesh(const SignedDistance& mesh, const Pose& mes
     side.parameters->range = region.range;
   }
   answer.complete = answer.complete && !collider.regions_overflow();
-  // If the mesh touches the body but has no contact region, the mesh is inside the body. Otherwise the first
-  // contact gets the largest depth, which `nearest` has.
+  // If the mesh touches the body but has no contact region, the mesh is inside the body. If there are contact
+  // regions, the first contact gets the largest depth, which `nearest` has.
   answer.contained = answer.contacts.empty();
   if (answer.contained) {
     answer.contacts.push_back(nearest);

@@ -55,7 +55,7 @@ void add_force_option(OptionSet parser, OutputOptions& how);
 // long computation, so that it fails early. Writing the file repeats the check.
 Status check_output(const std::filesystem::path& out, const OutputOptions& how);
 
-// --instruction-set: one of the sets that this processor supports; any other is a usage error.
+// --instruction-set: an instruction set that this processor supports; any other is a usage error.
 void add_instruction_set_option(OptionSet parser, InstructionSet& set);
 
 }  // namespace spoonbill

@@ -23,7 +23,7 @@ namespace {
 
 constexpr Range<int> fit_control_range{4, 200};
 constexpr Range<double> fit_tolerance_range_m{1e-6, 0.1};
-// Smallest distance that may be shown as the end of the colour scale.
+// Smallest distance at which the colour scale of the error cloud may end.
 constexpr double least_scale_m = 1e-6;
 
 struct FitOptions {
@@ -56,7 +56,8 @@ Result<ScanFit> fit_with_progress(const FitOptions& options, Scan scan, Console&
   return fit;
 }
 
-// Returns the scan's name, shortened so that the number of a body can be appended.
+// Returns the name of the scan's file without the extension, shortened so that the number of a body can be
+// appended.
 std::string document_name(const std::filesystem::path& scan) {
   return clean_cad_name(scan.stem().string(), "scan", cad_name_bytes_limit - 2);
 }

@@ -35,7 +35,7 @@ constexpr Range<double> twist_range{-1.0, 1.0};
 constexpr Range<int> model_count_range{1, 64};
 // Fraction of the tolerance that resampling a trimmed patch may use.
 constexpr double untrimming_fraction = 0.25;
-// A fillet tighter than this fraction of the requested radius gets a note.
+// A fillet whose smallest radius is below this fraction of the requested radius gets a note.
 constexpr double tight_fillet_fraction = 0.8;
 
 struct MergeOptions {
@@ -52,7 +52,8 @@ struct MergeOptions {
 
 // The input of a merge.
 struct MergeParts {
-  std::optional<Document> first;  // first document, whose material, tool and view the merged document takes
+  // First document. The merged document takes its material and its tool, and its view if there is one patch.
+  std::optional<Document> first;
   std::vector<Body> bodies;
   std::vector<Surface> patches;  // surfaces of the bodies, resampled so that they have no trims
   double untrimmed_m = 0.0;      // largest deviation that removing the trims caused
@@ -61,7 +62,8 @@ struct MergeParts {
 
 struct MergeOutcome {
   Merged merged;
-  // corners[k] is between patches[k + 1] and the result of merging patches[0] to patches[k].
+  // corners[k] describes the corner between patches[k + 1] and the result of merging patches[0] to
+  // patches[k].
   std::vector<Joint> corners;
   std::vector<std::string> tight_fillets;     // notes on fillets that are tighter than requested
   std::vector<std::size_t> reversed_patches;  // indices of patches whose normals pointed inwards
@@ -189,7 +191,7 @@ void add_corners(FactSheet& facts, const std::vector<Joint>& corners) {
   facts.add("", "", "joints", list);
 }
 
-// Adds a note for each joint that did not use the requested blend.
+// Adds a note for each joint to which the requested blend was not applied.
 void add_unused_blends(const std::vector<MergedJoint>& joints, std::vector<std::string>& notes) {
   for (const MergedJoint& merged : joints) {
     if (merged.joint.cut_back_m > 0.0) continue;
@@ -200,7 +202,8 @@ void add_unused_blends(const std::vector<MergedJoint>& joints, std::vector<std::
   }
 }
 
-// Returns the centres of the four quarters of every knot span that overlaps the range.
+// Returns the centres of the four quarters of every knot span that overlaps or touches the range from `start`
+// to `end`.
 std::vector<double> sample_spans(const KnotVector& knots, double start, double end) {
   constexpr int parts = 4;
   const std::vector<double> ends = knots.breakpoints();
@@ -214,7 +217,7 @@ std::vector<double> sample_spans(const KnotVector& knots, double start, double e
   return parameters;
 }
 
-// Returns the smallest concave radius of curvature on the fillet and at its ends.
+// Returns the smallest concave radius of curvature at samples of the fillet and of the knot spans beside it.
 double tightest_radius_m(const Surface& merged, const Joint& corner) {
   double least = std::numeric_limits<double>::infinity();
   const KnotVector &u = merged.u, &v = merged.v;
@@ -322,7 +325,8 @@ Result<MergeParts> read_parts(const MergeOptions& options) {
   return parts;
 }
 
-// Merges crossing patches one after the other. Each merge may use an equal fraction of the tolerance.
+// Merges crossing patches one after the other. Each merge may use an equal part of the tolerance that is left
+// after the trims were removed.
 Result<MergeOutcome> merge_crossing_patches(const MergeParts& parts, const MergeOptions& options,
                                             MergeRequest request, const Progress& progress) {
   const std::vector<Surface>& patches = parts.patches;

@@ -43,7 +43,8 @@ constexpr double fit_fraction = 0.8;
 struct NewShape {
   ExactShape shape;
   std::optional<double> shell_thickness_m = {};  // empty for a closed shape
-  // Distance within which a fitted surface cannot touch itself, see reach_m() of stock shapes; 0 if unknown.
+  // Reach of the shape (Federer 1959); 0 if unknown. A fitted surface that is nearer to the shape than the
+  // reach cannot touch itself, unless it folds.
   double reach_m = 0.0;
   int degree = 3;
 };
@@ -335,7 +336,7 @@ class ShapeJob {
   bool stopped_ = false;
 };
 
-// Returns an error if the surface intersects itself, as it may do for unsuitable lines and profiles.
+// Returns an error if the surface intersects itself, as it may do for unsuitable centre lines and profiles.
 Status check_self_intersection(const Surface& surface, bool closed, ShapeJob& job) {
   const auto grid = make_nested_grid(surface.u, surface.v, 0);
   if (!grid) return grid.error();

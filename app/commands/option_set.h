@@ -7,8 +7,8 @@
 //   info.add_flag("--json", json, "Print one JSON object");
 //   const CommandLine::Parsed parsed = line.parse(arguments);
 //
-// The targets of options, and everything that their functions refer to, must exist until parse() has
-// returned. All calls come from one thread.
+// The variables that options fill, and everything that the functions passed to add_parsed() refer to, must
+// exist until parse() has returned. All calls must come from one thread.
 #pragma once
 
 #include <cstdint>

@@ -67,7 +67,7 @@ Result<std::vector<Vector3>> parse_points(const std::string& text);
 // A table of lengths in metres, optionally with a leading column of whole numbers named "section".
 struct PointTable {
   std::vector<int> sections;                // section of each row; empty if the table has no such column
-  std::vector<std::vector<double>> rows_m;  // per row, one length per column
+  std::vector<std::vector<double>> rows_m;  // lengths of each row, one per column
 };
 
 // Reads a CSV file of at most 16 MiB and 100,000 rows. The first line has the names of the columns in the

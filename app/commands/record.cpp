@@ -160,7 +160,8 @@ Status record_script(const RecordOptions& options, Console& console) {
                       script->model_file.string(), std::move(input), console);
 }
 
-// Records the device readings of a recording again, with this version's states and hashes.
+// Makes a new recording from the device readings of a recording. The new recording has the state hashes of
+// this version of the program.
 Status record_again(const RecordOptions& options, Console& console) {
   const auto recording = read_recording(options.source);
   if (!recording) return recording.error();

@@ -106,7 +106,7 @@ PaintingJob make_painting_job(std::uint64_t frame, Session& session, const Box& 
   return job;
 }
 
-// Waits for the oldest frame in progress and writes it.
+// Waits for the oldest picture in progress and writes it to its files.
 Status write_oldest_frame(PaintingCrew& crew, const PictureRequest& request, ReplayPictures& pictures) {
   auto painted = crew.receive();
   if (!painted) return painted.error();
@@ -118,8 +118,8 @@ Status write_oldest_frame(PaintingCrew& crew, const PictureRequest& request, Rep
   return pictures.add(painted->frame, painted->time_s, std::move(painted->picture));
 }
 
-// Runs until the tick. Writes each requested document as soon as it is made, which limits the memory in use,
-// and adds the names of the requested screenshots to `names`.
+// Runs the replay up to `tick`. Writes each requested document as soon as it is made, which limits the memory
+// in use. Adds the names of the requested screenshots to `names`.
 Status run_and_save(const Replay& replay, const PictureRequest& request, std::uint64_t tick,
                     const InterruptWatch& interrupt, std::vector<std::string>& names) {
   while (!interrupt.requested()) {
@@ -147,8 +147,8 @@ Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPi
     PaintingJob job = make_painting_job(frame, replay.session, framed, request);
     job.extra_names = std::exchange(names, {});
     job.is_frame = is_frame;
-    // Only a numbered frame clears the tick flags. A screenshot between two frames must not hide them from
-    // the next frame.
+    // Only a numbered frame clears the flags of the ticks since the last frame. A screenshot between two
+    // frames must not hide these flags from the next frame.
     if (is_frame) replay.session.flags = tick_flag_none;
     if (crew.is_full()) {
       if (Status written = write_oldest_frame(crew, request, pictures); !written) return written;

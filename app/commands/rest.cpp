@@ -70,8 +70,8 @@ void add_rest_body(FactSheet& facts, const Body& body, const RestShape& shape, J
                   {"newton_steps", shape.result.newton_steps}});
 }
 
-// Removes gravity, loads and support motions, because bodies stored in their bent shape would bend a second
-// time.
+// Removes gravity, loads and support motions. The bodies are stored in their bent shape, and these influences
+// would bend them a second time.
 void remove_loads(Scene& scene) {
   scene.sculpting.gravity_m_per_s2.setZero();
   for (Body& body : scene.bodies) {

@@ -36,7 +36,7 @@ struct Change {
   Result<ChangedSurfaces> (*make)(const Surface& surface, const ChangeRequest& request,
                                   const Allowed& allowed);
   // Maps a trim loop to the parameters of the changed surface. Null if the change keeps the parameters, so
-  // that no mapping is needed, or if it cannot map trims.
+  // that no mapping is needed, or if the change cannot map trims.
   TrimLoop (*map_trim)(const Surface& surface, const ChangeRequest& request, const TrimLoop& loop);
   const char *name, *form, *description;
 };

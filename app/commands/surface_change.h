@@ -47,12 +47,13 @@ Result<ChangedSurfaces> change_surface(const Surface& surface, const std::vector
 // Returns one line per change for --help.
 std::string list_changes();
 
-// Removes regions, loads and supports, because their extents are fractions of the surface that is replaced.
-// Adds a note if the body had any.
+// Removes regions, loads and supports, because their positions refer to the surface that is replaced. Adds a
+// note if the body had any.
 void drop_surface_features(Body& body, std::vector<std::string>& notes);
 
-// Adapts the shell thickness to a new surface: a body that has become closed loses its thickness. Adds a note
-// if it does, or if the surface has opened and the body has no thickness.
+// Adapts the shell thickness of a body whose surface was `before`. A body that has become a closed solid
+// loses its thickness. Adds a note about this, and also a note for a body that is no longer a closed solid
+// and has no thickness.
 void adapt_thickness(Body& body, const Surface& before, std::vector<std::string>& notes);
 
 }  // namespace spoonbill

@@ -12,7 +12,7 @@
 namespace spoonbill {
 namespace {
 
-// Rounds the scale to whole and half steps, because letters are sharp at these scales.
+// Rounds the scale to a multiple of 0.5 from 1 to 4. Letters are sharp at these scales.
 double round_scale(double scale) {
   return std::clamp(std::round(2.0 * scale) / 2.0, 1.0, 4.0);
 }

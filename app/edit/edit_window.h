@@ -63,30 +63,31 @@ class EditWindow {
 // also has the number of the frame.
 struct ShownFrame {
   std::uint64_t tick = 0;
-  std::uint64_t session = 0;     // number of sessions opened so far
+  std::uint64_t session = 0;     // number of sessions started after the first
   std::uint64_t edit_count = 0;  // number of commands, and of ticks with contact, so far
   bool recording = false;
   bool in_stroke = false;
   bool can_undo = false;
   bool can_redo = false;
-  bool pressing = false;  // true while the stroke button is down on the picture
+  bool pressing = false;  // true while the left button holds a press that began on the picture
   std::string prompt;     // prompt that is open: "file", "shape", "question", or empty
   std::string typed;      // text of the file prompt
-  std::vector<std::array<double, 2>> answers_px;  // centres of the buttons of the question
+  std::vector<std::array<double, 2>> answers_px;  // button centres of the open question
   double pointer_x_px = 0.0;
   double pointer_y_px = 0.0;
-  double hand_lag_m = 0.0;  // distance from the device's position to the mouse's target
+  double hand_lag_m = 0.0;  // distance between the device and the position that the mouse sets
 };
 
-// Log of the frames shown, one JSON object per line, for a program that controls the window from outside and
-// must know its state: `spoonbill edit` with SPOONBILL_FRAME_LOG=FILE in the environment. One owner: the
-// thread that draws.
+// Log of the frames shown, one JSON object per line. `spoonbill edit` writes it if the environment contains
+// SPOONBILL_FRAME_LOG=FILE. A program that controls the window from outside reads the state of the window
+// from the log. One owner: the thread that draws.
 class FrameLog {
  public:
   // Opens the log and replaces an existing file. Returns an error if the file cannot be written.
   static Result<FrameLog> open(const std::filesystem::path& file);
 
-  // Adds a frame that was presented. The line is in the file on return. A full disk is not reported.
+  // Adds a line for a frame that was presented. On return the line is in the file. A full disk is not
+  // reported.
   void add(const ShownFrame& shown);
 
  private:

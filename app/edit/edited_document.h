@@ -26,16 +26,16 @@ class EditedDocument {
   // Moves the recovered document to another name, so that this session can autosave, and returns that name.
   Result<std::filesystem::path> set_recovered_aside() const;
 
-  // Returns true if another window had the file open when this one opened it.
+  // Returns true if another window had the file open when this window opened it.
   bool is_open_elsewhere() const { return claim_ && claim_->is_open_elsewhere(); }
 
-  // Ends autosaving, because the user discards the unsaved changes. Work that was recovered and not saved
-  // since is stored as a document, whose name is returned.
+  // Ends autosaving, because the user discards the unsaved changes. Only work that was recovered and has not
+  // been saved since is kept: it is stored as a document, whose name is returned.
   Result<std::optional<std::filesystem::path>> discard_changes(LiveSession& live);
 
   // Switches to a file that the session has opened, and discards the changes of the previous document.
-  // Nothing is autosaved before begin(), because a recovered document must stay until the user has decided
-  // about it.
+  // Nothing is autosaved before begin() or begin_recovered(), because a recovered document must stay until
+  // the user has decided about it.
   Result<std::optional<std::filesystem::path>> switch_to(std::filesystem::path file, LiveSession& live);
 
   // Marks the document as unchanged and starts to autosave.

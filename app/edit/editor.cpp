@@ -53,7 +53,7 @@ std::vector<Material> read_presets() {
   return presets;
 }
 
-// Returns a position above the model where the tool touches nothing.
+// Returns a position above the surface where the tool does not touch it.
 Vector3 rest_position(const Surface& surface) {
   const Box box = bounding_box(surface.net);
   Vector3 position = box.centre();
@@ -84,7 +84,8 @@ std::filesystem::path parent_folder(const std::filesystem::path& file) {
   return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
 
-// Returns the first of NAME-0001.ENDING, NAME-0002.ENDING... that does not exist.
+// Returns the first of NAME-0001.ENDING, NAME-0002.ENDING... that does not exist; NAME-9999.ENDING if all
+// exist.
 std::filesystem::path find_free_file(const std::filesystem::path& folder, const std::string& name,
                                      const std::string& ending) {
   std::filesystem::path file;

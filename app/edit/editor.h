@@ -30,7 +30,7 @@ struct EditSettings {
   std::optional<double> scale;
   NavigationPreset navigation = NavigationPreset::rhino;
   std::filesystem::path recording;  // file that records the session from its start; empty for none
-  std::filesystem::path log;        // file of the FrameLog; empty for none
+  std::filesystem::path log;        // file of the log of the frames shown; empty for none
   InstructionSet instruction_set = best_instruction_set();
   bool real_time = true;
 };
@@ -50,7 +50,7 @@ class Editor {
  private:
   // Action that follows once unsaved changes are saved or discarded.
   enum class NextStep { none, quit, open, spoon_handle, new_shape };
-  // A document that the session was asked to open and has not reported yet.
+  // A document that the session was asked to open and has not opened yet.
   struct PendingOpen {
     std::filesystem::path file;
     ViewChoice view;
@@ -125,7 +125,7 @@ class Editor {
   HandInputs inputs_;  // refers to hand_ and space_mouse_
   double strength_m_ = 0.004;
   std::optional<Tool> before_stroke_;  // tool to restore after a stroke with Ctrl or Shift
-  bool stroke_began_here_ = false;     // true if the press began on the picture, not on the panel
+  bool stroke_began_here_ = false;     // true if the left button was pressed on the picture
   FrameBudget budget_;
   LivePlots plots_;
   MessageLine messages_;

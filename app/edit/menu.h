@@ -40,7 +40,8 @@ enum class EditAction {
   quit,
 };
 
-// A key with its action and the texts of the list of keys. Keys of tools come from the table of tool actions.
+// A key, its action, and the texts that the list of keys shows for them. The keys of tools come from the
+// table `tool_actions`.
 struct KeyBinding {
   EditAction action;
   int key;  // a key code of GLFW (GLFW_KEY_...)
@@ -48,7 +49,7 @@ struct KeyBinding {
   bool shift;
   const char* chord;  // text that is shown for the key, such as "Ctrl+S"
   const char* text;
-  // Used only if `action` is choose_tool.
+  // The following members are used only if `action` is choose_tool.
   ToolKind kind = ToolKind::sphere;
   ToolAction tool_action = ToolAction::push;
 };
@@ -56,7 +57,7 @@ struct KeyBinding {
 // Returns all bindings in the order of the list of keys.
 std::span<const KeyBinding> key_bindings();
 
-// Mouse buttons and keys that are held during a drag, for the list of keys only.
+// An input by the mouse, with or without a key held, as the list of keys describes it.
 struct HeldInput {
   const char* chord;
   const char* text;

@@ -71,7 +71,8 @@ Camera zoom_camera(const Camera& camera, double notches) {
 
 namespace {
 
-// Sampling of surfaces for picking: cells of 1 mm whose deviation from the surface is at most 0.1 mm.
+// Sampling of surfaces for picking: the edges of cells are at most 1 mm long and deviate by at most 0.1 mm
+// from the surface.
 constexpr double picking_px_per_m = 1000.0;
 constexpr SamplingTarget target{1.0, 0.1};
 
@@ -91,8 +92,8 @@ Vector3 position(const GridSamples<float>& samples, std::size_t i) {
   return {samples.x[i], samples.y[i], samples.z[i]};
 }
 
-// Returns half of the longest triangle edge. This edge is a cell's diagonal, because the cells are nearly
-// square.
+// Returns half the length of the longest edge among those that start at the first corner of a triangle. The
+// diagonals of the cells are among these edges.
 double ball_radius(const TessellatedSurface& surface) {
   double longest_squared = 0.0;
   const auto& corners = surface.indices();
@@ -159,7 +160,8 @@ constexpr double hover_gap_m = 0.001;
 constexpr int frames_to_depth = 15;
 constexpr double depth_per_notch_m = 0.001;
 
-// Depth of a press with a tool that grips: enough to touch the surface, whatever the strength.
+// Depth of a press with a tool that attaches to the body, just enough to touch the surface. It does not
+// depend on the strength of the stroke.
 constexpr double grip_depth_m = 2.0 * hover_gap_m;
 
 // Returns the point where the ray meets the plane through `point_m` that faces the camera. Returns `point_m`

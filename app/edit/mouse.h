@@ -1,5 +1,5 @@
-// The mouse, which moves the camera, picks the point of the surface under the pointer, and holds the virtual
-// handle.
+// The mouse, which moves the camera, picks the point of the surface under the pointer, and sets the position
+// of the tool.
 #pragma once
 
 #include <array>
@@ -19,7 +19,8 @@ namespace spoonbill {
 // Mouse navigation as in a modelling program. The wheel zooms in every preset, except during a stroke.
 //   Rhino: the right button orbits, with Shift pans, with Ctrl zooms.
 //   Blender: the middle button orbits, with Shift pans, with Ctrl zooms.
-//   SculptGL: the right button orbits, as does the left one beside the model; the middle button pans.
+//   SculptGL: the right button orbits, as does the left one if the drag began beside the model.
+//     The middle button pans.
 enum class NavigationPreset { rhino, blender, sculptgl };
 
 inline constexpr std::array<const char*, 3> navigation_names = {"rhino", "blender", "sculptgl"};
@@ -27,7 +28,7 @@ inline constexpr std::array<const char*, 3> navigation_names = {"rhino", "blende
 // Returns the preset of this name.
 Result<NavigationPreset> find_navigation(const std::string& name);
 
-// State of the mouse in a frame. Positions in pixels from the upper left corner.
+// State of the mouse in a frame. Positions are in pixels from the upper left corner of the window.
 struct Pointer {
   Eigen::Vector2d position_px = Eigen::Vector2d::Zero();
   Eigen::Vector2d moved_px = Eigen::Vector2d::Zero();  // motion since the last frame
@@ -51,19 +52,20 @@ Camera zoom_camera(const Camera& camera, double notches);
 // First contact between a body and a tool that moves along a ray.
 struct PickedPoint {
   Vector3 centre_m;  // centre of the tool at first contact
-  Vector3 outward;   // unit vector from the body to the tool's centre
+  Vector3 outward;   // unit vector from the touched point to the tool's centre
 };
 
-// Finds where a tool that moves along a ray first touches a body. This gives the depth, which the mouse does
-// not give. One owner: the thread that draws.
+// Finds where a tool that moves along a ray first touches a body. The contact gives the tool's distance from
+// the camera, which the mouse does not give. One owner: the thread that draws.
 class SurfacePick {
  public:
-  // Samples the current surfaces. The sampling grid of a surface is reused until its knots change. Surfaces
-  // that cannot be evaluated are not picked.
+  // Samples the current surfaces. The sampling grid of a surface is rebuilt only if the knots, the trim loops
+  // or the necessary number of samples change. Surfaces that cannot be evaluated are not picked.
   void update(const Snapshot& snapshot);
 
-  // Returns the first contact of a sphere of this radius that moves along the ray; empty if it misses. Each
-  // sample point of a surface counts as a small ball, so that the sphere cannot sink in between the samples.
+  // Returns the first contact of a sphere of this radius that moves along the ray; empty if the sphere misses
+  // all surfaces. Each sample point of a surface counts as a small ball, so that the sphere cannot sink in
+  // between the samples.
   std::optional<PickedPoint> first_touch(const Ray& ray, double radius_m) const;
 
  private:
@@ -88,20 +90,22 @@ struct MouseStroke {
 // Input of one frame: the mouse, the view and the surfaces.
 struct MouseFrame {
   Pointer pointer;
-  bool is_stroking = false;  // true while the stroke button is down and was pressed on the picture
+  bool is_stroking = false;  // true while the left button is down and was pressed on the picture
   Camera camera;
   Viewport viewport;
-  const SurfacePick* pick = nullptr;  // must outlive the frame
+  const SurfacePick* pick = nullptr;  // sampled surfaces; must outlive this object
   MouseStroke stroke;
 };
 
-// The mouse as the hand that holds the virtual handle. While hovering, the tool follows the pointer 1 mm
-// above the surface. Beside the body, it moves parallel to the screen, in the plane of its last position at
-// the surface. A press pushes the tool in by the strength within a quarter of a second. A drag then moves it
-// parallel to the screen, and the wheel moves it in depth. One owner: the thread that draws.
+// The mouse as the hand that moves the tool. While hovering, the tool follows the pointer 1 mm above the
+// surface. Beside the body, it moves parallel to the screen, in the plane of its last position at the
+// surface. A press pushes the tool into the body within a quarter of a second, by MouseStroke::strength_m. A
+// drag then moves the tool parallel to the screen, and the wheel moves it in depth. One owner: the thread
+// that draws.
 class MouseHand : public InputSource {
  public:
-  // Starts at rest at `start_m`, which also defines the first screen plane for hovering.
+  // The tool starts at rest at `start_m`. Until it has hovered over a body, it moves in the plane through
+  // `start_m` that is parallel to the screen.
   explicit MouseHand(const Vector3& start_m)
       : depth_point_m_(start_m), hover_m_(start_m), target_m_(start_m) {}
 
@@ -116,14 +120,16 @@ class MouseHand : public InputSource {
   void release_press();
 
   bool is_pressing() const { return press_.has_value(); }
-  const Vector3& target_m() const { return target_m_; }  // last target of the handle
-  bool on_model() const { return is_on_model_; }         // true if the last hover was over the body
+  const Vector3& target_m() const { return target_m_; }  // last target position of the tool
+  bool on_model() const { return is_on_model_; }         // true if the tool last hovered over a body
 
  private:
   struct Press {
-    Vector3 anchor_m;   // position of the tool at the press
-    Vector3 inward;     // unit vector into the body; zero if the press began beside the body
-    Vector3 pointer_m;  // pointer position in the screen plane at the press
+    Vector3 anchor_m;  // position of the tool at the start of the press
+    Vector3 inward;    // unit vector into the body; zero if the press began beside the body
+    // Point under the pointer at the start of the press, in the plane through anchor_m parallel to the
+    // screen.
+    Vector3 pointer_m;
     double depth_m = 0.0;
     int frames = 0;
   };

@@ -64,7 +64,7 @@ class FilePrompt {
   bool is_open_ = false;
   bool appearing_ = false;
   std::filesystem::path folder_;
-  std::vector<std::filesystem::path> entries_;  // entries of the folder, subfolders first
+  std::vector<std::filesystem::path> entries_;  // subfolders, then .json files of the folder
   std::array<char, 1024> text_{};
   std::string problem_;
 };

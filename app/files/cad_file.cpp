@@ -23,7 +23,7 @@ namespace spoonbill {
 namespace {
 
 constexpr std::size_t cad_file_bytes_limit = std::size_t{512} << 20;
-// Remedies for error messages about files that exceed the child's limits.
+// Remedies for error messages about files that exceed the limits of the child process.
 const char* const simpler_export = "export fewer or simpler faces";
 const char* const fewer_bodies = "write fewer or simpler bodies (--bodies)";
 constexpr std::size_t note_bytes_limit = 400;

@@ -7,7 +7,7 @@
 namespace spoonbill {
 namespace {
 
-// Limit on the size of a file, far beyond the largest document.
+// Limit on the size of a file in bytes, far above the size of the largest document.
 constexpr std::size_t bytes_limit = std::size_t{1} << 30;
 
 }  // namespace

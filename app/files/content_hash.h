@@ -8,7 +8,7 @@
 
 namespace spoonbill {
 
-// Returns a hash that is valid within this process only.
+// Returns a hash of the content. Hashes can be compared only within one process.
 std::uint64_t content_hash(std::string_view content);
 
 // Returns the hash of a document file's content; empty if the file cannot be read.

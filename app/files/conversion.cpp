@@ -233,8 +233,8 @@ class Mesher {
   }
 
  private:
-  // Returns the fraction of the work that is done after this number of surfaces. Writing the file counts as
-  // one more surface.
+  // Returns the fraction of the work that is done once this number of surfaces is meshed. Writing the file
+  // counts as one more surface.
   double fraction_after(std::size_t surfaces) const {
     return static_cast<double>(surfaces) / static_cast<double>(model_.surfaces.size() + 1);
   }
@@ -333,7 +333,7 @@ Status write_mesh_file(const CadModel& model, const ConversionJob& job, const Pr
   report.unit_out = unit.name;
   auto out = OutputFile::create(request.out, request.how);
   if (!out) return out.error();
-  // Errors of the file contain its name; errors of the writer do not.
+  // Errors of `out` contain the name of the file; errors of write_meshes() itself do not.
   Status file_status;
   const Status written = write_meshes(made->meshes, job.out, unit.metres, [&](std::string_view bytes) {
     file_status = progress.report(1.0) ? out->write(bytes)

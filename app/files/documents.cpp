@@ -22,15 +22,16 @@
 namespace spoonbill {
 namespace {
 
-// Radius of the tool as a fraction of the body's median extent, like a thumb on a piece of clay of this size.
+// Radius of the tool divided by the median of the body's extents along x, y and z. Such a tool is like a
+// thumb on a piece of clay of the body's size.
 constexpr double tool_fraction = 0.15;
 // Force that the hand should feel when it presses the ball tool in by half of the ball's radius r. With a
 // force scale of 1 the force is about E r^2 / 2, where E is Young's modulus (Hertz 1881).
 constexpr double target_force_n = 1.5;
 // Fraction of the body's extent that is fixed by the plane of a new document.
 constexpr double fixed_fraction = 0.1;
-// A body whose height is below this fraction of its median extent is fixed at its end along x, not at its
-// foot.
+// A body whose height is below this fraction of the median of its extents is fixed at its end along x, not at
+// its foot.
 constexpr double flat_fraction = 0.25;
 
 constexpr double stock_shape_tolerance_m = 1e-4;
@@ -123,9 +124,10 @@ bool has_lattice_along(const Body& body) {
                                 : tube_lattice(body.surface, body.lattice).ok();
 }
 
-// Sets the node budget to the largest one with which a lattice can follow the shape of the body. Cells of the
-// default size may fold in the details of a scan. If no budget works, the default stays: the body then gets a
-// box of cells, which a smaller budget would only make coarser.
+// Sets the node budget, the largest number of nodes of the body's lattice. Tries the default, its half and so
+// on, until a lattice can follow the shape of the body: cells of the default size may fold in the details of
+// a scan. If no budget works, the default stays. The body then gets a box of cells, which a smaller budget
+// would only make coarser.
 void choose_node_budget(Body& body) {
   const int usual = body.lattice.node_budget;
   const int most = body.shell_thickness_m ? 16 : 4;
@@ -199,7 +201,7 @@ Document starting_document(const std::string& name, Surface surface, const Mater
                            std::optional<double> shell_thickness_m) {
   const Box box = bounding_box(surface.net);
   const Vector3 size = box.extent();
-  // The median extent is neither the length of a rod nor the thickness of a plate.
+  // The median of the three extents is neither the length of a rod nor the thickness of a plate.
   const double median_m = size.sum() - size.maxCoeff() - size.minCoeff();
   Document document;
   document.name = name;

@@ -32,9 +32,9 @@ std::vector<std::string> shipped_material_names();
 // as "clay" for modelling-clay. The error lists all names.
 Result<Material> shipped_material(const std::string& name);
 
-// Returns a document with one body around the surface. A plane fixes a tenth of the body, at its foot or, for
-// a flat body, at its left end. The radius of the ball tool follows from the body's size, and the force scale
-// makes the forces perceptible. `shell_thickness_m`: see Body.
+// Returns a document with one body around the surface. A plane fixes a tenth of the body's height at its foot
+// or, if the body is flat, a tenth of its length at the left end. The radius of the ball tool follows from
+// the body's size, and the force scale makes the forces perceptible. `shell_thickness_m`: see Body.
 Document starting_document(const std::string& name, Surface surface, const Material& material,
                            std::optional<double> shell_thickness_m = {});
 
@@ -71,12 +71,13 @@ Result<Document> make_cad_document(const CadModel& model, const std::string& nam
 
 struct FittedDocument {
   Document document;
-  std::vector<std::string> notes;  // notes on bodies that cannot be simulated, or only in a box of cells
+  // Notes on bodies that cannot be simulated, on bodies that get a box of cells, and on too many bodies.
+  std::vector<std::string> notes;
 };
 
 // Returns a starting_document() of clay bodies for a fitted scan. Closed surfaces become solids. Other
-// surfaces become shells. Their thickness is a hundredth of their size, at most 2 mm, or less if the
-// curvature demands it. Returns an error for more bodies than a document can have.
+// surfaces become shells. The thickness of a shell is a hundredth of its size, at most 2 mm, or less if no
+// lattice can be made with it. Returns an error for more bodies than a document can have.
 Result<FittedDocument> make_fitted_document(const ScanFit& fit, const std::string& name,
                                             const Material& clay);
 

@@ -98,7 +98,7 @@ Error ForeignChild::failure(const FrameHead& head) {
     return error(ErrorCode::too_many,
                  task_.too_much + std::to_string(ChildOutput::memory_limit >> 30) + " GiB; " + task_.remedy);
   }
-  // `unavailable` means that the reader could not confine itself. All other reasons are about the file.
+  // `unavailable` means that confine_reader() failed in the child. All other reasons are about the file.
   const Error sent = parse_failure(reason.value());
   if (sent.code == ErrorCode::unavailable) return error(sent.code, ForeignTask::printable(sent.message));
   return error(ErrorCode::malformed, task_.refusal(sent.message));

@@ -16,7 +16,7 @@ namespace spoonbill {
 namespace {
 
 constexpr std::size_t mesh_file_bytes_limit = std::size_t{512} << 20;
-// Remedies for error messages about files that exceed the child's limits.
+// Remedies for error messages about files that exceed the limits of the child process.
 const char* const reduce_mesh = "reduce the mesh";
 const char* const thin_cloud = "thin it out";
 
@@ -69,7 +69,8 @@ Status check_coordinates(const std::filesystem::path& file, const ScanFile& scan
   return {};
 }
 
-// Removes vertices with a coordinate that is not a number, and the triangles that use them.
+// Removes vertices with a coordinate that is not a number, and the triangles that use them. Returns an error
+// for a vertex at infinity.
 Status drop_invalid_vertices(const std::filesystem::path& file, ScanFile& scan) {
   std::vector<std::uint32_t> new_index(scan.scan.points_m.size());
   std::uint32_t kept = 0;
@@ -165,8 +166,8 @@ Result<PointCloud> receive_cloud(ForeignChild& child, const FrameHead& head) {
   return cloud;
 }
 
-// A point cloud, the mesh of a PLY file, or std::monostate. The latter stands for the mesh of an OBJ file,
-// which read_mesh_scan() must read.
+// A point cloud, the mesh of a PLY file, or std::monostate. std::monostate stands for the mesh of an OBJ
+// file, which read_mesh_scan() must read.
 using ScanContent = std::variant<std::monostate, PointCloud, MeshFile>;
 
 Result<ScanContent> read_content(const std::filesystem::path& file, const MeshReading& reading) {

@@ -13,8 +13,8 @@
 namespace spoonbill {
 namespace {
 
-// Returns true if the name still refers to the opened file. The previous holder may have deleted it between
-// open() and flock().
+// Returns true if the name still refers to the opened file. The previous holder of the lock may have deleted
+// the file between open() and flock().
 bool is_still_named(int descriptor, const std::filesystem::path& file) {
   struct stat opened {};
   struct stat named {};

@@ -17,7 +17,7 @@ Result<std::filesystem::path> state_folder();
 class FileLock {
  public:
   // Returns ErrorCode::in_use if this or another process holds the lock, ErrorCode::unwritable if the file
-  // cannot be created.
+  // cannot be created or locked.
   static Result<FileLock> acquire(const std::filesystem::path& file);
 
   FileLock(FileLock&& other) noexcept;

@@ -86,8 +86,8 @@ const ImDrawData& FramePainter::lay_out(const Snapshot& snapshot, const ViewSett
 
 namespace {
 
-// Number of painters. It is the same on every machine, because it affects the pictures: a painter draws a
-// deforming mesh with the edges of the first shape that it drew.
+// Number of painters. It is the same on every machine, because it affects the pictures: each painter finds
+// the sharp edges of a deforming mesh in the first shape that it draws.
 constexpr std::size_t painter_count = 3;
 
 // Jobs per painter: one in progress and one waiting.

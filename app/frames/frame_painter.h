@@ -19,12 +19,12 @@
 
 namespace spoonbill {
 
-// Returns the box around all control nets and meshes of a snapshot. The box of the state before the first
-// touch determines the camera and the ground.
+// Returns the box around all control nets and meshes of a snapshot. The box of the initial state determines
+// the camera and the ground in all frames of a replay.
 Box framed_box(const Snapshot& start);
 
-// Returns the settings that show the view choice in a frame of this size, with room for the panel. With these
-// settings, the tessellation of a frame does not depend on earlier frames.
+// Returns the settings for drawing the chosen view in a frame of this size, with room for the panel. With
+// these settings, the tessellation of a frame does not depend on earlier frames.
 ViewSettings frame_view(const ViewChoice& choice, const Box& framed, int width_px, int height_px);
 
 // Paints snapshots into images. A painter must be used on the thread that made it.
@@ -39,7 +39,7 @@ class FramePainter {
   FramePainter& operator=(FramePainter&&) = delete;
   ~FramePainter();
 
-  // Paints one frame. The panel is omitted where the frame is too small for it.
+  // Paints one frame. The panel is omitted if the frame is too small for it.
   Status paint(const Snapshot& snapshot, const ViewSettings& view, const PanelModel& panel, Image& image);
 
  private:

@@ -181,8 +181,9 @@ struct VideoPlace {
   std::filesystem::path unfinished, target;
 };
 
-// Makes the empty file that ffmpeg will fill, with the permissions of the file that it will replace. The
-// empty file is created exclusively, so that a link with its name is not followed.
+// Makes the empty file that ffmpeg will fill. It gets the permissions of an existing video that it will
+// replace. It is created exclusively, so that a link with its name is not followed. For a pipe or a device,
+// makes no file.
 Result<VideoPlace> prepare_video(const std::filesystem::path& file) {
   VideoPlace place{file, file};
   std::error_code ignored;

@@ -24,8 +24,8 @@
 namespace spoonbill {
 
 // Removes the marks (requests for files) from the session. Writes the requested documents into the folder and
-// returns the names of the requested screenshots, which must show the next frame. If there is no folder,
-// writes nothing and returns no names.
+// returns the names of the requested screenshots. The caller must write the next picture that it draws under
+// these names. If there is no folder, writes nothing and returns no names.
 Result<std::vector<std::string>> consume_marks(Session& session,
                                                const std::optional<std::filesystem::path>& folder);
 
@@ -107,7 +107,7 @@ struct PictureRequest {
   // Receives the frames and the contact sheet. If empty, none are written.
   std::optional<std::filesystem::path> folder;
   std::optional<std::filesystem::path> video;
-  bool replaces_read_only = false;  // also replaces read-only files of earlier runs
+  bool replaces_read_only = false;  // if true, read-only files of earlier runs are replaced too
 };
 
 // Writes the pictures of a replay. Used by one thread.

@@ -14,7 +14,7 @@ namespace {
 // Largest size of an autosave: that of the largest document, and room for the autosave's own fields.
 constexpr std::size_t bytes_limit = std::size_t{65} << 20;
 constexpr int autosave_version = 1;
-constexpr int windows_limit = 99;  // largest number of windows that show the same document
+constexpr int windows_limit = 99;  // largest number of windows that can autosave the same document
 
 // Returns the name of an autosave file. The hash of the path distinguishes documents of the same name in
 // different folders.

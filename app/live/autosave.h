@@ -50,11 +50,12 @@ class Autosave {
 // A window's exclusive right to one autosave file, for the lifetime of the object, which has one owner.
 class AutosaveClaim {
  public:
-  // Claims an unclaimed autosave that an interrupted session left, otherwise the first free one.
+  // Claims an autosave that an interrupted session left and that no other window has claimed. If there is
+  // none, claims the first free file name.
   static AutosaveClaim acquire(const std::filesystem::path& folder, const std::filesystem::path& of);
 
   const Autosave& autosave() const { return autosave_; }
-  // Returns true if another window had the same file open when this claim was acquired.
+  // Returns true if another window had the same document open when this claim was acquired.
   bool is_open_elsewhere() const { return is_open_elsewhere_; }
 
  private:

@@ -9,7 +9,7 @@ namespace spoonbill {
 namespace {
 
 // Carries out a command. Catches exceptions of the standard library, which mostly report a lack of memory,
-// because the thread must survive.
+// because the thread of the worker must survive.
 Status run_job(LiveCommand& command, LentSession& lent) {
   try {
     if (auto* queued = std::get_if<QueuedRequest>(&command)) {
@@ -63,7 +63,7 @@ namespace {
 constexpr std::uint64_t ticks_between_frames = 4;
 constexpr int ticks_between_scenes = 400;
 
-// Number of ticks after the last touch during which motion counts as a change to save.
+// Number of ticks after the last command or touch during which each tick counts as a change to save.
 constexpr int after_motion_ticks = 3000;
 
 // Returns true for a request that the main thread carries out itself; the haptic thread only records it.
@@ -186,7 +186,7 @@ void HapticSide::reclaim_if_done() {
   }
   if (lent_.is_other_document) {
     ++document_count_;
-    // The workspace of a virtual handle is centred on the new body.
+    // The workspace of a virtual device is centred on the first body of the new document.
     if (lent_.session->device.workspace_follows_model) {
       const Box box = bounding_box(lent_.session->simulation.surface().net);
       safe_device_.set_workspace_centre(box.centre());
@@ -257,7 +257,7 @@ void HapticSide::push(JournalEntry&& entry) {
 void HapticSide::advance_session(DeviceReading reading) {
   if (safe_device_.consume_proxy_reset()) reset_proxy();
   if (recording_) {
-    if (recorded_ticks_ == 0) reading.missed = 0;  // periods before the recording do not count
+    if (recorded_ticks_ == 0) reading.missed = 0;  // ticks missed before the recording do not count
     push(RecordedReading{reading});
     recorded_missed_ += reading.missed;
     ++recorded_ticks_;

@@ -33,7 +33,7 @@
 
 namespace spoonbill {
 
-// A session on loan to the worker, with the results of the job.
+// A session that the haptic thread lends to the worker for a job, with the results of the job.
 struct LentSession {
   std::unique_ptr<Session> session;
   bool is_new_session = false;                 // true if the job has replaced the session by a new one
@@ -41,8 +41,8 @@ struct LentSession {
   std::unique_ptr<RecordingWriter> recording;  // recording that starts with the session's next tick
 };
 
-// A job that may take long. It runs on the worker's thread while the haptic thread ticks its device without
-// force. An error leaves the session unchanged.
+// A job that may take long. It runs on the worker's thread. Meanwhile, the haptic thread reads the device and
+// sends no force. An error leaves the session unchanged.
 using SessionJob = std::function<Status(LentSession&)>;
 
 // A request with its JSON, which the main thread makes so that the haptic thread need not allocate.
@@ -57,7 +57,7 @@ struct QueuedJob {
   bool ends_recording = false;
 };
 
-// A request to publish the scene for a save.
+// A request to pass the scene to the journal, which saves it.
 struct SceneRequest {
   std::uint64_t request = 0;
 };
@@ -71,9 +71,9 @@ struct LiveFrame {
   SessionFacts facts;
   std::uint32_t safety_flags = 0;  // SafetyFlag bits of the last tick
   bool recording = false;
-  std::uint64_t session = 0;     // number of sessions opened or restarted so far
+  std::uint64_t session = 0;     // number of sessions started after the first
   std::uint64_t edit_count = 0;  // number of commands and of ticks with contact so far: edits worth saving
-  std::uint64_t document = 0;    // number of documents opened so far
+  std::uint64_t document = 0;    // number of documents opened after the first
   std::uint64_t completed_jobs = 0;  // number of completed jobs: documents opened, recordings started
   std::uint64_t failed_jobs = 0;     // bit n % 64 is set if job n failed; jobs are counted from 0
 };
@@ -120,7 +120,8 @@ struct LiveExchange {
       : commands(command_capacity), frames(first), forces(force_capacity), failures(failure_capacity) {}
 
   BoundedQueue<LiveCommand> commands;  // from the main thread to the haptic thread
-  // Set by the main thread: switches the force off before queued commands run.
+  // Set by the main thread. The haptic thread then switches the force off at its next tick, whatever commands
+  // are queued.
   std::atomic<bool> force_cut{false};
   TripleBuffer<LiveFrame> frames;    // from the haptic thread to the main thread
   BoundedQueue<ForceSample> forces;  // from the haptic thread to the main thread; dropped when full
@@ -177,7 +178,7 @@ class HapticSide {
   std::unique_ptr<Device> device_;
   WatchedDevice watched_device_;
   SafeDevice safe_device_;  // the only access to the device
-  bool force_on_ = true;    // the user's choice, which stays when another session takes over
+  bool force_on_ = true;    // true if the user has the force switched on; outlives the session
 
   LiveExchange* exchange_;
   Journal* journal_;
@@ -187,7 +188,7 @@ class HapticSide {
   bool last_tick_failed_ = false;
   bool recording_ = false;
   std::uint64_t recorded_ticks_ = 0;
-  std::uint64_t recorded_missed_ = 0;  // periods without a tick since the first tick of the recording
+  std::uint64_t recorded_missed_ = 0;  // periods of 1 ms without a tick since the first tick of the recording
   bool state_recorded_ = false;        // true if the state hash at recorded_ticks_ is recorded
 
   std::uint64_t session_count_ = 0;

@@ -79,8 +79,8 @@ void Journal::set_autosave(std::optional<Autosave> autosave, std::uint64_t docum
   ++autosave_count_;
 }
 
-// Holds the mutex until the file has its new name. A thread that is writing the autosave waits for the mutex
-// in was_superseded().
+// Holds the mutex until the file has its new name. If the journal's thread is writing the autosave, it waits
+// for the mutex in was_superseded().
 Result<std::filesystem::path> Journal::set_autosave_aside() {
   const std::lock_guard lock(mutex_);
   if (!autosave_) return Error{ErrorCode::unavailable, "there is no autosave"};
@@ -194,7 +194,7 @@ void Journal::store(const LiveScene& scene) {
   }
   if (Exporter::has_export_extension(save->file)) return exporter_.begin(scene.scene.bodies, save->file);
   std::error_code ignored;
-  // Writing a pipe could block the thread, and with it recording and autosaving.
+  // Writing to a pipe could block the thread, which also records and autosaves.
   if (std::filesystem::exists(save->file, ignored) &&
       !std::filesystem::is_regular_file(save->file, ignored)) {
     return notices_->add(Notice::Kind::problem, "not saved: " + save->file.string() +
@@ -217,7 +217,8 @@ void Journal::store(const LiveScene& scene) {
   if (autosave_) autosave_->remove();
 }
 
-// Returns true if the save may replace its file. A file that cannot be read is not known and is not replaced.
+// Returns true if the save may replace its file. The content of a file that cannot be read counts as unknown,
+// so the file is not replaced.
 bool Journal::may_replace(const SaveRequest& save) {
   std::error_code ignored;
   if (save.replaced == Replaced::any || !std::filesystem::is_regular_file(save.file, ignored)) return true;

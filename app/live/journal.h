@@ -1,5 +1,5 @@
-// The journal of a live session, which writes recordings, documents and autosaves on its own thread, because
-// the disk may be slow; the exporter to foreign formats; and the notices to the user.
+// The journal of a live session, which writes recordings, documents and autosaves. It has its own thread,
+// because the disk may be slow. Also contains the exporter to foreign formats and the notices to the user.
 #pragma once
 
 #include <atomic>
@@ -27,7 +27,7 @@ struct Notice {
   std::string text;
 };
 
-// Messages to the user. Only threads that may wait add one, never the haptic thread. Thread-safe.
+// Messages to the user. Thread-safe. The haptic thread must not call add(), because the call may wait.
 class Notices {
  public:
   void add(Notice::Kind kind, std::string text) {
@@ -90,10 +90,10 @@ struct RecordedForceSwitch {
 struct RecordedState {
   std::uint64_t state_hash = 0;
   bool last = false;         // true if this entry ends the recording
-  std::uint64_t missed = 0;  // valid if `last` is true: periods without a tick during the recording
+  std::uint64_t missed = 0;  // periods of 1 ms without a tick during the recording; valid if `last` is true
 };
 
-// Number of ticks of a recording, and of periods of 1 ms without a tick during it.
+// Number of ticks of a recording, and number of periods of 1 ms without a tick while it was recorded.
 struct RecordedTicks {
   std::uint64_t ticks = 0;
   std::uint64_t missed = 0;
@@ -102,7 +102,7 @@ struct RecordedTicks {
 using JournalEntry = std::variant<std::monostate, RecordingStart, RecordedReading, RecordedCommand,
                                   RecordedReset, RecordedForceSwitch, RecordedState>;
 
-// A document's scene at one tick, passed from the haptic thread to be saved.
+// A document's scene at one tick, which the haptic thread passes to the journal.
 struct LiveScene {
   std::string title;
   Scene scene;
@@ -164,7 +164,8 @@ class Journal {
   // Returns true if a recording has been abandoned since the last call.
   bool consume_recording_failure() { return recording_failed_.exchange(false, std::memory_order_acq_rel); }
 
-  // Sets the view that is saved with documents. Called by the main thread, as are all functions after it.
+  // Sets the view that is saved with documents. The main thread calls this function and all public functions
+  // below it.
   void set_view(Json view);
   // Sets the autosave of the document with this number (LiveFrame::document); an empty value disables
   // autosaving. The previous autosave file is removed.
@@ -212,7 +213,8 @@ class Journal {
   std::uint64_t autosave_document_ = 0;  // number of the document that autosave_ holds
   std::uint64_t saved_change_ = 0;       // LiveScene::change of the last saved scene
 
-  // recording_ and the four members that follow are used only by the journal's thread.
+  // recording_ and the four members that follow are used only by the journal's thread until stop() has ended
+  // it.
   std::unique_ptr<RecordingWriter> recording_;
   std::uint64_t autosaved_change_ = 0;
   bool autosave_failed_ = false;

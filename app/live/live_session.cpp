@@ -8,7 +8,8 @@
 namespace spoonbill {
 namespace {
 
-// Returns the device with a workspace that contains the body, if it is a virtual handle.
+// Returns the specification of the device. If the device is virtual, its workspace is enlarged to contain the
+// surface, up to the largest radius allowed.
 DeviceSpecification with_fitted_workspace(DeviceSpecification device, const Surface& surface) {
   if (!device.workspace_follows_model) return device;
   const Box box = bounding_box(surface.net);

@@ -38,7 +38,7 @@ class LiveSession {
   // need more than live_substeps_limit substeps. A new material switches real time off.
   bool ask(Request request);
 
-  // Switches the force of the device off at the next tick, ahead of everything that is queued.
+  // Switches the force of the device off at the next tick, whatever commands are queued.
   void cut_force() { exchange_.force_cut.store(true, std::memory_order_release); }
 
   // Queues the replacement of the document. A recording in progress ends first.
@@ -52,9 +52,9 @@ class LiveSession {
   // Lets the recording end as FILE.part instead of replacing FILE. Called before stop_recording().
   void leave_recording_unpublished() { journal_.leave_recordings_unpublished(); }
 
-  // Saves the document of the last frame in the state of the next tick. consume_saved_document() and the
-  // notices report the result. Fails if another document was opened in the meantime. If `replaced` does not
-  // allow the file to be replaced, consume_save_conflict() reports it.
+  // Saves the document that the last frame shows, in the state of the next tick. consume_saved_document() and
+  // the notices report the result. The save fails if another document was opened in the meantime. If
+  // `replaced` does not allow the file to be replaced, consume_save_conflict() reports it.
   bool save(std::filesystem::path file, Replaced replaced = Replaced::known);
   std::optional<SavedDocument> consume_saved_document() { return journal_.consume_saved_document(); }
   std::optional<std::filesystem::path> consume_save_conflict() { return journal_.consume_save_conflict(); }

@@ -23,7 +23,7 @@ struct PerformanceSettings {
 // Results of a performance.
 struct PerformanceReport {
   LoopFigures loop;        // figures of the whole session, also before and after the recording
-  RecordedTicks recorded;  // ticks of the recording alone, as its replay states them
+  RecordedTicks recorded;  // ticks of the recording alone, as a replay reports them
   std::uint64_t frames = 0;
   std::vector<Notice> notices;
 };

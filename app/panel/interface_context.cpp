@@ -56,8 +56,8 @@ void apply_theme(ImGuiStyle& style, const Metrics& metrics) {
   style.GrabMinSize = 9.0F * unit;
   style.ItemSpacing = ImVec2(6.0F * unit, metrics.row_gap_px);
   style.ItemInnerSpacing = ImVec2(6.0F * unit, 4.0F * unit);
-  // ImGui rounds positions down to whole pixels, which makes rows less tall at small scales. A larger padding
-  // compensates for this loss.
+  // ImGui rounds positions down to whole pixels, which reduces the height of rows at small scales. A larger
+  // padding compensates for this loss.
   style.CellPadding = ImVec2(0.0F, (unit < 2.0F ? 1.75F : 1.25F) * unit);
   style.ScrollbarSize = 10.0F * unit;
   style.ScrollbarRounding = 3.0F * unit;

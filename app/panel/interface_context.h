@@ -25,7 +25,7 @@ struct Metrics {
   float row_gap_px;
 };
 
-// The look of the panel: light and quiet, so that the model is the brightest thing in the picture.
+// Lengths and fonts of the interface.
 struct Theme {
   Metrics metrics;
   InterfaceFonts fonts;

@@ -103,7 +103,7 @@ bool is_field(const Field<Object>& field, Value Object::*member) {
   return field.member.template pointer_to<Value>() == member;
 }
 
-// Returns true if the tool's action uses the field. Only a sphere has a radius.
+// Returns true if the tool's action uses the field. A radius is used only by a sphere.
 bool uses_field(const Tool& tool, const Field<Tool>& field) {
   if (find_tool_parameter(tool.action, field.form.name) == nullptr) return false;
   return tool.kind == ToolKind::sphere || !is_field(field, &Tool::radius_m);

@@ -66,7 +66,7 @@ Rectangle panel_rectangle(int width_px, int height_px, double scale, double top_
 // because a picture cannot be scrolled.
 Rectangle picture_panel_rectangle(int width_px, int height_px);
 
-// Returns the interface's scale for a frame of this height: 1 at 720 pixels, in steps of a half.
+// Returns the interface's scale for a frame of this height: 1 at 720 pixels or less, in steps of 0.5.
 double panel_scale(int height_px);
 
 // The user's requests of one frame. `refusal` is the reason why a value was rejected; it is empty if none

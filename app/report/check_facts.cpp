@@ -185,8 +185,8 @@ void add_self_meetings(const SolidCheck& check, Json& json) {
   json["self_intersections_complete"] = check.self_intersections_complete;
 }
 
-// Adds the smallest wall thickness of a solid and its uncertainty: twice the chord error, because the mesh
-// may deviate from the surface on both sides of a wall.
+// Adds the smallest wall thickness of a solid and the uncertainty of this thickness. The uncertainty is twice
+// the chord error, because the mesh may deviate from the surface on both sides of a wall.
 void add_solid_thickness(FactSheet& facts, const CadSolid& solid, const SolidCheck& check, Json& json) {
   if (!check.thinnest) {
     facts.add("  Thinnest", no_walls, "", nullptr);

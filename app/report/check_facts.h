@@ -13,7 +13,7 @@
 
 namespace spoonbill {
 
-// How a body is checked. A face of a closed solid may itself be open.
+// How a body is checked: by itself, or as a face of a closed solid. A face may be open.
 enum class CheckedAs { body, face };
 
 // Adds the lines of a body and returns its JSON. `area` is the part of the surface that the trims keep.

@@ -55,7 +55,7 @@ Json contact_json(const ModelContact& contact) {
           {"b", side_json(contact.b)}};
 }
 
-// Returns text that names the bodies in contact; empty if both models have only one body.
+// Returns text that names the bodies in contact; empty if each model has only one body.
 std::string bodies_text(const ModelContact& contact) {
   const std::string &a = contact.a.body, &b = contact.b.body;
   if (a.empty() && b.empty()) return "";

@@ -21,11 +21,11 @@ struct SurfaceParameters {
   std::optional<ParameterRange> range;  // extent of the contact region around the point
 };
 
-// One model's side of a contact or of the nearest pair of points.
+// The point of one model in a contact, or in the nearest pair of points.
 struct ContactSide {
   Vector3 point_m = Vector3::Zero();
   std::optional<SurfaceParameters> parameters;  // parameters on the surface; empty on a mesh
-  std::string body;                             // name of the body; empty if the model has only one
+  std::string body;                             // name of the body; empty if the model has one body
 };
 
 struct ModelContact {

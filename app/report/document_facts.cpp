@@ -145,8 +145,8 @@ Json add_body_facts(FactSheet& facts, const std::string& label, const Body& body
   return json;
 }
 
-// Adds the members of a single body to the top level of the JSON. Its name becomes "body" there, because
-// "name" is the name of the document.
+// Adds the members of a single body to the top level of the JSON. The member "name" becomes "body" there,
+// because "name" is the name of the document.
 void add_single_body(FactSheet& facts, const Json& body) {
   for (const auto& [field, value] : body.items()) facts.add("", "", field == "name" ? "body" : field, value);
 }
@@ -261,8 +261,8 @@ void add_material_facts(FactSheet& facts, const Material& material) {
   facts.add("Material", material_text(material), "material", material_to_json(material));
 }
 
-// Distances of trim loops from the edges in a CAD file that are below this limit are rounding errors of the
-// file.
+// The distance between a trim loop and the edge in the CAD file is shown only from this limit on. Smaller
+// distances are rounding errors of the file.
 constexpr double shown_trim_deviation_m = 1e-9;
 
 void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces) {

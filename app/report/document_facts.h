@@ -16,8 +16,8 @@
 
 namespace spoonbill {
 
-// Returns the box around a grid of points on the surface, accurate to a thousandth of its size. For a trimmed
-// surface it is the box around the area that the loops keep; invalid loops are ignored.
+// Returns the box around a grid of points on the surface, accurate to about a thousandth of the size of the
+// box. For a trimmed surface it is the box around the area that the loops keep; invalid loops are ignored.
 Box extent_of(const Surface& surface, const std::vector<TrimLoop>& trims = {});
 
 // Adds the name, the unit of the file, the size of all bodies together and each body. In the JSON the bodies
@@ -30,7 +30,7 @@ void add_size_fact(FactSheet& facts, const Box& extent);
 
 void add_material_facts(FactSheet& facts, const Material& material);
 
-// Adds each surface of a CAD model, and the size of all of them.
+// Adds each surface of a CAD model, and the size of all surfaces together.
 void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces);
 
 // Adds the unit of a file; `declared` is false if the file does not name one.
@@ -40,19 +40,19 @@ void add_unit_facts(FactSheet& facts, const std::string& unit, bool declared);
 // the material's, and Poisson's ratio.
 void add_elasticity_facts(FactSheet& facts, const Simulation& simulation);
 
-// Adds the lattice, mass and solver of each body. `snapshot` is that of the initial state of a simulation of
-// these bodies. In the JSON these facts are the list "simulated", and the members of a single body are also
-// at the top level.
+// Adds the lattice, mass and solver of each body. `snapshot` shows the initial state of a simulation of these
+// bodies. In the JSON these facts are the list "simulated", and the members of a single body are also at the
+// top level.
 void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot, const std::vector<Body>& bodies);
 
-// Adds the quality of the cells of each lattice, with and without its feature map. `maps` are the reports of
-// the bodies that have a feature map, in the order of the bodies. "cells" in the JSON is a list, or one
-// object for one body.
+// Adds the quality of the cells of each lattice. A feature map, if a body has one, distributes the nodes
+// inside the body evenly; the quality before that is added too. `maps` are the reports of the bodies that
+// have a feature map, in the order of the bodies. "cells" in the JSON is a list, or one object for one body.
 void add_cell_facts(FactSheet& facts, const Simulation& simulation,
                     const std::vector<FeatureMapReport>& maps);
 
-// A progress bar for the feature maps of a document's lattices, which collects their reports. The console
-// must outlive the bar, and the bar must outlive the result of watch().
+// A progress bar for the computation of feature maps (see add_cell_facts()), which also collects their
+// reports. The console must outlive the bar, and the bar must outlive the result of watch().
 class MapProgress {
  public:
   explicit MapProgress(Console& console, bool is_forced = false);

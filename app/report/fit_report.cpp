@@ -46,8 +46,8 @@ std::size_t count_strays(const ScanFit& fit) {
   return strays;
 }
 
-// Returns the number of points that were given to the fit: all points of the file except those that are not a
-// number and those that were joined to another.
+// Returns the number of points that were given to the fit: all points of the file except points with a
+// coordinate that is not a number and points that were joined to another point.
 std::size_t count_given(const ScanFit& fit) {
   std::size_t count = fit.outliers + fit.dust + fit.other_islands;
   for (const FittedBody& body : fit.bodies) count += body.points_m.size();
@@ -113,15 +113,15 @@ void append_float(std::string& bytes, double number) {
 std::string cloud_header(std::size_t points, double full_m) {
   return std::string("ply\nformat ") +
          (std::endian::native == std::endian::little ? "binary_little_endian" : "binary_big_endian") +
-         " 1.0\ncomment lengths in metres; colours from 0 (dark blue) to " + number_text(full_m * 1e3) +
+         " 1.0\ncomment lengths in metres; colours from 0 (dark violet) to " + number_text(full_m * 1e3) +
          " mm (yellow)\nelement vertex " + std::to_string(points) +
          "\nproperty float x\nproperty float y\nproperty float z\nproperty float distance_mm\n"
          "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
 }
 
-// Returns red, green and blue for a fraction, clamped to 0 to 1. The scale runs from dark blue through green
-// to yellow with evenly rising lightness, so that it is legible in grey and without distinguishing red from
-// green (viridis; Smith and van der Walt 2015).
+// Returns red, green and blue for a fraction, clamped to 0 to 1. The scale runs from dark violet through blue
+// and green to yellow with evenly rising lightness, so that it is legible in grey and without distinguishing
+// red from green (viridis; Smith and van der Walt 2015).
 std::array<std::uint8_t, 3> scale_colour(double fraction) {
   static constexpr std::array<std::array<double, 3>, 9> steps{{{68, 1, 84},
                                                                {71, 45, 123},
@@ -223,15 +223,16 @@ std::optional<std::string> find_detail_note(const ScanFit& fit) {
 
 namespace {
 
-// Returns the fraction of the whole scan that is within the tolerance. Skipped points count as outside.
+// Returns the fraction of the given points (see count_given()) that is within the tolerance. Points that
+// belong to no body count as outside.
 double share_within(const ScanFit& fit, double tolerance_m) {
   double within = 0.0;
   for (const FittedBody& body : fit.bodies) {
     const std::vector<double>& distances = body.errors.distance_m;
     const auto near = std::count_if(distances.begin(), distances.end(),
                                     [&](double distance) { return distance <= tolerance_m; });
-    // The distances of a coarse mesh belong to samples all over it, so their number differs from that of its
-    // points.
+    // If the scan is a coarse mesh, the distances are those of samples all over the mesh, not those of its
+    // points. The two numbers then differ.
     if (!distances.empty()) {
       within += static_cast<double>(body.points_m.size()) * static_cast<double>(near) /
                 static_cast<double>(distances.size());

@@ -28,9 +28,9 @@ std::optional<std::string> find_detail_note(const ScanFit& fit);
 // components of the scan that were skipped or capped. A tolerance of 0 means that there is no tolerance.
 std::vector<std::string> find_fit_shortcomings(const ScanFit& fit, double tolerance_m);
 
-// Adds the numbers of points that belong to no body: outliers, points in specks and points on other islands.
-// Also adds the fraction of the distinct points that these are. Must be called before all other facts are
-// added, because those describe the remaining points.
+// Adds a line for the points that belong to no body: outliers, points in specks and points on other islands.
+// The line has their numbers and their fraction of the distinct points. Must be called before all other facts
+// are added, because the other facts describe only the points of the bodies.
 void add_left_out_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit);
 
 // Adds the unit and size of the scan, the distance within which vertices were joined, and the number of
@@ -41,8 +41,9 @@ void add_scan_facts(FactSheet& facts, const ScanFile& file, const ScanFit& fit);
 // errors of all bodies together.
 void add_fit_facts(FactSheet& facts, const ScanFit& fit, double tolerance_m);
 
-// Writes a binary PLY file in metres. Each point of the scan, or of samples all over it if it is a mesh, has
-// its distance_mm and a colour from dark blue (0) through green to yellow (`full_m` and beyond).
+// Writes a binary PLY file in metres. Its points are those of the scan or, if the scan is a coarse mesh,
+// samples all over the mesh. Each point has its distance_mm and a colour from dark violet (0) through green
+// to yellow (`full_m` and beyond).
 Status write_error_cloud(const ScanFit& fit, double full_m, const std::filesystem::path& file,
                          const OutputOptions& options = {});
 

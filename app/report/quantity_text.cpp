@@ -19,7 +19,8 @@ std::string with_decimals(double number, int decimals, const char* unit) {
   return text.data();
 }
 
-// Formats the number with three significant digits.
+// Formats the number with two decimals below 10, one below 100 and none above, which gives three significant
+// digits from 1 to 999.
 std::string with_three_digits(double number, const char* unit) {
   const double size = std::abs(number);
   return with_decimals(number, size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2, unit);

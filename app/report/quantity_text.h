@@ -26,8 +26,8 @@ std::string grams_text(double kilograms);           // "34.2 g"
 std::string density_text(double kilograms_per_m3);  // "1.80 g/cm³"
 std::string newtons_text(double newtons);           // "1.23 N"
 std::string percent_text(double fraction);          // "12 %", "0.081 %"
-// Returns how much slower than the real body a body with this inertia scale responds: "real time", "1.4 times
-// slower", "31 times slower".
+// Returns a text that says how much slower a body with this inertia scale responds than the real body: "real
+// time", "1.4 times slower", "31 times slower".
 std::string slowness_text(double inertia_scale);
 // Returns the count with its noun, such as "1 body" or "3 bodies".
 std::string count_text(std::size_t count, const char* one, const char* many);

@@ -46,8 +46,8 @@ class Lockstep {
   // recording that cannot be written.
   Status run_to(std::uint64_t tick);
 
-  // Runs the remaining ticks, compares the last state with the expected one, and finishes the recording that
-  // is being written.
+  // Runs all ticks of the input that have not run yet, compares the last state with the expected one, and
+  // finishes the recording that is being written.
   Status finish();
 
   std::uint64_t tick() const { return tick_; }

@@ -163,7 +163,7 @@ struct RequestApplier {
     return {};
   }
 
-  // Sets session.saved to the document of the current state, unless it is that document already.
+  // Sets session.saved to the document of the current state, if session.saved is null.
   Status save_document() const {
     if (session.saved != nullptr) return {};
     if (session.saves_at_tick == saves_at_tick_limit) {

@@ -79,18 +79,19 @@ struct Session {
 
   DeviceSpecification device;
   DeviceReading reading;                 // reading of the last tick
-  std::uint32_t flags = tick_flag_none;  // TickFlag bits, accumulated until the reader clears them
+  std::uint32_t flags = tick_flag_none;  // TickFlag bits, accumulated until a frame has shown them
   // Requests for files that consume_marks() has not consumed yet. A new one replaces one of the same kind and
   // name.
   std::vector<FileMark> marks;
-  bool keeps_documents = true;  // false if documents will not be written; those of `marks` are then empty
+  // False if documents will not be written; the documents in `marks` are then empty.
+  bool keeps_documents = true;
   // Document of the last request to save one; null if anything has changed since.
   std::shared_ptr<const Document> saved = {};
   std::size_t saves_at_tick = 0;  // number of different documents saved at this tick
   bool force_on = true;           // false while the user has switched the device's force off
 
   // Makes a session of the document. `source` names the document's file in messages; `watch` receives the
-  // progress of feature maps.
+  // progress of feature maps, which distribute the nodes inside a body evenly.
   static Result<Session> make(const Document& document, const std::string& source, DeviceSpecification device,
                               InstructionSet set, const FeatureMapWatch& watch = {});
 };

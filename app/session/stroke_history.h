@@ -46,7 +46,8 @@ class StrokeHistory {
   Status restore_shape(std::size_t index, Simulation& simulation);
 
   // Sequence that undo and redo step through: shapes_[0 .. count_ - 1]. The body has the shape
-  // shapes_[current_], or, while a stroke is in progress, a later shape that is not stored yet.
+  // shapes_[current_]. After the start of a stroke, and until the next stroke starts or the stroke is undone,
+  // the body has a later shape that is not stored yet; open_stroke_ is then true.
   std::vector<ShapeState> shapes_;
   std::size_t count_ = 1;
   std::size_t current_ = 0;

@@ -108,7 +108,8 @@ TEST(AutosaveClaim, LeavesNoLockBehind) {
   EXPECT_EQ(count(), before);
 }
 
-// A checkout or a synchronisation after the crash makes the document's file newer than the autosave.
+// A checkout or a synchronisation after the crash can make the document's file newer than the autosave. The
+// autosave must be offered all the same.
 TEST(Autosave, IsOfferedBesideANewerFileOfOtherContent) {
   using namespace std::chrono_literals;
   const Workplace place;

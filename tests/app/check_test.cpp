@@ -52,7 +52,7 @@ TEST(Check, MeasuresATorus) {
   EXPECT_TRUE(body["degenerate"].empty());
 }
 
-// A straight tube is curved in one direction only, except by rounding.
+// A straight tube is curved in one direction only, apart from rounding errors.
 TEST(Check, AStraightTubeHasNoHollowRadius) {
   const Workplace place;
   place.write("profile.csv", "radius_mm,height_mm\n10,0\n10,20\n10,40\n");
@@ -62,7 +62,7 @@ TEST(Check, AStraightTubeHasNoHollowRadius) {
   EXPECT_TRUE(body["smallest_concave_radius_m"].is_null()) << body["smallest_concave_radius_m"];
 }
 
-// In single precision, the points of a pole are about 10 nm apart.
+// If a pole was computed in single precision, its control points are about 10 nm apart.
 TEST(Check, AnEdgeOfAMillionthIsAPoint) {
   const Workplace place;
   Document ball = made(place, {"new", "sphere", "--radius", "20mm"});

@@ -72,8 +72,8 @@ TEST(SurfacePick, FindsWhereASphereFirstTouches) {
   const Ray down{Vector3(0.03, 0.1, 0.0), -Vector3::UnitY()};
   const auto touch = pick.first_touch(down, 0.006);
   ASSERT_TRUE(touch);
-  // The section rises about 2.65 mm above the centre line. The sphere touches balls around the sample points,
-  // whose radius is at most half the diagonal of a cell of 1 mm.
+  // The section rises about 2.65 mm above the centre line. The sphere touches one of the balls around the
+  // sample points. The radius of these balls is at most half the diagonal of a cell of 1 mm.
   EXPECT_NEAR(touch->centre_m.y(), 0.0025 + 0.006, 1e-3);
   EXPECT_GT(touch->outward.y(), 0.99);
   EXPECT_FALSE(pick.first_touch({Vector3(0.03, 0.1, 0.05), -Vector3::UnitY()}, 0.006));

@@ -282,7 +282,7 @@ TEST_F(EditWindow, KilledInAStrokeItLosesASecondAtMost) {
   ASSERT_TRUE(wait_shown([](const Json& frame) { return frame["pressing"].get<bool>(); }));
   ASSERT_TRUE(hands("mousemove 900 330"));
   const Autosave autosave(place_.path("state") / "spoonbill", place_.path("handle.json"));
-  // An autosave is at most a second older than the shape, so the bent shape is saved soon.
+  // An autosave is at most a second older than the shape, so the bent shape is autosaved soon.
   EXPECT_TRUE(wait_for([&] {
     const auto saved = autosave.recovered_document();
     return saved && saved.value() && largest_difference(*saved.value(), held_model()) > 1e-4;

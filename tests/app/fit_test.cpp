@@ -407,8 +407,9 @@ class RealScans : public FitTest {
     if (folder == nullptr) GTEST_SKIP() << "SPOONBILL_SCANS names no folder with scans";
     scans_ = folder;
   }
-  // Expects every body to have no folds, and 95 % of its points to be within a millimetre of the surface. The
-  // error of all points must also be below a hundredth of `size_m`, the size of the object.
+  // Expects every body to have no folds, and 95 % of its points to be within 1 mm of the surface. For the
+  // points of all bodies together, the distance at 95 % must also be below 1 mm and below a hundredth of
+  // `size_m`, the size of the object.
   void expect_good(const std::string& name, const std::vector<std::string>& options, double size_m,
                    std::size_t bodies) {
     const Json json = json_of_fit((scans_ / name).string(), options);

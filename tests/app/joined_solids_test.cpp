@@ -179,7 +179,7 @@ TEST_F(JoinedSolids, AreCheckedAsOne) {
   EXPECT_NE(lines.out.find("bracket: closed, solid of 6 faces"), std::string::npos) << lines.out;
 }
 
-// Returns the box with a top that sags at its centre by the given length, with straight edges.
+// Returns the box with a top that sags at its centre by the given length. The edges of the top stay straight.
 Document sagging_box(double by_mm) {
   Document document = box_of_faces();
   ControlNet net(5, 5);

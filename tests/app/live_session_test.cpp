@@ -133,8 +133,8 @@ TEST(LiveSession, ARefusedRequestIsSaidAndChangesNothing) {
   EXPECT_NE(live->frame().facts.material.poissons_ratio, 0.7);
 }
 
-// Returns a handle of this stiffness. Its material is plastic, so it is stepped explicitly as a mass-spring
-// lattice.
+// Returns a handle of this stiffness. Its material is plastic, so the handle is simulated as a mass-spring
+// lattice with explicit time steps.
 Document handle_of_stiffness(double youngs_modulus_pa, bool real_time) {
   Document document = held_handle();
   document.scene.bodies[0].material.plastic = true;
@@ -269,7 +269,8 @@ TEST(LiveSession, AFileThatChangedOnTheDiskIsNotReplacedUnasked) {
   EXPECT_EQ(content_of(other), "theirs");
 }
 
-// The live session must not write a late save of one document to the file of another.
+// A save is requested while the first document is still shown, but after another document was requested. The
+// save must not write the other document to the file of the first.
 TEST(LiveSession, ASaveDoesNotPassToADocumentThatWasOpenedMeanwhile) {
   const Workplace place;
   Live live(held_handle());
@@ -376,7 +377,8 @@ TEST(LiveSession, TheWorkspaceFollowsTheModelThatIsOpened) {
   }));
 }
 
-// A force that was cut stays off when another document is opened, and the recording contains the switch.
+// A force that was cut stays off when another document is opened. The recording contains the commands that
+// switch it off and on.
 TEST(LiveSession, TheForceIsCutAtOnceUntilItIsSwitchedOn) {
   const Workplace place;
   Live live(held_handle());
@@ -408,7 +410,7 @@ TEST(LiveSession, TheForceIsCutAtOnceUntilItIsSwitchedOn) {
   EXPECT_EQ(replayed.code, exit_done) << replayed.err;
 }
 
-// Returns the largest distance of a lattice's node from a point; infinite if a coordinate is not finite.
+// Returns the largest distance of the lattice's nodes from a point; infinite if a coordinate is not finite.
 double farthest_node_m(const LatticeSnapshot& lattice, const Vector3& from) {
   double farthest = 0.0;
   for (std::size_t n = 0; n < lattice.x.size(); ++n) {

@@ -32,7 +32,7 @@ TEST(MergeCommand, BowlAndHandleBecomeASpoon) {
   EXPECT_TRUE(joint["bridged"]);
 
   const Surface spoon = surface_of(place.path("spoon.json"));
-  // Continuity C2 requires inner knots of multiplicity one here.
+  // At degree 3, continuity C2 requires inner knots of multiplicity one.
   for (const auto& [knot, multiplicity] : knot_multiplicities(spoon.v)) {
     EXPECT_TRUE(knot == spoon.v.domain_start() || multiplicity == 1) << knot;
   }

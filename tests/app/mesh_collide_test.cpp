@@ -48,8 +48,9 @@ std::string above(double millimetres) {
   return "30mm," + std::to_string(millimetres) + "mm,0,1,0,0,0";
 }
 
-// The vertices of the ball are on a sphere of 8 mm radius. Its edges are inside this sphere by up to 8 mm (1
-// - cos(pi/100)).
+// Bound of the distance between the triangles of the ball and the sphere of 8 mm radius on which its vertices
+// are. It is 8 mm (1 - cos(pi/100)), because no point of a triangle is farther than an angle of pi/100 from a
+// vertex.
 constexpr double flatter_m = 8e-3 * 5e-4;
 const TriangleMesh ball = ball_mesh(100, 200, 8.0);
 
@@ -82,7 +83,7 @@ TEST(MeshCollide, EitherMayBeTheMesh) {
   const Json second = facts_of({model, mesh, "--pose", above(height)});
   EXPECT_EQ(second["touching"], true);
   EXPECT_EQ(second["contained"], false);
-  // The top is flat over the width of the contact, within the tolerance of the search.
+  // The top of the handle is flat over the width of the contact, within the tolerance of the search.
   EXPECT_NEAR(second["depth_m"].get<double>(), 5e-4, 3e-5);
   ASSERT_EQ(second["contacts"].size(), 1U);
   const Json& contact = second["contacts"][0];
@@ -164,7 +165,7 @@ TEST(MeshCollide, TwoMeshesAreAsFarApartAsTheyAre) {
   }
 }
 
-// Writes a document of two bodies, the second a copy of the first 20 mm above it. Returns the name of the
+// Writes a document of two bodies. The second is a copy of the first, 20 mm above it. Returns the name of the
 // file.
 std::string two_bodies(const Workplace& place) {
   place.text("model.json");

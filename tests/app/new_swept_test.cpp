@@ -54,7 +54,7 @@ TEST(NewTube, RefusesOneThatPassesThroughItself) {
   EXPECT_NE(outcome.err.find("through itself"), std::string::npos) << outcome.err;
 }
 
-// A radius that follows the advice in the error is accepted.
+// A radius that follows the advice in the error message makes a tube that does not fold.
 TEST(NewTube, SaysHowWideItMayBe) {
   const Workplace place;
   const auto made = [&](const std::string& radius) {

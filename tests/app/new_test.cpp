@@ -84,7 +84,7 @@ TEST(New, TakesCountsMaterialAndUnits) {
 
 class Lumps : public testing::TestWithParam<std::vector<std::string>> {};
 
-// A script presses each document's ball tool into the top of its shape; the recording must replay.
+// A script presses the ball tool of the document into the top of the shape. The recording must replay.
 TEST_P(Lumps, CanBePressed) {
   const Workplace place;
   const Outcome made = run(with(GetParam(), {"--out", place.text("lump.json"), "--json"}));

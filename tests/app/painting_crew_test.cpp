@@ -12,7 +12,7 @@ namespace {
 
 constexpr int width_px = 800, height_px = 704;  // large enough for the panel
 
-// A session in which a control point rises from frame to frame and the time advances.
+// Makes painting jobs in which a control point rises from frame to frame and the time advances.
 class Crew : public ::testing::Test {
  protected:
   static Session make_session() {

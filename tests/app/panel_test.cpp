@@ -305,7 +305,7 @@ TEST(Panel, RefusesWrongMaterialsWithTheRange) {
             "plastic, creeps or stiffens");
 }
 
-// A session whose panel a person types into.
+// A session whose panel receives typed values.
 class TypedSession {
  public:
   PanelModel model() const {
@@ -325,7 +325,7 @@ class TypedSession {
     Pose pose;
     pose.position_m = Vector3(0.03, 0.2, 0.0);
     for (int i = 0; i < 3; ++i) advance(session_, DeviceReading::from(pose, 0));
-    // Reading checks every number against its range.
+    // Reading a document checks every number against its range.
     const auto document =
         document_from_json(document_to_json(make_session_document(session_)), "the document");
     EXPECT_TRUE(document) << document.error().message;

@@ -93,8 +93,8 @@ TEST(ReaderConfinement, EveryReaderShowsIt) {
   expect_confined({SPOONBILL_PROGRAM, "read-mesh", "--", folder.write("a.obj", mesh).string()});
 }
 
-// Confines this process and tries what it must and must not do. Returns a set bit for each result that is not
-// the expected one.
+// Confines this process, then makes system calls that must succeed and system calls that must fail. Returns a
+// set bit for each unexpected result.
 int wrong_results() {
   int wrong = 0, bit = 1;
   const auto expect = [&](bool right) {
@@ -126,7 +126,8 @@ TEST(ReaderConfinement, ThreadsStartButNoProcess) {
   EXPECT_EQ(WEXITSTATUS(state), 0);
 }
 
-// Makes the system calls that confine a reader fail for this thread and its children, as on an old kernel.
+// Makes the system call seccomp, which confines a reader, fail for this thread and its children, as on an old
+// kernel.
 bool forbid_filters() {
   sock_filter calls[] = {
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(offsetof(seccomp_data, nr))),

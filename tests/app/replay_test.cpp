@@ -162,7 +162,7 @@ TEST(Session, SavesAtOneTickShareADocument) {
   }
   ASSERT_EQ(session->marks.size(), 450u);
   for (const FileMark& mark : session->marks) EXPECT_EQ(mark.document, session->marks[0].document);
-  // The document changes before each save, so that all saved documents differ.
+  // A command before each save makes the session save a document of its own.
   Status saved;
   int count = 0;
   for (; saved && count < 900; ++count) {

@@ -165,7 +165,7 @@ TEST(Rest, StopsWhenAskedTo) {
                 writes ? std::vector<std::string>{"--out", place.text("bent.json"), "--force"}
                        : std::vector<std::string>{});
     const timespec no_wait{};
-    sigtimedwait(&interrupt, nullptr, &no_wait);  // removes the signal if the command has not
+    sigtimedwait(&interrupt, nullptr, &no_wait);  // removes the signal if it is still pending
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
     EXPECT_EQ(outcome.code, exit_failed);
     EXPECT_EQ(outcome.err,

@@ -1,4 +1,4 @@
-// Functions that wait until a frame of a live session shows a state, instead of for a fixed time.
+// Waits until a frame of a live session shows a state, instead of for a fixed time.
 #pragma once
 
 #include <chrono>

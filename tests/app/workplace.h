@@ -1,5 +1,5 @@
-// A temporary folder with a small model, a script and a recording for tests of the program,
-// and functions that run the program.
+// A temporary folder with a small model, a script and a recording for tests of the program, and functions
+// that run the program.
 #pragma once
 
 #include <filesystem>
