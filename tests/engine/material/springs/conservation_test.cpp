@@ -1,4 +1,4 @@
-// Tests what a free body conserves over a long time.
+// Tests that a free body conserves energy and momentum over a long time.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -53,16 +53,17 @@ TEST(Inertia, OfASoftBodyIsItsMass) {
   EXPECT_EQ(lattice.find_real_time_step_s(inertia_step_s), inertia_step_s);
 }
 
-// Smoothing moves nodes and their rest shape; the scale is that of the lattice as it was made. The corner's
-// cell becomes 1.7 times as large, so that its rest volume in the first shape would count as crushed.
+// Smoothing moves nodes together with their rest shape, but the inertia scale stays that of the lattice as it
+// was made. Here the cell at a corner becomes 1.7 times as large. Compared with this new size, its first rest
+// volume would count as crushed.
 TEST(Inertia, IsThatOfTheFirstRestShape) {
   SpringLattice fresh = stiff_block(damped_material(0.45, 0.0)), smoothed = fresh;
   ASSERT_TRUE(smoothed.reform(0, {-0.0029, -0.0029, -0.0029}));
   EXPECT_EQ(smoothed.find_inertia_scale(inertia_step_s), fresh.find_inertia_scale(inertia_step_s));
 }
 
-// In real time, the step is inertia_step_s divided by an integer. Divided by the next smaller integer, the
-// step would require a larger inertia.
+// In real time, the step is inertia_step_s divided by an integer. If inertia_step_s were divided by the next
+// smaller integer, the step would require a larger inertia.
 TEST(Inertia, OfRealTimeNeedsAShorterStep) {
   for (const double damping_time_s : {0.0, 1e-4}) {
     SpringLattice lattice = stiff_block(damped_material(0.4, damping_time_s));
