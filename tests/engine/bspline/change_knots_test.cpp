@@ -129,8 +129,8 @@ TEST(ChangeKnots, TheDeviationOfACoarserSurfaceIsNeverPassed) {
     ASSERT_TRUE(coarse.ok()) << coarse.error().message;
     const double seen = largest_difference(random, surface, coarse->surface, along);
     EXPECT_LE(seen, coarse->deviation_m + 1e-12);
-    // The deviation of even a coarse fit is bounded, because the control points of a fit exceed the size of
-    // the surface by at most a factor that grows with the degree.
+    // The deviation is bounded even for a coarse fit, because its control points exceed the size of the
+    // surface by at most a factor that grows with the degree.
     EXPECT_LE(coarse->deviation_m, 1.0);
   }
 }

@@ -97,8 +97,8 @@ TriangleMesh closed_part(const CleanMesh& mesh) {
   return closed;
 }
 
-// Returns the depth of the deepest vertex of `of` in the closed part of `in`; 0 if no vertex is inside. A
-// vertex of a sheet is deeper by half the thickness of a plate.
+// Returns the depth of the deepest vertex of `of` in the closed part of `in`; 0 if no vertex is inside. An
+// open sheet counts as a plate, so half the thickness of the plate is added to the depth of its vertices.
 double brute_depth(const CleanMesh& of, const CleanMesh& in, Random& random) {
   const TriangleMesh closed = closed_part(in);
   if (closed.triangles.empty()) return 0.0;

@@ -1,4 +1,5 @@
-// Contact of random surfaces and solids compared with dense sampling, and cases that a search easily misses.
+// Compares contacts of random surfaces and solids with dense sampling, and tests cases that a search easily
+// misses.
 #include <gtest/gtest.h>
 
 #include <cmath>

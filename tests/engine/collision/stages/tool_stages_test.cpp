@@ -23,7 +23,7 @@ struct StagesCase {
   ContactStages stages;
 };
 
-// Returns a case with a sphere or a box that touches the surface or comes within the margin.
+// Returns a case with a sphere or a box that touches the surface or comes within the margin of it.
 StagesCase touching_case(Random& random) {
   const Surface surface = random_surface(random);
   StagesCase made{

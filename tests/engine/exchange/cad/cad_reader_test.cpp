@@ -289,8 +289,8 @@ TEST_F(CadReader, ASlantThatExceedsTheToleranceIsATrim) {
   EXPECT_TRUE(read(file, reading).surfaces.at(0).trims.empty());
 }
 
-// Returns the text of a STEP file with an added transformation operator. `ratios` is the text of its scale
-// and its third axis.
+// Adds a transformation operator to the text of a STEP file. `ratios` is the text of the operator's scale and
+// third axis.
 std::string placed_by(std::string text, const std::string& ratios) {
   const std::size_t end = text.rfind("ENDSEC;");
   text.insert(end,

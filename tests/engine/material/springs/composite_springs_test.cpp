@@ -255,8 +255,8 @@ TEST(CompositeSprings, OnlyTheGelCreeps) {
   EXPECT_NEAR(of_gel / of_rubber, 1.0 / 0.536, 0.05);
 }
 
-// The number of substeps that a tick chooses is stable for any two damping times. With the longest damping
-// time, stability also requires the increased inertia of strained nodes.
+// A tick chooses enough substeps to be stable for any two damping times. With the longest damping time,
+// stability also requires the increased inertia of strained nodes.
 TEST(CompositeSprings, StayStableHoweverTheyAreDamped) {
   const DenormalsFlushed flushed;
   for (const double first_time_s : {0.0, 1e-4, damping_time_range_s.high}) {

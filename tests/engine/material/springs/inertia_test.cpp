@@ -29,8 +29,8 @@ void scale_inertia(SpringLattice& lattice) {
   lattice.set_inertia(lattice.find_inertia_scale(inertia_step_s), inertia_step_s);
 }
 
-// The inertia scale leaves the safety margin rest_stability_fraction, for any damping of the springs and any
-// stiffness of the cells against changes of volume.
+// With the inertia scale, a substep is stable with the safety margin rest_stability_fraction, for any damping
+// of the springs and any stiffness of the cells against changes of volume.
 TEST(Inertia, IsTheLeastWithWhichASubstepIsStable) {
   for (const double poissons_ratio : {0.25, 0.45}) {
     for (const double damping_time_s : {0.0, 1e-4, damping_time_range_s.high}) {

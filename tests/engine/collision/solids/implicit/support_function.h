@@ -15,8 +15,8 @@ double support(const ImplicitShape& shape, const Vector3& direction);
 // solid. The search tries many directions, then finer ones around the best, so the result is a lower bound.
 double distance_by_support(const ImplicitShape& shape, const Vector3& point);
 
-// Returns a valid shape of 1 to 100 mm, possibly thin. `kind` selects among the convex kinds except the
-// half-space.
+// Returns a valid shape with dimensions of 1 to 100 mm, so it may be thin. `kind`, below convex_shape_kinds,
+// selects one of the convex kinds, without the half-space.
 ImplicitShape random_convex_shape(Random& random, int kind);
 inline constexpr int convex_shape_kinds = 7;
 
