@@ -139,10 +139,11 @@ std::vector<double> some_of(Random& random, const std::vector<double>& values, i
   return some;
 }
 
-// Compares a part of a grid with the whole grid. The evaluator first tests blocks of 16 samples of a row for
-// normals that are certainly above the rounding noise. The part has two rows of seven samples, too few for a
-// block, so each of its samples is tested on its own. The whole grid has only four rows, so that one pass may
-// call unit_normal() for all samples that fail the test.
+// Compares a part of a grid with the whole grid. The evaluator tests whole blocks of 16 samples first: if all
+// normals are certainly above the rounding noise, single samples need no test. The part has only 14 samples,
+// fewer than a block, so each of them is tested on its own. The whole grid has only four rows, because the
+// evaluator limits the calls of unit_normal() for samples that fail the test: with four rows, the limit is
+// never reached.
 void expect_same_bits_in_parts(Random& random, const Surface& surface) {
   const Grid grid = random_grid(random, surface, 4, random.integer(7, 60));
   const Grid part = make_grid(surface.u, surface.v, some_of(random, grid.u.parameters, 2),

@@ -266,8 +266,8 @@ TEST(MeshPair, CubesAreAsDeepAsTheirFacesOverlap) {
 TEST(MeshPair, ABarThroughABallIsFoundByItsEdges) {
   const CleanMesh ball = cleaned(ball_mesh(40, 80, 0.5));
   const CleanMesh bar = cleaned(box_of_triangles({-2.0, 0.3, -0.01}, {2.0, 1.3, 0.01}));
-  // No corner of the bar is inside the ball. The corners of the ball in the bar are less deep than the bar's
-  // edge is in the ball.
+  // No corner of the bar is inside the ball. Corners of the ball are inside the bar, but less deep than the
+  // bar's edge is in the ball.
   const MeshPairResult result = collide_meshes(bar, ball, Pose());
   ASSERT_EQ(result.contacts.size(), 1U);
   const double flatter = 0.5 * (1.0 - std::cos(3.15 / 40));
