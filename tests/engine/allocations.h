@@ -1,4 +1,5 @@
-// Programs that link allocations.cpp count the heap allocations of each thread through operator new.
+// Counts the heap allocations that each thread makes through operator new, in programs that link
+// allocations.cpp.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Makes failed assertions throw while an object of this class exists. For tests of preconditions:
+// Makes failed assertions throw while an object of this class exists. Tests of preconditions use it with
 // EXPECT_THROW(..., FailedAssertion).
 #pragma once
 

@@ -28,8 +28,9 @@ double largest_difference(Random& random, const Surface& a, const Surface& b,
   return largest;
 }
 
-// Tolerance of equal surfaces with coordinates below 1 m. The dual functionals of degree 9 have norms of some
-// thousands (de Boor 1990), and knot intervals that differ fivefold increase the error further.
+// Tolerance for the distance of two surfaces that are equal except for rounding, with coordinates below 1 m.
+// The dual functionals of degree 9 have norms of some thousands (de Boor 1990), and knot intervals that
+// differ fivefold increase the error further.
 constexpr double same_surface = 1e-11;
 
 Direction any_direction(Random& random) {
@@ -81,8 +82,8 @@ TEST(ChangeKnots, TakesPartsAlsoAcrossASeam) {
     ASSERT_TRUE(part.ok()) << part.error().message;
     const auto cut = convert_to_finer_knots(surface, along, part.value());
     ASSERT_TRUE(cut.ok()) << cut.error().message;
-    // The tolerance holds for short parts, too. Where a part is a small piece of a long span, its control
-    // points are given by blossoms, which are evaluated within that span.
+    // The tolerance also holds for a part that is a small piece of a long span. Its control points are values
+    // of the span's polar form (blossom) at parameters within the piece, so nothing is extrapolated.
     EXPECT_LT(largest_difference(random, surface, cut.value(), along), same_surface);
   }
 }
@@ -128,8 +129,8 @@ TEST(ChangeKnots, TheDeviationOfACoarserSurfaceIsNeverPassed) {
     ASSERT_TRUE(coarse.ok()) << coarse.error().message;
     const double seen = largest_difference(random, surface, coarse->surface, along);
     EXPECT_LE(seen, coarse->deviation_m + 1e-12);
-    // The deviation of even a coarse fit is bounded, because the control points of a fit exceed the size of
-    // the surface by at most a factor that grows with the degree.
+    // The deviation is bounded even for a coarse fit, because its control points exceed the size of the
+    // surface by at most a factor that grows with the degree.
     EXPECT_LE(coarse->deviation_m, 1.0);
   }
 }

@@ -116,8 +116,8 @@ TEST(GridEvaluator, PointsAloneAreTheSameBits) {
   }
 }
 
-// Returns a sheet that is squeezed until, in single precision, du x dv is only rounding noise at some samples
-// and just above the noise at others.
+// Returns a sheet that is squeezed in x and z by a random factor between 1e-8 and 1. In single precision, du
+// x dv may then be rounding noise at some samples and just above the noise at others.
 Surface squeezed_sheet(Random& random) {
   Surface surface = random_surface(random);
   const double squeeze = std::pow(10.0, random.uniform(-8.0, 0.0)), away_m = random.uniform(0.0, 2.0);
@@ -139,10 +139,11 @@ std::vector<double> some_of(Random& random, const std::vector<double>& values, i
   return some;
 }
 
-// Compares a part of a grid with the whole grid. The part has two rows of seven samples, too few for a block
-// of 16, so each of its samples is checked for regularity on its own. Most rows of the whole grid are found
-// regular at once. The whole grid has only four rows, so that one pass may call unit_normal() for all
-// irregular samples.
+// Compares a part of a grid with the whole grid. The evaluator tests whole blocks of 16 samples first: if all
+// normals are certainly above the rounding noise, single samples need no test. The part has only 14 samples,
+// fewer than a block, so each of them is tested on its own. The whole grid has only four rows, because the
+// evaluator limits the calls of unit_normal() for samples that fail the test: with four rows, the limit is
+// never reached.
 void expect_same_bits_in_parts(Random& random, const Surface& surface) {
   const Grid grid = random_grid(random, surface, 4, random.integer(7, 60));
   const Grid part = make_grid(surface.u, surface.v, some_of(random, grid.u.parameters, 2),
@@ -226,7 +227,8 @@ void expect_pole_normals(const Surface& surface, double tolerance) {
 TEST(GridEvaluator, PolesHaveTheirLimitNormals) {
   for (const Vector3& centre : {Vector3(0, 0, 0), Vector3(0.3, -0.2, 0.1)}) {
     const Surface tube = ellipsoid_tube(12, 9, centre);
-    // Single precision resolves the ring of control points beside the pole, 6 mm wide, to about 2e-8 m.
+    // The ring of control points beside the pole has half-axes of 6 and 3 mm. Single precision resolves its
+    // coordinates, up to 0.3 m, to about 2e-8 m.
     expect_pole_normals<float>(tube, 1e-4);
     expect_pole_normals<float>(transposed(tube), 1e-4);
     expect_pole_normals<double>(tube, 1e-12);
@@ -260,7 +262,7 @@ TEST(GridEvaluator, SamplesBesideAPoleAgreeWithSinglePoints) {
       const int k = i * grid.columns() + j;
       const Vector3 normal = unit_normal(tube, grid.u.parameters[i], v[j]);
       EXPECT_LT((normal_of(exact, k) - normal).norm(), 1e-7) << "v = " << v[j];
-      // In single precision, the ring of samples at v = 1e-7 is no larger than the rounding error of its
+      // In single precision, the ring of samples at v = 1e-7 is hardly larger than the rounding error of its
       // points.
       EXPECT_LT((normal_of(single, k) - normal).norm(), v[j] < 1e-3 ? 0.3 : 1e-3) << "v = " << v[j];
       EXPECT_NEAR(normal_of(single, k).norm(), 1.0, 1e-6);
@@ -335,7 +337,7 @@ TEST(GridEvaluator, CoincidingControlPointsBeyondAnUnclampedEndAreNoPole) {
   }
 }
 
-// Because of the poles and the pinch, some samples need unit_normal().
+// At the poles and at the pinch, the evaluator calls unit_normal(), which must not allocate either.
 TEST(GridEvaluator, AllocatesNothingAfterConstruction) {
   const Surface tube = pinched_tube();
   const Grid grid =

@@ -24,7 +24,8 @@ int count_of(const KnotVector& knots, double knot) {
   return static_cast<int>(std::count(knots.knots().begin(), knots.knots().end(), knot));
 }
 
-// Tolerance: coordinates are below 1 m, and knot insertion computes only weighted means of them.
+// Tolerance for rounding errors of points. Coordinates are below 1 m, and knot insertion computes only
+// weighted means of them.
 constexpr double insertion_rounding = 1e-14;
 
 TEST(KnotInsertion, KeepsTheSurface) {

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-// Expects an error with this code. `part` must occur in its message; it is empty if the code alone identifies
-// the fault.
+// Expects an error with the code `code` and with `part` in its message. `part` is empty if the code alone
+// identifies the fault.
 void expect_refused(const Result<KnotVector>& result, ErrorCode code, const std::string& part = "") {
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.error().code, code) << result.error().message;

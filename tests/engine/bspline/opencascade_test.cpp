@@ -25,8 +25,9 @@ struct OcctDirection {
   bool periodic;
 };
 
-// OpenCASCADE evaluates a periodic surface wrongly if the same pole affects a sample from two periods. Such a
-// direction is passed to OpenCASCADE as an open one, with the extended knots and repeated poles.
+// OpenCASCADE evaluates a periodic surface wrongly if a control point affects a sample through two of its
+// periodic images. A direction for which this function returns true is passed to OpenCASCADE as an open one,
+// with the extended knots and repeated control points.
 bool needs_unrolling(const KnotVector& knots) {
   return knots.control_point_count() <= knots.degree();
 }
@@ -44,8 +45,8 @@ OcctDirection occt_direction(const KnotVector& knots) {
   }
   int first = 0, poles = static_cast<int>(all.size()) - knots.degree() - 1;
   if (periodic) {
-    // OpenCASCADE stores the seam's multiplicity at both ends, and its first pole is the first that affects
-    // the first span.
+    // OpenCASCADE stores the seam's multiplicity at both ends. Its first pole (control point) is the first
+    // one that affects the first span.
     const int at_seam = result.multiplicities(1) + result.multiplicities(count) - 1;
     result.multiplicities(1) = result.multiplicities(count) = at_seam;
     first = knots.control_index(knots.find_span(knots.domain_start()), 0);
@@ -114,8 +115,8 @@ bool has_two_tangents(const KnotVector& knots, double u) {
   return knots.is_periodic() && u == knots.domain_end();
 }
 
-// The tolerances are relative to the size of the net (positions), or to that size times the magnitude of the
-// basis (derivatives).
+// Tolerances: positions are compared relative to the size of the net, derivatives relative to this size times
+// the magnitude() of the basis functions, and unit normals absolutely.
 constexpr double double_tolerance = 1e-12, single_tolerance = 1e-5;
 
 void expect_same_point(const Surface& surface, const SurfacePoint& expected, double u, double v) {
@@ -158,8 +159,8 @@ void expect_same_grid(const Surface& surface, const Grid& grid, const Geom_BSpli
       const Vector3 position(samples.x[k], samples.y[k], samples.z[k]);
       EXPECT_LE((position - expected.position_m).norm(), tolerance * size);
       ++checked.samples;
-      // The normal is ill-defined in this precision if the tangents are nearly parallel or short. It is
-      // compared only where the rounding error of the tangents is amplified by less than 20.
+      // The normal is ill-defined if the tangents are nearly parallel or short. It is compared only where the
+      // rounding error of the tangents is amplified by less than 20.
       if (has_two_tangents(surface.u, u) || has_two_tangents(surface.v, v)) continue;
       if (!(normal_amplification(surface, expected, u, v) < 20.0)) continue;
       ++checked.normals;

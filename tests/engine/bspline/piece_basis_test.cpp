@@ -9,9 +9,8 @@
 namespace spoonbill {
 namespace {
 
-// Compares two evaluations of a surface: by polynomial pieces, scaled to -1..1 and of degree 5 at most, and
-// by the B-spline recursion. The tolerances grow with the derivatives, which are larger the shorter the
-// pieces are.
+// Compares two evaluations of a surface: by its polynomial pieces, each scaled to -1..1, and by the B-spline
+// recursion. The tolerances grow with the derivatives, which are larger the shorter the pieces are.
 void expect_agreement(const Surface& surface, double u, double v) {
   const PieceBasis in_u(surface.u), in_v(surface.v);
   const PiecewiseSurface pieces{&surface, &in_u, &in_v};
@@ -36,7 +35,7 @@ TEST(PieceBasis, AgreesWithTheRecursion) {
     const Surface surface = random_surface(random, u, v);
     expect_agreement(surface, random.uniform(u.domain_start(), u.domain_end()),
                      random.uniform(v.domain_start(), v.domain_end()));
-    // The surfaces are compared at knots, at both ends and beyond the seam.
+    // The evaluations are also compared at the knots of u, which include both ends, and beyond the seam of v.
     for (const double knot : u.breakpoints()) expect_agreement(surface, knot, v.domain_end());
     expect_agreement(surface, u.domain_end(), v.domain_end() + 0.25 * (v.domain_end() - v.domain_start()));
   }

@@ -9,7 +9,8 @@
 namespace spoonbill {
 namespace {
 
-// Tolerance: coordinates are below 1 m, and points are only weighted means of them.
+// Tolerance for rounding errors of points. Coordinates are below 1 m, and points are only weighted means of
+// control points.
 constexpr double same_point = 1e-13;
 
 // Expects b at (u, v) to be the same point as a at in_a(u, v).

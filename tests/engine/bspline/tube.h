@@ -1,5 +1,5 @@
-// Tubes in the form of bodies: periodic in u, clamped in v, with poles in which a whole ring of control
-// points coincides.
+// Closed bodies in the form of tubes: periodic in u and clamped in v. Each end is a pole, at which a whole
+// ring of control points coincides.
 #pragma once
 
 #include "engine/bspline/surface.h"

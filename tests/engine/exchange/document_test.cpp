@@ -76,7 +76,7 @@ TEST(Document, RefusesWhatIsNoThickness) {
     EXPECT_EQ(refusal.field, "body.shell_thickness_mm") << thickness;
     EXPECT_EQ(refusal.message.find('\n'), std::string::npos);
   }
-  // Only a tool that is a surface has a shell thickness.
+  // Only a body has a shell thickness; a tool has none.
   EXPECT_EQ(refusal([](Json& json) { json["tool"]["shell_thickness_mm"] = 2; }),
             Refusal(ErrorCode::unknown, "tool.shell_thickness_mm"));
 }

@@ -72,7 +72,8 @@ TEST(File, FollowsLinksAndKeepsPermissions) {
   EXPECT_EQ(std::filesystem::status(file).permissions(), std::filesystem::perms(0640));
 }
 
-// A file keeps its group permissions whatever the umask, and nothing is written through a symbolic link.
+// A file keeps its group permissions whatever the umask. If the name of the temporary file is a symbolic
+// link, nothing is written through it.
 TEST(File, KeepsPermissionsThatTheMaskTakesAway) {
   const TemporaryFolder folder;
   const auto file = folder.write("shared.json", "one"), other = folder.write("other", "untouched");

@@ -89,7 +89,7 @@ TEST(FitScan, ExactGridIsFittedToItsEdges) {
   EXPECT_LT(fitted.bodies[0].errors.data_to_surface.p95_m, 2e-5);
 }
 
-// The sheet is square and low, so that it is as round about its centre as a bowl.
+// A low square sheet is nearly symmetric about an axis through its centre, as a bowl with a thin wall is.
 TEST(FitScan, LowWavesAreNoThinWall) {
   const Scan scan = random_cloud(5000, 3, [](double s, double t) { return on_waves(s, t, 0.1, 0.004); });
   const ScanFit fitted = fit(scan, 12);
@@ -97,8 +97,8 @@ TEST(FitScan, LowWavesAreNoThinWall) {
   EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::sheet);
 }
 
-// The fit spans the hole with nodes whose normals may point in either direction. These normals must not
-// decide the orientation.
+// The fit spans the hole in the scan with nodes whose normals may point in either direction. These normals
+// must not decide the orientation.
 TEST(FitScan, ClosedShapesFaceOutwardsWhateverWasNotSeen) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     Scan scan = ellipsoid_cloud(3000 + 500 * seed, {0.02, 0.022, 0.03});

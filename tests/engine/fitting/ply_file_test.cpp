@@ -320,7 +320,7 @@ TEST(PlyFile, GeneratedFilesAreReadAsTheyWereMade) {
     if (sample.is_text()) {
       EXPECT_FALSE(parse_ply(sample.bytes + " 1"));
     } else {
-      // The file is cut off at a random byte, or has extra bytes after its last row.
+      // The file is refused if it is cut off at a random byte, and if it has extra bytes after its last row.
       const int kept =
           random.integer(static_cast<int>(sample.header_bytes), static_cast<int>(sample.bytes.size()) - 1);
       EXPECT_FALSE(parse_ply(std::string_view(sample.bytes).substr(0, static_cast<std::size_t>(kept))));

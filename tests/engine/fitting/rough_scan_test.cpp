@@ -28,8 +28,8 @@ double share_facing(const Surface& surface, const std::function<Vector3(const Ve
   return facing / static_cast<double>(grid * grid);
 }
 
-// Scanners see surfaces from outside, so the normals must point away from the clay: away from the axis of a
-// tube, and towards the side to which a dome bulges.
+// Scanners see surfaces from outside, so the normals must point away from the material: away from the axis of
+// a tube, and towards the side to which a dome bulges.
 TEST(RoughScan, OpenShapesWithoutNormalsFaceOutwards) {
   for (unsigned seed = 1; seed <= (is_full_run() ? 6U : 2U); ++seed) {
     Scan tube = random_cloud(4000, seed, [](double s, double t) { return on_cylinder(s, t, 0.01, 0.06); });
@@ -177,7 +177,7 @@ TEST(RoughScan, NoiseDoesNotWrinkleTheSurface) {
     add_noise(scan, 6, 3e-4);
     const ScanFit fitted = fit(scan, 24);
     ASSERT_EQ(fitted.bodies.size(), 1U);
-    // The bending energy of a sphere is 8 pi; that of these ellipsoids is slightly larger.
+    // The bending energy is 8 pi = 25.1 for the sphere and 35.0 for the ellipsoid.
     EXPECT_LT(compute_bending_energy(fitted.bodies[0].surface), 45.0);
     EXPECT_LT(fitted.bodies[0].errors.surface_to_data.p95_m, 3e-4);
   }

@@ -11,7 +11,8 @@
 namespace spoonbill {
 namespace {
 
-// Stiffness of the usual device's coupling, N/m. It is divided by the force scale.
+// Stiffness of the spring that couples the tool to the hand with a usual haptic device, N/m. It is divided by
+// the force scale.
 constexpr double device_n_per_m = 700.0;
 
 struct Bend {

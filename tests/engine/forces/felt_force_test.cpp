@@ -38,7 +38,8 @@ struct Held {
   double mean_n = 0.0, ripple = 0.0;
 };
 
-// Presses the sphere within `press_s` and returns the force over the last tenth of the time.
+// Presses the sphere into the block within `press_s` and holds it there. Returns the mean force and its
+// ripple over the last tenth of the ticks.
 Held press_and_hold(Simulation& simulation, double press_s, int ticks) {
   Held held;
   double least = 0.0, most = 0.0;
@@ -101,8 +102,8 @@ INSTANTIATE_TEST_SUITE_P(, FeltForce,
                                          FeltCase{"gelatin-20-1", false, ForceRun::whole_table},
                                          FeltCase{"silicone-00-30", false, ForceRun::whole_table}));
 
-// The block is so fine that the sphere is equally deep at several places. The sphere's nearest point jumps
-// between them.
+// The lattice of the block is so fine that the sphere is equally deep at several places, and the sphere's
+// nearest point jumps between them.
 TEST(HeldSphere, FeelsASteadyForceWhereSeveralPlacesAreEquallyDeep) {
   if (const std::string reason = find_skip_reason(ForceRun::always); !reason.empty()) GTEST_SKIP() << reason;
   Scene scene = block_scene("silicone-00-30", 2000);

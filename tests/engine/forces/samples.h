@@ -1,5 +1,5 @@
-// Provides bodies, scenes and measurements for the tests of true forces, and selects the cases that a run
-// tries.
+// Provides bodies, scenes and measurements for tests that compare forces with exact values, and selects the
+// cases that a run tries.
 #pragma once
 
 #include <functional>
@@ -23,8 +23,8 @@ std::string find_skip_reason(ForceRun smallest);
 void print_result(const std::string& row, const std::string& what, double measured,
                   const std::string& unit = "");
 
-// Returns a surface fitted to a stock shape within a tolerance, moved by `centre_m`. Default tolerance: that
-// of the shape.
+// Returns a surface fitted to a stock shape, moved by `centre_m`. The default tolerance is
+// default_tolerance_m() of the shape.
 Surface stock_surface(const StockShapeSize& size, const Vector3& centre_m = Vector3::Zero(),
                       std::optional<double> tolerance_m = {});
 
@@ -38,7 +38,7 @@ Scene bundled_scene(const std::string& name);
 // Returns the names of all models that the program ships.
 std::vector<std::string> bundled_model_names();
 
-// Returns the material without flow, creep, stiffening and friction.
+// Returns the material without plastic flow, relaxation, stiffening and friction.
 Material made_elastic(Material material);
 
 // Returns a body of a stock shape.

@@ -56,7 +56,7 @@ TEST(SolidCheck, ThicknessOfABallIsItsDiameterWithinItsChords) {
 }
 
 TEST(SolidCheck, TheWallAboutACavityIsTheThickness) {
-  // The cavity's walls are 2, 3 and 4 mm from the faces of the box.
+  // The cavity's walls are 2 to 6 mm from the faces of the box.
   const TriangleMesh hollow = joined(box_of_triangles({0, 0, 0}, {0.05, 0.04, 0.03}),
                                      turned(box_of_triangles({0.004, 0.003, 0.005}, {0.045, 0.034, 0.028})));
   const SolidCheck check = checked(hollow);
@@ -65,8 +65,8 @@ TEST(SolidCheck, TheWallAboutACavityIsTheThickness) {
   EXPECT_TRUE(check.self_intersections.empty());
 }
 
-// Faces with a draft of 3 degrees meet the bottom at 87 degrees. Near that edge, lines between the two faces
-// can be arbitrarily short.
+// Faces with a draft of 3 degrees meet the bottom at 87 degrees. Near such an edge, lines from one face to
+// the other can be arbitrarily short.
 TEST(SolidCheck, EdgesOfADraftedBlockAreNotThin) {
   const double draft = 0.02 * std::tan(3.0 * pi / 180.0);
   const SolidCheck check =

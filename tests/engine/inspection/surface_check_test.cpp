@@ -79,8 +79,8 @@ TEST(SurfaceCheck, FindsWhereATubePassesThroughItself) {
   ExactShape shape;
   shape.u.periodic = true;
   shape.at = [](double u, double v) {
-    // The tube follows a circle of 30 mm for more than a turn and rises by half its width, so that its ends
-    // overlap.
+    // The tube follows a circle of 30 mm radius for more than a turn and rises by half its width, so that its
+    // ends overlap.
     const double turn = 2.2 * pi * v, around = 2.0 * pi * u;
     const Vector3 outward(std::cos(turn), 0.0, std::sin(turn));
     return Vector3((0.03 + 0.006 * std::cos(around)) * outward +
@@ -151,7 +151,8 @@ TEST(SurfaceCheck, ATightRimIsNoFold) {
   }
 }
 
-// The fold is halfway between two sampled points, or elsewhere.
+// The sheet is folded where x was `shift`. With one of the two values, the fold is halfway between two
+// sampled points.
 TEST(SurfaceCheck, ASheetFoldedFlatOverIsFound) {
   for (const double shift : {0.0, 0.003}) {
     Surface sheet = fitted(sheet_shape(0.1, 0.06)).surface;
@@ -169,7 +170,8 @@ TEST(SurfaceCheck, ASheetFoldedFlatOverIsFound) {
   }
 }
 
-// Two flat cones base to base. At their rim, a knot of full multiplicity, the normal turns by 152 degrees.
+// The body consists of two flat cones, base to base. At their rim, a knot of full multiplicity, the normal
+// turns by 152 degrees.
 TEST(SurfaceCheck, ASharpEdgeIsNoFold) {
   const KnotVector around = KnotVector::periodic(3, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}).value();
   const KnotVector along = KnotVector::open(1, {0, 0, 1, 2, 2}).value();

@@ -8,7 +8,7 @@ namespace spoonbill {
 // Returns an elastic, undamped material.
 Material elastic_material(double youngs_modulus_pa, double poissons_ratio, double density_kg_per_m3);
 
-// Returns a box of the material with one corner at the origin.
+// Returns the lattice of a box of the material with one corner at the origin.
 SpringLattice block(const Vector3& size_m, std::array<int, 3> counts, const Material& material,
                     InstructionSet set = InstructionSet::baseline);
 

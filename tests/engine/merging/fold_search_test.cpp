@@ -10,7 +10,8 @@
 namespace spoonbill {
 namespace {
 
-// Returns a ribbon over x along a curve with the given angle of climb.
+// Returns a ribbon, 50 mm wide along x, that follows a curve in the y-z plane. `climb` returns the curve's
+// angle of climb at a parameter from 0 to 1.
 Surface ribbon(const std::function<double(double)>& climb) {
   const auto u = KnotVector::clamped_uniform(3, 5).value(), v = KnotVector::clamped_uniform(3, 40).value();
   PointGrid points{uniform_parameters(u, 12), uniform_parameters(v, 161), {}};

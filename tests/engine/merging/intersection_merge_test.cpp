@@ -221,7 +221,7 @@ struct Drum {
   Surface surface() const {
     const double flat = radius - rounding, arc = 0.5 * pi * rounding, side = 2.0 * (half_height - rounding);
     const double whole = 2.0 * (flat + arc) + side;
-    // Profile of the upper half, from the pole.
+    // The profile of the upper half, at a distance of `way` along it from the pole, as radius and height.
     const auto profile = [=, this](double way) -> Eigen::Vector2d {
       if (way < flat) return {way, half_height};
       const double turn = (way - flat) / rounding;
@@ -298,8 +298,8 @@ TEST(IntersectionMerge, ABodyThatIsAsWideAsTheOtherIsRefusedBeforeItIsFitted) {
 }
 
 // The ball has a radius of 20 mm, the drum one of 8 mm; the drum's axis is 6 mm from the ball's centre. The
-// drum's lower rim is 14 mm beside and 16 mm below this centre, which is 1.3 mm outside the ball. A third of
-// the drum's lines lead there.
+// drum's lower rim is 14 mm beside and 16 mm below this centre, which is 1.3 mm outside the ball. About a
+// third of the rim is outside, so the drum's lines of constant u that lead there leave the ball again.
 TEST(IntersectionMerge, ARimThatLooksOutOfTheBallIsRefusedWhereItDoes) {
   const Drum drum{0.008, 0.023, 0.001};
   const Quaternion along_y(Eigen::AngleAxisd(-0.5 * pi, Vector3::UnitX()));

@@ -13,7 +13,7 @@ MergeRequest request_of(int continuity, double tolerance_m = 5e-5);
 // of a turn.
 Surface ring_strip(double from, double to, int count, double seam);
 
-// Returns a sheet between two curves over x; the spacing of u is uneven by `warp`.
+// Returns a sheet between two curves over x. With `warp` other than 0, x does not grow evenly with u.
 Surface sheet_between(const std::function<double(double)>& low, const std::function<double(double)>& high,
                       double warp = 0.0);
 

@@ -76,7 +76,7 @@ TEST(RoundPart, ADiscEndsInAPoleAndKeepsItsArea) {
   }
 }
 
-// The edge of an eccentric hole is followed exactly too.
+// The edge of an eccentric hole is followed as exactly as the outer edge.
 TEST(RoundPart, ARingRunsFromItsEdgeToItsHole) {
   const Surface sheet = level_plane(0.0, true);
   const auto ring = untrimmed(

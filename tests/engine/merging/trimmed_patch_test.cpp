@@ -95,8 +95,8 @@ TEST(TrimmedPatch, IsMergedWithItsNeighbour) {
 }
 
 TEST(TrimmedPatch, LinesOfTheOtherDirectionServeToo) {
-  // The notch is cut into one side. Lines of constant u are in two pieces there, and lines of constant v in
-  // one.
+  // The notch is cut into one side. There, lines of constant u are cut into two pieces, and lines of constant
+  // v are only shortened.
   const auto notched = untrimmed(
       wave(), {polygon({{0.0, 0.0}, {0.6, 0.0}, {0.6, 0.4}, {0.4, 0.5}, {0.6, 0.6}, {0.6, 1.0}, {0.0, 1.0}})},
       2e-5);

@@ -21,7 +21,8 @@ struct TubeProfile {
   double radius, along;
 };
 
-// Returns a profile that is turned about the z axis, with poles at ends of zero radius.
+// Returns the surface of revolution of a profile about the z axis. An end of the profile with zero radius
+// becomes a pole.
 Surface turned_profile(const std::function<TubeProfile(double)>& profile, int along, double shift_z = 0.0) {
   const auto u = KnotVector::periodic_uniform(3, 24).value();
   const auto v = KnotVector::clamped_uniform(3, along).value();

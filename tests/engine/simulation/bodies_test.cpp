@@ -56,8 +56,8 @@ TEST(Bodies, ThatBeginInEachOtherPart) {
   EXPECT_GT(impact.momentum_of(1).y(), 0.0);
 }
 
-// Returns two handles one above the other, the lower one fixed. The tool's action on the upper handle reaches
-// the lower one.
+// Returns two handles, one above the other. A plane fixes the end of both. The tool's action on the upper
+// handle reaches the lower one.
 Scene stacked_handles() {
   Scene scene = small_handle();
   Body upper = scene.bodies[0];

@@ -104,7 +104,7 @@ TEST(BodySupports, MovesItsNodesExactly) {
 }
 
 // The support fixes one slice of the lattice, anywhere between the slices of the coarser implicit block.
-// Without the support, the body would fall by 8 mm.
+// Without the support, the body would fall by about 7 cm.
 TEST(BodySupports, HoldWhatTheBlockHasNoNodeFor) {
   const Vector3 size_m(0.012, 0.012, 0.08), gravity_m_per_s2(0, 0, 9.81);
   const Material material = elastic_material(5e6, 0.3, 1000.0);
@@ -146,7 +146,7 @@ TEST(BodySupports, RefuseWhatHoldsNothing) {
   EXPECT_EQ(fast.field, "motion");
 }
 
-// Returns a handle of 60 mm along x that is fixed over its first tenth and moved up over its last.
+// Returns a handle of 60 mm along x. Its first tenth is fixed, and its last tenth is moved up and down.
 Scene moved_handle() {
   Scene scene = small_handle();
   scene.bodies[0].material = silicone();

@@ -179,7 +179,7 @@ TEST(BoxedBody, TouchesTheGroundWithItsSkinHoweverItLies) {
     const double cell = static_cast<double>(simulation.lattice().cell_size_m());
     for (int tick = 0; tick < 1500; ++tick) {
       simulation.advance(above(0.0, 0.1));
-      // The body hits the ground when it falls flat.
+      // The body penetrates the ground briefly when it falls flat.
       if (tick % 10 > 0) continue;
       EXPECT_NEAR(gap_m(simulation) / cell, 0.0, 0.1) << each.nodes << ", " << tick;
     }

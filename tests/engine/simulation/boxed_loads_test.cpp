@@ -216,8 +216,8 @@ TEST(BoxedLoads, ABodyWeighsWhatItIs) {
       }
     }
   }
-  // Each cell of the block gets the filled fraction of the lattice's cells that it overlaps, so the mass is
-  // conserved.
+  // Each cell of the block gets the mean filled fraction of the lattice's cells that it overlaps, so the mass
+  // is conserved.
   EXPECT_NEAR(of_block_kg / mass_kg, 1.0, 0.05);
 }
 

@@ -67,8 +67,8 @@ TEST(MaterialRegions, ShareTheInertiaScaleOfTheStiffestOne) {
   simulation.write_snapshot(snapshot);
   EXPECT_EQ(snapshot.substeps, 1);
   EXPECT_EQ(snapshot.flags & tick_flag_nodes_slowed, 0u);
-  // Wood gets the scale that a body of wood alone would have, except for the cells at the join to the heavier
-  // and softer clay.
+  // The scale is about that of a body of wood alone. Cells at the join to the heavier and softer clay change
+  // it.
   SpringLattice alone =
       SpringLattice::make(simulation.lattice().mesh(), wood, InstructionSet::baseline).value();
   EXPECT_NEAR(alone.find_inertia_scale(tick_s) / simulation.inertia_scale(), 1.0, 0.35);
@@ -133,7 +133,8 @@ TEST(MaterialRegions, AToolSticksToOneHalfAndSlidesOnTheOther) {
   Simulation smooth_side = simulate(scene), rough_side = simulate(scene);
   const double slid = slip_m(smooth_side, 0.02), stuck = slip_m(rough_side, 0.04);
   EXPECT_GT(slid, 0.4e-3);
-  // The tolerance is a tenth, because the skin yields between the fixed nodes.
+  // The bound is a tenth of the tool's movement rather than 0, because the skin yields between the fixed
+  // nodes.
   EXPECT_LT(stuck, 0.05e-3);
 }
 

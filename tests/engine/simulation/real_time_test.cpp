@@ -128,7 +128,8 @@ TEST(RealTime, IsThatOfAFall) {
       EXPECT_EQ(scale == 1.0, real_time);
       const double expected = 0.5 * 9.81 / scale * 1e-6 * ticks * ticks;
       for (const int body : {0, 1}) {
-        // In steps of the Euler method, a body falls farther than exactly, by up to the distance of one tick.
+        // In steps of the Euler method, a body falls farther than in exact free fall, by up to the distance
+        // of one tick.
         EXPECT_NEAR((before[body] - first_node_y(simulation, body)) / expected, 1.0, 1.1 / ticks)
             << real_time << ", " << is_stiff << ", " << body;
       }

@@ -18,7 +18,7 @@ namespace spoonbill {
 namespace {
 
 constexpr double arm_m = 0.04, bend_radius_m = 0.005, arm_thick_m = 0.006;
-// Distance between the arms of the hairpin.
+// Gap between the surfaces of the hairpin's two arms.
 constexpr double bend_gap_m = 2.0 * bend_radius_m - arm_thick_m;
 
 struct Station {
@@ -183,7 +183,7 @@ TEST(SelfContact, KeepsTheMomentum) {
   for (int tick = 0; tick < 200; ++tick) touching += bar.tick() ? 1 : 0;
   EXPECT_GT(touching, 10);
   const Folding::Momentum after = bar.momentum();
-  // The tolerance covers velocities in single precision.
+  // The tolerance of the linear momentum covers velocities in single precision.
   EXPECT_LT((after.linear - before.linear).norm(), 1e-5 * before.linear_sizes);
   EXPECT_LT((after.angular - before.angular).norm(), 1e-2 * before.angular_sizes);
 }

@@ -1,4 +1,5 @@
-// Tests thin shells in a simulation: a tool dents them from either side and touches them only once.
+// Tests thin shells in a simulation. A tool touches the face of the shell that it meets first, and dents the
+// shell from either side.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -142,7 +143,7 @@ TEST(Shell, RestsWhereNothingTouchesIt) {
   }
 }
 
-// Random strokes at up to 5 m/s with a sphere, a box, and a point, which could slip through.
+// A point, which could slip through, and a sphere strike the shell along fixed paths at up to 5 m/s.
 TEST(Shell, OutlastsFastStrokes) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   Scene scene = clay_bowl();
@@ -167,8 +168,8 @@ TEST(Shell, OutlastsFastStrokes) {
   }
 }
 
-// The tool presses the ring at its seam, or half a turn from the seam; the ring must yield equally in both
-// cases.
+// The tool presses the ring at its seam, or a quarter of a turn from the seam; the ring must yield equally in
+// both cases.
 TEST(Shell, RingGivesWayAtItsSeamAsElsewhere) {
   const auto pressed = [](double seam_turn) {
     Scene scene = clay_bowl();

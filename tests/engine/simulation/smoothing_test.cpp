@@ -74,7 +74,8 @@ void choose(Simulation& simulation, ToolAction action, double radius_m) {
   ASSERT_TRUE(simulation.apply(SetTool{tool}).ok());
 }
 
-// Returns the input of a hand that holds the tool by a spring, slightly inside the body.
+// Returns the input of a hand at a position over the handle's centre line. A spring couples the tool to the
+// hand.
 ToolInput resting(double x_m, double y_m) {
   ToolInput input = above(x_m, y_m);
   input.coupling_n_per_m = 400.0;

@@ -13,7 +13,7 @@
 namespace spoonbill {
 namespace {
 
-// Returns the snapshot of a sphere of 6 mm that presses the handle, whose upper side is at 2.7 mm.
+// Returns the snapshot of a sphere of 6 mm radius that presses the handle, whose upper side is at 2.7 mm.
 Snapshot pressed(Scene scene = small_handle()) {
   scene.planes.push_back({Vector3(0.015, 0, 0), Vector3::UnitX()});
   Simulation simulation = simulate(scene);

@@ -211,7 +211,7 @@ TEST(SoftMesh, FollowsATurnOfTheHandAsARigidOneDoes) {
   simulation.write_snapshot(snapshot);
   const MeshSnapshot& mesh = snapshot.bodies.back().mesh;
   const CleanMesh made = cleaned(ball());
-  // The mesh's own vertices precede those of halved edges.
+  // The vertices of the given mesh come first. Those that halve edges follow.
   for (std::size_t v = 0; v < made.mesh.vertices_m.size(); ++v) {
     const Vector3 wanted = place + turn * made.mesh.vertices_m[v];
     EXPECT_LT((Vector3(mesh.x[v], mesh.y[v], mesh.z[v]) - wanted).norm(), 1e-7);
@@ -240,7 +240,7 @@ TEST(SoftMesh, IsExchangedHashedAndLeftOutOfUndo) {
   EXPECT_EQ(snapshot.bodies.size(), 1u);
 }
 
-// All instruction sets must give the same bits.
+// The baseline and the best instruction set must give the same bits.
 TEST(SoftMesh, IsTheSameOnEveryInstructionSet) {
   const Scene scene = held_soft_handle(soft_tool(ball(), flesh(300)));
   Simulation plain = simulate(scene), best = simulate(scene, best_instruction_set());

@@ -69,7 +69,8 @@ MeshSolid cube(double half_m) {
   return {clean_mesh(std::move(mesh), "cube").value()};
 }
 
-// Every rigid shape rests on the handle, whose half thickness is 2.5 mm, with its lowest point 1 mm deep.
+// Every rigid shape is lowered onto the handle, whose half thickness is 2.5 mm, until its lowest point is 1
+// mm below the handle's upper side at rest.
 TEST(SolidTool, OfEveryRigidShapePushes) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   struct Case {

@@ -63,8 +63,8 @@ TEST(TrimmedArea, OfCurvesIsTheirClosedForm) {
   const TrimLoop hole = round_loop(open_u, open_v, {1.2, 0.1}, 0.3, 5, true);
   const TrimmedArea area = area_of(open_u, open_v, {outer, hole});
   const double share = (round_loop_area(0.95, 11) - round_loop_area(0.3, 5)) / 4.0;
-  // The curves are shorter than 8, and their chords deviate by at most 2e-5. The 1000 x 1000 grid is wrong
-  // only in cells along the curves, where errors mostly cancel.
+  // Together, the curves are shorter than 8, and their chords deviate by at most 2e-5. The 1000 x 1000 grid
+  // is wrong only in cells along the curves, where errors mostly cancel.
   EXPECT_NEAR(area.remaining_fraction(), share, 8.0 * 2e-5 / 4.0);
   EXPECT_NEAR(counted_share(area, open_u, open_v, 1000), share, 1e-4);
 }

@@ -20,8 +20,8 @@ namespace {
 constexpr double bent_side_m = 0.1, bent_hole_radius_m = 0.012, bent_tool_radius_m = 0.008;
 constexpr int hole_corners = 400;
 
-// Returns a flat sheet if `bend_m` is 0: its parameters are proportional to x and y, and its normals are
-// along z.
+// Returns a sheet whose parameters are proportional to x and y. If `bend_m` is 0, the sheet is flat and its
+// normals are along z. Otherwise, the heights of its control points vary by up to 6 `bend_m`.
 Surface bent_sheet(double bend_m = 0.0) {
   const KnotVector knots = KnotVector::clamped_uniform(3, 8).value();
   const double abscissae[8] = {0.0, 1.0 / 15, 0.2, 0.4, 0.6, 0.8, 14.0 / 15, 1.0};

@@ -14,7 +14,7 @@ Surface random_of(Random& random) {
 }
 
 // The samples of an element, which is a pair of knot spans, must have the same bits whether they are
-// evaluated one by one or all at once. Contact must not depend on how a cell was reached.
+// evaluated one by one or all at once. A contact must not depend on the order in which cells are evaluated.
 TEST(CellSlabs, SamplesHaveTheSameBitsHoweverTheyAreEvaluated) {
   Random random(94);
   for (int trial = 0; trial < 60; ++trial) {

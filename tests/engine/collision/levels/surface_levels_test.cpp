@@ -8,8 +8,8 @@
 namespace spoonbill {
 namespace {
 
-// A flat sheet does not bulge beyond its corners: the bounding spheres of its cells must contain the corners,
-// up to rounding, and be no larger than that.
+// A flat cell does not bulge beyond its corners. The radius of its bounding sphere must therefore equal the
+// distance from the centre to the farthest corner, up to rounding.
 TEST(SurfaceLevels, SpheresOfFlatCellsEndAtTheirCorners) {
   const KnotVector knots = KnotVector::clamped_uniform(1, 4).value();
   ControlNet net(4, 4);
@@ -65,8 +65,8 @@ TEST(SurfaceLevels, BoxesOfElementsHoldThem) {
 }
 
 // Two quadrilaterals in one plane, each cut from a sector with its tip at the origin. A narrow gap separates
-// the two sectors. Neither the line between the centres of the quadrilaterals nor their normals separate
-// them.
+// the two sectors. Neither the direction between the centres of the quadrilaterals nor their normals are
+// separating axes.
 TEST(PatchDistance, TellsSliversApartThatLieSideBySide) {
   const auto sliver = [](double from, double low_slope, double high_slope) {
     const double to = from + 4.0;

@@ -15,7 +15,7 @@
 namespace spoonbill {
 namespace {
 
-// Returns the mesh bent, stretched and turned, but not self-intersecting.
+// Returns the mesh deformed in proportion to `much`. The deformed mesh does not intersect itself.
 TriangleMesh bent(TriangleMesh mesh, double much) {
   for (Vector3& vertex : mesh.vertices_m) {
     const Vector3 at = vertex;
@@ -29,8 +29,7 @@ std::vector<TriangleMesh> deforming_solids() {
           torus_mesh(24, 12, 0.8, 0.35)};
 }
 
-// Returns a random point; every second point is near a vertex, an edge or a face, where sign errors are
-// likely.
+// Returns a random point. Every second point is near an edge or a face, where sign errors are likely.
 Vector3 point_near(Random& random, const TriangleMesh& mesh, int index) {
   if (index % 2 == 0) return random_point(random, 1.5);
   const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(
@@ -56,7 +55,8 @@ TEST(DeformingMesh, TellsTheNearestPointAndTheSideOfItAsBruteForceDoes) {
         const auto nearest = mesh.nearest(point, 10.0);
         ASSERT_TRUE(nearest);
         EXPECT_NEAR(std::abs(nearest->gap_m), distance, 1e-12);
-        // Three random rays decide the side, unless the point is on the surface up to rounding.
+        // Three random rays decide on which side of the surface the point is. A point on the surface, up to
+        // rounding, is not tested.
         if (distance > 1e-9) {
           EXPECT_EQ(nearest->gap_m < 0.0, brute_inside(now, point, random)) << distance;
         }

@@ -130,13 +130,13 @@ TEST(MeshDistance, ChangesByNoMoreThanTheWayMoved) {
   }
 }
 
-// A point reaches the surface if it moves along the negative gradient by its distance. This follows from the
-// definition of a distance.
+// A point reaches the surface if it moves along the negative gradient by its signed distance. This follows
+// from the definition of a distance.
 TEST(MeshDistance, TheGradientLeadsToTheSurface) {
   for (const NamedMesh& shape : everything()) {
     SCOPED_TRACE(shape.name);
     const CleanMesh clean = cleaned(shape.mesh);
-    // The depth is not the distance to the outside in a plate, or where parts overlap.
+    // Inside a plate, or where parts overlap, the depth is not the distance to the outside.
     const bool depth_is_distance =
         clean.report.sheets == 0 && shape.name.find("overlapping") == std::string::npos;
     const MeshDistance distance(clean, 0.04);
@@ -168,8 +168,8 @@ TEST(MeshDistance, AFilledHoleIsAsSolidAsTheRest) {
   Random random(6);
   for (int k = 0; k < random_point_count(500); ++k) {
     const Vector3 at = random_point(random, 1.2);
-    // A fan closes the hole over one square of the ball. The fan differs from the ball by less than the ball
-    // bulges over the square.
+    // A fan of triangles closes the hole, which is one square of the ball mesh. The fan differs from the ball
+    // by less than the ball bulges over the square.
     ASSERT_NEAR(holed.at(at).distance_m, whole.at(at).distance_m, 0.03);
   }
 }
@@ -178,10 +178,11 @@ TEST(MeshDistance, WhatOverlapsIsOneBody) {
   const MeshDistance balls(
       cleaned(joined(ball_mesh(40, 80, 0.7, {0.4, 0, 0}), ball_mesh(40, 80, 0.7, {-0.4, 0, 0}))));
   EXPECT_NEAR(balls.at({0.0, 0.0, 0.0}).distance_m, -0.3, 2e-3);
-  // The point is on the surface of one ball, up to the chords, and deep inside the other ball.
+  // The point is deep inside one ball. It is on the surface of the other ball, up to the error of the mesh.
   EXPECT_NEAR(balls.at({-0.3, 0.0, 0.0}).distance_m, -0.6, 2e-3);
   const MeshDistance spindle(cleaned(torus_mesh(60, 60, 0.4, 0.7)));
-  // The surface winds around this point once in each orientation, so the point is outside.
+  // The surface winds around this point once in each orientation. The winding number is therefore 0, and the
+  // point is outside.
   EXPECT_GT(spindle.at({0.0, 0.0, 0.0}).distance_m, 0.2);
   EXPECT_LT(spindle.at({0.5, 0.0, 0.0}).distance_m, -0.1);
   EXPECT_GT(spindle.at({0.0, 0.65, 0.0}).distance_m, 0.01);  // a point in the dimple of the spindle

@@ -37,7 +37,7 @@ TEST(TriangleMesh, ASoupOfTrianglesBecomesABox) {
 TEST(TriangleMesh, VerticesAHairApartAreOne) {
   Random random(3);
   TriangleMesh mesh = soup(ball_mesh(12, 24, 0.02));
-  // The vertices move by less than the tolerance of 7e-8.
+  // The vertices move by less than the distance of 7e-8 m up to which vertices are joined.
   for (Vector3& vertex : mesh.vertices_m) vertex += random_point(random, 4e-9);
   const CleanMesh clean = cleaned(mesh);
   EXPECT_EQ(clean.mesh.vertices_m.size(), 11u * 24u + 2u);
@@ -141,8 +141,8 @@ TEST(TriangleMesh, AFinOnASolidIsDropped) {
   EXPECT_EQ(clean.mesh.vertices_m.size(), 8u);
 }
 
-// The top of a box is divided differently from its sides. The crack between them has no area and needs no
-// triangle.
+// The top of a box has a vertex in the middle of one edge, and the side at this edge has none. The crack
+// between them has no area and needs no triangle.
 TEST(TriangleMesh, ACrackWithoutAreaLeavesABoxClosed) {
   TriangleMesh mesh = box_of_triangles({0, 0, 0}, {1, 1, 1});
   mesh.vertices_m.emplace_back(0.5, 1.0, 0.0);  // a vertex on the edge from vertex 2 to vertex 3

@@ -186,9 +186,9 @@ TEST(MeshProximity, TellsTheDeepestOfAPatch) {
   double least = 1.0;
   for (const VertexNearSurface& near : all.mesh_vertices()) least = std::min(least, near.gap_m);
   EXPECT_LT(least, -2e-4);
-  // The reported vertex is chosen by its depth below the tangent plane at the nearest point of another
-  // vertex. The two vertices are here up to 6 mm apart on a surface with a radius of about 20 mm, so the
-  // reported vertex is only nearly the deepest.
+  // The reported vertex is chosen by its depth below a tangent plane, which touches the surface at the point
+  // nearest to another vertex. The two vertices are here up to 6 mm apart on a surface with a radius of about
+  // 20 mm, so the reported vertex is only nearly the deepest.
   EXPECT_NEAR(one.mesh_vertices()[0].gap_m, least, 3e-4);
 }
 

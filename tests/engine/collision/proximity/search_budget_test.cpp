@@ -19,8 +19,8 @@ namespace spoonbill {
 namespace {
 
 constexpr double crumpled_m = 0.005;
-// After a budget is used up, each remaining point costs one more evaluation, and so does the step that was in
-// progress.
+// Upper limit of the evaluations of one search. After its budget is used up, each near point that is left
+// costs one more evaluation, and the step in progress may do so too.
 constexpr int most_evaluations = proximity_evaluation_limit + 2 * static_cast<int>(near_point_limit);
 
 // Returns a tube whose control points are at random in a small box.
@@ -77,14 +77,14 @@ TEST(SearchBudget, OfAMeshAroundASurfaceIsKept) {
   proximity.find(surface, DeformingMesh(around), 0.0);
   EXPECT_TRUE(proximity.overflow());
   EXPECT_GE(proximity.evaluations(), proximity_evaluation_limit) << "the scene is to use up the budget";
-  // After the budget is used up, each remaining vertex costs at most two evaluations: one for itself, and one
-  // for the deepest vertex of its patch.
+  // After the budget is used up, each vertex that is still to be compared costs at most two evaluations: one
+  // for itself, and one for the deepest vertex of its patch.
   EXPECT_LE(proximity.evaluations(), proximity_evaluation_limit + 2 * static_cast<int>(patches.size()));
   EXPECT_LE(proximity.surface_samples().size(), near_point_limit);
   EXPECT_LE(proximity.mesh_vertices().size(), near_point_limit);
 }
 
-// A half-space below a plane. It does not state that it is convex.
+// A half-space below a plane. is_convex() returns false, although the half-space is convex.
 class UnknownFloor : public SignedDistance {
  public:
   DistanceSample at(const Vector3& point_m) const override { return {point_m.y() + 0.001, Vector3::UnitY()}; }

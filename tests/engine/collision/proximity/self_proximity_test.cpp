@@ -16,8 +16,8 @@ namespace {
 constexpr double torus_ring_m = 0.02, torus_tube_m = 0.005, cell_m = 0.002, proximity_margin_m = 0.5 * cell_m;
 constexpr int torus_around = 12, torus_along = 24;
 
-// Returns a torus about y: u runs around its tube, v along it, starting at control point `first` of
-// `torus_along`. `squeeze` scales the width of the centre line along x.
+// Returns a torus about y. u runs around its tube. v runs along the tube and starts at control point `first`
+// of `torus_along`. `squeeze` scales the width of the centre line along x.
 Surface torus(int first, double squeeze = 1.0) {
   ControlNet net(torus_around, torus_along);
   const auto turn = [](int index, int count) { return 2.0 * std::numbers::pi * index / count; };
@@ -66,7 +66,7 @@ TEST(RestPairs, OfARingAreNeighboursOverTheSeamAsElsewhere) {
   EXPECT_LT(meet, pairs_seen);
 }
 
-// Returns the gaps of the samples in contact, sorted.
+// Returns the gaps of the samples of the squeezed torus that are in contact, sorted.
 std::vector<double> gaps_m(int first, double squeeze) {
   const Surface rest = torus(first), now = torus(first, squeeze);
   const NestedGrid nested = nested_grid_of(rest);

@@ -37,7 +37,7 @@ TEST(BodyTree, PicksThePairsThatALookAtAllOfThemFinds) {
 }
 
 TEST(BodyTree, BoxesThatTouchAreNear) {
-  // A third and a tenth are not exact in binary, so neither are the centre and the sides.
+  // A third and a tenth are not exact in binary, so the centres and sides of the boxes are not exact either.
   const double edge = 0.1 + 1.0 / 3.0;
   const BodyTree tree({{{0, 0, 0}, {edge, 1, 1}}, {{edge, 0, 0}, {1, 1, 1}}, {{1, 1, 1}, {1, 1, 1}}});
   EXPECT_EQ(tree.near_pairs(), (std::vector<BodyPair>{{0, 1}, {1, 2}}));

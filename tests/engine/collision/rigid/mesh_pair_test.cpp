@@ -14,8 +14,8 @@ namespace {
 
 constexpr double half_plate_m = 0.5 * sheet_thickness_m;
 
-// The following functions compute exact distances of two triangles. If the triangles do not cross, the
-// nearest points are on a corner and a face, or on two sides.
+// segments_apart(), pierces(), corner_apart() and triangles_apart() compute the exact distance of two
+// triangles. If the triangles do not cross, the nearest points are on a corner and a face, or on two sides.
 double segments_apart(const Vector3& a, const Vector3& b, const Vector3& c, const Vector3& d) {
   const Vector3 ab = b - a, cd = d - c;
   double least = 1e300;
@@ -97,7 +97,8 @@ TriangleMesh closed_part(const CleanMesh& mesh) {
   return closed;
 }
 
-// Returns the depth of the deepest vertex of `of` in the closed part of `in`; 0 if no vertex is inside.
+// Returns the depth of the deepest vertex of `of` in the closed part of `in`; 0 if no vertex is inside. An
+// open sheet counts as a plate, so half the thickness of the plate is added to the depth of its vertices.
 double brute_depth(const CleanMesh& of, const CleanMesh& in, Random& random) {
   const TriangleMesh closed = closed_part(in);
   if (closed.triangles.empty()) return 0.0;
@@ -215,7 +216,7 @@ TEST(MeshPair, SmallTrianglesAreNotForgotten) {
   for (const double scale : {1.0, 1e-3, 1e-5}) {
     SCOPED_TRACE(scale);
     const CleanMesh plane = cleaned(scaled(box_of_triangles({-1, -1, -1}, {1, 0, 1}), scale));
-    // A corner points down onto the inside of a triangle.
+    // The lower pole of the ball points down onto the inside of a triangle.
     const CleanMesh tip = cleaned(scaled(ball_mesh(6, 9, 0.5), scale));
     const MeshPairResult result = collide_meshes(plane, tip, at(0.3 * scale, 0.8 * scale, 0.1 * scale));
     EXPECT_FALSE(result.touching);
@@ -247,7 +248,7 @@ TEST(MeshPair, CubesAreAsDeepAsTheirFacesOverlap) {
   EXPECT_NEAR(deep.contacts[0].depth_m, 0.1, 1e-9);
   EXPECT_NEAR(deep.contacts[0].normal.x(), -1.0, 1e-9);
 
-  // Two edges at x = 0.5 sqrt 2 cross; the cubes are turned so that no corner is inside the other.
+  // Two edges cross near x = 0.5 sqrt 2. The cubes are turned so that no corner of one is inside the other.
   const double reach = std::sqrt(0.5);
   Pose edge = at(2.0 * reach - 0.02, 0.0, 0.0);
   const Quaternion upright(Eigen::AngleAxisd(M_PI / 4.0, Vector3::UnitZ()));
@@ -257,16 +258,16 @@ TEST(MeshPair, CubesAreAsDeepAsTheirFacesOverlap) {
   edge.orientation = lying;
   const MeshPairResult crossing = collide_meshes(one, cube, edge);
   ASSERT_EQ(crossing.contacts.size(), 1U);
-  // An edge that is 0.02 behind another edge is 0.02 cos 45 degrees behind each of the two faces that meet
-  // there.
+  // An edge that is 0.02 behind another edge is 0.02 cos 45 degrees behind each of the two faces that meet at
+  // the other edge.
   EXPECT_NEAR(crossing.contacts[0].depth_m, 0.02 * std::sqrt(0.5), 1e-9);
 }
 
 TEST(MeshPair, ABarThroughABallIsFoundByItsEdges) {
   const CleanMesh ball = cleaned(ball_mesh(40, 80, 0.5));
   const CleanMesh bar = cleaned(box_of_triangles({-2.0, 0.3, -0.01}, {2.0, 1.3, 0.01}));
-  // No corner of the bar is inside the ball, and the corners of the ball inside the bar are no deeper than
-  // the bar's own edge.
+  // No corner of the bar is inside the ball. Corners of the ball are inside the bar, but less deep than the
+  // bar's edge is in the ball.
   const MeshPairResult result = collide_meshes(bar, ball, Pose());
   ASSERT_EQ(result.contacts.size(), 1U);
   const double flatter = 0.5 * (1.0 - std::cos(3.15 / 40));

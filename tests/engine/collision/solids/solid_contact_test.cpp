@@ -59,8 +59,8 @@ TEST(SolidContact, SphereOnAPlane) {
   expect_contact({flat(), SphereShape{0.02}, {{0.013, 0.023, 0.021}, {}}}, -0.003, Vector3::UnitY());
 }
 
-// A sphere at height c above the bowl y = b r^2. While c < 1 / (2 b), the lowest point of the bowl is the
-// nearest to the centre; beyond, the nearest points form a ring.
+// The centre of a sphere is at height c above the lowest point of the bowl y = b r^2. While c < 1 / (2 b),
+// this lowest point is the nearest to the centre; beyond, the nearest points form a ring.
 TEST(SolidContact, SphereInABowl) {
   const double bend = 20.0;
   const Surface bowl = quadric_sheet(0.08, bend, bend, 14);
@@ -95,8 +95,8 @@ TEST(SolidContact, CylinderAcrossACylinder) {
   }
 }
 
-// Two linked rings, one shifted until the tubes nearly touch on one side. Before the shift, every point of
-// the tool's ring is equally far from the other ring.
+// Two linked rings, one shifted so that the tubes touch or nearly touch on one side. Before the shift, every
+// point of the tool's ring is equally far from the other ring.
 TEST(SolidContact, TorusLinkedWithATorus) {
   const Surface ring = round_torus(0.06, 0.01);
   const Quaternion upright = about(Vector3::UnitX(), right);
@@ -130,7 +130,7 @@ TEST(SolidContact, BoxOnAPlaneByFaceEdgeAndCorner) {
   box(corner, half.sum() / std::sqrt(3.0), depth / std::sqrt(3.0));
 }
 
-// An edge of the box crosses a ridge: the surface falls away along the edge and to both sides of it.
+// An edge of the box presses on the top of a dome, which falls away along the edge and to both sides of it.
 TEST(SolidContact, BoxEdgeOnADome) {
   const double depth = 0.002;
   const Surface dome = quadric_sheet(0.1, -3.0, -5.0, 12);

@@ -1,4 +1,5 @@
-// Contact of random surfaces and solids compared with dense sampling, and cases that a search easily misses.
+// Compares contacts of random surfaces and solids with dense sampling, and tests cases that a search easily
+// misses.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +17,8 @@
 namespace spoonbill {
 namespace {
 
-// Returns the point of least distance among dense samples, refined around the best sample.
+// Returns the surface point of least distance from the tool among dense samples, refined around the best
+// sample.
 Vector3 dense_nearest(const Surface& surface, const ToolShape& tool, int count) {
   double best = 1e300, best_u = 0.0, best_v = 0.0;
   double step_u = (surface.u.domain_end() - surface.u.domain_start()) / count;
@@ -77,8 +79,9 @@ TEST(SolidSearch, AgreesWithDenseSampling) {
     const Pose pose = pose_near_contact(random, surface, solid->bounds());
     const ToolShape tool = ToolShape::solid(*solid, pose);
     const CollisionResult result = collider.collide(surface, tool, 0.0, false);
-    // The distance function of a superquadric takes a hundred times as long as those of other shapes and may
-    // overstate the depth. The distance is therefore found from the support function.
+    // The distance function of a superquadric takes a hundred times as long as those of other shapes, so
+    // fewer samples are used. It may also overstate the depth. If the reference is deeper than the result, it
+    // is therefore computed again from the support function.
     const Vector3 at = dense_nearest(surface, tool, kind == 6 ? 30 : 120);
     double reference = tool.distance(at);
     if (kind == 6 && reference < std::min(-result.nearest.depth_m, 0.0) - 1e-6) {
@@ -128,7 +131,7 @@ TEST(SolidSearch, ASolidOfWhichLittleIsKnownIsFoundToItsWiderTolerance) {
   }
 }
 
-// Needles thinner than any cell pass through the sheet or just above it.
+// The axis of a needle, which is thinner than any cell, passes through a random point of the surface.
 TEST(SolidSearch, ANeedleBetweenSamplesIsFound) {
   Random random(53);
   const auto needle = make_signed_distance(CapsuleShape{1e-4, 0.05});
@@ -213,7 +216,7 @@ TEST(SolidSearch, TouchingAnEdgeAPoleOrByATangentIsFound) {
   // The tool is beyond a pole, where all values of u are one point.
   for (const bool turned : {false, true}) {
     const Surface tube = ellipsoid_tube(12, 12), body = turned ? transposed(tube) : tube;
-    // The transposed surface has inward normals.
+    // The transposed surface has inward normals, so it is not passed as a closed one.
     const CollisionResult pole =
         search(body, BoxShape{Vector3::Constant(0.01)}, {{0.0, 0.0, 0.05 + 0.0095}, none}, !turned);
     ASSERT_TRUE(pole.found);

@@ -27,8 +27,8 @@ Surface spike() {
   return make_surface(knots, knots, net).value();
 }
 
-// The sphere covers the corners of the whole sheet, as if the sheet were one cell. Its bound is therefore the
-// largest one of all elements (pairs of knot spans).
+// The sphere passes through the corners of the whole sheet, as if the sheet were one cell. The sheet bulges
+// out of it by at most the largest bound of all elements (pairs of knot spans).
 TEST(SurfaceBounds, ASpikeEscapesTheSphereOfItsCornersButNotTheBoundedOne) {
   const Surface surface = spike();
   const Vector3 peak = evaluate(surface, 0.5, 0.5).position_m;
@@ -78,7 +78,7 @@ TEST(SurfaceCollider, SpheresCoverTheirPatches) {
   }
 }
 
-// Returns the smallest distance of dense samples, refined around the best sample.
+// Returns the smallest distance of dense samples from the tool, refined around the best sample.
 double dense_distance(const Surface& surface, const ToolShape& tool) {
   constexpr int count = 160;
   double best = 1e300, best_u = 0.0, best_v = 0.0;
@@ -105,8 +105,9 @@ double dense_distance(const Surface& surface, const ToolShape& tool) {
   return best;
 }
 
-// Compares random surfaces of every kind with spheres, points and planes near them. The distance is never
-// larger than by dense sampling, and the point found is on the surface.
+// Compares random surfaces of every kind with spheres, points and half-spaces near them. Up to its tolerance,
+// the collider's distance must not be larger than that of dense samples, and its point must be on the
+// surface.
 TEST(SurfaceCollider, AgreesWithDenseSampling) {
   const int trials = random_cases(150, 4000);
   Random random(5);

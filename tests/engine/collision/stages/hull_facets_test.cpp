@@ -59,7 +59,8 @@ void expect_farthest(Random& random, const HullFacets& hull, const std::vector<V
     for (const auto& triangle : hull.triangles) {
       for (const int corner : triangle) of_hull = std::max(of_hull, direction.dot(points[corner]));
     }
-    // The tolerance is half a step per axis for both hull and points.
+    // hull_facets() rounds the points to multiples of `step`, by at most half a step per axis. The tolerance
+    // covers this error for a point and for a corner of the hull.
     EXPECT_NEAR(of_hull, of_points, 2.0 * step);
   }
 }

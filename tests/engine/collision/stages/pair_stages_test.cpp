@@ -96,8 +96,8 @@ TEST_F(CrossingTubes, RefineEachKeptCellInFour) {
   }
 }
 
-// Cells far from the curve are dropped: each triangle that remains is nearer to the curve than three times
-// its longest side, up to the margin.
+// Cells far from the curve are dropped. Each triangle that is left has a corner whose distance from the curve
+// is less than three times the triangle's longest side plus the margin.
 TEST_F(CrossingTubes, DropWhatIsFarFromTheCurve) {
   for (const StageTriangle& triangle : stages_.triangles) {
     double nearest = 1e30, longest = 0.0;

@@ -23,7 +23,7 @@ struct StagesCase {
   ContactStages stages;
 };
 
-// Returns a case with a sphere or a box that touches the surface or comes within the margin.
+// Returns a case with a sphere or a box that touches the surface or comes within the margin of it.
 StagesCase touching_case(Random& random) {
   const Surface surface = random_surface(random);
   StagesCase made{
@@ -95,7 +95,7 @@ TEST_F(ToolStagesOfRandomSurfaces, SpheresHoldTheirPatches) {
   });
 }
 
-// A cell that was dropped has no point within the margin.
+// A cell that was dropped has no point within the margin of the tool.
 TEST_F(ToolStagesOfRandomSurfaces, WhatIsDroppedDoesNotMeetTheTool) {
   int dropped = 0;
   for_cases([&](const StagesCase& made) {
@@ -160,8 +160,9 @@ TEST_F(ToolStagesOfRandomSurfaces, ContactsLieInTrianglesAndKeptSpheresOfEachLev
   });
 }
 
-// A cell with a point in the tool has a triangle. A triangle is at most as far from the tool as the surface
-// in its cell, plus the size of the smallest part into which the triangle was divided.
+// Each cell with a point within the margin of the tool has a triangle. The distance of a triangle from the
+// tool is at most the margin, plus the largest distance of the triangle from the surface, plus 1/16 of the
+// longest side, because the code tests balls around parts of the triangle.
 TEST_F(ToolStagesOfRandomSurfaces, TrianglesAreThoseThatMeetTheTool) {
   for_cases([](const StagesCase& made) {
     const auto& triangles = made.stages.triangles;

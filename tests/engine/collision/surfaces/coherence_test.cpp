@@ -13,7 +13,7 @@
 namespace spoonbill {
 namespace {
 
-// Tolerance that the collider guarantees, in metres.
+// Tolerance of a depth that the collider guarantees, in metres.
 constexpr double deepest_m = 2e-5;
 
 Vector3 random_point(Random& random, double low, double high) {
@@ -21,7 +21,7 @@ Vector3 random_point(Random& random, double low, double high) {
 }
 
 // The sphere moves a little from query to query, and to a random position at every tenth query. The surface
-// changes a little at every third.
+// changes a little at every third query.
 TEST(Coherence, ASphereOnItsWayIsFoundAsByAColliderThatKnowsNothing) {
   Random random(301);
   int found = 0;

@@ -13,7 +13,7 @@ namespace {
 struct Piece {
   Triangle triangle;
   Box box;
-  int i, j;  // indices of the finest cell
+  int i, j;  // indices of the grid's finest cell that contains the triangle
 };
 
 std::vector<double> cut(const std::vector<double>& parameters, int parts) {

@@ -11,7 +11,7 @@ namespace {
 
 struct Ball {
   double u0, u1, v0, v1;
-  double speed_u, speed_v;  // largest derivatives over the element that contains the piece
+  double speed_u, speed_v;  // bounds of the derivatives over the element that contains the piece
   Vector3 centre;
   double radius;
 };

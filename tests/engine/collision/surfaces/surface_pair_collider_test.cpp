@@ -57,7 +57,8 @@ Surface box(const Vector3& half, const Vector3& centre) {
 
 // Tolerance of results of Newton's method in double precision, on surfaces of 1 m.
 constexpr double exact_m = 1e-9;
-// Tolerance of normals: about the square root of 1e-15 m, the step at which Newton's method ends.
+// Tolerance of normals. Newton's method ends when a step reduces the distance by less than about 1e-15 m;
+// positions, and with them the normals, are accurate to about the square root of this number.
 constexpr double exact_normal = 1e-7;
 
 TEST(SurfacePair, AParaboloidReachesThroughAPlaneByItsVertex) {
@@ -176,7 +177,7 @@ TEST(SurfacePair, PolesMeet) {
   PairQuery query;
   query.first_closed = query.second_closed = true;
   query.reach_m = std::numeric_limits<double>::infinity();
-  // The poles are 0.05 from the centres.
+  // The poles are 0.05 m from the centres.
   const Surface first = ellipsoid_tube(10, 8);
   EXPECT_NEAR(collide(ellipsoid_tube(9, 7, {0, 0, 0.1001}), first, query).result.distance_m, 1e-4, exact_m);
   const PairAnswer answer = collide(ellipsoid_tube(9, 7, {0, 0, 0.0999}), first, query);
@@ -231,7 +232,8 @@ TEST(SurfacePair, GivenSamplesAreNotEvaluatedAndTellTheSame) {
   }
 }
 
-// Every cell is in contact, so all cells together are one region, whatever level the capacity allows.
+// Every cell is in contact, so all cells together are one region, on whatever level the search has to stop
+// because its number of cell pairs is limited.
 TEST(SurfacePair, CoincidentSheetsAreOneRegionAndNothingOverflows) {
   const KnotVector knots = KnotVector::clamped_uniform(3, 40).value();
   ControlNet net(40, 40);

@@ -57,9 +57,9 @@ Surface looped_sheet() {
   return drawn_out(knots, curve);
 }
 
-// Returns a tube along y whose lower wall is at z = -gap / 2 and whose upper wall is at gap / 2, both flat
-// for x from -3 to 3. A negative gap means that the walls have passed through each other. The ends bulge out,
-// and du x dv points outwards.
+// Returns a tube along y whose lower wall is at z = -gap / 20 and whose upper wall is at gap / 20, both flat
+// for x from -0.3 to 0.3. A negative gap means that the walls have passed through each other. The ends bulge
+// out, and du x dv points outwards.
 Surface pressed_tube(double gap) {
   const double h = 0.5 * gap;
   const std::vector<Vector3> upper = {{4, 0, h},  {3, 0, h},  {2, 0, h},  {1, 0, h}, {0, 0, h},

@@ -154,7 +154,7 @@ TEST_F(CadReader, UnitsAreThoseDeclared) {
       EXPECT_EQ(found.model.unit, name);
       EXPECT_TRUE(found.model.unit_declared);
       EXPECT_LT((middle_of(found.surfaces, "") - Vector3(0.015, 0.01, 0.005)).norm(), 1e-9);
-      // The option overrides the file's unit: the file's numbers are read as centimetres.
+      // `unit_m` overrides the file's unit: the file's numbers are read as centimetres.
       CadReading reading;
       reading.unit_m = 0.01;
       const double in_file = std::string(unit) == "mm"   ? 1e-3
@@ -180,7 +180,8 @@ std::string with_unit(std::string text, const std::string& unit) {
 
 TEST_F(CadReader, AnIgesFileWithoutAUnitIsInMillimetresAndSaysSo) {
   const std::string text = content_of(box_in("in", "box.igs"));
-  // The unit is missing, its flag means "none", or its name is not in the standard.
+  // The unit is missing, its flag is 0, which the standard does not define, or its name is missing or not in
+  // the standard.
   for (const char* unit : {",,,", ",0,,", ",3,4HFOOT,", ",3,2Hmm,", ",3,,"}) {
     SCOPED_TRACE(unit);
     const Found found = read(folder_.write("none.igs", with_unit(text, unit)));
@@ -222,7 +223,8 @@ TEST_F(CadReader, FacesThatCannotBeReadAreCounted) {
   }
 }
 
-// Writes two parts, each with its placement, into separate files.
+// Writes an assembly with two instances of one part. The part is in a file of its own, which the file of the
+// assembly names. Returns the file of the assembly.
 std::filesystem::path write_in_parts(const std::filesystem::path& folder) {
   opencascade::handle<TDocStd_Document> document;
   XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
@@ -287,7 +289,8 @@ TEST_F(CadReader, ASlantThatExceedsTheToleranceIsATrim) {
   EXPECT_TRUE(read(file, reading).surfaces.at(0).trims.empty());
 }
 
-// Returns the STEP file of a box, rewritten so that a transformation operator places the box.
+// Adds a transformation operator to the text of a STEP file. `ratios` is the text of the operator's scale and
+// third axis.
 std::string placed_by(std::string text, const std::string& ratios) {
   const std::size_t end = text.rfind("ENDSEC;");
   text.insert(end,
@@ -344,7 +347,9 @@ TEST_F(CadReader, AToleranceIsKeptAndReported) {
     }
     EXPECT_GT(deviation, 0.0);
     EXPECT_LE(deviation, tolerance_m);
-    EXPECT_LE(farthest, 1.05 * deviation);  // `farthest` is measured at nine points per piece
+    // `deviation` is the largest error at nine points per piece; between them, the error may be slightly
+    // larger.
+    EXPECT_LE(farthest, 1.05 * deviation);
     EXPECT_GT(controls, before);
     before = controls;
   }

@@ -79,8 +79,8 @@ std::string iges_text(const std::vector<Entity>& entities, const std::string& sc
          numbered('T', 1);
 }
 
-// Returns the parameters of a sheet of 10 x 20 mm, whose corner at the left end of the far edge is lifted by
-// 3 mm.
+// Returns the parameters of a sheet of 10 x 20 mm whose left edge is at `x`. The corner at the left end of
+// the far edge is lifted by 3 mm.
 std::string sheet_at(double x) {
   const std::string left = std::to_string(x), right = std::to_string(x + 10.0);
   return "1,1,1,1,0,0,1,0,0,0.,0.,1.,1.,0.,0.,1.,1.,1.,1.,1.,1.," + left + ",0.,0.," + right + ",0.,0.," +

@@ -60,8 +60,8 @@ std::string with_each(std::string text, const std::string& from, const std::stri
   return text;
 }
 
-// Returns a rectangular face in the parameter plane that exceeds the range from 0 to 1 by the fraction
-// `beyond`.
+// Returns a face that is a rectangle in the parameter plane. The rectangle exceeds the domain, from 0 to 1 in
+// u and from 0 to `v_end` in v, by the fraction `beyond` on each side.
 TopoDS_Face overshooting_face(const opencascade::handle<Geom_Surface>& surface, double beyond, double v_end) {
   const double low = -beyond, high = 1.0 + beyond, top = v_end * (1.0 + beyond);
   const gp_Pnt2d corners[] = {{low, -beyond * v_end}, {high, -beyond * v_end}, {high, top}, {low, top}};

@@ -34,8 +34,8 @@ class NearestKeptPoint {
   std::vector<Sample> grid_;
 };
 
-// Returns the area by quadrature. The area of a trimmed surface is computed by the midpoint rule with 200
-// lines in each direction.
+// Returns the area of the kept part. An untrimmed surface is integrated by Gauss quadrature, a trimmed one by
+// the midpoint rule with 200 lines in each direction.
 double kept_area_m2(const CadSurface& part);
 
 }  // namespace spoonbill

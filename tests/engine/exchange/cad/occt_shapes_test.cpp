@@ -39,7 +39,7 @@ Vector3 metres(const gp_Pnt& point) {
   return 1e-3 * Vector3(point.X(), point.Y(), point.Z());
 }
 
-// Returns points on the faces that are far enough from the edges for OpenCASCADE's classifier.
+// Returns points of a grid on each face, without those that OpenCASCADE does not classify as inside the face.
 std::vector<Vector3> points_on(const TopoDS_Shape& shape) {
   constexpr int across = 6;
   std::vector<Vector3> points;
@@ -116,7 +116,8 @@ void expect_same_shape(const TopoDS_Shape& shape, const ReadBack& back) {
       }
     }
   }
-  // The midpoint rule with 200 lines in each direction is less precise on trimmed faces.
+  // On trimmed faces, the midpoint rule with 200 lines in each direction is less precise, so the tolerance is
+  // larger.
   EXPECT_NEAR(area, area_m2(shape), (back.trimmed ? 5e-3 : 2e-3) * area);
 }
 

@@ -52,7 +52,7 @@ TEST(StepFile, ScipyEvaluatesTheSameSurfaces) {
   EXPECT_LT(largest_distance_by_script(model, {FileFormat::step, StepSchema::ap214, "mm"}, "0.001"), 1e-9);
   EXPECT_LT(largest_distance_by_script(model, {FileFormat::step, StepSchema::ap242, "m"}, "1"), 1e-9);
   EXPECT_LT(largest_distance_by_script(model, {FileFormat::step, StepSchema::ap214, "in"}, "0.0254"), 1e-9);
-  // The script must detect a unit that is wrong by 4e-7.
+  // The script must detect a unit that is wrong by the fraction 4e-7.
   EXPECT_GT(largest_distance_by_script(model, {FileFormat::step, StepSchema::ap214, "in"}, "0.02540001"),
             1e-8);
 }

@@ -136,8 +136,8 @@ TEST(Tessellation, AFlatSheetTakesTwoTrianglesAPiece) {
   EXPECT_EQ(flat->mesh.triangles.size(), 2u);
   EXPECT_EQ(flat->mesh.vertices_m.size(), 4u);
 
-  // A triangle of a saddle deviates by a quarter of the twist, |P00 - P10 - P01 + P11| / 4. Halving the cells
-  // in each direction divides the twist by four.
+  // The two triangles of a saddle deviate from it by |P00 - P10 - P01 + P11| / 4. Halving the cells in each
+  // direction divides this deviation by four.
   net.set_point(1, 1, {1, 1, 0.4});
   const auto saddle = tessellate(make_surface(line, line, net).value(), {}, 0.026);
   ASSERT_TRUE(saddle);

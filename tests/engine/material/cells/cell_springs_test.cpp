@@ -97,8 +97,7 @@ TEST(CellSprings, TheModulusAlongAnAxisIsTheAchievedOne) {
   }
 }
 
-// The stiffness matrix of one cell, with springs and volume force, has the six rigid motions as its only zero
-// modes.
+// The stiffness matrix of the springs of one cell has the six rigid motions as its only zero modes.
 TEST(CellSprings, OnlyRigidMotionsCostNoEnergy) {
   for (const CellCorners& corners :
        {brick(1e-3, 1e-3, 1e-3), brick(1.7e-3, 1e-3, 1e-3), brick(1.5e-3, 1.5e-3, 1e-3)}) {

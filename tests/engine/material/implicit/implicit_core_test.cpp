@@ -1,4 +1,4 @@
-// The coarse block of the implicit solver must weigh as much as the lattice.
+// Tests that the coarse block of cells of the implicit solver weighs as much as the lattice.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace spoonbill {
 namespace {
 
-// Returns a box with a floor and two walls, each one cell thick; the rest is void.
+// Returns a box that is empty except for a floor and two walls, each one cell thick.
 LatticeMesh bowl_in_box(const std::array<int, 3>& counts) {
   LatticeMesh box = box_mesh({0.04, 0.04, 0.04}, counts);
   box.filled.assign(box.cell_count(), true);

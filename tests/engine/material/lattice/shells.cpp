@@ -11,8 +11,9 @@ namespace {
 
 constexpr int shell_around = 32, shell_along = 24;
 
-// Returns the radius of the circle of control points for which a closed uniform cubic curve has this radius.
-// The curve is smaller than the circle by the factor (2 + cos(step)) / 3.
+// Returns the radius of the circle of control points for which a closed uniform cubic curve has the radius
+// `radius`. The curve is smaller than the circle by the factor (2 + cos(a)) / 3, where a is the angle between
+// two control points.
 double control_radius(double radius) {
   return radius * 3.0 / (2.0 + std::cos(2.0 * std::numbers::pi / shell_around));
 }

@@ -46,7 +46,7 @@ Vector3 middle_of_ring(const Vector3& at) {
 TEST(SolidLattice, OfARingHasItsVolumeAndKnowsWhereItsNodesLie) {
   const Surface ring = round_torus(round_ring_m, round_tube_m);
   const LatticeMesh mesh = solid_lattice(ring, {4000, {}}).value();
-  // Each turn has 80 chords or more, in both directions.
+  // The lattice samples the ring with 80 chords per turn or more, in both directions.
   EXPECT_NEAR(filled_m3(mesh) / (2.0 * pi * pi * round_ring_m * round_tube_m * round_tube_m), 1.0, 0.005);
   const std::vector<BodyCoordinates> places = find_node_coordinates(mesh);
   int inside = 0;

@@ -255,8 +255,8 @@ TEST(CompositeSprings, OnlyTheGelCreeps) {
   EXPECT_NEAR(of_gel / of_rubber, 1.0 / 0.536, 0.05);
 }
 
-// The number of substeps that a tick chooses is stable for any two damping times. With the longest damping
-// time, stability also requires the increased inertia of strained nodes.
+// A tick chooses enough substeps to be stable for any two damping times. With the longest damping time,
+// stability also requires the increased inertia of strained nodes.
 TEST(CompositeSprings, StayStableHoweverTheyAreDamped) {
   const DenormalsFlushed flushed;
   for (const double first_time_s : {0.0, 1e-4, damping_time_range_s.high}) {
@@ -325,7 +325,7 @@ TEST(CompositeSprings, StepsAllocateNothing) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-// A block slides down an incline on a base whose central part has a different friction: the mean of both
+// A block slides down an incline on its base, whose central part has a different friction. The mean of both
 // frictions applies, because the weight is evenly distributed.
 TEST(CompositeSprings, ABlockSlidesByTheFrictionsOfItsBase) {
   constexpr double tilt = 0.35, g = 9.81;
@@ -334,7 +334,7 @@ TEST(CompositeSprings, ABlockSlidesByTheFrictionsOfItsBase) {
   smooth.damping_time_s = 7e-5;
   smooth.friction = 0.1;
   for (const double rough : {0.1, 0.5, 1.2}) {
-    // The region covers the central three of seven rows, which bear half of the weight.
+    // The region covers the central three of seven rows of nodes, which bear half of the weight.
     MaterialRegion middle;
     middle.region.along = {0.3, 0.7};
     middle.friction = rough;

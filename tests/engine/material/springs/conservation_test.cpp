@@ -1,4 +1,4 @@
-// Tests what a free body conserves over a long time.
+// Tests that a free body conserves energy and momentum over a long time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,9 +42,9 @@ Energies energies_of(const SpringLattice& lattice, const StaticBody& springs, do
   return energies;
 }
 
-// Returns a block whose nodes each move at up to 2 mm/s. The block must stay near its origin, because
-// displacements have only seven digits. If it flew away by thousands of times its deformation, rounding would
-// add 5 % of its kinetic energy in thousands of ticks.
+// Returns a block whose nodes have random velocities of up to 2 mm/s along each axis. The block must stay
+// near its origin, because displacements have only seven digits. If it moved away by thousands of times its
+// deformation, rounding would add 5 % of its kinetic energy in thousands of ticks.
 SpringLattice shaken_block(double damping_time_s) {
   Material material = elastic_material(5000.0, 0.35, 1000.0);
   material.damping_time_s = damping_time_s;

@@ -29,8 +29,8 @@ void scale_inertia(SpringLattice& lattice) {
   lattice.set_inertia(lattice.find_inertia_scale(inertia_step_s), inertia_step_s);
 }
 
-// The inertia scale leaves the safety margin rest_stability_fraction, for any damping of the springs and any
-// stiffness of the cells against changes of volume.
+// With the inertia scale, a substep is stable with the safety margin rest_stability_fraction, for any damping
+// of the springs and any stiffness of the cells against changes of volume.
 TEST(Inertia, IsTheLeastWithWhichASubstepIsStable) {
   for (const double poissons_ratio : {0.25, 0.45}) {
     for (const double damping_time_s : {0.0, 1e-4, damping_time_range_s.high}) {
@@ -53,8 +53,14 @@ TEST(Inertia, OfASoftBodyIsItsMass) {
   EXPECT_EQ(lattice.find_real_time_step_s(inertia_step_s), inertia_step_s);
 }
 
+<<<<<<< HEAD
 // Smoothing moves nodes together with their rest shape. The scale remains that of the shape in which the
 // lattice was made, although the cells at one end become 1.8 times as large.
+=======
+// Smoothing moves nodes together with their rest shape, but the inertia scale stays that of the lattice as it
+// was made. Here the cell at a corner becomes 1.7 times as large. Compared with this new size, its first rest
+// volume would count as crushed.
+>>>>>>> t6
 TEST(Inertia, IsThatOfTheFirstRestShape) {
   SpringLattice fresh = stiff_block(damped_material(0.45, 1e-4)), smoothed = fresh;
   for (int n = 0; n < smoothed.mesh().node_count(); ++n) {
@@ -66,8 +72,8 @@ TEST(Inertia, IsThatOfTheFirstRestShape) {
             fresh.find_inertia_scale(0.5 * inertia_step_s));
 }
 
-// In real time, the step is inertia_step_s divided by an integer. Divided by the next smaller integer, the
-// step would require a larger inertia.
+// In real time, the step is inertia_step_s divided by an integer. If inertia_step_s were divided by the next
+// smaller integer, the step would require a larger inertia.
 TEST(Inertia, OfRealTimeNeedsAShorterStep) {
   for (const double damping_time_s : {0.0, 1e-4}) {
     SpringLattice lattice = stiff_block(damped_material(0.4, damping_time_s));

@@ -201,8 +201,8 @@ TEST(Integration, SelfWeightOnASlippingBase) {
   }
 }
 
-// A weight of 10 g on a bar of stiffness E A / L = 50 N/m, carried at its top without friction, hangs
-// 1.962 mm lower.
+// A bar of stiffness E A / L = 50 N/m is carried at its top without friction. A weight of 10 g pulls its
+// lower end down by 1.962 mm.
 TEST(Integration, HangingWeight) {
   const double length = 1.0, side = 0.02, stiffness = 50.0;
   SpringLattice lattice = block({side, length, side}, {2, 51, 2},
@@ -370,8 +370,9 @@ TEST(Integration, ClayKeepsAStretchAndRubberDoesNot) {
   EXPECT_NEAR(of_hard / of_clay, 1.0 / 1.5, 0.05);
 }
 
-// A gel that is held stretched creeps with its time constant by its relaxing fraction of the strain; after
-// release it springs back with the longer time constant of a standard linear solid.
+// A gel that is held stretched creeps: with its relaxation time as the time constant, the creep strain
+// approaches the relaxing fraction of the strain. After release, the gel springs back with the longer time
+// constant of a standard linear solid.
 TEST(Integration, GelCreepsAsItsRelaxationTimeSays) {
   Material gel = elastic_material(500.0, 0.45, 1000.0);
   gel.relaxing_fraction = 0.6;

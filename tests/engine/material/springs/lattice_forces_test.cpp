@@ -102,8 +102,8 @@ TEST(LatticeForces, RigidRotationProducesNoDamping) {
       whole_damper += static_cast<double>(s.stiffness[n] * tau) * apart.squaredNorm();
     }
   }
-  // The bound allows for single precision of the positions; the error (tau w)^2 / 2 of the expected shape is
-  // only 2e-5, where w is the spin.
+  // The bound allows for single precision of the positions. The forces are those of the shape expected after
+  // the time tau, whose error (tau w)^2 / 2 at the spin w is only 2e-5.
   EXPECT_LT(std::abs(power), 1e-3 * whole_damper);
 }
 

@@ -30,8 +30,8 @@ void visit_face(const LatticeMesh& mesh, int axis, bool high, const Visit& visit
   }
 }
 
-// Returns the axes to fix: `axis` at all nodes of the base, and as many axes of one corner and one edge as
-// are needed to prevent sliding and turning.
+// Returns the axes to fix: `axis` at all nodes of the base, and at two corners the axes that prevent sliding
+// and turning.
 std::vector<FixedAxis> slipping_base(const LatticeMesh& mesh, int axis);
 
 }  // namespace spoonbill
