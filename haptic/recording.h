@@ -24,12 +24,12 @@
 // this tick. A motion line covers `ticks` readings from `tick` on. It ends at the next multiple of 100, or
 // earlier before a command or the end, so that the same recording always has the same lines.
 //
-// dx_nm, dy_nm and dz_nm are the differences between DeviceReading::position_nm and that of the previous
-// reading; before tick 0, that is the default reading. dq_e9 contains the differences of orientation_e9 (x,
-// y, z, w). Each field is omitted if all its numbers are zero. `buttons` lists the buttons of each reading,
-// not their differences, and is omitted while they do not change. `missed` lists DeviceReading::missed. It is
-// omitted if all its numbers are zero, as in recordings that were not made live and in recordings older than
-// this field. The hash of the last line is that of the final state.
+// dx_nm, dy_nm and dz_nm are the changes of DeviceReading::position_nm since the previous reading. The
+// reading before tick 0 is the default reading. dq_e9 contains the changes of orientation_e9 (x, y, z, w).
+// Each field is omitted if all its numbers are zero. `buttons` lists the buttons of each reading, not their
+// changes, and is omitted while they do not change. `missed` lists DeviceReading::missed. It is omitted if
+// all its numbers are zero, as in recordings that were not made live and in recordings older than this field.
+// The hash of the last line is that of the final state.
 //
 // device: name, maximum_force_n, maximum_stiffness_n_per_m, maximum_damping_n_s_per_m, workspace_radius_m,
 // position_resolution_m, senses_orientation, actuates_torque. Optional, with the defaults of
@@ -136,7 +136,7 @@ class RecordingWriter {
   Status checkpoint(std::uint64_t state_hash);
 
   // Writes a command that applies before the next tick. The command is a JSON object with a text "command"
-  // and without "tick".
+  // and with neither "tick" nor "end".
   Status command(const Json& command);
 
   Status reading(const DeviceReading& reading);

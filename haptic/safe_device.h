@@ -57,8 +57,8 @@ enum SafetyFlag : std::uint32_t {
   safety_flag_softened = 1u << 16,
 };
 
-// Number of ticks between two calls of make_safe() from which the gap counts as a stall. In that time a hand
-// moves by several millimetres, so the force is no longer valid.
+// Smallest number of ticks between two calls of make_safe() that counts as a stall. In that time a hand moves
+// by several millimetres, so the force is no longer valid.
 inline constexpr std::uint64_t stall_ticks = 10;
 
 // Tick rate below which the force is cut, counted over the last 100 ms.

@@ -15,8 +15,8 @@ struct Colour {
 // Returns the linear value, 0 to 1, of an 8-bit sRGB value.
 float srgb8_to_linear(int value);
 
-// Colours with a meaning, shared by the scene and the legend. Every meaning also has a shape of its own, so
-// that nothing depends on distinguishing red from green.
+// Colours with a meaning, shared by the scene and the legend. Meanings whose colours could be confused also
+// differ in shape or label, so that nothing depends on distinguishing red from green.
 namespace palette {
 
 inline constexpr Colour fixed_node{28, 150, 84};    // drawn as squares

@@ -190,7 +190,7 @@ struct Footprint {
   }
 };
 
-// Rounds a size up. Sizes have eight steps per octave.
+// Rounds a size up to one of eight steps per octave.
 float quantised_size(float size) {
   const float octave = std::exp2(std::floor(std::log2(size)));
   return octave * std::ceil(8.0f * size / octave) / 8.0f;

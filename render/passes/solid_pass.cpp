@@ -94,8 +94,8 @@ SolidVertex revolve(const LathePoint& p, double angle) {
   return {{p.radius * c, p.height, p.radius * s}, {p.normal_out * c, p.normal_up, p.normal_out * s}};
 }
 
-// Appends the band between two profile points, the lower one first. Each triangle has three vertices,
-// counter-clockwise seen from outside.
+// Appends the band between two successive points of a profile, which runs from the lower end of the axis to
+// the upper end. Each triangle has three vertices, counter-clockwise seen from outside.
 void append_band(const LathePoint& low, const LathePoint& high, int segments,
                  std::vector<SolidVertex>& vertices) {
   for (int i = 0; i < segments; ++i) {

@@ -252,7 +252,7 @@ void TessellatedSurface::build_indices(bool u_wraps, bool v_wraps) {
   }
 }
 
-// Returns true if the line at row or column `at` has shrunk to a point.
+// Returns true if row `at` of the samples has shrunk to a point; column `at` if not `along_u`.
 bool TessellatedSurface::is_edge_collapsed(bool along_u, int at) const {
   const int rows = grid_->rows(), columns = grid_->columns();
   const int count = along_u ? columns : rows;
@@ -292,7 +292,7 @@ void TessellatedSurface::orient() {
 }
 
 // Replaces the triangles of the whole surface by those within the trim loops. orient() calls this after it
-// has determined from the whole surface whether it is closed and which side is outside.
+// has determined whether the whole surface is closed and which side is outside.
 void TessellatedSurface::trim_indices() {
   TrimmedGrid cut = trim_grid(grid_->u, grid_->v, *trim_);
   indices_.clear();

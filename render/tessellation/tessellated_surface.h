@@ -1,5 +1,5 @@
 // The surface of a body as triangles: a B-spline surface sampled on a knot-aligned grid, or a deforming mesh.
-// No GL.
+// Does not use GL.
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@
 
 namespace spoonbill {
 
-// The fineness of a tessellation: the number of pieces into which each polynomial span is divided. The
-// numbers are 1, 2, 3, 4, 6, 8, 12 and so on, so that the grid seldom changes. The ends of every span are
-// vertices.
+// The fineness of a tessellation: the number of pieces into which each polynomial span is divided.
+// choose_sampling_level() uses only the numbers 1, 2, 3, 4, 6, 8, 12, 16, 24 and 32, so that the grid seldom
+// changes. The ends of every span are vertices.
 struct SamplingLevel {
   // Number of pieces of each span between the breakpoints of a direction; empty before the first choice.
   std::vector<int> u_pieces;
@@ -48,8 +48,8 @@ inline constexpr std::int64_t sampling_cell_limit = 1'000'000;
 SamplingLevel choose_sampling_level(const SurfaceSnapshot& surface, double pixels_per_metre,
                                     const SamplingLevel& previous, const SamplingTarget& target = {});
 
-// Returns the parameters at which a direction is sampled, aligned with the knots. The seam of a periodic
-// direction appears once. `pieces` has one entry per span.
+// Returns the parameters at which one parameter direction is sampled, aligned with the knots. The seam of a
+// periodic direction appears once. `pieces` has one entry per span.
 std::vector<double> drawing_parameters(const KnotVector& knots, const std::vector<int>& pieces);
 
 // Computes the vertices and normals of a deforming mesh. The mesh appears smooth where adjacent faces meet at
@@ -83,8 +83,8 @@ Status check_net(const SurfaceSnapshot& surface);
 class TessellatedSurface {
  public:
   // Evaluates the surface at a sampling level. Grid, blending matrices and indices are rebuilt only if the
-  // structure, the knots or the trim of the surface or the level has changed; otherwise nothing is allocated.
-  // Errors: a grid that cannot be built, a control net whose size does not fit its knots.
+  // level has changed, or the surface's structure, knots or trim; otherwise nothing is allocated. Errors: a
+  // grid that cannot be built, a control net whose size does not fit its knots.
   Status update(const SurfaceSnapshot& surface, const SamplingLevel& level);
 
   // Updates from a mesh, whose triangles do not depend on a level.

@@ -29,7 +29,7 @@ Surface with_heights(Surface sheet, const std::function<double(double, double, d
   return sheet;
 }
 
-// A hilly sheet in two shapes, and a gently waved sheet on which the hilltops rest.
+// A hilly sheet in two shapes, and a gently waved sheet that the hilltops touch.
 struct Sheets {
   Sheets()
       : nested(make_nested_grid(wavy_sheet(controls).u, wavy_sheet(controls).v, levels).value()),

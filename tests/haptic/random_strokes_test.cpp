@@ -1,8 +1,8 @@
 // Tests random strokes on one to three bodies with any material and any panel setting. The hand moves at up
 // to 5 m/s; bodies may be without fixed nodes, and materials may change during a stroke. All numbers of
 // documents, frames and the panel must stay finite. Bodies that are not free must stay near their initial
-// positions. No cell of a single body may stay inverted, and the requested force must never exceed the
-// device's limit.
+// positions. If there is only one body, none of its cells may stay inverted. The requested force must never
+// exceed the device's limit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -95,8 +95,8 @@ Scene random_stroke_scene(Random& random, const std::vector<Material>& bundled, 
 }
 
 constexpr double fastest_m_per_s = 5.0;
-// Half the sides of a box around the body's centre. The hand stays in this box, and so does material that it
-// pulls out.
+// Half the sides of a box around the body's centre. The hand moves between points of this box, so that
+// material that it pulls out also stays in the box.
 const Vector3 roam_m(0.06, 0.03, 0.03);
 const Vector3 centre_m(0.03, 0.0, 0.0);
 

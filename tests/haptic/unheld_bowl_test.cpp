@@ -1,5 +1,5 @@
-// Tests the bundled bowl of clay, which nothing fixes, under strokes of scripts: it stays in the scene and
-// follows the tool.
+// Tests a bowl of clay without fixed nodes under strokes of scripts: the bowl stays in the scene and follows
+// the tool.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -19,7 +19,7 @@ namespace {
 
 void take_cloud(const Result<PointCloud>& cloud, std::size_t bytes) {
   if (!cloud) return must_be_one_line(cloud.error());
-  // A compressed cloud may have more points than the file has bytes, but at most a hundred times as many.
+  // A compressed cloud may have more points than the file has bytes, but at most a hundred points per byte.
   must_hold(cloud->points.size() <= 100 * bytes, "a small file holds few points");
   for (const Vector3& point : cloud->points) must_hold(point.allFinite(), "points are finite");
 }
