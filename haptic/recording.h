@@ -89,9 +89,9 @@ struct Recording {
 };
 
 // Reads a recording. A recording that is truncated anywhere after its first line is read up to the cut. Any
-// other deviation from the format above is an error that names line and field. A recording is also refused if
-// it is longer than 10 million ticks or 1 GiB, or contains a position beyond 10 m or an orientation that is
-// not a unit quaternion.
+// other deviation from the format, which is described at the top of this file, is an error that names line
+// and field. A recording is also refused if it is longer than 10 million ticks or 1 GiB, or contains a
+// position beyond 10 m or an orientation that is not a unit quaternion.
 Result<Recording> read_recording(const std::filesystem::path& file);
 Result<Recording> read_recording(std::istream& in, const std::string& source);
 

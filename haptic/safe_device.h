@@ -104,8 +104,8 @@ struct SafetyState {
   TickHistory ticks;         // history of the ticks since the last stall
 };
 
-// Applies the chain to one tick. A pure function: it does not allocate, lock, read a clock or throw. The
-// specification has passed check_specification(). Called only by SafeDevice.
+// Applies the chain to one tick. Depends only on its arguments, and does not allocate, lock, read a clock or
+// throw. The specification must have passed check_specification(). Called only by SafeDevice.
 SafeForce make_safe(SafetyState& state, const DeviceSpecification& specification, const SafetyInput& input);
 
 // Returns one line for each flag that concerns the user, the most serious flag first, separated by newlines.

@@ -33,7 +33,7 @@
 
 namespace spoonbill {
 
-// The last forces and positions; initially empty. Plain data.
+// The last requested forces and the positions of the hand at the same times; initially empty. Plain data.
 struct VibrationState {
   static constexpr std::size_t capacity = 256;  // a power of two, at least three periods of 66 ticks
   struct Sample {

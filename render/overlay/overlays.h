@@ -83,8 +83,8 @@ struct CellLines {
   std::vector<OverlayLine> far;
 };
 
-// Appends each edge of the outer faces of the lattice once. All edges are near if the lattice is a box around
-// a triangle mesh.
+// Appends each edge of the outer faces of the lattice once, except edges with an end outside the body. If the
+// lattice is a box of cells around the body, all edges are appended to `near`.
 void append_cell_lines(const LatticeSnapshot& lattice, const Eigen::Vector3f& eye_m, CellLines& lines);
 
 // Appends the rows and columns of the control net as thin lines, closed in periodic directions, with a

@@ -53,7 +53,7 @@ class CornerGroups {
 constexpr std::array<int, 10> piece_steps = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32};
 
 // A polynomial span keeps its previous number of pieces while the ratio of the needed number to the previous
-// number is in this range; see choose_sampling_level().
+// number is above tolerated_waste and at most tolerated_excess.
 constexpr double tolerated_excess = 1.15;
 constexpr double tolerated_waste = 0.4;
 

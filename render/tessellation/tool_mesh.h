@@ -43,8 +43,8 @@ struct ToolVertex {
 };
 
 // A triangle mesh in the frame of the tool. Each triangle has three indices, counter-clockwise seen from
-// outside. Vertices are shared where the solid is smooth and duplicated along its edges. An open sheet has
-// triangles on both sides.
+// outside. Triangles share vertices where an implicit shape or a surface is smooth, but not along an edge,
+// and not in a solid that is made of triangles. An open sheet has triangles on both sides.
 struct ToolMesh {
   std::vector<ToolVertex> vertices;
   std::vector<std::uint32_t> indices;
