@@ -30,7 +30,7 @@ struct DeviceSpecification {
   bool workspace_follows_model = false;
 
   // Limits of the safety chain (haptic/safe_device.h).
-  double quiet_force_n = 0.2;  // the force stays off until the requested force has stayed below this limit
+  double quiet_force_n = 0.2;  // the force stays off until the request was below this for 10 ticks
   // Time for the force to ramp from zero to full. The short default suits the virtual device, which cannot
   // hurt anybody; use 2 s for real hardware.
   double ramp_time_s = 0.2;

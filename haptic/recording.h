@@ -83,7 +83,7 @@ struct Recording {
   std::vector<DeviceReading> readings;  // one per tick
   std::vector<TimedCommand> commands;   // in order; commands at tick readings.size() come after all ticks
   std::vector<Checkpoint> checkpoints;
-  std::optional<Checkpoint> end;  // empty if the recording is truncated
+  std::optional<Checkpoint> end;  // tick and hash of the last line; empty if the recording is truncated
   std::uint64_t missed = 0;       // periods of 1 ms without a tick during the live session
   std::string notice;             // one line for the user; empty if the recording is complete
 };

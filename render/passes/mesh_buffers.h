@@ -14,8 +14,8 @@
 
 namespace spoonbill {
 
-// A tessellated surface in GL buffers: planar attributes (x, y, z, nx, ny, nz at locations 0 to 5) and
-// indices.
+// A tessellated surface in GL buffers: the indices, and a separate array for each attribute (x, y, z, nx, ny,
+// nz at locations 0 to 5).
 class SurfaceBuffers {
  public:
   explicit SurfaceBuffers(const GlFunctions& gl);

@@ -51,7 +51,7 @@ PlanarPoints view(const GridSamples<double>& samples) {
   return {samples.x.data(), samples.y.data(), samples.z.data()};
 }
 
-// Returns true if each contact of FCL's triangles is in a cell in which our code has a contact.
+// Returns true if our code has a contact in the same pair of cells as each contact of FCL's triangles.
 bool holds(const SurfacePairCollider& collider, const fcl::CollisionResult<float>& result) {
   std::set<std::array<int, 4>> cells;
   for (const CellPair& pair : collider.cells()) {
