@@ -26,7 +26,8 @@
 
 namespace spoonbill {
 
-// Returns the time since the machine was started, including the time it was suspended.
+// Returns the time since the machine was started. It includes the time for which the machine was suspended,
+// unless the system cannot sleep by CLOCK_BOOTTIME.
 std::int64_t boot_time_ns();
 void sleep_until_ns(std::int64_t deadline_ns);
 

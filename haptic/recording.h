@@ -18,11 +18,12 @@
 // switching the force on or off are recorded as commands.
 //
 // The version of the format is 1. If the document of a recording has an old version, the reader converts the
-// document and the commands (old_documents.h). The replay of such a recording has other states than those
-// whose hashes were recorded. Lines are in the order of their ticks. Within a tick the order is: state hash,
-// commands, motion. The state hash is that of the simulation after ticks 0 to tick - 1, before any command of
-// this tick. A motion line covers `ticks` readings from `tick` on. It ends at the next multiple of 100, or
-// earlier before a command or the end, so that the same recording always has the same lines.
+// document and the commands (old_documents.h). The replay of such a recording passes through other states, so
+// its hashes differ from the recorded hashes. Lines are in the order of their ticks. Within a tick the order
+// is: state hash, commands, motion. The state hash is that of the simulation after ticks 0 to tick - 1,
+// before any command of this tick. A motion line covers `ticks` readings from `tick` on. It ends at the next
+// multiple of 100, or earlier before a command or the end, so that the same recording always has the same
+// lines.
 //
 // dx_nm, dy_nm and dz_nm are the changes of DeviceReading::position_nm since the previous reading. The
 // reading before tick 0 is the default reading. dq_e9 contains the changes of orientation_e9 (x, y, z, w).

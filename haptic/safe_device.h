@@ -112,7 +112,7 @@ SafeForce make_safe(SafetyState& state, const DeviceSpecification& specification
 // Empty if no flag is set.
 std::string safety_text(std::uint32_t flags);
 
-// A device whose force passes through the safety chain.
+// Wraps a device, so that the force on the hand passes through the safety chain.
 //
 //   once a tick:  read(dropped ticks) -> reset the proxy if consume_proxy_reset()
 //                 -> advance the simulation -> give(force)

@@ -141,7 +141,7 @@ class TargetFollower {
   int ticks_left_ = 0;
 };
 
-// The virtual device of a live session, whose hand follows targets from another thread.
+// The virtual device of a live session. Its hand follows targets that another thread sends.
 //
 //   main thread: InputSource -> HandInputs --aim()--> [ TargetMailbox ] --> haptic thread: SteeredDevice
 class SteeredDevice : public Device {

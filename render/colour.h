@@ -33,11 +33,10 @@ inline constexpr Colour symmetry_plane{38, 92, 168, 210};  // drawn dash-dotted
 inline constexpr Colour tool{52, 118, 204};
 inline constexpr Colour ground_line{70, 78, 88};
 inline constexpr Colour scale_bar{48, 54, 62};
-inline constexpr Colour hull{96, 58, 160, 170};        // drawn as thin lines
-inline constexpr Colour parameter_range{0, 124, 132};  // drawn as thick borders on the surface
-inline constexpr Colour active_sphere{178, 34, 116};   // drawn as translucent shells
-inline constexpr Colour active_second_sphere{20, 92,
-                                             168};  // drawn as translucent shells, for a second surface
+inline constexpr Colour hull{96, 58, 160, 170};             // drawn as thin lines
+inline constexpr Colour parameter_range{0, 124, 132};       // drawn as thick borders on the surface
+inline constexpr Colour active_sphere{178, 34, 116};        // drawn as translucent shells
+inline constexpr Colour active_second_sphere{20, 92, 168};  // drawn like active_sphere, for a second surface
 inline constexpr Colour rejected_sphere{92, 100, 112, 90};  // drawn as faint shells
 inline constexpr Colour active_triangle{246, 196, 24, 205};
 inline constexpr Colour triangle_edge{120, 84, 0};

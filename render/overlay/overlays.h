@@ -150,7 +150,7 @@ StageShapes stage_shapes(const Snapshot& snapshot, const ViewSettings& settings)
 // most eight regions. Empty unless the contact points are the selected stage.
 std::vector<OverlayArrow> contact_arrows(const Snapshot& snapshot, const ViewSettings& settings);
 
-// Returns a sentence that describes the selected stage; empty if no stage is shown.
+// Returns a caption for the selected stage of the contact search; empty if no stage is shown.
 std::optional<std::string> stage_caption(const ViewSettings& settings);
 
 // Returns the box around all shapes.

@@ -252,7 +252,7 @@ void TessellatedSurface::build_indices(bool u_wraps, bool v_wraps) {
   }
 }
 
-// Returns true if row `at` of the samples has shrunk to a point; column `at` if not `along_u`.
+// Returns true if row `at` of the samples (column `at` if not `along_u`) has shrunk to a point.
 bool TessellatedSurface::is_edge_collapsed(bool along_u, int at) const {
   const int rows = grid_->rows(), columns = grid_->columns();
   const int count = along_u ? columns : rows;

@@ -42,9 +42,10 @@ struct SamplingTarget {
 inline constexpr std::int64_t sampling_cell_limit = 1'000'000;
 
 // Returns the level at which no edge and no sagitta exceeds the target, estimated from the control points of
-// the derivatives. A span keeps its number of pieces in `previous` while that is between 0.87 and 2.5 times
-// the needed number. A slowly changing shape then does not flicker between levels. The level is coarser if
-// the number of cells would exceed sampling_cell_limit. The size of the net must fit the knots.
+// the derivatives. A span keeps the number of pieces that it has in `previous` while this number is between
+// 0.87 and 2.5 times the needed number. A slowly changing shape then does not flicker between levels. The
+// level is coarser if the number of cells would exceed sampling_cell_limit. The size of the net must fit the
+// knots.
 SamplingLevel choose_sampling_level(const SurfaceSnapshot& surface, double pixels_per_metre,
                                     const SamplingLevel& previous, const SamplingTarget& target = {});
 
@@ -87,7 +88,7 @@ class TessellatedSurface {
   // grid that cannot be built, a control net whose size does not fit its knots.
   Status update(const SurfaceSnapshot& surface, const SamplingLevel& level);
 
-  // Updates from a mesh, whose triangles do not depend on a level.
+  // Updates from a mesh. Its triangles do not depend on a sampling level.
   void update(const MeshSnapshot& mesh);
   // Returns whether the last update() received a mesh.
   bool is_mesh() const { return is_mesh_; }
@@ -100,7 +101,7 @@ class TessellatedSurface {
   std::size_t vertex_count() const { return samples_.x.size(); }
 
   // Triangles, counter-clockwise seen from the side of the normals. Seams share vertices. A pole is a row of
-  // coincident vertices, some of whose triangles have no area.
+  // coincident vertices; some of the triangles at a pole have no area.
   const std::vector<std::uint32_t>& indices() const { return indices_; }
 
   // Number of rebuilds of the indices. GL buffers upload the indices when it has changed.
