@@ -9,8 +9,8 @@
 // It is 0 for a force of period L in any direction and with any constant offset, about 1 for noise, at least
 // 6 for a ramp, and about 1 - cos(2 pi L / P) for a sine whose period P is slightly longer than L. This is
 // the difference function of pitch detection (de Cheveigne and Kawahara 2002, JASA 111:1917), relative to the
-// variation within a period. The force repeats if d(L) is below 0.15 and below the mismatch of a sine of 15
-// Hz, so that slower motion does not count.
+// variation within a period. The force repeats if d(L) is below 0.15 and below the mismatch of a 15 Hz sine,
+// so that slower motion does not count.
 //
 // A force that repeats is a vibration if it is also
 //   - strong: the root mean square of a(t) exceeds the quiet force;

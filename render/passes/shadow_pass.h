@@ -15,8 +15,8 @@ namespace spoonbill {
 // The part of the ground that shadows can reach, and the projections of the world onto it.
 //
 // The shadow map covers the ground, not a plane perpendicular to the light. A point is projected along the
-// light onto the ground, and its depth in the map is its height above the ground. One map therefore serves
-// both the shadow of a body on itself and the shadow on the ground.
+// light onto the ground, and its depth in the map depends only on its height above the ground. One map
+// therefore serves both the shadow of a body on itself and the shadow on the ground.
 struct ShadowArea {
   Eigen::Vector2f corner_m;       // smallest x and z
   float side_m = 0.0f;            // side of the square that the map covers
