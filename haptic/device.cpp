@@ -17,7 +17,8 @@ constexpr double smallest_square = 1e-12;
 // Tolerance for the squared length of a unit quaternion. Rounding to billionths changes it by at most 2e-9.
 constexpr double unit_square_tolerance = 1e-6;
 
-// Rounds a coordinate to whole nanometres. A coordinate that is not finite becomes an invalid coordinate.
+// Rounds a coordinate to whole nanometres, at most reading_limit_nm from zero. A coordinate that is not
+// finite becomes an invalid coordinate.
 std::int64_t whole_nanometres(double metres) {
   if (!std::isfinite(metres)) return reading_limit_nm + 1;
   const double limit = static_cast<double>(reading_limit_nm);

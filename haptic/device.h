@@ -30,7 +30,7 @@ struct DeviceSpecification {
   bool workspace_follows_model = false;
 
   // Limits of the safety chain (haptic/safe_device.h).
-  double quiet_force_n = 0.2;  // the force stays off until the requested force has stayed below this limit
+  double quiet_force_n = 0.2;  // the force stays off until the request was below this for 10 ticks
   // Time for the force to ramp from zero to full. The short default suits the virtual device, which cannot
   // hurt anybody; use 2 s for real hardware.
   double ramp_time_s = 0.2;
@@ -87,8 +87,9 @@ struct DeviceReading {
 
 // A haptic device, or a simulated substitute for a haptic device.
 //
-// Each derived class has a factory function that opens the device on a thread that may block. If this fails,
-// the returned Error states what is missing. The destructor closes the device.
+// A derived class for real hardware has a factory function, which opens the device on a thread that may
+// block. If the device cannot be opened, the returned Error states what is missing. The destructor closes the
+// device.
 //
 // read() and set_force() must not allocate, lock, block or throw. The ticking thread calls them; the owner of
 // the device may call them before that thread starts and after it has ended. The watchdog
@@ -96,7 +97,7 @@ struct DeviceReading {
 // same time. A driver with a callback thread or a socket exchanges readings and forces through a
 // TripleBuffer, and drops a force that is not renewed within 50 ms.
 //
-// Only SafeDevice (haptic/safe_device.h) calls set_force().
+// A force other than zero comes only from SafeDevice (haptic/safe_device.h).
 class Device {
  public:
   virtual ~Device() = default;
@@ -106,7 +107,7 @@ class Device {
   virtual const DeviceSpecification& specification() const = 0;
 
   // Returns the reading for this tick; called once per tick. Returns nothing if there is no current reading:
-  // the device is disconnected, has stopped itself or answers too late. It may recover.
+  // the device is disconnected, has stopped itself or answers too late. The device may recover.
   virtual std::optional<DeviceReading> read() = 0;
 
   // Sets the force on the hand until the next tick. The force is at most the maximum of the specification.

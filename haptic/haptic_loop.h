@@ -2,7 +2,7 @@
 // system permits it, and measures how well it meets the deadlines.
 //
 //   deadline   |<- period ->|            |            |            |
-//   ticks      [0]          [1........................]  [4]       [5]
+//   ticks      [0]          [1........................]  [2]       [3]     (numbers: LoopTick::index)
 //                                        ^ dropped    ^ late, but by less than a period
 //
 // The clock also runs while the machine is suspended, so a suspension is treated like any other delay.
@@ -26,7 +26,8 @@
 
 namespace spoonbill {
 
-// Returns the time since the machine was started, including the time it was suspended.
+// Returns the time since the machine was started. It includes the time for which the machine was suspended,
+// unless the system cannot sleep by CLOCK_BOOTTIME.
 std::int64_t boot_time_ns();
 void sleep_until_ns(std::int64_t deadline_ns);
 
@@ -82,7 +83,8 @@ struct LoopFigures {
   std::uint64_t ticks = 0;   // completed calls
   std::uint64_t late = 0;    // calls that began more than half a period after their deadline
   std::uint64_t missed = 0;  // dropped periods
-  double rate_hz = 0.0;      // tick rate over the last whole second; before the first, since the start
+  // Ticks per second over the last whole second; during the first second, since the start.
+  double rate_hz = 0.0;
   // Quantiles of the delay from the deadline to the start of a tick, including dropped periods. Their
   // relative error is below 1/16.
   double lateness_p50_s = 0.0;

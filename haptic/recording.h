@@ -18,18 +18,19 @@
 // switching the force on or off are recorded as commands.
 //
 // The version of the format is 1. If the document of a recording has an old version, the reader converts the
-// document and the commands (old_documents.h). The replay of such a recording has other states than those
-// whose hashes were recorded. Lines are in the order of their ticks. Within a tick the order is: state hash,
-// commands, motion. The state hash is that of the simulation after ticks 0 to tick - 1, before any command of
-// this tick. A motion line covers `ticks` readings from `tick` on. It ends at the next multiple of 100, or
-// earlier before a command or the end, so that the same recording always has the same lines.
+// document and the commands (old_documents.h). The replay of such a recording passes through other states, so
+// its hashes differ from the recorded hashes. Lines are in the order of their ticks. Within a tick the order
+// is: state hash, commands, motion. The state hash is that of the simulation after ticks 0 to tick - 1,
+// before any command of this tick. A motion line covers `ticks` readings from `tick` on. It ends at the next
+// multiple of 100, or earlier before a command or the end, so that the same recording always has the same
+// lines.
 //
-// dx_nm, dy_nm and dz_nm are the differences between DeviceReading::position_nm and that of the previous
-// reading; before tick 0, that is the default reading. dq_e9 contains the differences of orientation_e9 (x,
-// y, z, w). Each field is omitted if all its numbers are zero. `buttons` lists the buttons of each reading,
-// not their differences, and is omitted while they do not change. `missed` lists DeviceReading::missed. It is
-// omitted if all its numbers are zero, as in recordings that were not made live and in recordings older than
-// this field. The hash of the last line is that of the final state.
+// dx_nm, dy_nm and dz_nm are the changes of DeviceReading::position_nm since the previous reading. The
+// reading before tick 0 is the default reading. dq_e9 contains the changes of orientation_e9 (x, y, z, w).
+// Each field is omitted if all its numbers are zero. `buttons` lists the buttons of each reading, not their
+// changes, and is omitted while they do not change. `missed` lists DeviceReading::missed. It is omitted if
+// all its numbers are zero, as in recordings that were not made live and in recordings older than this field.
+// The hash of the last line is that of the final state.
 //
 // device: name, maximum_force_n, maximum_stiffness_n_per_m, maximum_damping_n_s_per_m, workspace_radius_m,
 // position_resolution_m, senses_orientation, actuates_torque. Optional, with the defaults of
@@ -83,15 +84,15 @@ struct Recording {
   std::vector<DeviceReading> readings;  // one per tick
   std::vector<TimedCommand> commands;   // in order; commands at tick readings.size() come after all ticks
   std::vector<Checkpoint> checkpoints;
-  std::optional<Checkpoint> end;  // empty if the recording is truncated
+  std::optional<Checkpoint> end;  // tick and hash of the last line; empty if the recording is truncated
   std::uint64_t missed = 0;       // periods of 1 ms without a tick during the live session
   std::string notice;             // one line for the user; empty if the recording is complete
 };
 
 // Reads a recording. A recording that is truncated anywhere after its first line is read up to the cut. Any
-// other deviation from the format above is an error that names line and field. A recording is also refused if
-// it is longer than 10 million ticks or 1 GiB, or contains a position beyond 10 m or an orientation that is
-// not a unit quaternion.
+// other deviation from the format, which is described at the top of this file, is an error that names line
+// and field. A recording is also refused if it is longer than 10 million ticks or 1 GiB, or contains a
+// position beyond 10 m or an orientation that is not a unit quaternion.
 Result<Recording> read_recording(const std::filesystem::path& file);
 Result<Recording> read_recording(std::istream& in, const std::string& source);
 
@@ -136,7 +137,7 @@ class RecordingWriter {
   Status checkpoint(std::uint64_t state_hash);
 
   // Writes a command that applies before the next tick. The command is a JSON object with a text "command"
-  // and without "tick".
+  // and with neither "tick" nor "end".
   Status command(const Json& command);
 
   Status reading(const DeviceReading& reading);

@@ -25,8 +25,8 @@ Json motion_to_json(std::uint64_t tick, const DeviceReading& before, std::span<c
 // undefined.
 void read_motion(FieldReader& reader, std::vector<DeviceReading>& readings);
 
-// Checks that a command is an object with a text "command". A command of the simulation must also be complete
-// and within its ranges.
+// Checks that a command is an object with a text "command" and with neither "tick" nor "end". A command of
+// the simulation must also be complete and within its ranges.
 Status check_command(const Json& command, const std::string& source);
 
 // Returns {"tick": ..., fields of the command}.

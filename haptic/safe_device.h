@@ -57,8 +57,8 @@ enum SafetyFlag : std::uint32_t {
   safety_flag_softened = 1u << 16,
 };
 
-// Number of ticks between two calls of make_safe() from which the gap counts as a stall. In that time a hand
-// moves by several millimetres, so the force is no longer valid.
+// Smallest number of ticks between two calls of make_safe() that counts as a stall. In that time a hand moves
+// by several millimetres, so the force is no longer valid.
 inline constexpr std::uint64_t stall_ticks = 10;
 
 // Tick rate below which the force is cut, counted over the last 100 ms.
@@ -104,15 +104,15 @@ struct SafetyState {
   TickHistory ticks;         // history of the ticks since the last stall
 };
 
-// Applies the chain to one tick. A pure function: it does not allocate, lock, read a clock or throw. The
-// specification has passed check_specification(). Called only by SafeDevice.
+// Applies the chain to one tick. Depends only on its arguments, and does not allocate, lock, read a clock or
+// throw. The specification must have passed check_specification(). Called only by SafeDevice.
 SafeForce make_safe(SafetyState& state, const DeviceSpecification& specification, const SafetyInput& input);
 
 // Returns one line for each flag that concerns the user, the most serious flag first, separated by newlines.
 // Empty if no flag is set.
 std::string safety_text(std::uint32_t flags);
 
-// A device whose force passes through the safety chain.
+// Wraps a device, so that the force on the hand passes through the safety chain.
 //
 //   once a tick:  read(dropped ticks) -> reset the proxy if consume_proxy_reset()
 //                 -> advance the simulation -> give(force)

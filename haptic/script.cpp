@@ -15,8 +15,8 @@ namespace spoonbill {
 
 namespace {
 
-// Returns the minimum-jerk curve at time t, from 0 to 1. The curve starts and ends at rest, without a jump in
-// acceleration.
+// Returns the value of the minimum-jerk curve at time t. Time and value go from 0 to 1. The curve starts and
+// ends at rest, without a jump in acceleration.
 double ease(double t) {
   return t * t * t * (10.0 + t * (6.0 * t - 15.0));
 }

@@ -27,8 +27,8 @@ SpaceMouseMotion motion_from_counts(const int (&counts)[6], std::uint32_t button
 // never the haptic thread, because polling allocates and makes system calls.
 class SpaceMouse : public InputSource {
  public:
-  // Opens the connection. Errors: no daemon, or a SpaceMouse that is already open. Waits up to 0.3 s for the
-  // answer of an old daemon.
+  // Opens the connection to the daemon. Errors: no daemon, or a SpaceMouse that is already open. Waits up to
+  // 0.3 s for the answer of an old daemon.
   static Result<SpaceMouse> open();
 
   SpaceMouse(SpaceMouse&& other) noexcept;

@@ -27,7 +27,8 @@ double force_lag_s(double hold_ticks) {
 // Factor by which the damping exceeds the smallest damping that keeps the coupling passive.
 constexpr double damping_reserve = 2.0;
 
-// Force scale below which no force reaches the hand, and the hand moves the tool rigidly.
+// Force scale up to which the coupling is rigid: the tool is at the hand, so no force reaches the hand. If a
+// body has an implicit solver, the engine replaces the rigid coupling by a spring.
 constexpr double minimum_force_scale = 1e-9;
 
 // Sets the stiffness for a tick that follows `missed` missed ticks.
@@ -100,7 +101,7 @@ TickResult couple(CouplingState& coupling, const DeviceSpecification& specificat
 
 TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpecification& specification,
                 const DeviceReading& reading) {
-  const DenormalsFlushed flushed;  // makes decaying forces the same on every thread
+  const DenormalsFlushed flushed;  // flushes denormals on any thread, so that all threads get the same forces
   scale_stiffness(coupling, specification, reading.missed);
   const double stiffness = coupling.stiffness_scale * specification.maximum_stiffness_n_per_m;
   const double scale = simulation.scene().sculpting.force_scale;

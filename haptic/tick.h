@@ -52,7 +52,8 @@ TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpe
 TickResult couple(CouplingState& coupling, const DeviceSpecification& specification,
                   const Vector3& position_m, const Vector3& displacement_m, std::uint32_t missed = 0);
 
-// Adds the coupling to the state hash. `ticks` and the members after it are added only after missed ticks.
+// Adds the coupling to the state hash. `ticks` and the members after it are added only if a tick was missed
+// in the last 110 ms or the stiffness is still reduced.
 void add_to_hash(const CouplingState& coupling, StateHash& hash);
 
 }  // namespace spoonbill

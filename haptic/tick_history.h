@@ -26,8 +26,8 @@ class TickHistory {
     ticked_.set(0);
   }
 
-  // Returns the longest time, in milliseconds, between two successive ticks of which the later is within the
-  // window. It is 1 if no tick was missed, and at most longest_hold_ms.
+  // Returns the longest time, in milliseconds, between two successive ticks, the later of which is in the
+  // last 100 ms. It is 1 if no tick was missed, and at most longest_hold_ms.
   std::size_t find_longest_hold() const {
     std::size_t longest = 1;
     std::size_t end = 0;  // age, in milliseconds, of the tick at the end of the hold
@@ -40,7 +40,7 @@ class TickHistory {
     return std::min(longest, longest_hold_ms);
   }
 
-  // Returns the number of ticks within the window.
+  // Returns the number of ticks in the last 100 ms.
   std::size_t count() const { return (ticked_ & window_mask()).count(); }
 
   std::array<std::uint64_t, 2> words() const {

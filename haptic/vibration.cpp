@@ -42,7 +42,7 @@ bool vibrates(const VibrationState& state, const VibrationLimits& limits, int pe
   const int periods = count_periods(period);
   const int ticks = periods * period;
   if (state.count < static_cast<std::uint64_t>(ticks)) return false;
-  // Sums of |f(t) - f(t - L)|^2, and of the squared motion of the hand in the same time.
+  // Sums of |f(t) - f(t - L)|^2, and of the squared displacement of the hand over the same L ticks.
   double change = 0.0, moved_m2 = 0.0;
   double energy = 0.0, newest_energy = 0.0, oldest_energy = 0.0;  // sums of |a(t)|^2
   const int third = periods / 3;

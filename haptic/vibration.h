@@ -6,11 +6,11 @@
 //
 //   d(L) = mean |f(t) - f(t - L)|^2 / (2 mean |a(t)|^2)
 //
-// It is 0 for a force of period L in any directions and with any constant offset, 1 for noise, 2 for a ramp,
-// and about 1 - cos(2 pi L / P) for a sine of a longer period P. This is the difference function of pitch
-// detection (de Cheveigne and Kawahara 2002, JASA 111:1917), relative to the variation within a period. The
-// force repeats if d(L) is below 0.15 and below the mismatch of a sine of 15 Hz, so that slower motion does
-// not count.
+// It is 0 for a force of period L in any direction and with any constant offset, about 1 for noise, at least
+// 6 for a ramp, and about 1 - cos(2 pi L / P) for a sine whose period P is slightly longer than L. This is
+// the difference function of pitch detection (de Cheveigne and Kawahara 2002, JASA 111:1917), relative to the
+// variation within a period. The force repeats if d(L) is below 0.15 and below the mismatch of a 15 Hz sine,
+// so that slower motion does not count.
 //
 // A force that repeats is a vibration if it is also
 //   - strong: the root mean square of a(t) exceeds the quiet force;
@@ -21,8 +21,8 @@
 //     only pushes, so the root mean square of its a(t) is at most half of the maximum force. If it exceeds
 //     0.6 of the maximum force, the force reverses, and this condition does not apply.
 //
-// A pulse does not repeat. A steady vibration is recognised within 150 ms of its first tick from 22 Hz on and
-// within 100 ms from 50 Hz on; between 16 and 22 Hz it takes three periods.
+// A pulse does not repeat. A steady vibration of at least 22 Hz is recognised within 150 ms of its first
+// tick, and one of at least 50 Hz within 100 ms. Between 16 and 22 Hz, recognition takes three periods.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@
 
 namespace spoonbill {
 
-// The last forces and positions; initially empty. Plain data.
+// The last requested forces and the positions of the hand at the same times; initially empty. Plain data.
 struct VibrationState {
   static constexpr std::size_t capacity = 256;  // a power of two, at least three periods of 66 ticks
   struct Sample {

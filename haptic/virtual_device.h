@@ -17,7 +17,7 @@
 namespace spoonbill {
 
 // A simulated hand on a handle: a mass that a spring and damper pull toward a target. The defaults are a
-// relaxed hand on a stylus, critically damped so that the handle neither rings nor lags.
+// relaxed hand on a stylus, critically damped, so that the handle follows fast without ringing.
 struct Hand {
   double mass_kg = 0.1;  // the handle and the part of the hand that moves with it
   double stiffness_n_per_m = 300.0;
@@ -141,7 +141,7 @@ class TargetFollower {
   int ticks_left_ = 0;
 };
 
-// The virtual device of a live session, whose hand follows targets from another thread.
+// The virtual device of a live session. Its hand follows targets that another thread sends.
 //
 //   main thread: InputSource -> HandInputs --aim()--> [ TargetMailbox ] --> haptic thread: SteeredDevice
 class SteeredDevice : public Device {

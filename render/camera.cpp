@@ -25,8 +25,8 @@ Eigen::Vector2d free_centre(const Viewport& viewport) {
   return {r.x + 0.5 * r.width, r.y + 0.5 * r.height};
 }
 
-// Returns the smallest distance at which every corner of the box is within a rectangle at the centre of the
-// free rectangle. The sides of this rectangle are filled_fraction of those of the free rectangle.
+// Returns the smallest distance of the camera at which every projected corner of the box is within a
+// rectangle. This rectangle is `viewport.free_px`, scaled by filled_fraction about its centre.
 double fitting_distance(const Camera& camera, const Box& box, const Viewport& viewport) {
   const Eigen::Matrix3d axes = eye_axes(camera);
   const double focal = focal_px(camera, viewport);
@@ -42,8 +42,8 @@ double fitting_distance(const Camera& camera, const Box& box, const Viewport& vi
   return distance;
 }
 
-// Returns the offset, in pixels, of the centre of the projected corners of the box from the centre of the
-// free rectangle.
+// Returns the offset, in pixels, from the centre of `viewport.free_px` to the centre of the rectangle around
+// the projected box.
 Eigen::Vector2d projected_offset(const Camera& camera, const Box& box, const Viewport& viewport) {
   Box2 pixels;
   for (int i = 0; i < 8; ++i) {

@@ -39,8 +39,9 @@ Viewport make_viewport(int width_px, int height_px, const Rectangle& panel_px);
 // Returns the camera turned to a standard view, with the same target, distance and lens.
 Camera look_from(const Camera& camera, StandardView view);
 
-// Returns the camera moved, without rotation, so that the box is centred in the free rectangle and fills two
-// thirds of it in the tighter direction. An empty box leaves the camera unchanged.
+// Returns the camera moved, without rotation, so that the box is centred in the area that no panel covers
+// (Viewport::free_px) and fills two thirds of this area in the tighter direction. An empty box leaves the
+// camera unchanged.
 Camera frame(const Camera& camera, const Box& box, const Viewport& viewport);
 
 Vector3 eye_position(const Camera& camera);
@@ -50,8 +51,8 @@ Eigen::Matrix3d eye_axes(const Camera& camera);
 
 Eigen::Matrix4d view_matrix(const Camera& camera);
 
-// Returns the perspective projection to the clip space of GL, with its centre in the centre of the free
-// rectangle.
+// Returns the perspective projection to the clip space of GL, with its centre in the centre of the area that
+// no panel covers (Viewport::free_px).
 Eigen::Matrix4d projection_matrix(const Camera& camera, const Viewport& viewport);
 
 // Returns the length in pixels of one metre at the distance of the target.
@@ -69,7 +70,7 @@ struct Ray {
 Ray ray_through(const Camera& camera, const Viewport& viewport, const Eigen::Vector2d& pixel);
 
 // Returns the point of the horizontal plane at `height_m` that a pixel shows; empty if the pixel does not
-// show it.
+// show the plane.
 std::optional<Vector3> point_on_height(const Camera& camera, const Viewport& viewport,
                                        const Eigen::Vector2d& pixel, double height_m);
 

@@ -15,8 +15,8 @@ struct Colour {
 // Returns the linear value, 0 to 1, of an 8-bit sRGB value.
 float srgb8_to_linear(int value);
 
-// Colours with a meaning, shared by the scene and the legend. Every meaning also has a shape of its own, so
-// that nothing depends on distinguishing red from green.
+// Colours with a meaning, shared by the scene and the legend. Meanings whose colours could be confused also
+// differ in shape or label, so that nothing depends on distinguishing red from green.
 namespace palette {
 
 inline constexpr Colour fixed_node{28, 150, 84};    // drawn as squares
@@ -36,7 +36,7 @@ inline constexpr Colour scale_bar{48, 54, 62};
 inline constexpr Colour hull{96, 58, 160, 170};             // drawn as thin lines
 inline constexpr Colour parameter_range{0, 124, 132};       // drawn as thick borders on the surface
 inline constexpr Colour active_sphere{178, 34, 116};        // drawn as translucent shells
-inline constexpr Colour active_second_sphere{20, 92, 168};  // drawn as shells, for a second surface
+inline constexpr Colour active_second_sphere{20, 92, 168};  // drawn like active_sphere, for a second surface
 inline constexpr Colour rejected_sphere{92, 100, 112, 90};  // drawn as faint shells
 inline constexpr Colour active_triangle{246, 196, 24, 205};
 inline constexpr Colour triangle_edge{120, 84, 0};

@@ -15,7 +15,7 @@ struct ContactSheetLayout {
   int columns = 4;
   int cell_width_px = 480;  // the height follows from the aspect ratio of the first frame
   int margin_px = 12;
-  int caption_px = 0;             // letter height of the captions; 0 omits the captions
+  int caption_px = 0;             // height of a line of caption; 0 omits the captions
   std::string caption_font_path;  // a TrueType file, required for captions
 };
 

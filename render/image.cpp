@@ -34,8 +34,8 @@ bool is_opaque(const Image& image) {
 
 PngEncoder::PngEncoder() : deflate_memory_(ISAL_DEF_LVL1_DEFAULT) {}
 
-// Applies the Up filter to all rows: it vectorises and suits a picture whose background is a vertical
-// gradient.
+// Applies the Up filter to all rows but the first. This filter vectorises and suits a picture whose
+// background is a vertical gradient.
 void PngEncoder::filter(const Image& image, int channels) {
   const std::size_t stride = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(channels);
   filtered_.resize((stride + 1) * static_cast<std::size_t>(image.height));

@@ -47,7 +47,7 @@ struct ViewSettings {
   int samples = 4;          // samples per pixel, 0 or 4
   double detail = 1.0;      // fineness of the tessellation; 0.5 doubles edge lengths and chord errors
   bool keep_level = true;   // lets the tessellation stay slightly too fine or too coarse, to avoid flicker
-  double ground_y_m = 0.0;  // see ground_below()
+  double ground_y_m = 0.0;  // height of the ground, see ground_below()
   double arrow_m_per_n = 0.012;
 };
 

@@ -1,5 +1,5 @@
-// Test cases that end their process. run_suite_test checks that the results of the other cases are still
-// known.
+// Test cases, two of which end their process. run_suite_test checks that the results of the other cases are
+// still known.
 #include <gtest/gtest.h>
 
 #include <csignal>

@@ -14,8 +14,7 @@ namespace spoonbill {
 
 namespace {
 
-// Side of OSMesa's own framebuffer. It is as small as possible, because the renderer draws into framebuffers
-// of its own.
+// Side of OSMesa's own framebuffer. It is small, because the renderer draws into framebuffers of its own.
 constexpr int own_framebuffer_side_px = 16;
 constexpr int maximum_side_px = 16384;
 

@@ -75,8 +75,8 @@ void* glfw_symbol(const char* name) {
   X(void, glfwWindowHint, (int hint, int value), (hint, value))                                              \
   X(int, glfwWindowShouldClose, (GLFWwindow * window), (window))
 
-// Opens GLFW. Must succeed before any GLFW function is called. Errors, which name the package: GLFW is
-// missing or lacks one of the functions.
+// Opens GLFW. Must succeed before any GLFW function is called. Errors: GLFW is missing or lacks one of the
+// functions.
 Status open_glfw() {
   const auto library = SharedLibrary::open(library_file, library_package);
   if (!library) return library.error();

@@ -78,8 +78,8 @@ class GlfwWindow final : public GlContext {
   // are included.
   std::vector<KeyPress> consume_key_presses();
 
-  // Returns the handle for the GLFW backend of Dear ImGui, whose callbacks must be installed after make().
-  // The window remains the owner.
+  // Returns the handle for the GLFW backend of Dear ImGui. The backend must install its callbacks after
+  // make(). The window remains the owner.
   GLFWwindow* native() const { return window_; }
 
  private:

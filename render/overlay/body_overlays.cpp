@@ -56,7 +56,7 @@ struct Edge {
   bool is_near;
 };
 
-// A quad on the outside of the hexahedral block: its corners in order, and the inner node adjacent to the
+// A quad on the outside of the hexahedral block: its corners in order, and the node one step inwards from the
 // first corner.
 struct Quad {
   std::array<std::size_t, 4> corners;

@@ -13,7 +13,7 @@ constexpr float range_width_px = 2.4f;
 constexpr float triangle_edge_width_px = 1.0f;
 constexpr float normal_width_px = 1.3f;
 constexpr float contact_radius_m = 0.00015f;
-constexpr double short_normal = 0.6;  // length of the other normals, relative to that of the deepest contact
+constexpr double short_normal = 0.6;  // relative length of a normal that is not at a deepest contact
 constexpr std::size_t maximum_arrows = 24;
 
 void add_line(const Vector3& start, const Vector3& end, Colour colour, float width_px,

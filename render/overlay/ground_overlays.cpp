@@ -18,7 +18,7 @@ constexpr float line_width_px = 1.0f;
 constexpr int pieces_per_line = 12;
 
 constexpr double bar_width_fraction = 0.17;
-// Distance of the bar from the top of the free rectangle, as a fraction of the rectangle's height.
+// Distance of the bar from the top of the area that no panel covers, as a fraction of the area's height.
 constexpr double bar_height_fraction = 0.87;
 constexpr float bar_width_px = 2.2f;
 

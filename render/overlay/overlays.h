@@ -65,15 +65,15 @@ struct OverlayArrow {
 // space available for marks. Zero for a lattice without edges.
 float mean_edge_m(const LatticeSnapshot& lattice);
 
-// Appends a green square for each fixed node on the surface of the body or next to it, or for every fixed
-// node if `inner` (Fig. 7 of Pungotra et al. 2013).
+// Appends a green square for each fixed node that is not touched and is on the surface of the body or next to
+// it. If `inner`, nodes inside the body get a square too (Fig. 7 of Pungotra et al. 2013).
 void append_fixed_marks(const LatticeSnapshot& lattice, bool inner, std::vector<OverlayMark>& marks);
 
 // Appends a red disc for each touched node.
 void append_touched_marks(const LatticeSnapshot& lattice, std::vector<OverlayMark>& marks);
 
 // Appends the edges between neighbouring nodes that are on the surface of the body or next to it, or all
-// edges if `inner`.
+// edges of the body if `inner`.
 void append_lattice_lines(const LatticeSnapshot& lattice, bool inner, std::vector<OverlayLine>& lines);
 
 // The boundaries of the lattice's hexahedra on the surface of the body (Fig. 11 of Pungotra et al. 2013).
@@ -83,8 +83,8 @@ struct CellLines {
   std::vector<OverlayLine> far;
 };
 
-// Appends each edge of the outer faces of the lattice once. All edges are near if the lattice is a box around
-// a triangle mesh.
+// Appends each edge of the outer faces of the lattice once, except edges with an end outside the body. If the
+// lattice is a box of cells around the body, all edges are appended to `near`.
 void append_cell_lines(const LatticeSnapshot& lattice, const Eigen::Vector3f& eye_m, CellLines& lines);
 
 // Appends the rows and columns of the control net as thin lines, closed in periodic directions, with a
@@ -104,7 +104,7 @@ PlaneCorners fixing_plane_corners(const PlaneSnapshot& plane, const std::vector<
 // Returns the tip of the arrow along the normal of a fixing plane.
 Vector3 plane_arrow_tip(const PlaneCorners& corners, const PlaneSnapshot& plane);
 
-// Appends the border of a fixing plane and a short arrow along its normal, toward the free side.
+// Appends the border of a fixing plane and a short arrow along its normal, toward the side that can move.
 void append_plane_border(const PlaneCorners& corners, const PlaneSnapshot& plane,
                          std::vector<OverlayLine>& lines);
 
@@ -127,7 +127,7 @@ struct ForceArrow {
 // is noise.
 std::optional<ForceArrow> force_arrow(const Snapshot& snapshot, const ViewSettings& settings);
 
-// Returns the length of the lines of append_contact_normals(): the larger of 4 mm and 0.6 tool radii.
+// Returns the length at which contact normals are drawn: the larger of 4 mm and 0.6 tool radii.
 double contact_normal_length_m(const ToolSnapshot& tool);
 
 // Appends the outward normals of the contact points as short lines.
@@ -146,10 +146,11 @@ struct StageShapes {
 // Returns the shapes of the selected stage of the contact search. There are none if `settings` has no stages.
 StageShapes stage_shapes(const Snapshot& snapshot, const ViewSettings& settings);
 
-// Returns arrows for the normal and the two tangents at the deepest contact of each contact region.
+// Returns arrows for the normal and the two tangents at the deepest contact of each contact region, for at
+// most eight regions. Empty unless the contact points are the selected stage.
 std::vector<OverlayArrow> contact_arrows(const Snapshot& snapshot, const ViewSettings& settings);
 
-// Returns a sentence that describes the selected stage; empty if no stage is shown.
+// Returns a caption for the selected stage of the contact search; empty if no stage is shown.
 std::optional<std::string> stage_caption(const ViewSettings& settings);
 
 // Returns the box around all shapes.
@@ -157,8 +158,8 @@ Box bounding_box(const StageShapes& shapes);
 
 // Overlays of the ground, defined in ground_overlays.cpp: the grid and the scale bar.
 
-// Appends the lines of the ground grid, at multiples of a round length that suits the distance of the camera.
-// Every fifth line is stronger, and all lines fade out around the target of the camera.
+// Appends the lines of the ground grid, at multiples of a power of ten that suits the distance of the camera.
+// Every fifth line is stronger, and all lines fade out with the distance from the target of the camera.
 void append_ground_grid(const Camera& camera, const Viewport& viewport, double ground_y_m,
                         std::vector<OverlayLine>& lines);
 
@@ -171,8 +172,8 @@ struct ScaleBar {
   std::string text() const;
 };
 
-// Returns a scale bar on the ground in the lower centre of the free rectangle. Empty if the ground is not
-// visible there, or if its visible part is far behind the model.
+// Returns a scale bar on the ground in the lower centre of the area that no panel covers. Empty if the ground
+// is not visible there, or if its visible part is far behind the model.
 std::optional<ScaleBar> ground_scale_bar(const Camera& camera, const Viewport& viewport, double ground_y_m);
 
 // Appends the bar with a tick at each end.
@@ -196,16 +197,16 @@ struct Label {
 
 struct OverlayLabels {
   std::vector<Label> in_scene;  // force, scale bar and contact stage
-  std::vector<Label> legend;    // one line each, from the top; positions are set by draw_labels()
+  std::vector<Label> legend;    // one line each, from the top; draw_labels() chooses the positions
 };
 
-// Lays out the labels of the enabled overlays, without GL or ImGui. The legend lists only what the snapshot
-// contains.
+// Lays out the labels of the enabled overlays, without GL or ImGui. The legend omits forces, marks, planes
+// and contact normals that the snapshot does not contain.
 OverlayLabels overlay_labels(const Snapshot& snapshot, const ViewSettings& settings, int width_px,
                              int height_px);
 
-// Draws the labels on an ImGui draw list, the legend in the lower right corner of the free rectangle. Use the
-// background draw list, which is behind the panel.
+// Draws the labels on an ImGui draw list, the legend in the lower right corner of the area that no panel
+// covers. Use the background draw list, which is behind the panel.
 void draw_labels(const OverlayLabels& labels, const ViewSettings& settings, int width_px, int height_px,
                  ImFont& font, ImDrawList& list);
 

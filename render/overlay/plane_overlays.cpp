@@ -7,7 +7,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr double fixing_overhang_fraction = 0.45;  // fraction of the larger side, added on each side
+constexpr double fixing_overhang_fraction = 0.45;  // margin on each side / longer side of the rectangle
 constexpr float border_width_px = 1.4f;
 
 struct PlaneAxes {

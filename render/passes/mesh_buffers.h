@@ -14,8 +14,8 @@
 
 namespace spoonbill {
 
-// A tessellated surface in GL buffers: planar attributes (x, y, z, nx, ny, nz at locations 0 to 5) and
-// indices.
+// A tessellated surface in GL buffers: the indices, and a separate array for each attribute (x, y, z, nx, ny,
+// nz at locations 0 to 5).
 class SurfaceBuffers {
  public:
   explicit SurfaceBuffers(const GlFunctions& gl);
@@ -45,7 +45,8 @@ class BodyMeshes {
   explicit BodyMeshes(const GlFunctions& gl) : gl_(&gl) {}
 
   // Updates all surfaces to the snapshot. If `keep_level`, the tessellation level of the last frame is kept
-  // while it is fine enough. Returns the error of the first surface that cannot be tessellated.
+  // while it is neither too coarse nor much too fine. Returns the error of the first surface that cannot be
+  // tessellated.
   Status update(const Snapshot& snapshot, double pixels_per_metre, bool keep_level);
 
   const std::vector<TessellatedSurface>& surfaces() const { return surfaces_; }
@@ -64,8 +65,8 @@ class ToolBuffers {
  public:
   explicit ToolBuffers(const GlFunctions& gl);
 
-  // Builds and uploads the mesh if the tool's body differs from that of the last call. Returns the error of a
-  // solid that has no mesh.
+  // Builds and uploads the mesh if the tool is a rigid solid and its body has changed since the last call.
+  // Returns the error of a solid that has no mesh.
   Status update(const ToolSnapshot& tool);
 
   bool empty() const { return mesh_.indices.empty(); }

@@ -58,7 +58,7 @@ class Strips {
     const std::vector<std::uint32_t>& indices = surface.indices();
     if (surface.is_mesh() || surface.is_trimmed()) return include_each_triangle(at, indices);
     // Each cell of the grid has two triangles. The corners 0, 1, 2 and 5 of the six are the corners of the
-    // cell.
+    // cell, unless the triangles have been reversed because du x dv points inward.
     for (std::size_t first = 0; first + 5 < indices.size(); first += 6) {
       Hull hull(*this);
       for (const std::size_t corner : {0, 1, 2, 5}) {

@@ -34,8 +34,8 @@ float pixels_at(const FrameView& view, const Eigen::Vector3f& point_m, float pix
   return pixels * view.interface_scale * depth / view.pixel_depth_ratio;
 }
 
-// Returns the sphere that approximates the shadow of a solid: the largest ball inside its box, around the
-// box's centre.
+// Returns a sphere whose shadow approximates that of a solid: the largest ball inside the solid's box, around
+// the centre of the box.
 ToolSphere ball_in_box(const Box& box, const ToolFrame& frame) {
   const Vector3 centre = frame.origin_m + frame.axes * box.centre();
   return {centre.cast<float>(), static_cast<float>(0.5 * box.extent().minCoeff())};

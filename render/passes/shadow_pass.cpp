@@ -154,7 +154,7 @@ int used_px(float fraction, int side_px) {
 constexpr float contact_margin_m = 0.012f;
 
 // Returns the matrix that projects points onto the ground along `along`, into the clip space of a square map.
-// With a sign of +1 the highest point is in front, with -1 the lowest.
+// If `sign` is +1, the highest point is in front; if it is -1, the lowest.
 Eigen::Matrix4f ground_projection(const ShadowArea& area, const Eigen::Vector3f& along, float ground_y_m,
                                   float sign) {
   const float to_clip = 2.0f / area.side_m;
@@ -190,7 +190,7 @@ struct Footprint {
   }
 };
 
-// Rounds a size up. Sizes have eight steps per octave.
+// Rounds a size up to one of eight steps per octave.
 float quantised_size(float size) {
   const float octave = std::exp2(std::floor(std::log2(size)));
   return octave * std::ceil(8.0f * size / octave) / 8.0f;

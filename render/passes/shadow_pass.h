@@ -15,8 +15,8 @@ namespace spoonbill {
 // The part of the ground that shadows can reach, and the projections of the world onto it.
 //
 // The shadow map covers the ground, not a plane perpendicular to the light. A point is projected along the
-// light onto the ground, and its depth is its height. One map therefore serves both the shadow of a body on
-// itself and the shadow on the ground.
+// light onto the ground, and its depth in the map depends only on its height above the ground. One map
+// therefore serves both the shadow of a body on itself and the shadow on the ground.
 struct ShadowArea {
   Eigen::Vector2f corner_m;       // smallest x and z
   float side_m = 0.0f;            // side of the square that the map covers
@@ -68,7 +68,7 @@ class ShadowPass {
   ShadowPass(const GlFunctions& gl, Programs programs);
   void draw_key_map(const std::vector<SurfaceBuffers>& bodies) const;
   void draw_cover(const FrameView& view, const std::vector<SurfaceBuffers>& bodies) const;
-  float highest_m() const;  // greatest height above the ground, more than 0
+  float highest_m() const;  // greatest height of the bodies above the ground, at least 0.1 mm
   void light_ground(const FrameView& view, const ToolSphere& tool) const;
 
   const GlFunctions* gl_;

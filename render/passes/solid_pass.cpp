@@ -94,8 +94,8 @@ SolidVertex revolve(const LathePoint& p, double angle) {
   return {{p.radius * c, p.height, p.radius * s}, {p.normal_out * c, p.normal_up, p.normal_out * s}};
 }
 
-// Appends the band between two profile points, the lower one first. Each triangle has three vertices,
-// counter-clockwise seen from outside.
+// Appends the band between two successive points of a profile, which runs from the lower end of the axis to
+// the upper end. Each triangle has three vertices, counter-clockwise seen from outside.
 void append_band(const LathePoint& low, const LathePoint& high, int segments,
                  std::vector<SolidVertex>& vertices) {
   for (int i = 0; i < segments; ++i) {
@@ -209,8 +209,8 @@ void SolidPass::use_program(const Program& program, const FrameView& view, const
   program.set("colour", colour);
 }
 
-// Returns the coarsest sphere whose sagitta is small enough on the screen. If a circle of radius r is divided
-// into n chords, each chord deviates from its arc by at most r (pi / n)^2 / 2.
+// Returns the coarsest sphere whose sagitta is small enough on the screen, or the finest sphere if there is
+// none. Each of n equal chords of a circle of radius r deviates from its arc by at most r (pi / n)^2 / 2.
 const SolidPass::Shape& SolidPass::sphere_for(const FrameView& view, const Eigen::Vector3f& centre_m,
                                               float radius_m) const {
   const float depth = std::max((centre_m - view.eye_m).norm() - radius_m, view.nearest_depth_m);

@@ -53,7 +53,7 @@ class CornerGroups {
 constexpr std::array<int, 10> piece_steps = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32};
 
 // A polynomial span keeps its previous number of pieces while the ratio of the needed number to the previous
-// number is in this range; see choose_sampling_level().
+// number is above tolerated_waste and at most tolerated_excess.
 constexpr double tolerated_excess = 1.15;
 constexpr double tolerated_waste = 0.4;
 
@@ -252,7 +252,7 @@ void TessellatedSurface::build_indices(bool u_wraps, bool v_wraps) {
   }
 }
 
-// Returns true if the line at row or column `at` has shrunk to a point.
+// Returns true if row `at` of the samples (column `at` if not `along_u`) has shrunk to a point.
 bool TessellatedSurface::is_edge_collapsed(bool along_u, int at) const {
   const int rows = grid_->rows(), columns = grid_->columns();
   const int count = along_u ? columns : rows;
@@ -292,7 +292,7 @@ void TessellatedSurface::orient() {
 }
 
 // Replaces the triangles of the whole surface by those within the trim loops. orient() calls this after it
-// has determined from the whole surface whether it is closed and which side is outside.
+// has determined whether the whole surface is closed and which side is outside.
 void TessellatedSurface::trim_indices() {
   TrimmedGrid cut = trim_grid(grid_->u, grid_->v, *trim_);
   indices_.clear();

@@ -1,5 +1,5 @@
 // The surface of a body as triangles: a B-spline surface sampled on a knot-aligned grid, or a deforming mesh.
-// No GL.
+// Does not use GL.
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@
 
 namespace spoonbill {
 
-// The fineness of a tessellation: the number of pieces into which each polynomial span is divided. The
-// numbers are 1, 2, 3, 4, 6, 8, 12 and so on, so that the grid seldom changes. The ends of every span are
-// vertices.
+// The fineness of a tessellation: the number of pieces into which each polynomial span is divided.
+// choose_sampling_level() uses only the numbers 1, 2, 3, 4, 6, 8, 12, 16, 24 and 32, so that the grid seldom
+// changes. The ends of every span are vertices.
 struct SamplingLevel {
   // Number of pieces of each span between the breakpoints of a direction; empty before the first choice.
   std::vector<int> u_pieces;
@@ -42,14 +42,15 @@ struct SamplingTarget {
 inline constexpr std::int64_t sampling_cell_limit = 1'000'000;
 
 // Returns the level at which no edge and no sagitta exceeds the target, estimated from the control points of
-// the derivatives. A span keeps its number of pieces in `previous` while that is between 0.87 and 2.5 times
-// the needed number. A slowly changing shape then does not flicker between levels. The level is coarser if
-// the number of cells would exceed sampling_cell_limit. The size of the net must fit the knots.
+// the derivatives. A span keeps the number of pieces that it has in `previous` while this number is between
+// 0.87 and 2.5 times the needed number. A slowly changing shape then does not flicker between levels. The
+// level is coarser if the number of cells would exceed sampling_cell_limit. The size of the net must fit the
+// knots.
 SamplingLevel choose_sampling_level(const SurfaceSnapshot& surface, double pixels_per_metre,
                                     const SamplingLevel& previous, const SamplingTarget& target = {});
 
-// Returns the parameters at which a direction is sampled, aligned with the knots. The seam of a periodic
-// direction appears once. `pieces` has one entry per span.
+// Returns the parameters at which one parameter direction is sampled, aligned with the knots. The seam of a
+// periodic direction appears once. `pieces` has one entry per span.
 std::vector<double> drawing_parameters(const KnotVector& knots, const std::vector<int>& pieces);
 
 // Computes the vertices and normals of a deforming mesh. The mesh appears smooth where adjacent faces meet at
@@ -83,11 +84,11 @@ Status check_net(const SurfaceSnapshot& surface);
 class TessellatedSurface {
  public:
   // Evaluates the surface at a sampling level. Grid, blending matrices and indices are rebuilt only if the
-  // structure, the knots or the trim of the surface or the level has changed; otherwise nothing is allocated.
-  // Errors: a grid that cannot be built, a control net whose size does not fit its knots.
+  // level has changed, or the surface's structure, knots or trim; otherwise nothing is allocated. Errors: a
+  // grid that cannot be built, a control net whose size does not fit its knots.
   Status update(const SurfaceSnapshot& surface, const SamplingLevel& level);
 
-  // Updates from a mesh, whose triangles do not depend on a level.
+  // Updates from a mesh. Its triangles do not depend on a sampling level.
   void update(const MeshSnapshot& mesh);
   // Returns whether the last update() received a mesh.
   bool is_mesh() const { return is_mesh_; }
@@ -100,7 +101,7 @@ class TessellatedSurface {
   std::size_t vertex_count() const { return samples_.x.size(); }
 
   // Triangles, counter-clockwise seen from the side of the normals. Seams share vertices. A pole is a row of
-  // coincident vertices, some of whose triangles have no area.
+  // coincident vertices; some of the triangles at a pole have no area.
   const std::vector<std::uint32_t>& indices() const { return indices_; }
 
   // Number of rebuilds of the indices. GL buffers upload the indices when it has changed.

@@ -1,5 +1,5 @@
-// Rigid solid tools for drawing: triangle mesh, frame, extent, and the order in which glass is drawn.
-// No GL.
+// Rigid solid tools for drawing: triangle mesh, frame, extent, and the order in which glass is drawn. Does
+// not use GL.
 #pragma once
 
 #include <Eigen/Core>
@@ -43,8 +43,8 @@ struct ToolVertex {
 };
 
 // A triangle mesh in the frame of the tool. Each triangle has three indices, counter-clockwise seen from
-// outside. Vertices are shared where the solid is smooth and duplicated along its edges. An open sheet has
-// triangles on both sides.
+// outside. Triangles share vertices where an implicit shape or a surface is smooth, but not along an edge,
+// and not in a solid that is made of triangles. An open sheet has triangles on both sides.
 struct ToolMesh {
   std::vector<ToolVertex> vertices;
   std::vector<std::uint32_t> indices;
@@ -59,8 +59,9 @@ Result<ToolMesh> make_tool_mesh(const ToolSolid& solid);
 class FacingOrder {
  public:
   // Returns the indices of the triangles that face the eye, the farthest centre first. `eye_m` is in the
-  // frame of the mesh. The result is valid until the next call. The order is exact except for triangles that
-  // are long compared with their distance from each other.
+  // frame of the mesh. The result is valid until the next call. The order may be wrong for triangles that are
+  // long compared with their distance from each other, or whose distances from the eye differ by less than
+  // 1/16384 of the range of distances.
   const std::vector<std::uint32_t>& sort(const ToolMesh& mesh, const Eigen::Vector3f& eye_m);
 
  private:

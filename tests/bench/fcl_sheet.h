@@ -48,7 +48,7 @@ void refit(fcl::BVHModel<Volume>& mesh, const FclPoints& vertices) {
 }
 
 // Makes the allocator keep freed pages. FCL copies a mesh of boxes at each query, and returning the pages to
-// the system each time would double its cost.
+// the system each time would double the cost of a query.
 inline void keep_freed_pages() {
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);

@@ -54,7 +54,8 @@ Material abs() {
   return abs;
 }
 
-// The hand moves down by `depth_m` within a second, waits a moment and moves up again.
+// Returns the readings of a hand that presses a sphere `depth_m` deep within a second, waits a moment and
+// moves up again.
 std::vector<DeviceReading> readings_of_press(double surface_m, double radius_m, double depth_m) {
   std::vector<DeviceReading> readings;
   for (int t = 0; t < 1700; ++t) {

@@ -11,7 +11,7 @@ namespace spoonbill {
 // Returns a clamped, uniform sheet with side x side control points.
 Surface wavy_sheet(int side);
 
-// Returns samples x samples evenly spaced parameters, including both ends of the domain.
+// Returns a grid of samples x samples evenly spaced parameters, including both ends of each domain.
 Grid sheet_grid(const Surface& sheet, int samples);
 
 // Returns a blending matrix as a dense row-major table: a row per sample, a column per control point.

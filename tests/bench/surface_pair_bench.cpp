@@ -29,7 +29,7 @@ Surface with_heights(Surface sheet, const std::function<double(double, double, d
   return sheet;
 }
 
-// A hilly sheet in two shapes, and a gently waved sheet on which the hilltops rest.
+// A hilly sheet in two shapes, and a gently waved sheet that the hilltops touch.
 struct Sheets {
   Sheets()
       : nested(make_nested_grid(wavy_sheet(controls).u, wavy_sheet(controls).v, levels).value()),
@@ -51,7 +51,7 @@ PlanarPoints view(const GridSamples<double>& samples) {
   return {samples.x.data(), samples.y.data(), samples.z.data()};
 }
 
-// Returns true if each contact of FCL's triangles is in a cell in which our code has a contact.
+// Returns true if our code has a contact in the same pair of cells as each contact of FCL's triangles.
 bool holds(const SurfacePairCollider& collider, const fcl::CollisionResult<float>& result) {
   std::set<std::array<int, 4>> cells;
   for (const CellPair& pair : collider.cells()) {

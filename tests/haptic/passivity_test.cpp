@@ -1,6 +1,6 @@
-// Tests that a wall never gives a hand more energy than it received, which would kick the hand. Random hands
-// press walls of the device's highest stiffness. The work of the force on the hand is summed tick by tick
-// (the passivity observer of Hannaford & Ryu 2002).
+// Tests that a wall never gives a hand more energy than the wall has received, which would kick the hand.
+// Random hands press walls of the device's highest stiffness. The work of the force on the hand is summed
+// tick by tick (the passivity observer of Hannaford & Ryu 2002).
 #include <gtest/gtest.h>
 
 #include <algorithm>

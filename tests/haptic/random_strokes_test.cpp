@@ -1,8 +1,8 @@
 // Tests random strokes on one to three bodies with any material and any panel setting. The hand moves at up
 // to 5 m/s; bodies may be without fixed nodes, and materials may change during a stroke. All numbers of
 // documents, frames and the panel must stay finite. Bodies that are not free must stay near their initial
-// positions. No cell of a single body may stay inverted, and the requested force must never exceed the
-// device's limit.
+// positions. If there is only one body, none of its cells may stay inverted. The requested force must never
+// exceed the device's limit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -95,8 +95,8 @@ Scene random_stroke_scene(Random& random, const std::vector<Material>& bundled, 
 }
 
 constexpr double fastest_m_per_s = 5.0;
-// Half the sides of a box around the body's centre. The hand stays in this box, and so does material that it
-// pulls out.
+// Half the sides of a box around the body's centre. The hand moves between points of this box, so that
+// material that it pulls out also stays in the box.
 const Vector3 roam_m(0.06, 0.03, 0.03);
 const Vector3 centre_m(0.03, 0.0, 0.0);
 
@@ -170,8 +170,8 @@ Place find_place(const Scene& scene) {
   return {box.centre(), box.size()};
 }
 
-// Returns true if every node is within twice the scene's size of the scene's initial centre, or of its own
-// body's centre if the body may move.
+// Returns true if the distance of every node from a centre is below twice the scene's size. The centre is the
+// scene's initial centre, or the mean of the body's nodes if the body may move.
 bool is_in_bounds(const Simulation& simulation, const Place& place) {
   for (std::size_t b = 0; b < simulation.scene().bodies.size(); ++b) {
     const SpringLattice& lattice = simulation.lattice(static_cast<int>(b));
@@ -280,8 +280,8 @@ void try_strokes(std::uint64_t seed, int strokes, int most_bodies, int stroke_ti
     EXPECT_LE(watched.strongest_n, watched.limit_n * (1.0 + 1e-12));
     touched += watched.touches > 0;
   }
-  // A hand that wanders for half a second misses the bodies more often than a hand that wanders for two
-  // seconds.
+  // At least a quarter of the strokes must touch a body. The bound is low, because a hand that wanders for
+  // only half a second often misses the bodies.
   EXPECT_GE(touched, std::max(1, strokes / 4));
 }
 

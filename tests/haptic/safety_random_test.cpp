@@ -1,4 +1,5 @@
-// Tests the safety chain with random inputs that include every kind of fault.
+// Tests the safety chain with random inputs, which include every fault except a missing device and a force
+// that is switched off.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -72,7 +72,8 @@ TEST(SpoonHandleBend, TheSettledShapeIsThePapers) {
   EXPECT_GE(kept / pushed, 0.75);
   const double quarter = bend.plane_v + 0.25 * (bend.sphere_v - bend.plane_v);
   EXPECT_GE(turned(bend.settled, quarter - 1.0, quarter + 1.0) / kept, 0.80);
-  // The handle is straight beyond the sphere: both halves of the remaining part point in the same direction.
+  // The handle is straight beyond the sphere: the parts from v = 90 to 93 and from v = 94 to 97 point in the
+  // same direction.
   EXPECT_NEAR(turned(bend.settled, 90.0, 93.0), turned(bend.settled, 94.0, 97.0), 0.5);
 
   double fixed_surface = 0.0;

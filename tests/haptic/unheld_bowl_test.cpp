@@ -1,5 +1,5 @@
-// Tests the bundled bowl of clay, which nothing fixes, under strokes of scripts: it stays in the scene and
-// follows the tool.
+// Tests a bowl of clay without fixed nodes under strokes of scripts: the bowl stays in the scene and follows
+// the tool.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,8 +20,8 @@ namespace {
 struct ScriptedStroke {
   double scene_size_m = 0.0;
   double farthest_m = 0.0;  // largest distance of a node from the centre of the scene
-  double travel_m = 0.0;    // distance of the hand from its first contact, at the last tick with contact
-  // Largest displacement of nodes near the hand along the hand's travel, at the last tick with contact.
+  double travel_m = 0.0;    // distance of the hand from where it first touched, at the last contact
+  // Largest displacement of nodes near the hand along the hand's travel, at the last contact.
   double followed_m = 0.0;
 };
 
@@ -71,7 +71,8 @@ ScriptedStroke play(const std::string& name) {
 
 TEST(UnheldBowl, StaysInTheScene) {
   for (const std::string name : {"unheld-bowl-sideways", "unheld-bowl-down", "handle-and-bowl"}) {
-    // UnheldBowl.FollowsTheToolByHalfOfItsTravel moves the tool down too.
+    // Only a full run plays this script, because UnheldBowl.FollowsTheToolByHalfOfItsTravel also moves the
+    // tool down.
     if (name == "unheld-bowl-down" && !is_full_run()) continue;
     const ScriptedStroke stroke = play(name);
     EXPECT_LT(stroke.farthest_m, stroke.scene_size_m) << name;

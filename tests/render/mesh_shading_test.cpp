@@ -53,7 +53,7 @@ TEST(MeshShading, IsSmoothOnABallAndFollowsItsShape) {
   TessellatedSurface surface;
   surface.update(mesh);
   ASSERT_EQ(surface.vertex_count(), ball.vertices_m.size());
-  // Each side of the ball's triangles spans at most 15 degrees.
+  // Neighbouring rings and meridians of the ball's vertices are at most 15 degrees apart.
   for (const Drawn& each : drawn(surface)) EXPECT_GT(each.normal.dot(each.position), 0.995f);
   const std::uint64_t version = surface.topology_version();
   for (float& y : mesh.y) y *= 0.25f;

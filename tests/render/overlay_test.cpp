@@ -217,8 +217,8 @@ TEST(CellLines, AreNearWhereAFaceLooksAtTheEye) {
   for (const OverlayLine& line : of_face.near) EXPECT_EQ(line.start_m.z(), 1.0f);
 }
 
-// Each outer edge is listed once. A face has four edges, and each edge is on two faces, so there are twice as
-// many edges as faces.
+// Each edge on the outside of the block is listed once. An outer face of a cell has four edges, and each edge
+// is on two outer faces, so there are twice as many edges as faces.
 TEST(CellLines, AreTheOuterEdgesEachOnce) {
   CellLines lines;
   append_cell_lines(block_of_nodes(12, 12, 12), {50.0f, 40.0f, 30.0f}, lines);

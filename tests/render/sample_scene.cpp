@@ -26,7 +26,7 @@ double unrounded(double x) {
   return std::copysign(std::pow(std::abs(x), 1.0 / 0.55), x);
 }
 
-// Bends the part of the handle beyond the fixed third into an arc.
+// Bends the first 22 mm beyond the fixed third of the handle into an arc. The rest stays straight.
 Vector3 bent(const Vector3& straight, double bend_rad) {
   const double start = length_m * fixed_share, arc = 0.022;
   if (bend_rad == 0.0 || straight.x() <= start) return straight;

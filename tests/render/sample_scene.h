@@ -13,7 +13,7 @@ namespace spoonbill {
 struct SampleSceneOptions {
   double bend_rad = 0.0;  // angle by which the free end is bent down
   std::string material = "modelling-clay";
-  int along = 60, across = 8, through = 4;  // number of lattice nodes
+  int along = 60, across = 8, through = 4;  // numbers of lattice nodes along x, z and y
 };
 
 inline constexpr int sample_width_px = 640, sample_height_px = 360;

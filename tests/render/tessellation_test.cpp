@@ -16,8 +16,8 @@
 namespace spoonbill {
 namespace {
 
-// Merges vertices less than a tenth of a micrometre apart, because a pole is a row of vertices in one
-// position.
+// Merges vertices whose coordinates are equal after rounding to a tenth of a micrometre, because a pole is a
+// row of vertices in one position.
 std::vector<std::uint32_t> merged_by_place(const TessellatedSurface& surface) {
   std::map<std::tuple<long, long, long>, std::uint32_t> places;
   const auto rounded = [](float metres) { return std::lround(metres / 1e-7); };

@@ -75,7 +75,7 @@ TEST(TrimmedTessellation, TrianglesFaceOutwardUpToTheRim) {
   }
 }
 
-// The sides that belong to a single triangle must form one closed boundary loop, each corner of which is on
+// Sides that belong to a single triangle must form closed boundary loops, so that each of their corners is on
 // two such sides. A pole is a row of vertices in one position, so sides are compared by position.
 TEST(TrimmedTessellation, HasOneRimAndNoGapElsewhere) {
   SurfaceSnapshot snapshot = sample_scene({.bend_rad = 0.5}).bodies[0].surface;

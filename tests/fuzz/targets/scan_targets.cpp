@@ -19,7 +19,7 @@ namespace {
 
 void take_cloud(const Result<PointCloud>& cloud, std::size_t bytes) {
   if (!cloud) return must_be_one_line(cloud.error());
-  // A compressed cloud may have more points than the file has bytes, but at most a hundred times as many.
+  // A compressed cloud may have more points than the file has bytes, but at most a hundred points per byte.
   must_hold(cloud->points.size() <= 100 * bytes, "a small file holds few points");
   for (const Vector3& point : cloud->points) must_hold(point.allFinite(), "points are finite");
 }
@@ -50,7 +50,7 @@ void take_ply(std::string_view bytes) {
   }
 }
 
-// Tests a reader of clouds, whose format the first byte selects.
+// Tests the readers of point clouds. The first byte selects the format of the cloud.
 void take_points(std::string_view bytes) {
   if (bytes.empty()) return;
   const std::string_view rest = bytes.substr(1);
@@ -66,7 +66,7 @@ void take_points(std::string_view bytes) {
   }
 }
 
-// Tests a reader of text meshes, whose format the first byte selects.
+// Tests the readers of text meshes. The first byte selects the format of the mesh.
 void take_mesh_text(std::string_view bytes) {
   if (bytes.empty()) return;
   const bool is_stl = bytes[0] % 2 == 0;
