@@ -12,7 +12,7 @@
 namespace spoonbill {
 namespace {
 
-// Fractions of a polynomial piece that its cells leave out: at each end, because of knots, and at a collapsed
+// Fractions of a polynomial piece that its cells leave out: the first at each knot, the second at a collapsed
 // edge.
 constexpr double off_knots = 1e-6;
 constexpr double off_poles = 1e-2;

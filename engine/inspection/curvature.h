@@ -63,8 +63,8 @@ struct CurvatureRange {
 CurvatureRange find_curvature_range(const Surface& surface, const TrimmedArea& area = {},
                                     const Progress& progress = {});
 
-// Returns the integral of the squared principal curvatures over the area. It has no unit, is small for fair
-// surfaces, and is 8 pi for a ball of any size.
+// Returns the integral of the sum of the squared principal curvatures over the area. It has no unit, is small
+// for fair surfaces, and is 8 pi for a ball of any size.
 double compute_bending_energy(const Surface& surface, const TrimmedArea& area = {});
 
 }  // namespace spoonbill

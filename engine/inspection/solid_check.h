@@ -19,8 +19,8 @@ struct SolidSelfIntersection {
 };
 
 struct SolidCheck {
-  std::vector<SolidSelfIntersection> self_intersections;  // sorted by depth, the deepest first
-  bool self_intersections_complete = true;  // false if there are too many intersections to search them all
+  std::vector<SolidSelfIntersection> self_intersections;  // at most 16, the deepest first
+  bool self_intersections_complete = true;  // false if the search reached a limit and may have missed some
   // Thinnest wall found along inward lines from the mesh's triangles, measured on the exact surfaces. The
   // true minimum may be smaller by twice the mesh's error, and a wall narrower than 1/200 of the solid's size
   // may be missed. Empty if no line leaves through a wall (exits_through_wall()), as in a tetrahedron.

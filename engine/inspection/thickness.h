@@ -34,8 +34,9 @@ class ThicknessSearch {
  public:
   explicit ThicknessSearch(const Surface& surface);
 
-  // Returns the first exit along a unit direction through a wall (exits_through_wall()). The exit is exact up
-  // to rounding where Newton's method converges; elsewhere it is on a facet.
+  // Returns the first exit along a unit direction, or nothing if it is not through a wall
+  // (exits_through_wall()). The exit is exact up to rounding where Newton's method converges; elsewhere it is
+  // on a facet.
   std::optional<SurfaceExit> exit(const Vector3& from, const Vector3& direction) const;
 
   // Returns the thickness at a surface point. Returns nothing where the surface has no normal, or where the
@@ -75,9 +76,9 @@ class ExactWalls {
   ExactWalls(const std::vector<const Surface*>& surfaces, double error_m);
 
   // Returns the wall between the surfaces nearest to the ends of `mesh_wall`, along the normal of the first
-  // surface, exact up to rounding. Returns nothing if there are no two surfaces, or if their distance differs
-  // from the thickness of `mesh_wall` by more than the mesh's error explains, as at a sliver whose normal is
-  // wrong.
+  // surface, exact up to rounding. Returns nothing if an end is not near any surface. Also returns nothing if
+  // the wall's thickness differs from that of `mesh_wall` by more than the mesh's error explains, as at a
+  // sliver whose normal is wrong.
   std::optional<WallThickness> at(const WallThickness& mesh_wall) const;
 
  private:

@@ -12,7 +12,8 @@ namespace {
 
 // Number of groups of slabs in the cache, which is cleared when it is full.
 constexpr int group_capacity = 8192;
-// Factor on bulges, because rounding makes the parameter steps of an element's cells differ slightly.
+// Factor by which bulges are enlarged, because rounding makes the parameter steps of an element's cells
+// differ slightly.
 constexpr double size_tolerance = 1.0 + 1e-9;
 
 }  // namespace

@@ -14,8 +14,8 @@
 
 namespace spoonbill {
 
-// Cache of the slabs that bound the cells of one surface (SlabGroup). Not thread-safe. Allocates only on
-// construction.
+// Cache of the slabs (SlabGroup) that bound the cells of one surface. A cell is a rectangle between samples.
+// Not thread-safe. Allocates only on construction.
 class CellSlabs {
  public:
   explicit CellSlabs(SurfaceLevels& levels);

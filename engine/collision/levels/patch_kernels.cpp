@@ -4,8 +4,8 @@ namespace spoonbill::SPOONBILL_KERNELS {
 
 namespace {
 
-// The rounding error of a slab's extent in single precision is at most the sum of these fractions of the
-// slab's size and of its coordinates.
+// The rounding error of a slab's extent in single precision is at most size_rounding times the slab's size
+// plus position_rounding times the sum of the magnitudes of its centre's coordinates.
 constexpr double size_rounding = 1e-6;
 constexpr double position_rounding = 2.5e-7;
 // Bound of the relative rounding error of the offset between two centres.

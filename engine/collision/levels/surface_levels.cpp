@@ -87,8 +87,8 @@ void SurfaceBounds::unroll_row(const ControlNet& net, int i) {
   }
 }
 
-// Computes the squared norms of the control points of the second derivatives for row i of the control net,
-// which is unrolled along its periodic directions. Rows i and i + 1 must be unrolled already.
+// Computes row i of norm_uu_ and norm_vv_, the squared norms of the second derivatives' control points. Rows
+// i and i + 1 of the unrolled control net must already be in row_.
 void SurfaceBounds::update_row_norms(const ControlNet& net, int i) {
   if (i + 2 < rows_) unroll_row(net, i + 2);
   const std::vector<double>*const here = row_[i % 3], *const next = row_[(i + 1) % 3],
@@ -117,8 +117,8 @@ void SurfaceBounds::update_row_norms(const ControlNet& net, int i) {
   }
 }
 
-// Computes the bounds of the elements in row eu. First takes, in each column of the unrolled net, the maximum
-// over the rows of control points on which these elements depend.
+// Computes the bounds of the elements in row eu. First computes, for each column of the unrolled net, the
+// largest norm in the rows on which these elements depend.
 void SurfaceBounds::update_elements(int eu) {
   double* const uu = row_[0][0].data();
   double* const vv = row_[0][1].data();
@@ -257,8 +257,9 @@ const PatchKernels& kernels_for(InstructionSet set) {
 
 constexpr int tile_padding = 4;
 
-// Returns the multiplicity of the knot at the end of an element, or 0 at the end of an open direction. The
-// sample there belongs to the next element, whose basis functions begin that many control points later.
+// Returns the multiplicity of the knot at the end of an element, or 0 for the last element of an open
+// direction. The sample at this knot belongs to the next element, whose first control point comes that many
+// control points later.
 int knots_at_end(const GridDirection& direction, int levels, int element) {
   const KnotVector& knots = direction.knots;
   const int elements = (static_cast<int>(direction.parameters.size()) - 1) >> levels;
@@ -520,7 +521,7 @@ Vector3 patch_normal(const PatchCorners& corners) {
   return (corners[3] - corners[0]).cross(corners[2] - corners[1]);
 }
 
-// Indices of the two corners at the ends of each side.
+// Indices of the two corners at the ends of each side of a patch.
 constexpr std::array<std::array<std::size_t, 2>, 4> sides = {{{0, 1}, {1, 3}, {3, 2}, {2, 0}}};
 
 }  // namespace

@@ -103,8 +103,8 @@ struct NestedGrid {
 // interior. `levels` must not be negative.
 Result<NestedGrid> make_nested_grid(const KnotVector& u, const KnotVector& v, int levels);
 
-// The patch between the samples (i, j) and (i + step, j + step) of the finest grid, with step 2^(levels -
-// level).
+// The patch between the samples (i, j) and (i + step, j + step) of the finest grid. The step is 2^(levels -
+// level), with the `levels` of the NestedGrid.
 struct LevelCell {
   int i, j, level;
 };
@@ -203,11 +203,11 @@ class SurfaceLevels {
   Bands u_bands_, v_bands_;
   std::vector<double> x_, y_, z_;
   AlignedVector<double> tile_lines_;       // working memory of sample_element()
-  std::vector<std::uint32_t> element_at_;  // generation in which each element was sampled completely
-  // Working memory: one column's sums along v, one for each row of control points.
+  std::vector<std::uint32_t> element_at_;  // value of generation_ when each element was sampled
+  // Working memory: for one column of samples, the sum along v in each row of control points.
   std::vector<Vector3> lines_;
-  std::vector<std::uint32_t> sampled_at_;  // generation in which each sample was evaluated
-  // Generation in which the coarsest samples of each column were evaluated.
+  std::vector<std::uint32_t> sampled_at_;  // value of generation_ when each sample was evaluated
+  // Value of generation_ when the coarsest samples of each column were evaluated.
   std::vector<std::uint32_t> column_at_;
   std::vector<CoverSphere> covers_;  // indexed by cell_index()
   std::vector<std::uint32_t> covered_at_;

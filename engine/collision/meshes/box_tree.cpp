@@ -91,8 +91,9 @@ BoxTree::BoxTree(const std::vector<Box>& boxes, std::uint32_t leaf_size) {
 
 namespace {
 
-// Cosine of 50 degrees. The common edge angles of 45 and 60 degrees are far enough from it that rounding
-// cannot change the result.
+// Smallest cosine of the angle between a line and the outward normal where the line passes through a wall:
+// that of 50 degrees. The common edge angles of 45 and 60 degrees are far enough from it that rounding cannot
+// change the result.
 constexpr double wall_cosine = 0.6428;
 
 // Returns true if a ray hits a box, by the slab method (Kay and Kajiya 1986).

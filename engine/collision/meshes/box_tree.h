@@ -15,7 +15,7 @@
 
 namespace spoonbill {
 
-// Number of triangles in a leaf of a tree over a mesh.
+// Largest number of triangles in a leaf of a BoxTree over a mesh.
 inline constexpr std::uint32_t triangle_leaf_size = 4;
 
 // Tree of boxes over items such as triangles, stored in one array. Its depth is bounded, so a search needs
@@ -33,7 +33,8 @@ class BoxTree {
   };
 
   // Builds the tree by repeatedly halving the items at the median of their box centres, along the axis in
-  // which the centres extend farthest. `boxes` must not be empty, `leaf_size` must be at least 1.
+  // which the centres extend farthest. A leaf has at most `leaf_size` items. `boxes` must not be empty, and
+  // `leaf_size` must be at least 1.
   BoxTree(const std::vector<Box>& boxes, std::uint32_t leaf_size);
 
   // Updates all boxes: bounding_box(position) returns the current box of the item at a position in order().
@@ -91,7 +92,7 @@ inline double signed_distance(const Box& box, const Vector3& point) {
 struct LineExit {
   double distance_m = 0.0;
   std::uint32_t triangle = 0;
-  double to_b = 0.0, to_c = 0.0;  // barycentric weights of the corners b and c
+  double to_b = 0.0, to_c = 0.0;  // barycentric weights of the second and third corner
 };
 
 // Search for the point at which a line leaves a body that is bounded by triangles. Immutable, so any thread
@@ -135,9 +136,9 @@ struct MeshIntersections {
 // Finds up to `limit` pairs of intersecting triangles. Triangles with a common corner are first shrunk by a
 // millionth, so that they do not intersect there. `triangles` must be in the order of the tree's leaves.
 //
-// The search takes about a microsecond per triangle without intersections. It ends early if it needs more
-// than 200 pair tests per triangle, for example with long needles. `progress` can stop it, but does not
-// receive the fraction done.
+// On a mesh without intersections, the search takes about a microsecond per triangle. It ends early if it
+// needs more than 200 pair tests per triangle, for example with long needles. `progress` can stop it, but
+// does not receive the fraction done.
 MeshIntersections self_intersections(const std::vector<Vector3>& vertices_m,
                                      const std::vector<TriangleCorners>& triangles, const BoxTree& tree,
                                      std::size_t limit, const Progress& progress = {});

@@ -15,7 +15,7 @@ namespace spoonbill {
 
 namespace {
 
-// Distance beyond which a node counts as a dipole, in radii of the node. Barill et al. use 2 with
+// Distance beyond which a node of the tree counts as a dipole, in radii of the node. Barill et al. use 2 with
 // second-order moments; without such moments, 3 gives the same accuracy.
 constexpr double far_radii = 3.0;
 

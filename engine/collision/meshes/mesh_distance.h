@@ -36,8 +36,8 @@ class WindingNumber {
   std::vector<Dipole> dipoles_;  // one for each node of the tree
 };
 
-// Distance to the triangles of one closed part or of some sheets. Immutable, so any thread may use it.
-// Queries allocate nothing.
+// Distance to the triangles of one closed part or of some open parts (sheets). Immutable, so any thread may
+// use it. Queries allocate nothing.
 class ShellDistance {
  public:
   // `triangles` must not be empty. The normals of a solid must point outward, those of a cavity into the

@@ -56,15 +56,16 @@ class MeshEdges {
 // triangles. Fails with too_many if the result has more than `triangle_limit` triangles.
 Result<TriangleMesh> refine_edges(TriangleMesh mesh, double longest_m, std::size_t triangle_limit);
 
-// Smoothed normals, insensitive to slivers. The mesh must outlive the object. Immutable, so any thread may
-// use it.
+// Smoothed normals of a mesh. Slivers hardly affect them. The mesh must outlive the object. Immutable, so any
+// thread may use it.
 class SmoothNormals {
  public:
   explicit SmoothNormals(const TriangleMesh& mesh);
 
-  // Returns the unit normal at a point of a triangle, with barycentric weights `to_b` and `to_c`. It is
-  // interpolated from the corners, whose normals are area-weighted means over the adjacent triangles within
-  // 30 degrees of this triangle. Returns zero if the triangle has no area.
+  // Returns the unit normal at a point of a triangle. `to_b` and `to_c` are the barycentric weights of the
+  // second and third corner. The normal is interpolated from the corners. A corner's normal is the
+  // area-weighted mean over the adjacent triangles within 30 degrees of this triangle. Returns zero if the
+  // triangle has no area.
   Vector3 at(std::uint32_t triangle, double to_b, double to_c) const;
 
  private:

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint32_t no_part = 0xffffffffU;
 // Largest number of box tests and visited triangles in the search for cavities. It bounds the time for files
-// with very many specks.
+// with very many tiny parts.
 constexpr std::size_t cavity_work = 50'000'000;
 
 struct Flood {

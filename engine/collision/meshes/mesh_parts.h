@@ -17,15 +17,15 @@ struct MeshParts {
 };
 
 // Splits a mesh into parts that are connected over edges of exactly two triangles, and orients each part
-// consistently. The corners of each triangle must differ. `closed` is false for all parts.
+// consistently. The corners of each triangle must differ. Sets MeshPart::closed to false.
 MeshParts split_into_parts(const TriangleMesh& mesh);
 
 // Removes open parts whose area is below speck_area_fraction of the closed parts' area. Returns the number of
 // removed parts.
 std::size_t drop_specks(MeshParts& parts);
 
-// Orients closed parts outward and cavities inward. Adds the numbers of closed parts, cavities, sheets and
-// flipped parts to the report.
+// Finds the cavities and sets MeshPart::cavity_of. Orients cavities inward and all other closed parts
+// outward. Adds the numbers of closed parts, cavities, open parts (sheets) and flipped parts to the report.
 void orient_outward(TriangleMesh& mesh, std::vector<MeshPart>& parts, MeshReport& report);
 
 // Returns the volume of a closed part in cubic metres, by the divergence theorem; negative if the part is

@@ -59,8 +59,8 @@ JoinedVertices join_equal(const std::vector<Vector3>& vertices) {
   return result;
 }
 
-// Hash grid of the kept vertices. Each slot has one chain of vertices; cells with the same slot share its
-// chain.
+// Hash grid of the vertices that were not joined to others. Each slot has one chain of vertices; cells with
+// the same slot share its chain.
 class VertexGrid {
  public:
   VertexGrid(std::size_t count, double tolerance)

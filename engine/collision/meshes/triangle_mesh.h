@@ -32,7 +32,7 @@ struct MeshPart {
 struct MeshReport {
   std::size_t vertices_read = 0, triangles_read = 0;
   std::size_t vertices_joined = 0;
-  std::size_t degenerate_dropped = 0;  // triangles with two equal corners or three collinear ones
+  std::size_t degenerate_dropped = 0;  // triangles with equal or nearly collinear corners
   std::size_t duplicates_dropped = 0;  // triangles with the same three corners as another, in any order
   std::size_t triangles_flipped = 0;   // triangles flipped to agree with most triangles of their part
   std::size_t parts_flipped = 0;       // closed parts that were inside out

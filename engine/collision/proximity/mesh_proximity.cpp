@@ -102,8 +102,8 @@ void MeshProximity::search_element(const ElementTree::Node& element, const Box& 
 }
 
 // Updates the candidate of the vertex's patch with the distance of the vertex from an element, if the
-// element's box is within the margin. The candidate of a patch is its first near vertex; its other vertices
-// are skipped.
+// element's box is within the margin. The candidate of a patch is the first near vertex that is found; the
+// other vertices of the patch are skipped.
 void MeshProximity::offer_vertex(const ElementTree::Node& element, const Box& box, std::uint32_t vertex,
                                  const Vector3& point, double margin) {
   const int patch = patches_[vertex];

@@ -32,9 +32,9 @@ struct VertexNearSurface {
 // outlive the search.
 class MeshProximity {
  public:
-  // `patches` assigns each vertex of the mesh to a patch, numbered from 0. Vertices may be much denser than
-  // the lattice nodes that move them. Each patch therefore reports only one vertex, its nearest or deepest.
-  // To select this vertex, the surface is treated as flat near the patch.
+  // `patches` assigns each vertex of the mesh to a patch, a group of vertices, numbered from 0. Vertices may
+  // be much denser than the nodes of the spring lattice that moves them. Each patch therefore reports only
+  // one vertex, its nearest or deepest. To select this vertex, the surface is treated as flat near the patch.
   MeshProximity(const NestedGrid& surface, std::vector<int> patches);
   MeshProximity(const MeshProximity&) = delete;
   MeshProximity& operator=(const MeshProximity&) = delete;
@@ -67,7 +67,8 @@ class MeshProximity {
   int evaluations() const { return proximity_evaluation_limit - budget_.evaluations_left; }
 
  private:
-  // A near vertex of a patch, and the point nearest to it on the triangles between the surface's samples.
+  // A near vertex of a patch of vertices, and the point nearest to it on the triangles between the surface's
+  // samples.
   struct Candidate {
     int patch;
     std::uint32_t vertex;
@@ -89,7 +90,7 @@ class MeshProximity {
   std::vector<int> patches_;
   // For each patch, start of its vertices in patch_vertices_; one more entry at the end.
   std::vector<std::uint32_t> first_vertex_;
-  std::vector<std::uint32_t> patch_vertices_;  // vertices grouped by patch
+  std::vector<std::uint32_t> patch_vertices_;  // vertex indices, by patch
   std::vector<std::uint32_t> sampled_at_;      // number of the find() call that last visited each sample
   // Number of the find() call that last added each patch to candidates_, at the index candidate_index_.
   std::vector<std::uint32_t> patch_at_;

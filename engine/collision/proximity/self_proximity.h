@@ -22,9 +22,9 @@ namespace spoonbill {
 inline constexpr double neighbour_cells = 4.0;
 inline constexpr double neighbour_thicknesses = 3.0;
 
-// Factor on the distance below which points are neighbours. Two points that face each other through the body,
-// at most this many such distances apart, count as points of opposite sides, which never meet. Points farther
-// apart, such as those at the ends of a bar, may meet.
+// Two points that face each other through the body count as points of opposite sides, which never meet, up to
+// this multiple of the distance below which points are neighbours. Points farther apart, such as those at the
+// ends of a bar, may meet.
 inline constexpr double through_body = 2.0;
 
 // Decides which pairs of points of one body's surface can ever touch from outside, by the positions of the
@@ -93,8 +93,8 @@ class RingSeparation {
   std::vector<char> is_current_;    // for each ring, true if its intervals are up to date
 };
 
-// Depth in lattice cells beyond which a point is ignored, because the point nearest to it may be on another
-// wall.
+// Largest depth, in lattice cells, of a point of the surface inside another part of the body. Deeper points
+// are ignored, because the point nearest to such a point may be on another wall.
 inline constexpr double deepest_self_cells = 1.0;
 
 // Self-proximity search of one surface. Not thread-safe. Allocates only on construction. The grid must
@@ -154,7 +154,7 @@ class SelfProximity {
   std::vector<double> bulges_;                    // one for each element
   std::vector<std::array<LevelCell, 2>> nearby_;  // pairs of elements that may meet
   struct Slot {
-    std::uint32_t generation = 0;  // generation in which the element's cells were stored
+    std::uint32_t generation = 0;  // value of generation_ when the cells were stored
     int first = 0;
   };
   std::vector<Slot> slots_;      // one for each element

@@ -151,8 +151,8 @@ bool NearPoints::is_local_deepest(const NearPoint& near) const {
   return true;
 }
 
-// Searches from the samples that are deeper than their neighbours, on the exact surfaces. deepest_pair() can
-// also start at points in front of the other surface, where the depth is negative.
+// Starts a search on the exact surfaces from each sample that is deeper than its neighbours. deepest_pair()
+// can also start at points in front of the other surface, where the depth is negative.
 void NearPoints::add_between_samples(const SurfaceLevels& other, double outside) {
   SPOONBILL_ASSERT(std::abs(outside) == 1.0);
   const std::size_t samples = near_.size();

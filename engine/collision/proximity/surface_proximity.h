@@ -84,7 +84,7 @@ class NearPoints {
 
   SurfaceLevels levels_;
   std::vector<int> index_;                 // for each sample, its index in near_
-  std::vector<std::uint32_t> indexed_at_;  // for each sample, the generation in which index_ was set
+  std::vector<std::uint32_t> indexed_at_;  // value of generation_ when each entry of index_ was set
   std::vector<NearPoint> near_;
   std::uint32_t generation_ = 0;
   PolishBudget budget_{0};  // surface points that may still be evaluated until the next begin()
@@ -101,12 +101,12 @@ class SurfaceProximity {
   SurfaceProximity& operator=(const SurfaceProximity&) = delete;
 
   // Finds all points within `margin_m` of the other surface. The surfaces must have the grids' knots and
-  // bound bodies, with du x dv outward. `second_outside` is -1 if du x dv points inward on the second
-  // surface, as on a mirrored one.
+  // bound bodies. On the first surface, du x dv must point outward. `second_outside` is 1 if it points
+  // outward on the second surface too, and -1 if it points inward, as on a mirrored surface.
   void find(const Surface& first, const Surface& second, double margin_m, double second_outside = 1.0);
 
-  // Removes the first surface's points for which `keep_first` returns false, and the second's for which
-  // `keep_second` does. Both functions may modify the point.
+  // Removes the first surface's points for which `keep_first` returns false, and the second surface's points
+  // for which `keep_second` returns false. Both functions may modify the point.
   template <class KeepFirst, class KeepSecond>
   void keep_if(const KeepFirst& keep_first, const KeepSecond& keep_second) {
     first_.keep_if(keep_first);
@@ -121,7 +121,8 @@ class SurfaceProximity {
   // Returns true if a capacity was exceeded, so that points may be missing. Fewer control points or a smaller
   // margin help.
   bool overflow() const { return missing_cells_ || first_.overflow() || second_.overflow(); }
-  // Return the numbers of surface points that the last find() evaluated for the points of each surface.
+  // first_evaluations() and second_evaluations() return the numbers of surface points that the last find()
+  // evaluated for the points of each surface.
   int first_evaluations() const { return first_.evaluations(); }
   int second_evaluations() const { return second_.evaluations(); }
 

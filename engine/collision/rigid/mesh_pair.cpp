@@ -24,9 +24,10 @@ namespace spoonbill {
 
 namespace {
 
-// A point of a triangle of one mesh, and its depth in the other mesh.
+// A point of a triangle of one mesh, and the depth of the mesh's surface there in the other mesh.
 struct DeepPoint {
-  // Depth of the mesh's surface in the other mesh; negative outside.
+  // Depth of the mesh's surface in the other mesh; negative outside. The surface of a plate is half the
+  // plate's thickness from its triangles.
   double depth_m = -std::numeric_limits<double>::infinity();
   Vector3 point_m = Vector3::Zero();
   DistanceSample other;  // signed distance from the point to the other mesh
@@ -241,8 +242,8 @@ class ContactSearch {
     int side = 0;
   };
 
-  // Returns the number of a vertex among the items of regions_. These are the vertices of the first mesh,
-  // then the vertices of the second, then the pairs of triangles.
+  // Returns the number of a vertex among the items of regions_. The items are the vertices of the first mesh,
+  // then the vertices of the second mesh, then the pairs of triangles.
   std::size_t vertex_item(int s, std::uint32_t v) const {
     return s == 0 ? v : meshes_[0]->vertex_count() + v;
   }

@@ -19,7 +19,7 @@ struct MeshPairContact {
   Vector3 first_m = Vector3::Zero(), second_m = Vector3::Zero();
   // Unit vector in the direction in which the first mesh leaves the second.
   Vector3 normal = Vector3::UnitY();
-  double depth_m = 0.0;  // along the normal; 0 if the meshes only touch
+  double depth_m = 0.0;  // depth along the normal; 0 if the meshes only touch
 };
 
 // Result of collide_meshes().

@@ -58,7 +58,7 @@ class RigidMesh {
 // plates. Immutable after make_rigid(), so that any thread may read it.
 class PosedMesh {
  public:
-  // `mesh` must have at least one part; `thickness_m` is positive.
+  // `mesh` must have at least one part, and `thickness_m` must be positive.
   PosedMesh(CleanMesh mesh, const Pose& pose, double thickness_m);
 
   // Builds the FCL tree of each part. Must be called before rigid().

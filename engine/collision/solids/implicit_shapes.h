@@ -131,7 +131,8 @@ inline constexpr auto fields_of<SuperquadricShape> = std::to_array<Field<Superqu
 });
 
 // Checks the ranges and proportions of a shape. The error's field names the value at fault: a length or
-// exponent out of range, semi-axes that differ too much, or a torus whose tube is as wide as its ring.
+// exponent out of range, semi-axes that differ too much, or a torus's tube radius that is not less than its
+// ring radius.
 Status check_implicit_shape(const ImplicitShape& shape);
 
 // Makes the signed distance of a shape that passed check_implicit_shape(). The distance is exact to 1e-12 of

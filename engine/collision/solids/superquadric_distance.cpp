@@ -11,8 +11,8 @@ namespace {
 
 constexpr double nothing = -1e300;     // logarithm of a zero coordinate
 constexpr double least_ratio = 1e-60;  // fraction of a semi-axis below which a coordinate counts as 0
-// Convergence tolerance of log(price), where `price` is the Lagrange multiplier. It also determines the
-// accuracy of the distance.
+// Convergence tolerance of log(price), where `price` is a Lagrange multiplier (mu in
+// superquadric_distance.h). It also determines the accuracy of the distance.
 constexpr double convergence_step = 1e-13;
 // Largest |log(gauge)| of a point that counts as on the surface. The gauge is 1 on the surface and less
 // inside. At such a point, the distance to the tangent plane is exact up to rounding.
@@ -23,13 +23,15 @@ double log_of_sum(double a, double b) {
   return low - high < -40.0 ? high : high + stable_log(1.0 + stable_exp(low - high));
 }
 
-// One coordinate x of the nearest point, as L = log(x / a), the root of e^L + price e^((q-1) L) = target.
+// One coordinate x of the nearest point, as L = log(x / a) with the semi-axis a. L is the root of e^L + price
+// e^((q-1) L) = target, where `price` is a Lagrange multiplier.
 struct Coordinate {
   double log_value = nothing;
   // The term price e^((q-1) L). It is the offset of the point from the surface along this axis, divided by
   // the semi-axis.
   double reach = 0.0;
-  double slope = 0.0;  // derivative of log_value with respect to log(price)
+  // Derivative of log_value with respect to the logarithm of the Lagrange multiplier `price`.
+  double slope = 0.0;
 };
 
 // Solves e^L + price e^((q-1) L) = target for L by Newton's method. It starts where the larger term alone

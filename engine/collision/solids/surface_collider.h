@@ -17,7 +17,8 @@
 
 namespace spoonbill {
 
-// Table of the cells and samples that are not trimmed away. Immutable; queries allocate nothing.
+// Table of the cells and samples of a trimmed surface that are not trimmed away. Immutable; queries allocate
+// nothing.
 class TrimmedLevels {
  public:
   TrimmedLevels(const NestedGrid& nested, std::shared_ptr<const TrimmedArea> area);
@@ -56,8 +57,8 @@ inline constexpr int surface_cut_limit = 20000;
 
 // Result of SurfaceCollider::collide().
 struct CollisionResult {
-  // True if the surface is within the margin or encloses the tool. The tolerance is 1e-6 m for a margin of 0,
-  // otherwise 2e-5 m or 5e-5 m, as for `nearest`.
+  // True if the surface is within the margin or encloses the tool. May be false if the surface is within the
+  // margin by less than 1e-6 m for a margin of 0, otherwise by less than the accuracy of `nearest`.
   bool found = false;
   // Deepest contact, valid if `found` is true. No point is deeper by more than 2e-5 m, or 5e-5 m for a
   // non-convex solid of unknown concavity.
@@ -87,9 +88,9 @@ class SurfaceCollider {
   explicit SurfaceCollider(const NestedGrid& nested, std::shared_ptr<const TrimmedArea> trim = nullptr);
 
   // Finds the deepest contact within `margin_m`. The surface must have the grid's knots. `closed` is true if
-  // the surface bounds a body, which may contain the tool. For a contained tool, the depth is the distance by
-  // which it leaves the body along the normal of the nearest wall. Afterwards, near_samples() returns the
-  // samples within the margin. `samples` are optional, see SurfaceLevels::begin().
+  // the surface bounds a body, which may contain the tool. The depth of a contained tool is the distance that
+  // the tool must move along the normal of the nearest wall to leave the body. Afterwards, near_samples()
+  // returns the samples within the margin. `samples` are optional, see SurfaceLevels::begin().
   CollisionResult collide(const Surface& surface, const ToolShape& tool, double margin_m, bool closed,
                           const PlanarPoints& samples = {});
 
@@ -111,7 +112,8 @@ class SurfaceCollider {
   // Returns the cells that the last search visited, level by level. The children of a refined cell are
   // consecutive, in the order of the refined cells.
   const std::vector<LevelCell>& visited_cells() const { return cells_; }
-  // Returns the finest cells that may be within reach of the tool, in the order of visited_cells().
+  // Returns the finest cells that the last search did not rule out as too far from the tool, in the order of
+  // visited_cells().
   const std::vector<LevelCell>& finest_cells() const { return finest_; }
 
  private:
@@ -195,7 +197,7 @@ class SurfaceCollider {
   std::vector<int> touched_index_;         // index into touched_ of each cell, by finest_index()
   std::vector<std::uint32_t> touched_at_;  // number of the query in which the tool last touched each cell
   std::vector<ToolContactRegion> regions_;
-  int region_ = -1;  // region that polishing must not leave; -1 for none
+  int region_ = -1;  // region that Newton's method must not leave; -1 for none
   bool regions_overflow_ = false;
 };
 

@@ -17,7 +17,7 @@ namespace {
 inline constexpr int max_faces = 6;
 
 struct FacePlane {
-  double value;  // value of the plane at the origin
+  double value;  // value of the plane at a step of zero
   Eigen::Vector2d slope;
 };
 
@@ -154,7 +154,7 @@ constexpr double least_depth_gain = 1e-12;
 // size, and its largest value in metres.
 constexpr double difference_fraction = 1e-5, longest_difference_m = 1e-5;
 // Largest change of the gradient at which the difference counts as a curvature. At a larger change, an edge
-// of the solid is in between.
+// of the solid is between the two points.
 constexpr double edge_change = 0.2;
 // Smallest cosine of the angle between two gradients that count as gradients of the same face. Only one
 // expansion of a face is stored.
@@ -306,8 +306,8 @@ class Descent {
     for (int k = 0; k < count_; ++k) {
       const ShapeFace& face = faces_[k];
       const Vector2d slope = face.slope + face.curvature * (at_ - face.at);
-      // The expansion of any other face is limited to the current distance. Wherever a minimum can be on an
-      // edge, the distance is the maximum over the faces, so no face can exceed it.
+      // The expansion of any face except the current one is limited to the current distance. If a minimum can
+      // be on an edge of the solid, the distance is the maximum over the faces, so no face exceeds it.
       planes[k] = {k == current_ ? 0.0 : std::min(face.value(at_) - here, 0.0), scale.cwiseProduct(slope)};
     }
     Matrix2d curvature = quadratic();

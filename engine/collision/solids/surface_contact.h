@@ -8,7 +8,7 @@
 
 namespace spoonbill {
 
-// A point of a surface, and the signed distance of the tool there.
+// A point of a surface, and its signed distance from the tool.
 struct SurfaceSpot {
   double u = 0.0, v = 0.0;
   Vector3 point_m = Vector3::Zero();

@@ -49,8 +49,8 @@ double best_mix(const CornerValues& a, const CornerValues& b) {
 // Returns a lower bound of the distance from the hull of a patch's corners to a solid. The distance to a
 // convex solid is nowhere below a tangent or a mixture of two tangents; mixtures matter at the solid's edges.
 // Over the hull, a tangent is lowest at a corner. For other solids, a tangent is lowered by half the
-// concavity times the squared distance. For any solid, the distance at the hull's centre minus its radius is
-// a bound.
+// concavity times the square of the hull's radius. For any solid, the distance at the hull's centre minus the
+// hull's radius is a bound.
 double solid_bound(const ToolShape& tool, const PatchCorners& corners, double enough) {
   const Vector3 centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
   double radius = 0.0;

@@ -31,8 +31,8 @@ struct HullFacets {
 // be called from any thread.
 HullFacets hull_facets(const std::vector<Vector3>& points_m);
 
-// Finest level of the spheres that are drawn. The grid of a contact search may have fewer levels. Beyond
-// these, the search cuts patches into four, as the drawing does from level to level.
+// Finest level of the spheres that are drawn. The grid of a contact search may have fewer levels. Beyond its
+// finest level, the search cuts patches into four, as the drawing does from level to level.
 inline constexpr int finest_stage_level = 3;
 
 // Largest number of stored items of each kind. If there are more, ContactStages::overflow is set.
@@ -69,7 +69,7 @@ struct StageContact {
 
 // All stages of one or more contact searches.
 struct ContactStages {
-  std::vector<StageLine> hulls;   // edges of the convex hulls
+  std::vector<StageLine> hulls;   // edges of the convex hulls of the control points
   std::vector<StageLine> ranges;  // borders of the elements within the parameter ranges that may meet
   int elements = 0, elements_within = 0;
   std::vector<StageSphere> spheres;  // for each surface, level by level
@@ -100,7 +100,7 @@ void append(Item item, std::vector<Item>& items, ContactStages& stages) {
 }
 
 // A set of elements of one surface, for drawing their borders. Not thread-safe. The levels must outlive the
-// set and have begun a query.
+// set, and SurfaceLevels::begin() must have been called.
 class ElementMarks {
  public:
   explicit ElementMarks(SurfaceLevels& levels)

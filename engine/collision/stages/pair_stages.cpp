@@ -62,7 +62,7 @@ void PairStages::add_contacts(const Surface& first, const Surface& second, const
 }
 
 // Adds the spheres of the cells that the search visits at one level. Returns the children of the kept cells,
-// which it visits at the next level.
+// which the search visits at the next level.
 std::vector<LevelCell> PairStages::add_level(SurfaceLevels& levels, const std::vector<LevelCell>& visited,
                                              const Marks& kept, int surface, bool is_second,
                                              ContactStages& stages) {

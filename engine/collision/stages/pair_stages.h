@@ -13,8 +13,9 @@
 namespace spoonbill {
 
 // Records the stages of a SurfacePairCollider. The sphere of each visited cell is recorded, but the collider
-// drops cells by their slabs, which are tighter. The spheres of dropped cells may therefore still meet. Not
-// thread-safe. Surfaces given to add() must have the same knots as the surfaces given to make().
+// drops cells by thin slabs (SlabGroup), which bound the surface more tightly than spheres. The spheres of
+// dropped cells may therefore still meet. Not thread-safe. Surfaces given to add() must have the same knots
+// as the surfaces given to make().
 class PairStages {
  public:
   static Result<PairStages> make(const Surface& first, const Surface& second);

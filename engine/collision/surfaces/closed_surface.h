@@ -28,8 +28,9 @@ struct ClosedSkin {
 // Samples a closed surface at its skin_parameters().
 ClosedSkin make_skin(const Surface& surface);
 
-// Approximate number of parameters that skin_parameters() returns. Each element gets two to eight samples, so
-// a surface of many elements has more than this number, and a surface of few elements fewer.
+// Approximate number of parameters that skin_parameters() returns for one direction. Each element gets two to
+// eight samples, so a direction of many elements has more than this number, and a direction of few elements
+// fewer.
 inline constexpr int skin_samples = 200;
 std::vector<double> skin_parameters(const KnotVector& knots);
 

@@ -117,8 +117,8 @@ class RegionCentre {
   ParameterMean u_, v_, s_, t_;
 };
 
-// The pairs of one region, and the levels of both surfaces, which may be the same surface. A view that is
-// valid as long as the pairs are. Allocates nothing.
+// The pairs of cells of one region, and the levels of both surfaces, which may be the same surface. The
+// object refers to the pairs and is valid as long as they are. Allocates nothing.
 struct RegionCells {
   const SurfaceLevels* first;
   const SurfaceLevels* second;
@@ -142,9 +142,9 @@ struct RegionRanges {
 };
 RegionRanges region_ranges(const RegionCells& cells);
 
-// Returns the pair at which the first surface is deepest behind the second, among a few pairs of the region.
-// Returns `touch` if the first surface is not behind the second at any of them. `outside` is 1 if the second
-// surface's outward normal is du x dv, -1 if it is opposite.
+// Compares the centres of a few pairs of cells of the region, and returns the one at which the first surface
+// is deepest behind the second. Returns `touch` if the first surface is not behind the second at any of them.
+// `outside` is 1 if the second surface's outward normal is du x dv, -1 if it is opposite.
 PairParameters find_deepest_seed(const RegionCells& cells, const PairParameters& touch, double outside);
 
 // Returns the side of a surface that faces another surface: 1 for the side of du x dv, -1 for the opposite

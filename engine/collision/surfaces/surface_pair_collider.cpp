@@ -162,10 +162,11 @@ RegionCentre SurfacePairCollider::find_centre(const RegionCells& cells) const {
   return centre;
 }
 
-// Returns the starting points for both sides of the second surface: the deepest and the one farthest in front
-// among several points. These are the centre of the region, the deepest points of the last call, and others
-// in the directions of a few pairs at which the surfaces cross: at half and at twice the distance of the
-// pair. If the last call stored points for this region, only one of these others is evaluated per call.
+// Returns a starting point for each side of the second surface: of several candidates, the deepest and the
+// one farthest in front. The candidates are the centre of the region, the deepest points of the last call,
+// and points in the directions from the centre to a few pairs at which the surfaces cross. The latter are at
+// half and at twice the distance of the pair. If the last call stored points for this region, only one of
+// them is evaluated per call.
 SurfacePairCollider::Seeds SurfacePairCollider::find_seeds(const RegionCells& cells, const Seed* last) const {
   const RegionCentre centre = find_centre(cells);
   Seeds seeds;
@@ -311,8 +312,8 @@ bool SurfacePairCollider::is_contained(const PairQuery& query) const {
   return first_inside || second_inside;
 }
 
-// Makes the contact of a body inside another. It exits through the nearest wall, so its depth is the distance
-// to the wall plus the length of the inner body along the normal.
+// Makes the contact of a body inside another. The inner body leaves through the nearest wall, so the depth is
+// the distance to the wall plus the length of the inner body along the normal.
 PairContact SurfacePairCollider::make_containment_contact() const {
   const Surface& first = first_.surface();
   const Surface& second = second_.surface();

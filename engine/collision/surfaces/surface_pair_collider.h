@@ -16,7 +16,7 @@ namespace spoonbill {
 // Options of SurfacePairCollider::collide().
 struct PairQuery {
   // True if the surface bounds a body: du x dv then points outward, and one body may be inside the other. For
-  // an open surface, the depth is measured towards the side with the shorter exit.
+  // an open surface, the depth is measured on both sides, and the smaller value counts.
   bool first_closed = false, second_closed = false;
   // Largest distance, in metres, at which the nearest points of surfaces that do not touch are searched.
   double reach_m = 0.0;

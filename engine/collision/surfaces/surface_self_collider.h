@@ -41,7 +41,7 @@ class PatchFolds {
  private:
   struct Cone {
     Vector3 axis = Vector3::Zero();  // unit axis of the cone
-    double angle = 0.0;  // half angle; if it is above a right angle, the cone contains all directions
+    double angle = 0.0;              // half angle; pi if the cone contains all directions
   };
   struct Cones {
     Cone along_u, along_v;
@@ -73,7 +73,7 @@ class PatchFolds {
 // Options of SurfaceSelfCollider::collide().
 struct SelfQuery {
   // True if the surface bounds a body: du x dv then points outward. For an open surface, the depth is
-  // measured towards the side with the shorter exit.
+  // measured on both sides, and the smaller value counts.
   bool closed = false;
   Progress progress = {};  // receives the fraction searched; may stop the search
 };
