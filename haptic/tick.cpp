@@ -27,8 +27,8 @@ double force_lag_s(double hold_ticks) {
 // Factor by which the damping exceeds the smallest damping that keeps the coupling passive.
 constexpr double damping_reserve = 2.0;
 
-// Force scale up to which the coupling is rigid: the tool is at the hand, so no force reaches the hand. If a
-// body has an implicit solver, the engine replaces the rigid coupling by a spring.
+// Force scale up to which the coupling is rigid and no force reaches the hand. If a body has an implicit
+// solver, the engine replaces the rigid coupling by a spring, so that the tool is not at the hand.
 constexpr double minimum_force_scale = 1e-9;
 
 // Sets the stiffness for a tick that follows `missed` missed ticks.
@@ -113,7 +113,9 @@ TickResult tick(Simulation& simulation, CouplingState& coupling, const DeviceSpe
   const Reaction reaction = simulation.advance(input);
 
   Vector3 displacement_m = Vector3::Zero();
-  if (reaction.touching) displacement_m = reaction.proxy.position_m - input.pose.position_m;
+  if (reaction.touching && scale > minimum_force_scale) {
+    displacement_m = reaction.proxy.position_m - input.pose.position_m;
+  }
   TickResult result =
       compute_force(coupling, specification, input.pose.position_m, displacement_m, reading.missed);
   result.flags |= reaction.flags;

@@ -19,11 +19,13 @@ std::string with_decimals(double number, int decimals, const char* unit) {
   return text.data();
 }
 
-// Formats the number with two decimals below 10, one below 100 and none above, which gives three significant
-// digits from 1 to 999.
+// Formats the number with three significant digits: two decimals down to 0.1, and more below, so that no
+// quantity reads as 0.00.
 std::string with_three_digits(double number, const char* unit) {
   const double size = std::abs(number);
-  return with_decimals(number, size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2, unit);
+  if (size >= 0.0995 || !(size > 0.0))
+    return with_decimals(number, size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2, unit);
+  return with_decimals(number, static_cast<int>(std::ceil(2.0 - std::log10(1.005 * size))), unit);
 }
 
 bool is_same_range(const Range<double>& a, const Range<double>& b) {

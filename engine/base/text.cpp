@@ -40,7 +40,7 @@ std::string position_text(const Vector3& point_m) {
 namespace {
 
 // Returns the length in bytes of the UTF-8 character at the start of the text and sets `number` to its code
-// point. Returns 0 if the text does not start with a valid character.
+// point. Returns 0, and leaves `number`, if the text does not start with a valid character.
 std::size_t read_character(std::string_view text, unsigned& number) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned>(static_cast<unsigned char>(text[k])); };
   const unsigned first = byte(0);
@@ -51,14 +51,16 @@ std::size_t read_character(std::string_view text, unsigned& number) {
                              : first < 0xF5 ? 4
                                             : 0;
   if (length == 0 || length > text.size()) return 0;
-  number = length == 1 ? first : first & (0xFFU >> (length + 1));
+  unsigned read = length == 1 ? first : first & (0xFFU >> (length + 1));
   for (std::size_t k = 1; k < length; ++k) {
     if ((byte(k) & 0xC0U) != 0x80U) return 0;
-    number = number << 6U | (byte(k) & 0x3FU);
+    read = read << 6U | (byte(k) & 0x3FU);
   }
-  const bool is_surrogate = number >= 0xD800 && number <= 0xDFFF;
-  const bool is_overlong = (length == 3 && number < 0x800) || (length == 4 && number < 0x10000);
-  return is_surrogate || is_overlong || number > 0x10FFFF ? 0 : length;
+  const bool is_surrogate = read >= 0xD800 && read <= 0xDFFF;
+  const bool is_overlong = (length == 3 && read < 0x800) || (length == 4 && read < 0x10000);
+  if (is_surrogate || is_overlong || read > 0x10FFFF) return 0;
+  number = read;
+  return length;
 }
 
 bool is_unprintable(unsigned number) {

@@ -141,7 +141,7 @@ Status check_points_used(const ScanFit& fit) {
                "only " + std::to_string(used) + " of its " + std::to_string(fit.distinct) +
                    " distinct points are used by the fit, which found " + std::to_string(fit.islands) +
                    " islands; choose among them with --islands, or repair the scan and join its vertices",
-               "--islands");
+               "islands");
 }
 
 }  // namespace

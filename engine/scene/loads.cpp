@@ -48,7 +48,7 @@ Status check_motion(const SupportMotion& motion) {
   const double speed = top_speed_m_per_s(motion);
   if (speed <= motion_speed_limit_m_per_s) return {};
   return Error{ErrorCode::out_of_range,
-               "motion reaches " + number_text(speed) + " m/s, must stay below " +
+               "motion reaches " + number_text(speed) + " m/s, must be at most " +
                    number_text(motion_speed_limit_m_per_s) + "; shorten the displacement or allow more time",
                "motion"};
 }

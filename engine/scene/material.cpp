@@ -13,7 +13,8 @@ Status check_fractions(const char* field, const Range<double>& fractions, bool m
   if (may_cross_seam ? fractions.low != fractions.high : fractions.low <= fractions.high) return {};
   return Error{ErrorCode::inconsistent,
                std::string(field) + " is [" + number_text(fractions.low) + ", " +
-                   number_text(fractions.high) + "], must run from the lower to the higher",
+                   number_text(fractions.high) + "], must " +
+                   (may_cross_seam ? "have two different ends" : "run from the lower to the higher"),
                field};
 }
 
@@ -55,7 +56,8 @@ Status check_region(const BodyRegion& region) {
   if (region.depth_m.low >= 0.0 && region.depth_m.low <= region.depth_m.high) return {};
   return Error{ErrorCode::inconsistent,
                "depth_mm is [" + number_text(region.depth_m.low * 1e3) + ", " +
-                   number_text(region.depth_m.high * 1e3) + "], must run from 0 or more to a larger depth",
+                   number_text(region.depth_m.high * 1e3) +
+                   "], must run from 0 or more to the same or a larger depth",
                "depth_mm"};
 }
 

@@ -57,11 +57,11 @@ class Strips {
     const GridSamples<float>& at = surface.samples();
     const std::vector<std::uint32_t>& indices = surface.indices();
     if (surface.is_mesh() || surface.is_trimmed()) return include_each_triangle(at, indices);
-    // Each cell of the grid has two triangles. The corners 0, 1, 2 and 5 of the six are the corners of the
-    // cell, unless the triangles have been reversed because du x dv points inward.
+    // Each cell of the grid has two triangles with the same first corner. The other three corners of the cell
+    // are among these indices, whichever way the triangles face.
     for (std::size_t first = 0; first + 5 < indices.size(); first += 6) {
       Hull hull(*this);
-      for (const std::size_t corner : {0, 1, 2, 5}) {
+      for (const std::size_t corner : {0, 1, 2, 4, 5}) {
         const std::uint32_t v = indices[first + corner];
         hull.include({at.x[v], at.y[v], at.z[v]});
       }

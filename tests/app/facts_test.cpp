@@ -98,6 +98,7 @@ TEST(Info, EscapesWhatIsNotText) {
   EXPECT_EQ(escaped("a\x9b"
                     "b\xc3"),
             "a\\u009bb\\u00c3");
+  EXPECT_EQ(escaped("\xe2("), "\\u00e2(") << "a character that is not complete";
   EXPECT_EQ(escaped("gr\xc3\xb6\xc3\x9f\x65\xf0\x9f\x99\x82"), "gr\xc3\xb6\xc3\x9f\x65\xf0\x9f\x99\x82");
   EXPECT_EQ(without_controls("\n\xe2\x80\xa8"), "??");
 }

@@ -499,6 +499,9 @@ TEST(QuantityText, HasThreeDigitsAndAUnit) {
   EXPECT_EQ(modulus_text(163.2), "163 Pa");
   EXPECT_EQ(modulus_text(2e5), "200 kPa");
   EXPECT_EQ(modulus_text(1.234e6), "1.23 MPa");
+  EXPECT_EQ(volume_text(1.234e-9), "0.00123 cm\u00b3");
+  EXPECT_EQ(volume_text(9.996e-8), "0.10 cm\u00b3");
+  EXPECT_EQ(volume_text(0.0), "0.00 cm\u00b3");
   EXPECT_EQ(modulus_text(999.9), "1.00 kPa");
   EXPECT_EQ(modulus_text(2.1e11), "210 GPa");
   EXPECT_EQ(millimetres_text(0.008), "8.0 mm");

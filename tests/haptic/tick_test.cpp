@@ -25,6 +25,24 @@ Simulation held_handle(double force_scale) {
   return Simulation::make(scene, best_instruction_set()).value();
 }
 
+// A stiff body holds the tool away from the hand even if no force may reach the hand.
+TEST(Tick, AForceScaleOfZeroIsNoForceOnAStiffBody) {
+  Scene scene = held_handle(0.0).scene();
+  scene.bodies[0].material.plastic = false;
+  scene.bodies[0].material.youngs_modulus_pa = 2e9;
+  Simulation simulation = Simulation::make(scene, best_instruction_set()).value();
+  CouplingState coupling;
+  for (int k = 0; k < 200; ++k) {
+    const double height_m = 0.02 - 1e-4 * k;
+    const TickResult result =
+        tick(simulation, coupling, VirtualDevice::default_specification(), reading_at(0.03, height_m));
+    EXPECT_EQ(result.force_n, Vector3::Zero());
+  }
+  Snapshot snapshot;
+  simulation.write_snapshot(snapshot);
+  EXPECT_GT((snapshot.tool.proxy.position_m - snapshot.tool.device.position_m).norm(), 1e-3);
+}
+
 TEST(Tick, NoContactNoForce) {
   Simulation simulation = held_handle(100.0);
   CouplingState coupling;

@@ -56,9 +56,12 @@ std::optional<double> parse_number(std::string_view word) {
   if (end != word.data() + word.size() || word.empty()) return {};
   if (error == std::errc::result_out_of_range) {
     // A number that is too small becomes zero; a number that is too large becomes infinite.
-    return word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos
-               ? 0.0
-               : std::numeric_limits<double>::infinity();
+    const std::size_t exponent = word.find_first_of("eE");
+    const bool is_small =
+        exponent != std::string_view::npos
+            ? word.substr(exponent + 1).starts_with('-')
+            : word.substr(0, word.find('.')).find_first_of("123456789") == std::string_view::npos;
+    return is_small ? 0.0 : std::numeric_limits<double>::infinity();
   }
   return error == std::errc() ? std::optional(number) : std::nullopt;
 }

@@ -227,6 +227,7 @@ TEST(TextPoints, RefusesEachDamageWithItsReason) {
   expect_refusal(parse_text_points("a story\nof no\npoints\n"), "line 2");
   expect_refusal(parse_text_points("nan nan nan\n"), "not a number");
   expect_refusal(parse_text_points("1 2 1e999\n"), "infinity");
+  EXPECT_TRUE(parse_text_points("1 2 1e-999\n1 2 0." + std::string(400, '0') + "1\n").ok());
 }
 
 // A declared count must equal the number of points in every format.

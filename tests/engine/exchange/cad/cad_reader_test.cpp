@@ -252,7 +252,6 @@ TEST_F(CadReader, OtherFilesThatAFileNamesAreNotOpened) {
   const auto found = read_cad(file, {}, [](const CadSurface&) { FAIL() << "a surface of another file"; });
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, ErrorCode::missing);
-  EXPECT_EQ(found.error().code, ErrorCode::missing);
   EXPECT_NE(found.error().message.find("names other files"), std::string::npos) << found.error().message;
 }
 

@@ -217,7 +217,7 @@ TEST(BodyRegion, WrongOnesAreRefusedByField) {
   EXPECT_EQ(refusal({{0.0, 1.5}, {0.0, 1.0}, {0.0, 1.0}}), Refusal(ErrorCode::out_of_range, "along"));
   EXPECT_EQ(refusal({{0.0, 1.0}, {0.5, 0.5}, {0.0, 1.0}}), Refusal(ErrorCode::inconsistent, "around"));
   EXPECT_EQ(refusal({{0.0, 1.0}, {0.0, 1.0}, {0.002, 0.001}}).message,
-            "depth_mm is [2, 1], must run from 0 or more to a larger depth");
+            "depth_mm is [2, 1], must run from 0 or more to the same or a larger depth");
   EXPECT_EQ(refusal({{0.0, 1.0}, {0.0, 1.0}, {-0.001, 0.001}}), Refusal(ErrorCode::inconsistent, "depth_mm"));
   const double nothing = std::nan("");
   EXPECT_FALSE(check_region({{nothing, 1.0}, {0.0, 1.0}, {0.0, 1.0}}).ok());
