@@ -113,6 +113,17 @@ TEST(HeldSphere, FeelsASteadyForceWhereSeveralPlacesAreEquallyDeep) {
   EXPECT_LT(press_and_hold(simulation, 0.5, 2500).ripple, 0.005);
 }
 
+// The sphere rests on many points of each cell. Contacts that are solved in one order only shake such a block
+// for ever after a quick press, with a ripple of 46 % of the force.
+TEST(HeldSphere, ComesToRestAfterAQuickPress) {
+  if (const std::string reason = find_skip_reason(ForceRun::always); !reason.empty()) GTEST_SKIP() << reason;
+  Scene scene = block_scene("silicone-00-30", 600);
+  scene.tool.substeps = 4;
+  scene.sculpting.drag_per_s = 20.0;
+  Simulation simulation = make_simulation(scene);
+  EXPECT_LT(press_and_hold(simulation, 0.05, 2000).ripple, 0.005);
+}
+
 struct Presses {
   double peak_over_held = 0.0, held_over_slow = 0.0;
 };
