@@ -193,8 +193,8 @@ Vector3 applied_force_n(const SpringLattice& lattice, int node) {
   return {lattice.applied_force(0)[node], lattice.applied_force(1)[node], lattice.applied_force(2)[node]};
 }
 
-// Chooses the largest node counts that respect the node budget and the limit of the band and do not exceed
-// the counts of the lattice.
+// Chooses node counts that do not exceed the counts of the lattice. Reduces the node budget until the band
+// has at most max_band entries or the budget is below min_budget.
 Result<LatticeMesh> choose_coarse_counts(const LatticeMesh& mesh, const Vector3& size_m) {
   LatticeMesh block;
   block.closed = mesh.closed;

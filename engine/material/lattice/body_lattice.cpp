@@ -198,8 +198,8 @@ double move_node(const Around& around, double lift_square, Vector3& node) {
   return 0.0;
 }
 
-// Sets every node that is not on the hull by the Boolean sum of linear interpolations between the three
-// pairs of faces (Gordon and Hall 1973), or between the two pairs across a closed block.
+// Sets every node that is not on the hull by the Boolean sum of linear interpolations between the three pairs
+// of faces (Gordon and Hall 1973), or between two pairs in a closed block, which has no faces at its seam.
 void fill_from_hull(LatticeMesh& mesh) {
   const std::array<int, 3> last = {mesh.count[0] - 1, mesh.count[1] - 1, mesh.count[2] - 1};
   for (int n = 0; n < mesh.node_count(); ++n) {
