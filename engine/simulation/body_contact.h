@@ -62,8 +62,8 @@ struct IndexedBody {
 // Returns a near point of a body's surface as a weighted sum of the nodes of the body's lattice.
 EmbeddedPoint find_embedding(const BodyMapping& mapping, const NearPoint& near);
 
-// Adds a constraint for each point of `from` that is near `to`, which may be the same body. Returns false if
-// a capacity was exceeded.
+// Adds a constraint for each of `points`, which are points of the body `from` near the body `to`. Both may be
+// the same body. Returns false if a capacity was exceeded.
 bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::vector<NearPoint>& points,
                      BodyContacts& contacts);
 

@@ -59,7 +59,7 @@ class BodyMapping {
 
   // Returns the mapping of a refined surface, with a new knot in each direction, at the midpoint of the
   // element that contains u or v. The surface gains control points there and keeps its shape up to rounding.
-  // Fails at the largest number of control points.
+  // The caller must check the new number of control points.
   Result<BodyMapping> refine_at(double u, double v, const SpringLattice& lattice,
                                 const std::vector<FixingPlane>& planes) const;
 

@@ -31,7 +31,7 @@ struct BodyState {
   Smoothing smoothing;
   std::vector<std::uint8_t> fixed, touched;            // one byte per node: 1 if fixed, 1 if touched
   std::optional<ImplicitSolver> implicit_solver = {};  // empty if the springs step the body
-  // Initially for a single node; make_body_state() replaces it.
+  // Made for a single node until make_body_state() replaces it.
   BodyHold hold = BodyHold(1);
   BodyLoads loads = {};
   BodySupports supports = {};

@@ -101,8 +101,8 @@ class Simulation {
   // Returns the scene as it was set. Its surfaces date from the last change of knots, fixing planes or rest
   // shapes; surface() returns the current surfaces.
   const Scene& scene() const;
-  // Writes the scene with current surfaces, for saving. Allocates only if `scene` has other bodies or other
-  // numbers of control points.
+  // Writes the scene with current surfaces, for saving. Allocates only if `scene` has different bodies or a
+  // different number of control points.
   void write_scene(Scene& scene) const;
   std::uint64_t tick() const;
 

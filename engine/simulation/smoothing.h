@@ -66,7 +66,7 @@ class Smoothing {
   // Position of an inner node relative to its six neighbours.
   struct NeighbourCentre {
     Vector3 offset;          // offset of the node from the centre of its neighbours
-    Eigen::Matrix3d across;  // columns: from each neighbour to the opposite one
+    Eigen::Matrix3d across;  // for each axis, a column: the vector between the two neighbours
   };
   template <class PositionOf>
   NeighbourCentre neighbour_centre_at(int node, const PositionOf& position_of) const;

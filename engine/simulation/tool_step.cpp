@@ -14,8 +14,8 @@ void push(ToolContact& contact, const ToolTouch& touch) {
   contact.push(touch.bodies, touch.hold);
 }
 
-// Pull: grips the surface inside the tool when the button goes down, and fixes it in the tool's frame until
-// the button is released.
+// Pull: grips the surface inside the tool as soon as the button is down and the tool is inside a body. Fixes
+// the gripped points in the tool's frame until the button is released.
 void pull(ToolContact& contact, const ToolTouch& touch) {
   if (!touch.hold.gripping) return contact.release();
   if (touch.inside && !contact.gripped()) contact.grip(touch.bodies, touch.hold);

@@ -12,8 +12,8 @@
 namespace spoonbill {
 namespace {
 
-// Largest number of iterations for the ground contacts in a tick. Each costs one solve with the Cholesky
-// factor, as much as an iteration of the conjugate gradients in ImplicitBody.
+// Largest number of iterations for the ground contacts in a tick. Each iteration costs one solve with the
+// Cholesky factor, as much as an iteration of the conjugate gradients in ImplicitBody.
 constexpr int step_limit = 4;
 // Velocity error below which the ground contacts of a tick count as solved: a nanometre per second.
 constexpr double accepted_error_m_per_s = 1e-9;
