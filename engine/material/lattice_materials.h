@@ -47,9 +47,9 @@ struct LatticeMaterials {
 
 // Returns the materials and frictions of a body with regions. A cell gets the material of the last region
 // that has a material and contains the cell's centre (see find_cell_coordinates()). A node gets the friction
-// of the last region that contains it, which defaults to that of the region's material. Fails where
-// check_material_region() does. Also fails if a region with a material contains no centre of a filled cell,
-// or if a region with a friction of its own contains no surface node.
+// of the last region that contains the node; a region without a friction has the friction of its material.
+// Fails if a region does not pass check_material_region(). Also fails if a region with a material contains no
+// centre of a filled cell, or if a region with a friction of its own contains no surface node.
 Result<LatticeMaterials> lattice_materials(const LatticeMesh& mesh, const Material& own,
                                            std::span<const MaterialRegion> regions);
 

@@ -94,7 +94,8 @@ float move_supported_nodes(std::span<const SupportedNodes> supports, const Latti
   return moved_square;
 }
 
-// Ticks between two creep steps. The creep of a single tick would be lost in the rounding of a rest length.
+// Number of ticks from one creep step to the next. The creep of a single tick would be lost in the rounding
+// of a rest length.
 constexpr std::uint64_t creep_pause = 8;
 
 struct Substeps {
@@ -199,8 +200,8 @@ struct Substep {
   float h;
 };
 
-// Largest number of substeps of a tick in which gravity acts. In a shorter substep, rounding would swallow
-// part of the change of a falling node's velocity.
+// Gravity acts in at most this number of the substeps of a tick. If the substeps were more and shorter,
+// rounding would swallow part of the change of a falling node's velocity.
 constexpr int most_weighted_substeps = 64;
 
 // Returns the factor by which gravity is multiplied in a substep. It is 1 in a tick of at most
@@ -476,7 +477,8 @@ void stabilise_strained_nodes(Relaxation& relaxation, float h) {
     SpringLattice& lattice = relaxation.lattice(at);
     relaxation.view[at].inverse_mass =
         lattice.stabilise_strained_nodes(h, static_cast<float>(stability_fraction));
-    linearise(lattice, relaxation.view[at], Linearised::tangents);  // the velocities have changed
+    // The velocities have changed, and the linearisation depends on them.
+    linearise(lattice, relaxation.view[at], Linearised::tangents);
   }
 }
 

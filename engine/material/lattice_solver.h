@@ -54,7 +54,8 @@ inline constexpr double speed_cap_cells = 0.1;
 inline constexpr double linear_cells = 0.1;
 
 // Settings of relax(). Tracking the fastest frequency costs about as much as a substep, and so does plastic
-// flow. The two alternate: even ticks track the frequency, and odd ticks compute the flow of two ticks.
+// flow. The two alternate with `tick`: even ticks track the frequency, and odd ticks compute the flow of two
+// ticks.
 struct RelaxSettings {
   std::uint64_t tick = 0;
   int substeps = 1;         // number of substeps at rest; strain may multiply it by up to substep_ceiling
@@ -100,8 +101,8 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
                   std::span<const TouchingTool> tools, BodyContacts* between = nullptr,
                   GroundContacts* ground = nullptr);
 
-// Damping relative to the critical damping of a body's present motion. Slightly above 1, so that other modes
-// do not carry the body past its rest shape.
+// Damping relative to the critical damping of a body's present motion. It is slightly above 1, so that other
+// modes do not carry the body past its rest shape.
 inline constexpr double critical_damping_fraction = 1.1;
 
 // Returns critical_damping_fraction times the critical damping of a motion, mass-proportional, 1/s. Critical

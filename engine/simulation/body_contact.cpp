@@ -8,9 +8,9 @@
 namespace spoonbill {
 namespace {
 
-// Limits of the lateral offset of a point over a surface: a fraction of the point's height, and an allowance
-// for rounding. Beyond them the point is beside the surface. The lateral error of nearest points is far
-// smaller.
+// The largest lateral offset of a point over a surface is this fraction of the point's height plus an
+// allowance for rounding. At a larger offset the point is beside the surface. The lateral error of nearest
+// points is far smaller.
 constexpr double lateral_tolerance = 0.2, rounding_m = 1e-6;
 
 }  // namespace

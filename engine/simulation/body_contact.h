@@ -18,14 +18,16 @@
 
 namespace spoonbill {
 
-// Returns the gap of a shell's surface minus the gap of the face that a contact touches, m: 0 for the surface
-// itself, the thickness for a far face that is pushed straight outward. `push` is the unit vector along which
-// the contact pushes the shell, `normal` the surface's unit normal. Exact for flat shells.
+// Returns the gap of a shell's surface minus the gap of the face that a contact touches, m: 0 if the contact
+// touches the surface itself, the thickness if it pushes the far face straight towards the surface. `push` is
+// the unit vector along which the contact pushes the shell, `normal` the surface's unit normal. Exact for
+// flat shells.
 double far_face_offset_m(double thickness_m, const Vector3& normal, const Vector3& push);
 
 // Finds the gap from a point to the near face of a shell, and the outward normal of that face. (u, v) is the
-// nearest point of the shell's surface. A point deeper than half the thickness belongs to the far face.
-// Returns false if the gap exceeds the margin, or if the point is beside the rim and touches neither face.
+// nearest point of the shell's surface. A point deeper below the surface than half the thickness belongs to
+// the far face. Returns false if the gap exceeds the margin, or if the point is beside the rim of the shell
+// and touches neither face.
 bool find_shell_gap(const Surface& shell, double thickness_m, double u, double v, const Vector3& point_m,
                     double margin_m, Vector3& normal, double& gap_m);
 
@@ -39,16 +41,16 @@ struct ShellOrSolid {
 bool resolve_shell_gap(const ShellOrSolid& of, const ShellOrSolid& other, double margin_m, NearPoint& near);
 
 // Largest penetration of two bodies pressed together at up to 60 mm/s, in lattice cells of the coarser body.
-// Control nets follow a dent one cell wide only in part; the remaining penetration disappears as soon as the
-// bodies come to rest.
+// Control nets follow a dent one cell wide only in part. The penetration that this causes disappears as soon
+// as the bodies come to rest.
 inline constexpr double body_depth_limit_cells = 0.03;
 
 // Largest penetration of a body pressed onto itself, in lattice cells. It is twice the limit for two bodies,
 // because the control nets of both sides follow a dent only in part.
 inline constexpr double self_depth_limit_cells = 2.0 * body_depth_limit_cells;
 
-// Gap below which a point becomes a constraint, in lattice cells of the coarser body: about one tick's
-// movement.
+// Gap below which a constraint is added for a point, in lattice cells of the coarser body. It is about the
+// movement in one tick.
 inline constexpr double contact_margin_cells = 0.25;
 
 // State of a body, and its index in the simulation.
@@ -60,19 +62,20 @@ struct IndexedBody {
 // Returns a near point of a body's surface as a weighted sum of the nodes of the body's lattice.
 EmbeddedPoint find_embedding(const BodyMapping& mapping, const NearPoint& near);
 
-// Adds a constraint for each point of `from` that is near `to`, which may be the same body. Returns false if
-// a capacity was exceeded.
+// Adds a constraint for each of `points`, which are points of the body `from` near the body `to`. Both may be
+// the same body. Returns false if a capacity was exceeded.
 bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::vector<NearPoint>& points,
                      BodyContacts& contacts);
 
-// Contact of two bodies. Owned by the simulation, which rebuilds it with the mapping of either body. find()
-// and add_contacts() allocate nothing.
+// Contact of two bodies. Owned by the simulation, which rebuilds it when the mapping of either body is
+// replaced. find() and add_contacts() allocate nothing.
 class BodyPairContact {
  public:
   // The first body must have a surface, the second a surface or a mesh.
   BodyPairContact(const BodyState& first, const BodyState& second);
 
-  // Finds the points of each skin that are near the other skin. Returns false if a capacity was exceeded.
+  // Finds the points on the skin of each body that are near the skin of the other. Returns false if a
+  // capacity was exceeded.
   bool find(const IndexedBody& first, const IndexedBody& second);
   // Smallest gap that the last find() found, negative where the bodies overlap; infinite if they are not
   // near.
@@ -80,7 +83,8 @@ class BodyPairContact {
     return std::visit([](const auto& proximity) { return proximity->least_gap_m(); }, proximity_);
   }
   // deepest_on_first() and deepest_on_second() return the point of a body's surface that is deepest in the
-  // other body or nearest to it, by the last find(). Empty if nothing is near, or if the body is a mesh.
+  // other body or nearest to it, as found by the last find(). Empty if nothing is near, or if the body is a
+  // mesh.
   std::optional<SurfaceSpot> deepest_on_first(const BodyState& first) const;
   std::optional<SurfaceSpot> deepest_on_second() const;
   // Adds a constraint for each point of the last find(). Returns false if a capacity was exceeded.
@@ -91,10 +95,10 @@ class BodyPairContact {
   std::variant<std::unique_ptr<SurfaceProximity>, std::unique_ptr<MeshProximity>> proximity_;
 };
 
-// Contact of a body with itself, where its surface comes near another part of it from outside. A slender body
-// in a box of cells (LatticeMesh::slender) has no self-contact: it is thinner than two cells somewhere, and
-// its far side would be mistaken for a part that has been pressed through the near side. Owned by the
-// simulation, which rebuilds it with the body's mapping.
+// Contact of a body with itself, where one part of its surface comes near another part from outside. A
+// slender body in a box of cells (LatticeMesh::slender) has no self-contact: it is thinner than two cells
+// somewhere, and its far side would be mistaken for a part that has been pressed through the near side. Owned
+// by the simulation, which rebuilds it when the body's mapping is replaced.
 class BodySelfContact {
  public:
   explicit BodySelfContact(const BodyState& body);

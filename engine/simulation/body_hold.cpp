@@ -10,14 +10,14 @@
 namespace spoonbill {
 namespace {
 
-// Smallest extent of a body in its second direction, as a fraction of the first, at which its orientation is
-// defined. The extents are the singular values in BodyHold::measure().
+// A body's orientation is defined only if its second largest extent is at least this fraction of its largest
+// one. The extents are the singular values in BodyHold::measure().
 constexpr double least_second_extent = 1e-6;
 // Largest turn of an intact body in a tick, rad. A larger turn means that the shape has lost its orientation,
-// for instance by turning inside out, and the turn is ignored.
+// for instance by turning inside out, and it is not undone.
 constexpr double largest_turn_rad = 0.2;
-// Displacements and turns per tick that are not corrected, so that a body at rest stays the same to the last
-// bit.
+// Largest displacement and turn per tick that are not corrected, so that a body at rest stays the same to the
+// last bit.
 constexpr double least_move_m = 1e-9, least_turn_rad = 1e-8;
 
 struct MassCentre {
@@ -54,7 +54,7 @@ Vector3 find_spin(const SpringLattice& lattice, const MassCentre& centre) {
   }
   const double size = inertia.trace();
   if (!(size > 0.0)) return Vector3::Zero();
-  // Keeps the tensor invertible for a rod, which does not resist a spin about its axis.
+  // The added term keeps the tensor invertible for a rod, which does not resist a spin about its axis.
   inertia += 1e-9 * size * Eigen::Matrix3d::Identity();
   return inertia.ldlt().solve(momentum);
 }

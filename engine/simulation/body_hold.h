@@ -1,5 +1,6 @@
-// Keeps a body in the scene through one tick. Keeps the pose of a body that nothing fixes, and returns a body
-// to its last good shape if its lattice cannot follow. Owned by the body; allocates only on construction.
+// Keeps a body in the scene during a tick. Keeps the pose of a body that nothing fixes. Restores the shape of
+// a body at the start of the tick if its lattice becomes unstable. Owned by the body. Allocates only in its
+// constructor.
 #pragma once
 
 #include <vector>
@@ -17,7 +18,7 @@ class BodyHold {
   // Stores the displacements and the mean pose at the start of a tick.
   void begin(const SpringLattice& lattice);
 
-  // Checks that the positions and velocities of all nodes are finite, and that no node is farther than
+  // Returns false if the positions and velocities of all nodes are finite and no node is farther than
   // `reach_m` from the centre of mass. Otherwise restores the displacements at the start of the tick, with
   // zero velocities, and returns true. `solver` is null if the springs step the body.
   bool limit(SpringLattice& lattice, ImplicitSolver* solver, double reach_m) const;

@@ -28,7 +28,7 @@ class BodyLoads {
   bool empty() const { return nodes_.empty(); }
   const std::vector<NodeForce>& forces() const { return forces_; }
   const std::vector<PressedFace>& pressures() const { return pressures_; }
-  // Pressures on the skin of a body in a box of cells.
+  // Returns the pressures on the skin of a body that is embedded in a box of cells; empty for any other body.
   const PressedSkin& pressed_skin() const { return pressed_skin_; }
 
   // Computes the loads on the current shape and sets them as node forces of the lattice, and of the implicit
@@ -45,7 +45,7 @@ class BodyLoads {
   std::vector<Vector3> force_n_;  // working memory: force on each node of the lattice
 };
 
-// Supports of a body, which owns them. The displacement of a support is that of its nodes beyond
+// Supports of a body, which owns them. The displacement of a support is the displacement of its nodes minus
 // SupportedNodes::base_m. begin_tick() allocates nothing.
 class BodySupports {
  public:
@@ -62,7 +62,7 @@ class BodySupports {
   void rebase(const SpringLattice& before, const SpringLattice& after);
 
   // Updates the motions of the supports for a tick of `tick_s` that ends at `end_s`, and sets their impulses
-  // to zero.
+  // to zero. Returns all supports.
   std::span<SupportedNodes> begin_tick(const SpringLattice& lattice, double end_s, double tick_s);
 
   std::span<const SupportedNodes> supports() const { return supported_; }

@@ -68,9 +68,10 @@ FixedStretch find_fixed_stretch(const Surface& surface, const std::vector<Fixing
   return {start + low * length, start + (1.0 - high) * length};
 }
 
-// Inserts a knot of multiplicity degree - 1 at v. The displacement may start there with its own curvature,
+// Inserts a knot of multiplicity degree - 1 at v. The curvature of the displacement may jump at this knot,
 // and the surface stays C1. Moves v to an existing knot nearby, which avoids sliver elements. If the surface
-// would get too many control points, inserts nothing; up to `degree` additional columns are then fixed.
+// would get too many control points, inserts nothing; up to `degree` additional columns of control points are
+// then fixed.
 Result<Surface> insert_edge_knot(const Surface& surface, double& v) {
   const std::vector<double> breaks = surface.v.breakpoints();
   const double tolerance = 1e-3 * surface.v.domain_length();
@@ -144,9 +145,9 @@ void search_cells_around(const LatticeMesh& mesh, int node, const Vector3& point
   }
 }
 
-// Embeds a point in one of the cells around the node nearest to it: the cell that contains the point, or else
-// the nearest of these cells. If that cell is more than one cell size away, attaches the point to the node
-// alone.
+// Embeds a point in one of the cells around the node nearest to it, or around that node's twin across a seam:
+// the cell that contains the point, or else the nearest of these cells. If that cell is more than one cell
+// size away, attaches the point to the node alone.
 EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
   int nearest = 0;
   double least = std::numeric_limits<double>::infinity();
@@ -316,7 +317,7 @@ void BodyMapping::update(const SpringLattice& lattice) {
       (*net[axis])[p] = (*base[axis])[p] + static_cast<double>(control_[axis][p]);
     }
   }
-  // Rounding to single precision separates the control points of a pole; they are joined again.
+  // Rounding to single precision separates the control points of a pole. join_edge() moves them to one point.
   for (const NetEdge& edge : collapsed_edges_) join_edge(current_.net, edge);
 }
 

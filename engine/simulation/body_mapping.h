@@ -24,17 +24,17 @@
 
 namespace spoonbill {
 
-// Displacements of a surface's samples minus the displacements that the control net can reproduce: the
-// largest and the root mean square difference, and the parameters (u, v) of the largest.
+// Difference between the displacements of a surface's samples and the displacements that the control net
+// reproduces: the largest and the root mean square difference, and the parameters (u, v) of the largest.
 struct MappingResidual {
   double largest_m = 0.0;
   double root_mean_square_m = 0.0;
   double u = 0.0, v = 0.0;
 };
 
-// Mapping to a B-spline surface: embedded grid samples move with the nodes, and the displacement refit moves
-// the control points with the samples. Owned by the simulation. update() and measure_residual() allocate
-// nothing.
+// Mapping to a B-spline surface. Surface samples that are embedded in the lattice move with the nodes, and
+// DisplacementRefit moves the control points with the samples. Owned by the simulation. update() and
+// measure_residual() allocate nothing.
 class BodyMapping {
  public:
   // Makes the mapping. `rest` is the surface from which the lattice's rest shape was made. `current` is the
@@ -57,9 +57,9 @@ class BodyMapping {
   const MappingResidual& residual() const { return residual_; }
   void measure_residual();
 
-  // Returns the mapping of a refined surface, with a new knot at the midpoint of the elements that contain u
-  // and v. The surface gains control points there and keeps its shape up to rounding. Fails at the largest
-  // number of control points.
+  // Returns the mapping of a refined surface, with a new knot in each direction, at the midpoint of the
+  // element that contains u or v. The surface gains control points there and keeps its shape up to rounding.
+  // The caller must check the new number of control points.
   Result<BodyMapping> refine_at(double u, double v, const SpringLattice& lattice,
                                 const std::vector<FixingPlane>& planes) const;
 
@@ -93,7 +93,7 @@ class BodyMapping {
   AlignedVector<float> base_moves_;        // displacements of the samples at make(): x, y, z and 0 for each
   AlignedVector<float> sample_[3];         // displacements of the samples by axis, in the layout of the refit
   std::vector<float> control_[3];
-  bool first_pole_ = true, last_pole_ = true;    // whether v starts and ends with a pole
+  bool first_pole_ = true, last_pole_ = true;    // whether v starts with a pole, and whether it ends with one
   std::vector<NetEdge> collapsed_edges_;         // edges whose control points are kept exactly together
   std::vector<DisplacementRefit> refit_;         // empty until made, then one element
   std::vector<GridEvaluator<float>> evaluator_;  // empty until made, then one element
@@ -101,7 +101,7 @@ class BodyMapping {
   MappingResidual residual_;
 };
 
-// Mapping to triangles, whose vertices are embedded in a box lattice. Owned by the simulation. update()
+// Mapping to a triangle mesh, whose vertices are embedded in a box lattice. Owned by the simulation. update()
 // allocates nothing.
 class MeshMapping {
  public:
@@ -118,9 +118,9 @@ class MeshMapping {
   EmbeddedPoint vertex(std::uint32_t vertex) const;
   EmbeddedPoint at(const PointOnMesh& point) const;
 
-  // Returns the patch number of each vertex. A patch is an octant of a lattice cell at rest; patches are
-  // numbered without gaps. Each patch gets one contact at most, because contacts denser than half a cell
-  // would act on the same nodes twice.
+  // Returns the patch number of each vertex. A patch consists of the vertices in one octant of a lattice cell
+  // at rest. Patches are numbered without gaps. Each patch gets one contact at most, because contacts denser
+  // than half a cell would act on the same nodes twice.
   const std::vector<int>& patches() const { return patches_; }
 
  private:

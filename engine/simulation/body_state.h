@@ -30,8 +30,8 @@ struct BodyState {
   std::variant<BodyMapping, MeshMapping> skin;
   Smoothing smoothing;
   std::vector<std::uint8_t> fixed, touched;            // one byte per node: 1 if fixed, 1 if touched
-  std::optional<ImplicitSolver> implicit_solver = {};  // for materials too stiff for the lattice's springs
-  // Initially for a single node; make_body_state() replaces it.
+  std::optional<ImplicitSolver> implicit_solver = {};  // empty if the springs step the body
+  // Made for a single node until make_body_state() replaces it.
   BodyHold hold = BodyHold(1);
   BodyLoads loads = {};
   BodySupports supports = {};
@@ -81,7 +81,7 @@ struct BodyState {
   // Returns the triangles of a soft mesh tool; null for any other body.
   const MeshMapping* mesh() const { return std::get_if<MeshMapping>(&skin); }
 
-  // Updates the skin to the present lattice.
+  // Updates the skin to the present displacements of the lattice.
   void update_skin() {
     std::visit([this](auto& mapping) { mapping.update(lattice); }, skin);
   }
@@ -93,14 +93,14 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
 
 // Young's modulus from which elastic bodies are stepped implicitly at their true stiffness. The few newtons
 // of a hand dent such bodies by less than a third of a millimetre, but can bend them. Softer bodies are
-// dented, which requires the finer lattice and its springs.
+// dented, which requires a finer lattice, stepped by springs.
 inline constexpr double stiff_youngs_modulus_pa = 1e6;
 
-// Makes the implicit solver of a lattice, unstrained when its nodes are at `rest_m`. Only bodies whose
-// materials are all linear elastic have one, for any of three reasons: the stiffest material has at least
-// stiff_youngs_modulus_pa; a Poisson's ratio is below min_spring_poissons_ratio; or the body is a shell,
-// which a single layer of springs would make twice too stiff in bending. Empty for bodies that are stepped by
-// their springs.
+// Makes the implicit solver of a lattice, unstrained when its nodes are at `rest_m`. Only a body whose
+// materials are all linear elastic has one, and only if one of three conditions holds: the stiffest material
+// has at least stiff_youngs_modulus_pa; a Poisson's ratio is below min_spring_poissons_ratio; or the body is
+// a shell, which a single layer of springs would make twice too stiff in bending. Empty for bodies that are
+// stepped by their springs.
 Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& lattice,
                                                            const std::vector<Vector3>& rest_m,
                                                            InstructionSet set);

@@ -214,7 +214,8 @@ void CommandApplier::set_mappings(std::vector<BodyMapping> mappings) {
   make_contacts();
 }
 
-// Replaces the model of the last solid tool, and its soft body at the end of the list of bodies.
+// Replaces the model of the previous solid tool, and the body of a previous soft tool at the end of the list
+// of bodies.
 void CommandApplier::adopt_model(ToolModel model) {
   while (state.bodies.size() > state.scene.bodies.size()) state.bodies.pop_back();
   if (model.soft) state.bodies.push_back(*std::move(model.soft));

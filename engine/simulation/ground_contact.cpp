@@ -14,7 +14,8 @@ namespace {
 constexpr int height_levels = 2;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-// Returns how far a parabola through three points falls below the middle point between the outer points.
+// Returns how far the lowest point of a parabola through three points is below the middle point; 0 if it is
+// not between the outer points.
 double dip(double before, double middle, double after, double step_before, double step_after) {
   const double rise_before = (middle - before) / step_before, rise_after = (after - middle) / step_after;
   const double steps = step_before + step_after;
@@ -90,7 +91,8 @@ double SkinHeights::dip_along_u(int row, int column) const {
   const int last = rows() - 1;
   const bool closed = along.knots.is_periodic();
   if (!closed && (row == 0 || row == last)) return 0.0;
-  // The neighbours of a seam row are across the seam, where the first and the last row coincide.
+  // At a seam, the first and the last row coincide, and one neighbour of this row is on the other side of the
+  // seam.
   const int before = row == 0 ? last - 1 : row - 1, after = row == last ? 1 : row + 1;
   const int end = row == 0 ? last : row, start = row == last ? 0 : row;
   return dip(height(before, column), height(row, column), height(after, column), u(end) - u(before),
@@ -149,9 +151,9 @@ int find_heaviest_node(const EmbeddedPoint& sample, const Filter& accepts) {
   return node;
 }
 
-// Returns the node to which a sample is attached: of its nodes on the shell, the one with the largest weight.
-// In a box of cells, a sample without nodes on the shell is attached to its node with the largest weight.
-// Returns -1 if there is no such node.
+// Returns the node to which a sample is attached: of its nodes on the lattice's outer shell, the one with the
+// largest weight. In a box of cells, a sample without nodes on that shell is attached to its node with the
+// largest weight. Returns -1 if there is no such node.
 int find_footing_node(const LatticeMesh& mesh, const EmbeddedPoint& sample) {
   const int node = find_heaviest_node(sample, [&](int candidate) { return on_shell(mesh, candidate); });
   return node < 0 && is_boxed(mesh) ? find_heaviest_node(sample, [](int) { return true; }) : node;

@@ -26,10 +26,11 @@ class SkinHeights {
   double u(int row) const { return nested_.grid.u.parameters[static_cast<std::size_t>(row)]; }
   double v(int column) const { return nested_.grid.v.parameters[static_cast<std::size_t>(column)]; }
 
-  // Samples the heights above the plane. Parts of the surface higher than `reach_m` may be skipped. Returns
-  // false if the whole surface is higher.
+  // Samples the heights above the plane. Parts of the surface higher than `reach_m` may be skipped. If it
+  // returns false, the whole surface is higher, and the heights are not valid.
   bool compute(const Surface& surface, const Vector3& point_m, const Vector3& normal, double reach_m);
-  // Returns the lowest height between a sample and its neighbours; infinite if the sample was skipped.
+  // Returns an estimate of the lowest height between a sample and its neighbours; infinite if the sample was
+  // skipped.
   double lowest_m(int row, int column) const;
 
  private:
@@ -45,14 +46,14 @@ class SkinHeights {
   NestedGrid nested_;
   std::vector<double> control_;  // heights of the control points
   std::vector<double> blended_;  // one row of samples before blending along v
-  std::vector<double> height_;   // heights of the samples
+  std::vector<double> height_;   // heights of the samples; infinite if skipped
 };
 
 // Largest penetration of a resting body's skin into the ground, in lattice cells.
 inline constexpr double ground_depth_limit_cells = 0.01;
 
-// Ground contact of all bodies. Owned by the simulation, which rebuilds it with the mapping of a body. find()
-// allocates nothing.
+// Ground contact of all bodies. Owned by the simulation, which rebuilds it when the mapping of a body is
+// replaced. find() allocates nothing.
 class BodyGroundContact {
  public:
   explicit BodyGroundContact(std::span<const BodyState> bodies);
@@ -62,10 +63,10 @@ class BodyGroundContact {
   void find(std::span<const BodyState> bodies, const Ground& ground, const Vector3& gravity_m_per_s2,
             double time_s);
 
-  // Forgets the forces of the contacts and the positions of the skin, as after a jump of the bodies.
+  // Forgets the forces of the contacts and the positions of the skin, for example after a jump of the bodies.
   void forget();
 
-  // Visits everything that the next tick depends on.
+  // Calls `visit` with the state on which the next tick depends.
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
     contacts_.visit_state(visit);
@@ -82,8 +83,8 @@ class BodyGroundContact {
  private:
   // A node together with the samples attached to it. "Followed" samples of the mapping move exactly with the
   // lattice; samples of the skin are on the surface of the control net, which differs slightly. The node is
-  // on the surface or, in a box of cells, any node with attached skin samples. In a box, a node without
-  // followed samples of its own gets those nearest to its skin samples.
+  // on the surface or, in a box of cells, any node with attached samples. In a box, a node without followed
+  // samples of its own gets the followed samples nearest to its skin samples.
   struct Footing {
     int node = 0;
     int first_followed = 0, followed_count = 0;  // range in BodyFootings::followed
@@ -101,7 +102,9 @@ class BodyGroundContact {
   };
   struct BodyFootings {
     SkinHeights heights;
-    double max_sample_distance_m;  // largest distance of a sample from its node at rest; at least one cell
+    // One cell or, in a box of cells, the largest distance at rest of a followed sample from its node if that
+    // is larger.
+    double max_sample_distance_m;
     std::vector<Footing> footings;
     std::vector<int> followed;  // indices of samples of the mapping
     std::vector<Sample> samples;

@@ -114,7 +114,7 @@ void update_inertia(Simulation::State& s) {
 }
 
 Status Simulation::apply(const Command& command) {
-  const DenormalsFlushed flushed;  // gives the same bits on every thread
+  const DenormalsFlushed flushed;  // every thread then computes the same bits
   return std::visit(CommandApplier{*state_}, command);
 }
 

@@ -24,12 +24,12 @@ inline constexpr double tick_s = 1e-3;
 // Input of the hand in one tick.
 struct ToolInput {
   Pose pose;
-  bool gripping = false;  // true while the button is down; a pull then keeps its grip
+  bool gripping = false;  // true while the button is down; a tool that pulls then keeps its grip
   // Stiffness of the spring between hand and tool, N/m; 0 for a hand that holds the tool rigidly. If a body
   // has an implicit solver, a spring of 1000 N/m replaces a rigid hold.
   double coupling_n_per_m = 0.0;
-  // The hand points without touching. The tool does not act until hovering ends and the tool is outside the
-  // bodies.
+  // True while the hand points without touching. The tool does not act until hovering ends and the tool is
+  // outside the bodies.
   bool hovering = false;
 };
 
@@ -43,7 +43,7 @@ struct Reaction {
 };
 
 // State that a stroke can change and that undo restores bit for bit: the displacements, velocities, rest
-// lengths, rest volumes and creep strains of the lattices. The control points follow from it.
+// lengths, rest volumes and creep strains of the lattices. The control points follow from this state.
 struct ShapeState {
   std::vector<std::vector<float>> lattices;  // shape of each body's lattice
   friend bool operator==(const ShapeState&, const ShapeState&) = default;
@@ -101,8 +101,8 @@ class Simulation {
   // Returns the scene as it was set. Its surfaces date from the last change of knots, fixing planes or rest
   // shapes; surface() returns the current surfaces.
   const Scene& scene() const;
-  // Writes the scene with current surfaces, for saving. Allocates only if `scene` has other bodies or other
-  // numbers of control points.
+  // Writes the scene with current surfaces, for saving. Allocates only if `scene` has different bodies or a
+  // different number of control points.
   void write_scene(Scene& scene) const;
   std::uint64_t tick() const;
 

@@ -41,7 +41,7 @@ struct Simulation::State {
   Scene scene;
   InstructionSet set;
   std::vector<BodyState> bodies;  // bodies of the scene in its order, then the tool if it is soft
-  ToolModel model;                // model of the last solid tool
+  ToolModel model;                // model of the most recent solid tool
   HeldTool tool;
   HeldTool mirrored;
   BodyContacts between;

@@ -17,8 +17,8 @@ constexpr std::size_t nodes_per_tick = 24;
 // each of two lattice lines, so an explicit step is stable below 2 / 8.
 constexpr double shell_fraction = 0.15;
 
-// Fraction by which an inner node returns, in one step, to its rest position among its six neighbours, which
-// keeps cells even. Stable below 1.
+// Fraction by which an inner node returns, in one step, to its rest position among its six neighbours. This
+// keeps the cells even. It is stable for fractions below 1.
 constexpr double inner_fraction = 0.3;
 
 // Largest movement of a node in one step, in lattice cells.
@@ -60,7 +60,8 @@ std::array<int, 2> Smoothing::beside(int node, int axis) const {
 void Smoothing::connect(const LatticeMesh& mesh, int node) {
   const std::array<int, 3> at = mesh.grid_index(node);
   ShellNode& shell = shell_[static_cast<std::size_t>(node)];
-  std::array<int, 3> inward{};  // neighbours inside the body; those along i and j come first
+  // Neighbours one step inwards along each axis at whose end the node is. Those along i and j come first.
+  std::array<int, 3> inward{};
   std::size_t ends = 0;
   Vector3 outward = Vector3::Zero();
   for (int axis = 0; axis < 3; ++axis) {
@@ -75,8 +76,8 @@ void Smoothing::connect(const LatticeMesh& mesh, int node) {
     const bool between = at[axis] > 0 && at[axis] < mesh.count[axis] - 1;
     if (between || (mesh.closed && axis == 0)) shell.pairs[shell.pair_count++] = beside(node, axis);
   }
-  // The lattice line continues over an edge of the block. At a corner of the block it follows the ring of i
-  // and j.
+  // At an edge of the block, the lattice line continues from one face to the next. At a corner, it continues
+  // from the neighbour along i to the neighbour along j.
   if (ends >= 2) shell.pairs[shell.pair_count++] = {inward[0], inward[1]};
   const auto curvature = curvature_at(node, [&](int n) { return mesh.nodes[static_cast<std::size_t>(n)]; });
   if (curvature && curvature->normal.dot(outward) < 0.0) std::swap(shell.pairs[0][0], shell.pairs[0][1]);
@@ -140,7 +141,7 @@ Vector3 Smoothing::measure_bump(const SpringLattice& lattice, int node) const {
   double height = 0.0;
   for (std::size_t p = 0; p < 2; ++p) {
     const auto [a, b] = shell.pairs[p];
-    // Uses the least height factor of the three nodes, for stability with uneven cells.
+    // The smallest height factor of the three nodes keeps the flow stable with uneven cells.
     double height_factor = own->height_factor[p];
     const auto at_a = bend_toward(lattice, a, node, height_factor);
     const auto at_b = bend_toward(lattice, b, node, height_factor);

@@ -3,10 +3,10 @@
 // their shape, including edges.
 //
 // A node's bend is the change of its curvature since the rest shape. The bump of a shell node is its bend
-// minus that of its neighbours, measured along each of the two lattice lines that cross there. An evenly
-// changing curvature, as in a bent beam, is not a bump and stays. To first order this is the flow d' = -(d^4
-// d / ds^4) of the normal displacement d along the arc length s, as in a thin plate. Shapes smaller than a
-// cell are not resolved. Small changes of volume do not change the mass.
+// minus the mean bend of its neighbours, measured along each of the two lattice lines that cross at the node.
+// An evenly changing curvature, as in a bent beam, is not a bump and stays. To first order this is the flow
+// h' = -(d^4 h / ds^4) of the normal displacement h along the arc length s, as in a thin plate. Shapes
+// smaller than a cell are not resolved. Small changes of volume do not change the mass.
 //
 // Shell nodes are the nodes on the hull of the block of cells. The skin of a body in a box of cells is inside
 // the block and follows inner nodes, which return to their rest position among their neighbours.
@@ -27,8 +27,8 @@ struct SmoothingBrush {
   double reach_m = 0.0;
 };
 
-// Smoothing of one lattice. Owned by the simulation, which rebuilds it with the lattice's mesh. apply()
-// allocates nothing.
+// Smoothing of one lattice. Owned by the simulation, which rebuilds it when the lattice's mesh changes.
+// apply() allocates nothing.
 class Smoothing {
  public:
   explicit Smoothing(const LatticeMesh& mesh);
@@ -46,9 +46,9 @@ class Smoothing {
   };
   struct Curvature {
     Vector3 normal;  // unit normal
-    // Curvature along each pair, 1/m; positive where the side of the normal is convex.
+    // Curvature along each pair, 1/m; positive if the surface is convex on the side of the normal.
     std::array<double, 2> per_m{};
-    // Height of the node above the chord of its neighbours per curvature, m^2.
+    // Height of the node above the chord of its neighbours, divided by the curvature, m^2.
     std::array<double, 2> height_factor{};
   };
 
@@ -66,7 +66,7 @@ class Smoothing {
   // Position of an inner node relative to its six neighbours.
   struct NeighbourCentre {
     Vector3 offset;          // offset of the node from the centre of its neighbours
-    Eigen::Matrix3d across;  // columns: from each neighbour to the opposite one
+    Eigen::Matrix3d across;  // for each axis, a column: the vector between the two neighbours
   };
   template <class PositionOf>
   NeighbourCentre neighbour_centre_at(int node, const PositionOf& position_of) const;

@@ -18,14 +18,14 @@ namespace spoonbill {
 
 struct SurfaceSnapshot {
   KnotVector u, v;
-  std::uint64_t structure = 0;  // fingerprint of the knot vectors; a Grid stays valid while it is unchanged
+  std::uint64_t structure = 0;  // fingerprint of the knot vectors; if it is equal, so is the Grid
   std::vector<float> x, y, z;   // control points in metres, as in ControlNet
   std::shared_ptr<const TrimmedArea> trim = {};  // area within the trims; null without trims
 };
 
 // Triangles of a soft mesh tool, counter-clockwise seen from outside.
 struct MeshSnapshot {
-  // Shared while the tool stays the same.
+  // Shared by all snapshots while the tool stays the same.
   std::shared_ptr<const std::vector<std::array<std::uint32_t, 3>>> triangles;
   std::vector<float> x, y, z;  // vertices in metres
 };
@@ -53,7 +53,7 @@ struct ToolSnapshot {
   bool button = false;
 };
 
-// Fixing plane. It fixes everything on the side opposite to its normal.
+// Plane of symmetry, or fixing plane, which fixes everything on the side opposite to its normal.
 struct PlaneSnapshot {
   Vector3 point_m = Vector3::Zero();
   Vector3 normal = Vector3::UnitX();

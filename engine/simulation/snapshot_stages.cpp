@@ -27,7 +27,7 @@ std::optional<Surface> make_surface_of(const SurfaceSnapshot& snapshot) {
   return std::move(surface).value();
 }
 
-// Returns true if the tool is soft; it is then one of the snapshot's bodies.
+// Returns true if the tool is soft, and therefore one of the snapshot's bodies, or if its body is not known.
 bool is_soft_body(const ToolSnapshot& tool) {
   return tool.kind == ToolKind::solid && (!tool.body || tool.body->soft);
 }

@@ -23,7 +23,8 @@ inline constexpr double stage_margin_m = 1e-4;
 // thread, and allocates.
 class SnapshotStages {
  public:
-  // Finds the stages of a snapshot. Skips bodies whose control net does not fit their knots or is not finite.
+  // Finds the stages of a snapshot. Skips meshes, and bodies whose control net does not fit their knots or is
+  // not finite.
   ContactStages find(const Snapshot& snapshot);
 
  private:

@@ -23,9 +23,9 @@ namespace spoonbill {
 // Longest edge of a soft mesh, in lattice cells. Longer edges would not follow a dent and are halved.
 inline constexpr double soft_edge_cells = 0.5;
 
-// Makes the body of a soft tool from triangles, with no node fixed. Refuses a mesh that passes through
-// itself. Also refuses a mesh that has more than soft_mesh_triangle_limit triangles once its edges are short
-// enough. The error names the field.
+// Makes the body of a soft tool from triangles, with no node fixed. Refuses a mesh that passes through itself
+// or has an edge of more than two triangles. Also refuses a mesh that has more than soft_mesh_triangle_limit
+// triangles once its edges are short enough. The error names the field.
 Result<BodyState> make_soft_mesh(const MeshSolid& solid, const SoftTool& soft, InstructionSet set);
 
 // Body of a tool prepared for contact; empty for a point or a sphere. Made outside the tick, owned by a
@@ -33,10 +33,12 @@ Result<BodyState> make_soft_mesh(const MeshSolid& solid, const SoftTool& soft, I
 struct ToolModel {
   std::shared_ptr<const SignedDistance> distance;  // only for rigid implicit or tessellated tools
   std::shared_ptr<const Surface> surface;          // only for rigid B-spline tools, in the tool's frame
-  std::shared_ptr<const NestedGrid> nested;        // samples of `surface`
-  double extent_m = 0.0;          // largest distance of a point of the tool from its frame's origin
+  std::shared_ptr<const NestedGrid> nested;        // grid of the samples of `surface`
+  // Upper bound of the distance of the tool's points from the origin of its frame. It is limited to 0.1 m for
+  // implicit and tessellated tools.
+  double extent_m = 0.0;
   std::optional<BodyState> soft;  // only for soft tools, with the rest shape in the tool's frame
-  std::vector<int> gripped;       // nodes of `soft` that the hand holds
+  std::vector<int> gripped;       // nodes of `soft` that are fixed to the hand
   // Only for soft meshes; shared with snapshots.
   std::shared_ptr<const std::vector<TriangleCorners>> triangles;
 };
@@ -60,8 +62,8 @@ struct ToolHold {
 };
 
 // Contact of one tool with the bodies: finds where the tool touches their surfaces and adds constraints on
-// their lattices. One owner, the simulation, which rebuilds it with the mapping of a body or the model of the
-// tool. prepare() allocates nothing.
+// their lattices. Owned by the simulation, which rebuilds it when the mapping of a body or the model of the
+// tool is replaced. prepare() allocates nothing.
 class ToolContact {
  public:
   ToolContact(std::span<const BodyState> bodies, const ToolModel& model);
@@ -73,7 +75,8 @@ class ToolContact {
   // Prepares a tick with a soft tool, which touches the bodies as a body of the simulation.
   void prepare_soft();
   // Decides and stores whether the tool acts in this tick, and returns the decision. `inside` is true if the
-  // tool is inside a body, `near` if it is near one.
+  // tool is inside a body. `near` is true if it is within a margin of a body: half a lattice cell for a rigid
+  // tool, contact_margin_cells for a soft tool.
   bool acts(bool inside, bool near, const ToolHold& hold);
   void release();
 
@@ -85,8 +88,8 @@ class ToolContact {
   void grip(std::span<const BodyState> bodies, const ToolHold& hold);
   bool gripped() const { return gripped_; }
 
-  // Suspends the tool from the next prepare() on. It acts again when the button is released and the tool is a
-  // margin away from the bodies or hovers outside them.
+  // Suspends the tool from the next prepare() on. It acts again when the button is released and the tool is
+  // not near a body (see acts()) or hovers outside the bodies.
   void lift();
   bool lifted() const { return lifted_; }
   bool hovered() const { return hovered_; }
@@ -99,7 +102,7 @@ class ToolContact {
   int deepest_body() const;
   bool overflow() const { return overflow_; }
 
-  // Visits what the next tick depends on.
+  // Calls `visit` with the state on which the next tick depends.
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
     constraints_.visit_state(visit);
@@ -124,8 +127,7 @@ class ToolContact {
     std::unique_ptr<SurfaceProximity> proximity;  // only for B-spline tools
     CollisionResult collision;
     // The nearest point may jump between places where the tool is equally deep. Each place stays constrained
-    // while it pushes; otherwise the force would ripple. The key of a point is nearest_point_key minus its
-    // index.
+    // while it pushes; otherwise the force would ripple. points[i] has the key nearest_point_key - i.
     std::array<ContactPoint, 8> points;
   };
   // Point of a body's surface, and the tangent plane of the tool that the point must not cross.
@@ -147,7 +149,7 @@ class ToolContact {
   std::size_t track_nearest(int body, const BodyState& state, double reach_m);
   // Adds pushes at the contact points other than the nearest one.
   void add_earlier_pushes(int body, const BodyState& state, std::size_t nearest, const ToolHold& hold);
-  // Returns whether the tool is a sphere smaller than a lattice cell.
+  // Returns whether the tool is a point, or a sphere with a radius less than a lattice cell.
   bool is_small(const BodyState& body) const;
   // Returns whether the tool in the hand is a B-spline. Checks the tool's kind as well, because the model may
   // belong to an earlier solid tool.

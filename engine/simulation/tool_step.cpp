@@ -14,8 +14,8 @@ void push(ToolContact& contact, const ToolTouch& touch) {
   contact.push(touch.bodies, touch.hold);
 }
 
-// Pull: grips the surface inside the tool when the button goes down, and fixes it in the tool's frame until
-// the button is released.
+// Pull: grips the surface inside the tool as soon as the button is down and the tool is inside a body. Fixes
+// the gripped points in the tool's frame until the button is released.
 void pull(ToolContact& contact, const ToolTouch& touch) {
   if (!touch.hold.gripping) return contact.release();
   if (touch.inside && !contact.gripped()) contact.grip(touch.bodies, touch.hold);
@@ -155,8 +155,8 @@ bool update_soft_touch(Simulation::State& s) {
 }
 
 // Computes the reaction of a soft tool, whose own softness replaces the coupling spring. The force on the
-// hand is limited to that of a coupling spring stretched since the touch began, and the proxy is where the
-// spring would hold the tool.
+// hand is limited to the force of a coupling spring that is stretched by the hand's travel since the touch
+// began. The proxy is where this spring would hold the tool.
 void react_with_soft_tool(Simulation::State& s, double coupling_n_per_m) {
   s.reaction.touching = update_soft_touch(s);
   Vector3 force = s.reaction.touching ? compute_force(s) : Vector3::Zero();

@@ -9,8 +9,8 @@
 
 namespace spoonbill {
 
-// Values by corner, then axis: x, y, z of corner 0, of corner 1 and so on, in the order of
-// LatticeMesh::cell().
+// Vector of a cell's values, and matrix between such vectors. The values are ordered by corner, then axis: x,
+// y, z of corner 0, of corner 1 and so on. The corners are in the order of LatticeMesh::cell().
 using CellVector = Eigen::Matrix<double, 24, 1>;
 using CellMatrix = Eigen::Matrix<double, 24, 24>;
 
@@ -38,8 +38,8 @@ struct AchievedElasticity {
 // Computes the elasticity from the matrix that maps normal strains to normal stresses, Pa.
 AchievedElasticity compute_elasticity(const Eigen::Matrix3d& normal_stiffness_pa);
 
-// Elasticity that a body's cells achieve, compared with the requested one: means over the cells, weighted
-// by volume. Plain data.
+// Elasticity that a body's cells achieve, compared with the requested one. The ratios are means over the
+// cells, weighted by volume. Plain data.
 struct LatticeReport {
   double youngs_modulus_ratio[3] = {};  // achieved modulus divided by the requested one, along x, y, z
   double poissons_ratio[3] = {};

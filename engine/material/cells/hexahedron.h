@@ -15,8 +15,8 @@ namespace spoonbill {
 // the rest shape. It is symmetric, and the six rigid motions span its null space.
 //
 // The element is trilinear, with three quadratic displacement modes per axis that are internal to the cell
-// and condensed out. A plain trilinear cell shears in bending and is too stiff: by half if a beam of L/H = 10
-// has a single cell through its height. It also locks near nu = 1/2 (Wilson et al. 1973).
+// and condensed out. A plain trilinear cell shears in bending and is too stiff. A beam of L/H = 10 with a
+// single such cell through its height is too stiff by half. It also locks near nu = 1/2 (Wilson et al. 1973).
 //
 // The gradients of the internal modes use the Jacobian at the cell's centre, so that distorted cells pass the
 // patch test (Taylor, Beresford and Wilson 1976). The integral uses two Gauss points per axis. The cell must

@@ -9,10 +9,10 @@
 namespace spoonbill {
 namespace {
 
-// Pace of contacts between bodies. The surfaces follow their nodes through the refit and may move slightly
-// more or less than the constrained points. Closing at most half of a gap in a substep leaves a margin for
-// this difference. A push starts from the force of the last substep, so a moderate rate of correction
-// suffices; a faster one would shake bodies at rest.
+// Pace of contacts between bodies. The surfaces are fitted to the samples in each tick, so they may move
+// slightly more or less than the constrained points. Closing at most half of a gap in a substep leaves a
+// margin for this difference. A push starts from the force of the last substep, so a moderate rate of
+// correction suffices; a faster one would shake bodies at rest.
 constexpr ContactPace body_pace{0.5, 400.0};
 
 Vector3 current_displacement(const BodyPoint& side) {

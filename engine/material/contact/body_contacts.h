@@ -22,29 +22,30 @@ struct BodyPoint {
 // their surfaces, which are solved after the contacts of tools. Impulses are equal and opposite, so momentum
 // is conserved.
 //
-// Stores the contacts of one tick, and their forces in the last tick. One owner, one thread; allocates only
-// in its constructor.
+// Stores the contacts of one tick, and their forces in the last tick. Has one owner, on one thread. Allocates
+// only in its constructor.
 class BodyContacts {
  public:
   explicit BodyContacts(int capacity);
 
-  // Removes the constraints, and remembers their forces for those that are added next.
+  // Removes the constraints, and remembers their forces for the constraints that are added next.
   void clear();
   // Removes the constraints and their forces.
   void forget();
   // Adds a constraint that keeps the first point on one side of the second: the side to which the unit vector
   // `normal` points. `gap_m` is the present distance of the first point beyond the second along `normal`,
   // negative for a penetration. Both points may be of the same body and share nodes. Returns false when full.
-  // `sample` numbers the first point among the samples or vertices of its body, so that its push starts from
-  // the force of the last substep; -1 for a point that differs in every tick, whose push starts from zero.
+  // `sample` is the number of the first point among the samples or vertices of its body; the push then starts
+  // from the force of the last substep. For a point that differs in every tick, `sample` is -1, and the push
+  // starts from zero.
   bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m, int sample);
 
   // Starts a tick: marks all constraints as not having acted.
   void begin();
 
-  // Calls visit(node, impulse) with the impulses, N s, of constraints that are solved once a tick on the
-  // nodes of a body: those that the forces of the last tick give in a tick of `time_s`. The solvers must know
-  // them when they start their steps.
+  // Calls visit(node, impulse) for nodes of a body. The impulses, N s, are the forces of the last tick times
+  // `time_s`, for the constraints between two lattices that implicit solvers move. The solvers need these
+  // impulses at the start of their steps.
   template <class Visit>
   void visit_known_impulses(int body, double time_s, const Visit& visit) const {
     for (int c = 0; c < count_; ++c) {
@@ -56,16 +57,16 @@ class BodyContacts {
     }
   }
 
-  // Pushes with the forces of the last substep, other than those that solvers know. Call after the kick of a
-  // substep of h_s.
+  // Pushes with the forces of the last substep, except where implicit solvers move both lattices: these
+  // solvers already include the impulses of visit_known_impulses(). Call after the kick of a substep of h_s.
   void start(std::span<const LatticeView> lattices, double h_s);
-  // Solves the constraints once. Call after start() and before the drift of a substep of h_s. A reversed pass
-  // solves the last constraint first.
+  // Solves once the constraints of the kind pass.moved_by. Call after start() and before the drift of a
+  // substep of h_s. A reversed pass solves the last constraint first.
   void pass(std::span<const LatticeView> lattices, const ContactPass& pass);
-  // Shortens the changes of the forces in the last pass() by_solvers to this fraction. The caller does so
-  // with the impulses on the nodes.
+  // Scales by `fraction` the changes of force in the last pass() with MovedBy::solvers. The caller must scale
+  // the impulses on the nodes in the same way.
   void shorten_solver_pass(double fraction);
-  // Returns whether a constraint acts between two lattices that the implicit solver moves.
+  // Returns whether there is a constraint between two lattices that implicit solvers move.
   bool has_constraint_between_solvers() const;
 
   int count() const { return count_; }
@@ -75,7 +76,7 @@ class BodyContacts {
   // Sets to 1 the bytes in `touched` of the nodes of a body on which a constraint has acted.
   void mark_touched(int body, std::uint8_t* touched) const;
 
-  // Visits what the next tick depends on.
+  // Calls `visit` with the state on which the next tick depends.
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
     for (int c = 0; c < count_; ++c) visit(&constraints_[static_cast<std::size_t>(c)].force_n, 1);
@@ -86,13 +87,13 @@ class BodyContacts {
     int first_body = 0, second_body = 0;
     EmbeddedPoint first, second;
     Vector3 normal = Vector3::UnitY();
-    double compliance = 0.0;  // velocity change per impulse between the points, 1/kg
+    double compliance = 0.0;  // relative velocity change of the points per impulse, 1/kg
     double base_m = 0.0;      // gap minus the part due to displacements since rest
     double friction = 0.0;    // the smaller coefficient of the two surfaces
     MovedBy moved_by = MovedBy::springs;
     int sample = -1;
     double force_n = 0.0;         // push in the last substep; 0 for a push that starts from zero
-    double passed_force_n = 0.0;  // that force before the last pass()
+    double passed_force_n = 0.0;  // `force_n` before the last pass()
     bool acted = false;
 
     ContactKey key() const { return {first_body, second_body, sample}; }
@@ -102,7 +103,7 @@ class BodyContacts {
   void push(std::span<const LatticeView> lattices, Constraint& constraint, const Vector3& impulse);
 
   std::vector<Constraint> constraints_;
-  KeptForces kept_;  // of the last tick
+  KeptForces kept_;  // forces of the last tick
   int count_ = 0;
 };
 

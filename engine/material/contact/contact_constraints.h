@@ -20,17 +20,17 @@ namespace spoonbill {
 // Largest number of lattices that are stepped together.
 inline constexpr int lattice_capacity = 9;
 
-// State of the tool's proxy, which contacts can hold away from the hand. Plain data, stored from tick to
-// tick.
+// Position and velocity of the tool's proxy, which contacts can hold away from the hand. Plain data, stored
+// from tick to tick.
 struct ToolState {
   Vector3 position_m = Vector3::Zero();
   Vector3 velocity_m_per_s = Vector3::Zero();
 };
 
-// Fixed nodes of a lattice that moves rigidly with the tool. Their rest positions are in the tool's frame.
-// Used only for tools without a coupling spring.
+// Nodes of a soft tool's lattice that are fixed to the tool and move rigidly with it. Their rest positions
+// are in the tool's frame. Used only for tools without a coupling spring.
 struct CarriedNodes {
-  int body = -1;  // index of the lattice in the views; -1 for none
+  int body = -1;  // index of the lattice; -1 for none
   std::span<const int> nodes;
 };
 
@@ -46,15 +46,15 @@ struct ToolMotion {
   CarriedNodes carried;
 };
 
-// Keys identify a pushed point from tick to tick, so that its push starts from the force of the last substep.
-// A point at a sample of the surface has the sample's number as its key. The keys of points that are or were
-// nearest to the tool count down from nearest_point_key.
+// Key of the first of the points that are or were nearest to the tool. The keys of further such points count
+// down from it. Keys identify a pushed point from tick to tick, so that its push starts from the force of the
+// last substep. A point at a sample of the surface has the sample's number as its key.
 inline constexpr int nearest_point_key = -1;
 // Key of a point that differs in every tick, whose push starts from zero.
 inline constexpr int changing_point_key = -1000;
 
-// Contacts of one tool in one tick, and their forces in the last tick. One owner, one thread; allocates only
-// in its constructor.
+// Contacts of one tool in one tick, and their forces in the last tick. Has one owner, on one thread.
+// Allocates only in its constructor.
 class ContactConstraints {
  public:
   explicit ContactConstraints(int capacity);
@@ -64,21 +64,23 @@ class ContactConstraints {
   // Removes the constraints and their forces.
   void forget();
   // Each add function returns false when full. `body` is the index of the lattice in the views passed to
-  // solve().
+  // start() and pass().
   //
-  // Adds a point that the tool's sphere may push outward but never pulls. The point is `offset_m` from the
-  // embedded one and moves with it.
+  // Adds a point that the tool's sphere may push outward but never pulls. The pushed point is at the constant
+  // offset `offset_m` from `point`.
   bool add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point, int key,
                 const Vector3& offset_m = Vector3::Zero());
   // Adds a point that must stay beyond a plane that moves with the tool. The unit vector `normal` points to
-  // the admissible side; `offset_m` is the plane's distance from the tool's centre along `normal`. For tools
-  // smaller than a cell, and for tools whose surface is flat over the distance moved in a tick.
+  // the admissible side; `offset_m` is the plane's distance from the tool's centre along `normal`. Use it for
+  // tools smaller than a cell, and for tools whose surface is flat over the distance moved in a tick.
   bool add_plane_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point,
                       const Vector3& normal, double offset_m, int key);
-  // Adds a point gripped by the tool, at `offset_m` from its centre in the tool's frame.
+  // Adds a point that the tool grips. The tool holds it at the offset `offset_m` from the tool's centre, in
+  // the tool's frame.
   bool add_grip(int body, const SpringLattice& lattice, const EmbeddedPoint& point, const Vector3& offset_m);
 
-  // Returns the force in N that a point pushed with in the last tick; 0 for changing_point_key.
+  // Returns the force in N with which the tool pushed a point at the end of the last tick; 0 if it did not
+  // push the point, and for changing_point_key.
   double last_force_n(int body, int key) const;
 
   // Starts a tick of `time_s`.
@@ -88,18 +90,19 @@ class ContactConstraints {
   // Sets the force in N that the nodes fixed to the tool (CarriedNodes) exert on it in the coming substep.
   void set_carried_force(const Vector3& force_n) { carried_force_ = force_n; }
 
-  // Parts of a substep of h_s, after the kick and before the drift of the lattices. start() moves the tool's
-  // velocity towards the hand and pushes with the forces of the last substep; `fraction` [0, 1) is the part
-  // of the tick that has passed. pass() solves once the constraints with lattices that springs move, or those
-  // with lattices that implicit solvers move. finish() moves the tool. Impulses on nodes and tool are equal
-  // and opposite.
+  // start(), pass() and finish() are the parts of a substep of h_s, after the kick and before the drift of
+  // the lattices. start() changes the tool's velocity so that it follows the hand, and pushes with the forces
+  // of the last substep; `fraction` [0, 1) is the part of the tick that has passed. Each pass() solves once
+  // the constraints on lattices of one kind: lattices that springs move, or lattices that implicit solvers
+  // move. finish() moves the tool. Impulses on nodes and tool are equal and opposite.
   void start(std::span<const LatticeView> lattices, ToolState& tool, double h_s, double fraction);
   void pass(std::span<const LatticeView> lattices, ToolState& tool, const ContactPass& pass);
   void finish(ToolState& tool, double h_s) { tool.position_m += h_s * tool.velocity_m_per_s; }
-  // Scales the impulses of the last pass() on the tool by `fraction`. The caller must scale those on the
-  // nodes.
+  // Scales the impulses of the last pass() on the tool by `fraction`. The caller must scale the impulses on
+  // the nodes in the same way.
   void shorten_pass(ToolState& tool, double fraction);
-  // Returns the sum of products of the last pass()'s impulses on the tool and the tool's velocity change, J.
+  // Returns the dot product of the total impulse of the last pass() on the tool and the velocity change that
+  // it caused, J.
   double pass_work_j(const ToolState& tool) const {
     return (tool.velocity_m_per_s - passed_.velocity_m_per_s).squaredNorm() /
            std::max(response_compliance_, std::numeric_limits<double>::min());
@@ -107,13 +110,13 @@ class ContactConstraints {
 
   int count() const { return count_; }
   bool has_constraint_on(int body) const;
-  // Sum of the impulses of a body on the tool since begin(), N s.
+  // Returns the sum of the impulses of a body on the tool since begin(), N s.
   const Vector3& tool_impulse(int body) const { return tool_impulse_[body]; }
   bool acted() const { return acted_; }
   // Sets to 1 the bytes in `touched` of the nodes of a body on which a constraint has acted.
   void mark_touched(int body, std::uint8_t* touched) const;
 
-  // Visits what the next tick depends on.
+  // Calls `visit` with the state on which the next tick depends.
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
     for (int c = 0; c < count_; ++c) visit(&constraints_[static_cast<std::size_t>(c)].force_n, 1);
@@ -125,17 +128,19 @@ class ContactConstraints {
     Kind kind = Kind::sphere_push;
     int body = 0;
     EmbeddedPoint point;
-    // Position in the rest shape; until add(), its offset from that of the embedded point.
+    // Rest position of the constrained point. Until add() completes it, only the offset from the embedded
+    // point.
     Vector3 rest_m = Vector3::Zero();
-    Vector3 direction = Vector3::Zero();  // plane push: normal; grip: offset in the tool's frame
+    Vector3 direction = Vector3::Zero();  // normal of a plane push, or offset of a grip in the tool's frame
     double offset_m = 0.0;                // distance of the plane from the tool's centre; plane push only
-    // Velocity change of the point per impulse in the last pass(), 1/kg; 0 if the body does not yield.
+    // Velocity change of the point per impulse, 1/kg, as of the last pass(); 0 if the body does not yield.
     double compliance = 0.0;
     double friction = 0.0;  // friction coefficient of the body's surface; tools have none
     int key = changing_point_key;
     bool is_implicit = false;  // true if the implicit solver moves the lattice
-    // True if the next push starts from this push's force. False on lattices that the implicit solver moves:
-    // their contact mass is an estimate, and a kept force would amplify its error.
+    // True if a push starts from the force of the last substep. False for grips, for changing_point_key, and
+    // on lattices that the implicit solver moves: their contact mass is an estimate, and the force of the
+    // last substep would amplify its error.
     bool keeps_force = false;
     double force_n = 0.0;               // push in the last substep
     Vector3 drag_ns = Vector3::Zero();  // friction impulse in this substep; only if `keeps_force`
@@ -145,21 +150,21 @@ class ContactConstraints {
   void follow_hand(ToolState& tool, double h, double fraction) const;
   void solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
   void solve_grip(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
-  // Gap and normal of a pushed point; empty at a sphere's centre, where no normal exists.
+  // Returns the state of a pushed point; empty at the centre of the tool's sphere, where no normal exists.
   std::optional<ContactPush> find_push(const LatticeView& lattice, const Constraint& constraint,
                                        const ToolState& tool) const;
   void start_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h);
   void exchange(const LatticeView& lattice, Constraint& constraint, ToolState& tool, const Vector3& impulse);
 
   std::vector<Constraint> constraints_;
-  KeptForces kept_;  // of the last tick
+  KeptForces kept_;  // forces of the last tick
   int count_ = 0;
   ToolMotion motion_;
   Vector3 hand_velocity_ = Vector3::Zero();  // m/s
   Vector3 carried_force_ = Vector3::Zero();
   double tool_compliance_ = 0.0;  // 1 / mass of the tool, 1/kg; 0 if the hand holds the tool rigidly
-  // Velocity change of the tool per impulse by the end of a substep, including the response of its spring
-  // and damper, 1/kg.
+  // Velocity change of the tool at the end of a substep per impulse, 1/kg. It includes the response of the
+  // coupling spring and its damper.
   double response_compliance_ = 0.0;
   std::array<Vector3, lattice_capacity> tool_impulse_;
   // The tool's velocity and impulses before the last pass().

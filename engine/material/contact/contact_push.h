@@ -11,7 +11,7 @@ namespace spoonbill {
 // Limits on how fast a contact changes its gap.
 struct ContactPace {
   double closing;           // largest fraction of a gap that may close in a substep
-  double correction_per_s;  // rate at which a penetration is corrected, at most max_correction in a substep
+  double correction_per_s;  // rate of correcting a penetration, at most max_correction of it in a substep
 };
 
 // Largest fraction of a penetration that a substep corrects. It is below 1, so that neighbouring points that
@@ -32,8 +32,8 @@ struct ContactPush {
     if (gap_m > 0.0) return -gap_m * pace.closing / h_s;
     return std::min(-gap_m * std::min(pace.correction_per_s, max_correction / h_s), cap_m_per_s);
   }
-  // Returns the impulse along the normal that reaches the admissible speed, N s; never negative. It includes
-  // `started_ns`, which has already acted.
+  // Returns the impulse along the normal with which the points reach the smallest admissible separation
+  // speed, N s; never negative. It includes the impulse `started_ns`, which has already acted.
   double normal_impulse(double h_s, const ContactPace& pace, double cap_m_per_s, double started_ns) const {
     const double missing = target_m_per_s(h_s, pace, cap_m_per_s) - relative.dot(normal);
     return std::max(0.0, started_ns + missing * mass_kg);
@@ -52,7 +52,7 @@ struct ContactPush {
 // solvers are solved once a tick, all others in each substep.
 enum class MovedBy { springs, solvers };
 
-// One pass over contacts, which solves each of those with the given kind of lattices once.
+// One pass over the contacts. It solves each contact of the kind `moved_by` once.
 struct ContactPass {
   double h_s;
   MovedBy moved_by;

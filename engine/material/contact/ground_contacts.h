@@ -43,16 +43,16 @@ inline constexpr double friction_memory_s = 0.01;
 //
 // Stores the contacts of one tick and the friction state that the next tick continues from. Each contact
 // constrains a single node, so one pass solves the contacts of spring-stepped lattices exactly, and sticking
-// contacts do not creep. One owner, one thread; allocates only in its constructor.
+// contacts do not creep. Has one owner, on one thread. Allocates only in its constructor.
 class GroundContacts {
  public:
   explicit GroundContacts(int capacity);
 
   // Starts a tick of `time_s`; the unit vector `normal` points out of the ground.
   void begin(const Vector3& normal, double time_s);
-  // Adds a node whose attached surface is `gap_m` above the ground, negative if below it. `body` is the index
-  // of the lattice in the views passed to solve(). Call in ascending order of bodies and nodes; a contact of
-  // the last tick keeps its friction state. Fixed nodes are ignored. Returns false when full.
+  // Adds a node whose attached surface is `gap_m` above the ground, negative if below it. `body` is the
+  // number that selects the contacts of this lattice in solve(). Call in ascending order of bodies and nodes;
+  // a contact of the last tick keeps its friction state. Fixed nodes are ignored. Returns false when full.
   bool add(int body, const SpringLattice& lattice, int node, double gap_m, double friction);
   // Discards all contacts and their friction state.
   void forget();
@@ -70,7 +70,7 @@ class GroundContacts {
   // Sets to 1 the bytes in `touched` of the nodes of a body that the ground has pushed.
   void mark_touched(int body, std::uint8_t* touched) const;
 
-  // Visits everything that the next tick depends on.
+  // Calls `visit` with the state on which the next tick depends.
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
     for (const GroundContact& contact : contacts_) {

@@ -1,4 +1,4 @@
-// Forces that contacts pushed with in the last tick, from which those of the next tick start.
+// Forces with which contacts pushed at the end of the last tick. The forces of the next tick start from them.
 #pragma once
 
 #include <algorithm>
@@ -8,16 +8,16 @@
 
 namespace spoonbill {
 
-// Identifies a contact from tick to tick: the indices of its two bodies, or of a body and a tool, and a
-// number of the point on the first.
+// Identifies a contact from tick to tick by the indices of its two bodies and a number of the point on the
+// first body. For the contacts of a tool, `first` is the body, and `second` is not used.
 struct ContactKey {
   int first = 0, second = 0, point = 0;
 
   auto operator<=>(const ContactKey&) const = default;
 };
 
-// List of forces by contact. One owner, one thread; allocates only in its constructor. Add all forces, then
-// sort, then find.
+// Forces of contacts. Call add() for all forces, then sort(), then find(). Has one owner, on one thread.
+// Allocates only in its constructor.
 class KeptForces {
  public:
   explicit KeptForces(std::size_t capacity) { forces_.reserve(capacity); }

@@ -1,5 +1,5 @@
-// Body whose material is too stiff for springs at the length of a tick: corotated hexahedra, stepped by the
-// implicit Euler method, which is stable at any step length.
+// Body that is stepped by the implicit Euler method, because explicitly stepped springs would be unstable at
+// the length of a tick. It consists of corotated hexahedra. The method is stable at any step length.
 #pragma once
 
 #include <algorithm>
@@ -45,7 +45,7 @@ struct BlockMaterials {
   BlockMaterials(const Material& material) : materials{material} {}
 
   std::vector<Material> materials;
-  // Parts of each cell, by LatticeMesh::cell_index(); they fill the cell. Empty if all cells have the first
+  // Parts that fill each cell, indexed by LatticeMesh::cell_index(). Empty if all cells have the first
   // material.
   std::vector<std::vector<Part>> parts_by_cell;
 };
@@ -160,10 +160,10 @@ class ImplicitBody {
   double rayleigh_quotient();
 
   // Parts of a step, to be called in order. solve_velocities() computes the velocities at the end of the
-  // step; `known_ns` are contact impulses, N s, by coordinate, and those on joined nodes must be at the first
-  // of the two nodes. respond_to() computes the velocity changes of the whole body due to further impulses
-  // and returns the sum of their products with the impulses, J. apply_response() adds `fraction` of these
-  // changes to the velocities. move() advances the nodes and returns whether one reached the speed cap.
+  // step; `known_ns` are contact impulses, N s, by coordinate; for two joined nodes they must be at the first
+  // node. respond_to() computes the velocity changes of the whole body due to further impulses, and returns
+  // the dot product of these changes and the impulses, J. apply_response() adds `fraction` of these changes
+  // to the velocities. move() advances the nodes and returns whether one reached the speed cap.
   ImplicitReport solve_velocities(const ImplicitStep& step, std::span<const double> known_ns = {});
   double respond_to(const std::vector<double>& impulses);
   void apply_response(double fraction);

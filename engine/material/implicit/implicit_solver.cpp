@@ -12,8 +12,8 @@
 namespace spoonbill {
 namespace {
 
-// Largest number of iterations for the ground contacts in a tick. Each costs one solve with the Cholesky
-// factor, as much as an iteration of the conjugate gradients in ImplicitBody.
+// Largest number of iterations for the ground contacts in a tick. Each iteration costs one solve with the
+// Cholesky factor, as much as an iteration of the conjugate gradients in ImplicitBody.
 constexpr int step_limit = 4;
 // Velocity error below which the ground contacts of a tick count as solved: a nanometre per second.
 constexpr double accepted_error_m_per_s = 1e-9;
@@ -193,8 +193,8 @@ Vector3 applied_force_n(const SpringLattice& lattice, int node) {
   return {lattice.applied_force(0)[node], lattice.applied_force(1)[node], lattice.applied_force(2)[node]};
 }
 
-// Chooses the largest node counts that respect the node budget and the limit of the band and do not exceed
-// the counts of the lattice.
+// Chooses node counts that do not exceed the counts of the lattice. Reduces the node budget until the band
+// has at most max_band entries or the budget is below min_budget.
 Result<LatticeMesh> choose_coarse_counts(const LatticeMesh& mesh, const Vector3& size_m) {
   LatticeMesh block;
   block.closed = mesh.closed;

@@ -15,7 +15,7 @@
 
 namespace spoonbill {
 
-// A node of one grid, expressed as a weighted sum of the nodes of another.
+// A node of one grid, expressed as a weighted sum of the nodes of another grid.
 struct GridPoint {
   std::array<int, 8> node{};
   std::array<double, 8> weight{};
@@ -46,14 +46,14 @@ struct GridPoint {
 //   r_n >= 0,  v_n >= target,  with equality in one of them;
 //   |r_t| <= friction r_n,  v_t = 0 or r_t opposite to v_t.
 //
-// This is the fixed point of r <- P(r - m (v - target)) with the projection P onto the friction cone, for
-// every mass m. Starting from the forces of the last tick, a few of these steps are taken with the spectral
-// mass m = |dr|^2 / (dr.W dr) (Barzilai and Borwein 1988). A step that would pass the minimum of the energy
-// along its direction is shortened to it (Birgin, Martinez and Raydan 2000). A body at rest is at the fixed
-// point and does not creep.
+// The solution is the fixed point of r <- P(r - m (v - target)) with the projection P onto the friction cone,
+// for every mass m. Starting from the forces of the last tick, a few of these steps are taken with the
+// spectral mass m = |dr|^2 / (dr.W dr) (Barzilai and Borwein 1988). A step that would pass the minimum of the
+// energy along its direction is shortened to that minimum, but to no less than a tenth of its length (Birgin,
+// Martinez and Raydan 2000). A body at rest is at the fixed point and does not creep.
 //
-// The functions index `points` by nodes of the lattice to which the contacts belong. Points that are attached
-// mostly to fixed nodes do not respond.
+// The argument `points` has one entry for each node of the lattice to which the contacts belong. Points that
+// are attached mostly to fixed nodes do not respond.
 //
 // Owned by the implicit solver of the body. Allocates only at construction.
 class ImplicitGroundContacts {
@@ -63,8 +63,8 @@ class ImplicitGroundContacts {
   // factor.
   void scale_inertia(double factor);
 
-  // Sets the impulse of each contact to that of its force in the last tick over `time_s`. The step starts
-  // from these impulses. Adds them to `impulses_ns`, one entry per coordinate of the body.
+  // Sets the impulse of each contact to its force in the last tick times `time_s`. The step starts from these
+  // impulses. Adds them to `impulses_ns`, one entry per coordinate of the body.
   void restore_last_impulses(std::span<GroundContact> contacts, std::span<const GridPoint> points,
                              double time_s, std::vector<double>& impulses_ns);
   // Solves the contacts. Call after everything else has pushed the body. Changes the impulses of the contacts
@@ -119,7 +119,7 @@ struct RigidMove {
 // Contacts push the lattice's nodes as if each were free, with an inverse mass that matches the block's
 // response to the last contacts. The block then responds as a whole, after each pass over the contacts and at
 // the end of the tick. If the block responds more than the contacts assumed, the impulses of the pass are
-// scaled down. The ground comes last and pushes the block directly.
+// scaled down. The contacts with the ground are solved last and push the block directly.
 //
 // Owned by the body. It is built outside the tick and allocates nothing afterwards.
 class ImplicitSolver {
@@ -139,8 +139,8 @@ class ImplicitSolver {
   double contact_inverse_mass() const { return contact_inverse_mass_; }
 
   // Fixes nodes of the lattice, one byte per node. Each node of the hexahedral block is fixed if the lattice
-  // node nearest to it is. If a fixed lattice node would then follow only free block nodes, the block node
-  // with the largest weight in it is fixed too.
+  // node nearest to it is fixed. If a fixed lattice node would then follow only free block nodes, the one of
+  // them with the largest weight is fixed too.
   void fix_nodes(std::span<const std::uint8_t> fixed);
   // Sets the displacements and velocities of the hexahedral block from those of the lattice.
   void adopt_shape(const SpringLattice& lattice);
@@ -155,13 +155,13 @@ class ImplicitSolver {
 
   // Rayleigh quotient (v.Kv) / (v.Mv) of the hexahedral block's velocities; 0 at rest.
   double rayleigh_quotient() { return body_.rayleigh_quotient(); }
-  // Replaces all forces on the hexahedral block's nodes by those that the lattice has on `nodes`, N. Forces
-  // on fixed nodes are ignored, because they do not move the block.
+  // Replaces all forces on the hexahedral block's nodes by the forces, N, that the lattice has on `nodes`.
+  // Forces on fixed nodes are ignored, because they do not move the block.
   void set_node_forces(const SpringLattice& lattice, std::span<const int> nodes);
-  // For the coming steps, sets the velocity of the nodes of the hexahedral block that these lattice nodes
-  // fix. `nodes` must be in ascending order.
+  // For the coming steps, sets the velocity of the nodes of the hexahedral block that the lattice nodes
+  // `nodes` fix. `nodes` must be in ascending order.
   void move_fixed(std::span<const int> nodes, const Vector3& velocity_m_per_s);
-  // Returns the force of cells, loads and gravity on these fixed nodes of the lattice and on the nodes of the
+  // Returns the force of cells, loads and gravity on the fixed lattice nodes `nodes` and on the nodes of the
   // hexahedral block that they fix, at the start of the last step, N.
   Vector3 force_on_fixed(const SpringLattice& lattice, std::span<const int> nodes,
                          const Vector3& gravity_m_per_s2) const;
@@ -175,7 +175,7 @@ class ImplicitSolver {
   ImplicitReport begin_step(const ImplicitStep& step, SpringLattice& lattice,
                             std::span<GroundContact> on_ground = {});
   // Work of the contacts' impulses since the last response: `assumed_work_j` with the velocity changes that
-  // the contacts assumed, `work_j` with those of the hexahedral block.
+  // the contacts assumed, `work_j` with the velocity changes of the hexahedral block.
   struct ContactResponse {
     double assumed_work_j = 0.0, work_j = 0.0;
   };

@@ -31,7 +31,7 @@ struct MatrixParts {
 int node_reach(const LatticeMesh& mesh);
 
 // Factor of the matrix that MatrixParts describes. Coordinates are 3 n + axis, and nodes are numbered along
-// the body, so the matrix is a band. Has one owner and allocates only at construction.
+// the body, so the matrix is a band matrix. Has one owner and allocates only at construction.
 class RollingFactor {
  public:
   using Doubles = AlignedVector<double>;

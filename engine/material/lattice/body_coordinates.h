@@ -11,10 +11,10 @@
 
 namespace spoonbill {
 
-// Returns the body coordinates of each node at rest. The depth is the distance to the hull of the block; in a
-// box about a surface it is the distance to the surface. Nodes outside the body have NaN coordinates and are
-// in no region. `along` is the fraction of the block's length along k, except in a box about a surface.
-// `around` is 0 if LatticeMesh::turns is empty.
+// Returns the body coordinates of each node at rest. The depth is the distance to the hull of the block.
+// `along` is the fraction of the block's length along k. If the lattice is a box of cells around a surface,
+// the depth is the distance to the surface, and `along` is the position along the surface; nodes outside the
+// body have NaN coordinates and are in no region. `around` is 0 if LatticeMesh::turns is empty.
 std::vector<BodyCoordinates> find_node_coordinates(const LatticeMesh& mesh);
 
 // Returns the mean body coordinates of the nodes `selected`; `nodes` has the coordinates of all nodes. The
@@ -26,8 +26,9 @@ std::vector<BodyCoordinates> find_node_coordinates(const LatticeMesh& mesh);
 BodyCoordinates mean_coordinates(const LatticeMesh& mesh, const std::vector<BodyCoordinates>& nodes,
                                  std::span<const int> selected);
 
-// Returns the body coordinates of each cell's centre, by LatticeMesh::cell_index(): its own depth and the
-// mean_coordinates() of its corners. In a box about a surface, returns LatticeMesh::cell_centres.
+// Returns the body coordinates of all cells, indexed by LatticeMesh::cell_index(). The depth is that of the
+// cell's centre; the other coordinates are the mean_coordinates() of its corners. If the lattice is a box of
+// cells around a surface, returns LatticeMesh::cell_centres.
 std::vector<BodyCoordinates> find_cell_coordinates(const LatticeMesh& mesh);
 
 // Nodes of a boundary quad of the block, counter-clockwise seen from outside.

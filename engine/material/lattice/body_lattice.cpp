@@ -29,7 +29,8 @@ constexpr double still_fraction = 1e-3;
 // The determinant is 1 for a box of the mean edges.
 constexpr double min_determinant = 1e-2;
 
-// The nodes of a cell, and the corner of the cell at which the moving node is.
+// A cell around a node that unfold() moves: the nodes of the cell, and the number of the corner at which the
+// moved node is.
 struct CellAround {
   std::array<int, 8> nodes;
   int corner;
@@ -74,8 +75,8 @@ Vector3 mean_edges(const LatticeMesh& mesh) {
 }
 
 // A corner of a cell: its edges, each divided by the mean edge of its axis. `follows` contains the
-// derivatives of the edges with respect to the position of the moving node, 0 or +-1 divided by the mean
-// edge.
+// derivatives of the edges with respect to the position of the node that unfold() moves, 0 or +-1 divided by
+// the mean edge.
 struct Corner {
   std::array<Vector3, 3> edges;
   Vector3 follows;
@@ -148,7 +149,8 @@ class Around {
   }
 
  private:
-  // `moving` is a bit mask of the axes whose edge at the corner `at` ends at the moving node.
+  // `moving` is a bit mask of the axes whose edge at the corner `at` has an end at the node that unfold()
+  // moves.
   Corner corner(const CellAround& cell, int at, int moving) const {
     const auto node = [&](int corner) -> const Vector3& {
       return mesh_->nodes[static_cast<std::size_t>(cell.nodes[static_cast<std::size_t>(corner)])];
@@ -198,8 +200,8 @@ double move_node(const Around& around, double lift_square, Vector3& node) {
   return 0.0;
 }
 
-// Sets every node that is not on the hull by the Boolean sum of linear interpolations between the three
-// pairs of faces (Gordon and Hall 1973), or between the two pairs across a closed block.
+// Sets every node that is not on the hull by the Boolean sum of linear interpolations between the three pairs
+// of faces (Gordon and Hall 1973), or between two pairs in a closed block, which has no faces at its seam.
 void fill_from_hull(LatticeMesh& mesh) {
   const std::array<int, 3> last = {mesh.count[0] - 1, mesh.count[1] - 1, mesh.count[2] - 1};
   for (int n = 0; n < mesh.node_count(); ++n) {

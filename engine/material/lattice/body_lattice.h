@@ -1,5 +1,5 @@
-// Lattices of bodies. A shell consists of layers of cells, a solid of one block of cells bent into a tube or
-// of a box of cells.
+// Lattices of bodies. The lattice of a shell consists of layers of cells. The lattice of a solid is a block
+// of cells that is bent into the body, or a box of cells around the body.
 #pragma once
 
 #include "engine/base/result.h"
@@ -11,13 +11,13 @@
 
 namespace spoonbill {
 
-// Returns the lattice of a body of a scene at rest, solid or shell. Fails where solid_lattice() or
-// shell_lattice() does. `watch` receives the progress of order_by_feature_map(), if the body requests it.
+// Returns the lattice of a body of a scene at rest, solid or shell. Fails if solid_lattice() or
+// shell_lattice() fails. `watch` receives the progress of order_by_feature_map(), if the body requests it.
 Result<LatticeMesh> make_body_lattice(const Body& body, const FeatureMapWatch& watch = {});
 
 // Returns the lattice of a closed body: that of tube_lattice() if the body is a tube and no cell folds,
-// otherwise that of surface_in_box(). Fails where check_closed() does, on bodies too flat for cells, and on
-// counts below 2. `watch` receives the progress of order_by_feature_map().
+// otherwise that of surface_in_box(). Fails if the surface does not pass check_closed(), if the body is too
+// flat for cells, and on counts below 2. `watch` receives the progress of order_by_feature_map().
 Result<LatticeMesh> solid_lattice(const Surface& surface, const LatticeRequest& request,
                                   const FeatureMapWatch& watch = {});
 
@@ -25,10 +25,10 @@ Result<LatticeMesh> solid_lattice(const Surface& surface, const LatticeRequest& 
 // spaced along the body. The nodes around a slice are spaced by arc length; spacing by angle would give
 // slender cells and twice as many substeps. The nodes of the two end slices are on the caps of the tube.
 //
-// If cells fold, as in a body that is hollow at a pole, a second attempt uses larger caps, which reach to the
-// shoulders (shoulder_rims()). It interpolates the interior nodes from the whole hull and then unfolds the
-// cells. Fails on a surface that is not a closed tube, counts below 2, and cells that remain folded. `watch`
-// receives the progress of order_by_feature_map().
+// If cells fold, as in a body that is hollow at a pole, further attempts use larger caps, which reach at
+// least to the shoulders (shoulder_rims()). They interpolate the interior nodes from the whole hull and then
+// unfold the cells. Fails on a surface that is not a closed tube, counts below 2, and cells that remain
+// folded. `watch` receives the progress of order_by_feature_map().
 Result<LatticeMesh> tube_lattice(const Surface& surface, const LatticeRequest& request,
                                  const FeatureMapWatch& watch = {});
 

@@ -282,8 +282,8 @@ void set_node_coordinates(const SurfaceCoordinates& coordinates, LatticeMesh& bo
   }
 }
 
-// Sets the body coordinates of all cells' centres. A void cell also gets those of the nearest surface sample.
-// It thus has the material of the body beside it and does not stiffen softer material.
+// Sets the body coordinates of all cells' centres. Even a void cell gets the coordinates of the nearest
+// surface sample. It thus has the material of the body beside it and does not stiffen softer material.
 void set_cell_coordinates(const SurfaceCoordinates& coordinates, LatticeMesh& box) {
   box.cell_centres.resize(box.cell_count());
   for (int k = 0; k + 1 < box.count[2]; ++k) {

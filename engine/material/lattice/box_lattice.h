@@ -20,8 +20,8 @@ namespace spoonbill {
 // volume of the body. Nodes of smaller slivers would be so light and weakly attached that a contact on their
 // surface would sink in.
 //
-// Mass and stiffness of a cell scale alike, so no fraction makes the lattice faster: the fastest frequency of
-// an assembly is at most that of its fastest part (Irons and Treharne 1971).
+// Mass and stiffness of a cell scale alike, so a small fraction does not raise the largest frequency of the
+// lattice, which is at most the largest frequency of a single cell (Irons and Treharne 1971).
 inline constexpr double min_filled_fraction = 0.1;
 
 // Fraction of a void cell: too small to move anything, but enough to keep its nodes together. Void cells

@@ -52,12 +52,12 @@ struct LatticeMesh {
   // Position of each node around a tube, ring or bowl, as a fraction of a turn, 0 to 1. It grows with the
   // surface's periodic parameter. 0 on the axis of a tube.
   std::vector<double> turns;
-  // For a box about a surface: position of each node along the body, 0 to 1, and its depth below the surface.
-  // NaN for nodes outside the body. Empty for other lattices.
+  // For a box of cells around a surface: position of each node along the body, 0 to 1, and its depth below
+  // the surface. NaN for nodes outside the body. Empty for other lattices.
   std::vector<double> along, depth_m;
-  // Data of a box about a surface. `cell_centres` are the body coordinates of the surface sample nearest to
-  // each cell's centre, with the depth of the centre (0 outside). `skin` is the mesh on which pressure acts.
-  // `slender` is true if the body is thinner than two cells anywhere.
+  // Data of a box of cells around a surface. `cell_centres` are the body coordinates of the surface sample
+  // nearest to each cell's centre, with the depth of the centre (0 outside). `skin` is the mesh on which
+  // pressure acts. `slender` is true if the body is thinner than two cells anywhere.
   std::vector<BodyCoordinates> cell_centres;
   BodySkin skin;
   bool slender = false;
@@ -115,9 +115,9 @@ Vector3 trilinear(const CellCorners& corners, double a, double b, double c);
 // Returns the derivative of trilinear(), m, with columns along i, j and k.
 Eigen::Matrix3d trilinear_jacobian(const CellCorners& corners, double a, double b, double c);
 
-// Position of a point relative to a cell: the weights of the corners, and its distance outside in units of
-// the cell. Found by Newton's method on the trilinear map; `outside` is infinite if the method does not
-// converge.
+// Position of a point relative to a cell: the weights of the corners, and its distance outside the cell, in
+// units of the cell. Found by Newton's method on the trilinear map; `outside` is infinite if the method does
+// not converge.
 struct CellLocation {
   std::array<double, 8> weights{};
   double outside = 0.0;

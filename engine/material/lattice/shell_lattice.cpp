@@ -20,7 +20,7 @@ namespace spoonbill {
 namespace {
 
 // Surface of a shell as a function of two fractions of its domain: one around or across the shell, the other
-// along it. Immutable. The surface must outlive it.
+// along it. Immutable. The B-spline surface passed to make() must outlive it.
 class ShellSurface {
  public:
   // Kind of shell, see shell_lattice.h.
@@ -216,8 +216,8 @@ LinearTable along_table(const ShellSurface& face, const std::vector<double>& ove
   });
 }
 
-// Returns the angle of the direction (x, y) in turns, with an error of at most 0.0006. A rational function
-// replaces the library's arc tangent, whose bits differ between processors.
+// Returns the angle of the direction (x, y) in turns, with an error of at most 0.0006 turns. A rational
+// function replaces the library's arc tangent, whose bits differ between processors.
 double angle_in_turns(double x, double y) {
   const auto eighths = [](double slope) { return slope * (1.0 + 0.3476 * (1.0 - slope)); };
   const double a = std::abs(x), b = std::abs(y);
@@ -227,7 +227,7 @@ double angle_in_turns(double x, double y) {
   return y < 0.0 ? 1.0 - half : half;
 }
 
-// Distribution of the nodes of a layer on the face by arc length, and the size of the face.
+// Distribution of the nodes of one layer over a shell's surface by arc length, and the size of this surface.
 class Spread {
  public:
   explicit Spread(const ShellSurface& face) : face_(&face) {
@@ -292,8 +292,8 @@ class Spread {
   double start_m_ = 0.0;
 };
 
-// Points of the surface from which the nodes are offset, by i and k, with the surface's normals and the
-// positions around the shell.
+// Points of the surface from which the nodes are offset, with the surface's normals and the positions around
+// the shell. All are indexed by i and k.
 struct FaceNodes {
   int rows, columns;
   std::vector<Vector3> points, normals;

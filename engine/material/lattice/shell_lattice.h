@@ -1,4 +1,4 @@
-// Thin shells filled with lattice nodes: layers between a surface and its offset by the thickness.
+// Lattices of thin shells. The nodes are in layers between a surface and its offset by the thickness.
 #pragma once
 
 #include "engine/base/geometry.h"

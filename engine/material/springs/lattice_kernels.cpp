@@ -284,8 +284,9 @@ void row_sums(const LatticeView& view, float* sum) {
   join_seam(view, sum);
 }
 
-// Returns the power of two that brings the largest component to between 1 and 2; 1 if that component is zero
-// or not finite. Products with it are exact, unless they are too small to matter.
+// Returns the power of two that brings the largest component to between 1 and 2, or to between 2 and 4 if it
+// is near the largest float. Returns 1 if that component is zero, subnormal or not finite. Products with the
+// result are exact, unless they are too small to matter.
 inline float find_norm_scale(const float* x, const float* y, const float* z, int count) {
   alignas(64) float lanes[16] = {};
   for (int start = 0; start < count; start += 16) {

@@ -33,8 +33,8 @@ struct SpringArrays {
   float* crept = nullptr;                    // strain of the rest length due to creep()
   float* tangent = nullptr;                  // linearisation, see tangent_runs
   // Properties of each spring in which the materials of the lattice differ; null for properties in which they
-  // do not. The flow rate is 0 for springs that do not flow, and relaxing_fraction is 0 for springs that do
-  // not creep.
+  // do not differ. The flow rate is 0 for springs that do not flow, and relaxing_fraction is 0 for springs
+  // that do not creep.
   const float* stiffening = nullptr;
   const float* further_damping = nullptr;  // N s/m, see damp_further()
   const float* yield = nullptr;
@@ -163,7 +163,8 @@ struct LatticeKernels {
   // regular one.
   void (*volume_forces)(const LatticeView&);
   // Adds the damping of springs beyond the damping time of look_ahead(). A spring with the further damping c,
-  // the direction n at the linearisation and the end velocities v and v' gets the force c ((v' - v).n) n.
+  // the direction n at the linearisation and the end velocities v and v' exerts the force c ((v' - v).n) n on
+  // its first end and the opposite force on the other.
   void (*damp_further)(const LatticeView&);
   // Sets v = v * decay + h f / m, after adding the forces of each seam pair. The decay does not apply to the
   // new impulse h f / m, so that drag does not change the equilibrium of a body at rest.

@@ -7,8 +7,8 @@
 
 namespace spoonbill {
 
-// Coordinates are displacements from the rest shape, m; 3 n + axis belongs to node n. Has one owner. The body
-// must outlive the system.
+// Equilibrium equations of a body. The coordinates are displacements from the rest shape, m; coordinate 3 n +
+// axis belongs to node n. Has one owner. The body must outlive the system.
 class StaticSystem {
  public:
   // Sets up the equations; `fixed` may contain a coordinate at most once.

@@ -8,7 +8,8 @@
 namespace spoonbill {
 namespace {
 
-// Number of multiplications between two calls of may_continue(); they take some milliseconds.
+// Number of multiplications between two calls of may_continue(). So many multiplications take some
+// milliseconds.
 constexpr double work_between_calls = 5e6;
 
 }  // namespace
@@ -25,7 +26,7 @@ struct StiffnessFactors::Workspace {
   // From index `top` on: the columns of the row's entries, each before the columns that depend on it.
   std::vector<int> pattern;
   std::vector<int> path;     // path up the elimination tree
-  std::vector<int> visited;  // for each column: the last row that has an entry there
+  std::vector<int> visited;  // for each column: the last row with an entry in the column
   std::size_t top = 0;
   double multiplications = 0.0;
 };
