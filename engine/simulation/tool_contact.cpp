@@ -60,7 +60,8 @@ namespace {
 // Number of times that the elements of a rigid tool are halved: samples are a quarter of an element apart.
 constexpr int tool_levels = 2;
 
-// Returns the extent of a box, limited to 0.1 m for unbounded tools such as a half-space.
+// Returns the distance of the farthest corner of the box from the origin, at most 0.1 m, because some tools,
+// such as a half-space, are unbounded.
 double measure_extent(const Box& box) {
   constexpr double limit_m = 0.1;
   return std::min(box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).norm(), limit_m);
@@ -142,8 +143,8 @@ namespace {
 
 constexpr int constraint_capacity = 1024;
 
-// Gap below which a sample becomes a constraint, in lattice cells. It is the largest distance that the refit
-// may leave between the surface used for collision and the lattice.
+// Gap below which a constraint is added for a sample, in lattice cells. It is the largest distance that the
+// refit may leave between the surface used for collision and the lattice.
 constexpr double tool_margin_cells = 0.5;
 
 double find_margin_m(const BodyState& body) {
@@ -409,7 +410,8 @@ void ToolContact::add_pushes(int body, const BodyState& state, const ToolHold& h
   add_plane_push(body, state,
                  {state.mapping().at(nearest.u, nearest.v), -nearest.normal, -nearest.depth_m, key_of(point)},
                  hold);
-  // A B-spline tool needs no earlier pushes, because visit_near() visits all of its locally nearest points.
+  // A B-spline tool needs no pushes at the nearest points of earlier ticks, because visit_near() visits all
+  // of its locally nearest points.
   if (!is_surface()) add_earlier_pushes(body, state, point, hold);
   visit_near(contact, state, [&](const Pushed& pushed) { add_plane_push(body, state, pushed, hold); });
 }
@@ -528,7 +530,7 @@ void ToolContact::add_sphere_pushes(int body, const BodyState& state, const Tool
 }
 
 // Adds a push whose plane is offset by the gap of the surface. The embedded point itself has a slightly
-// different gap, but its offset from the surface is constant over a tick.
+// different gap, but the difference is constant over a tick.
 void ToolContact::add_plane_push(int body, const BodyState& state, const Pushed& pushed,
                                  const ToolHold& hold) {
   const Vector3 from_centre = pushed.point.position_m(state.lattice) - hold.pose.position_m;

@@ -219,7 +219,7 @@ const SpringLattice::RestMode& SpringLattice::find_rest_mode(float weight) {
   return rest_modes_.emplace_back(copy.measure_fastest_mode());
 }
 
-// Tracks the mode from now on, at the present inertia scale.
+// Sets the mode that is tracked, scaled to the present inertia.
 void SpringLattice::adopt_mode(const RestMode& mode) {
   spring_weight_ = mode.spring_weight;
   fastest_square_ = mode.fastest_square / inertia_scale_;
