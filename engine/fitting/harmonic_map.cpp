@@ -293,8 +293,8 @@ Result<std::vector<Vector2>> harmonic_square_map(const PointGraph& graph,
 
 ShapeEnds farthest_ends(const PointGraph& graph) {
   SPOONBILL_ASSERT(graph.size() > 0);
-  // Uses the centroid of the farthest 4 % of the nodes, because the single farthest node may be at any corner
-  // of the end.
+  // Uses the centroid of the 4 % of the nodes that are farthest away. They cover one end of the shape,
+  // whereas the single farthest node may be at any corner of that end.
   constexpr double nearly = 0.04;
   const auto farthest = [&](std::uint32_t from) {
     const std::array<std::uint32_t, 1> source{from};

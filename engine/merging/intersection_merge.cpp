@@ -267,8 +267,7 @@ Error not_crossed() {
 
 Error periodic_in_both() {
   return Error(ErrorCode::unsupported,
-               "a patch is closed in both u and v, and cutting it gives no tube; split it first with "
-               "`spoonbill change`");
+               "a patch is closed in both u and v; open it in one direction first with `spoonbill change`");
 }
 
 Error goes_through(const Vector3& exit_m) {

@@ -8,8 +8,9 @@
 // h' = -(d^4 h / ds^4) of the normal displacement h along the arc length s, as in a thin plate. Shapes
 // smaller than a cell are not resolved. Small changes of volume do not change the mass.
 //
-// Shell nodes are the nodes on the hull of the block of cells. The skin of a body in a box of cells is inside
-// the block and follows inner nodes, which return to their rest position among their neighbours.
+// Shell nodes are the nodes on the hull of the block of cells. Inner nodes return to their rest position
+// relative to their neighbours. If the lattice is a box of cells around the body, the skin is inside the
+// block and moves with such inner nodes.
 #pragma once
 
 #include <array>

@@ -72,8 +72,7 @@ TEST(AutosaveClaim, KnowsWhetherTheDocumentIsOpenElsewhere) {
   EXPECT_EQ(read(ends[0], &wrong, 1), 1);
   EXPECT_EQ(wrong, 0);
   {
-    // A window that continues the work of a crashed window also learns that the first window has the file
-    // open.
+    // A window that continues the work of a crashed window also learns that a third window has the file open.
     ASSERT_TRUE(Autosave(place.path("."), "/a/spoon.json", 2).write(handle("left")));
     const auto second = AutosaveClaim::acquire(place.path("."), "/a/spoon.json");
     EXPECT_TRUE(second.is_open_elsewhere());

@@ -62,8 +62,9 @@ class ShellDistance {
   // takes at least twice as long.
   bool uses_normals() const { return !corner_normals_.empty(); }
 
-  // Returns true if no vertex is in front of a face by more than 1e-7 of the mesh's size. Returns false for
-  // any shell that is not a solid, does not use normals or is too large to test.
+  // Returns true if no vertex is in front of a face by more than 1e-7 of the mesh's size. Returns false
+  // without a test if the kind is not `solid`, if uses_normals() is false, or if there are more than 20,000
+  // triangles.
   bool is_convex() const;
 
   static constexpr std::size_t checked_triangles = 1'000'000;

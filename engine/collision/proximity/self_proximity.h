@@ -16,9 +16,9 @@ namespace spoonbill {
 
 // Distance along the surface at rest below which two points are neighbours, which cannot touch. It is the
 // larger of two lengths: a number of lattice cells, and a number of thicknesses of the body (twice its volume
-// divided by its area). A bar bent into a loop whose inner side touches itself is longer than 4.4 times its
-// bending radius. With three thicknesses, only loops with a bending radius below two thirds of the thickness
-// are missed.
+// divided by its area). If a bar is bent into a loop whose inner side touches itself, the two touching points
+// are farther apart along the loop than 4.4 times the bending radius. Three thicknesses are less than that if
+// the bending radius is above about two thirds of the thickness. Contact in tighter loops may not be found.
 inline constexpr double neighbour_cells = 4.0;
 inline constexpr double neighbour_thicknesses = 3.0;
 

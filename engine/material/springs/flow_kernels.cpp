@@ -44,8 +44,8 @@ struct OwnCreep {
 };
 
 // Returns the cube root of the volume ratio J by two Newton steps from the tangent at 1. The error is below
-// 1e-4 for J from 0.5 to 2, and 0 at 1. Returns 0 for J outside 0.3 to 3, because flow would adopt the
-// distortion of crushed or torn cells as the new shape.
+// 1e-4 for J from 0.5 to 2, and 0 at 1. Returns 0 for J outside 0.3 to 3, which stops the flow of
+// such a cell: flow would adopt the distortion of a crushed or torn cell as the new shape.
 inline float cube_root(float j) {
   const float a = min(max(j, 0.3f), 3.0f);
   float y = 1.0f + (a - 1.0f) * (1.0f / 3.0f);

@@ -142,8 +142,8 @@ struct LatticeKernels {
   // Linearises the springs at the present extrapolated positions: the force F = k (L - L0) s n of every
   // spring with the direction n, and its derivative. s depends on the strain e = L / L0 - 1 and the
   // stiffening b:
-  // s = 1 + b e^2, at most 2, for b > 0; s = (1 - b e^2)^(-1/2) for b < 0; and s = 1 for b = 0. A softening
-  // spring's force still grows with its length, so no lattice snaps through.
+  // s = 1 + b e^2, at most 2, for b > 0; s = (1 - b e^2)^(-1/2) for b < 0; and s = 1 for b = 0. The force
+  // of a softening spring still grows with its length.
   //
   // Eq. 7 of Pungotra et al. 2013 damps the whole velocity, rotations included. Here rotations are not
   // damped, because the extrapolation of a rotating body is the same body rotated further.

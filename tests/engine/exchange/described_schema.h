@@ -105,7 +105,8 @@ Json choice_schema() {
 }
 
 // Returns one schema per alternative of the variant; the field `name_field` states which alternative applies.
-// The schema of a region is taken from the schema of documents, because no table describes it.
+// The schema of a region is taken from the schema of documents, because a region has no table of
+// fields (fields_of()).
 template <class Variant>
 Json variant_schema(const char* name_field) {
   Json json;

@@ -103,7 +103,8 @@ TEST(BodySupports, MovesItsNodesExactly) {
   }
 }
 
-// The support fixes one slice of the lattice, anywhere between the slices of the coarser implicit block.
+// The support fixes one slice of the lattice. The implicit solver's block has fewer slices, so most of the
+// slices that are tried lie between two slices of the block.
 // Without the support, the body would fall by about 7 cm.
 TEST(BodySupports, HoldWhatTheBlockHasNoNodeFor) {
   const Vector3 size_m(0.012, 0.012, 0.08), gravity_m_per_s2(0, 0, 9.81);

@@ -39,8 +39,8 @@ TEST(Inertia, IsTheLeastWithWhichASubstepIsStable) {
       scale_inertia(lattice);
       EXPECT_GT(lattice.inertia_scale(), 10.0);
       // At the step for which the inertia was scaled, the two bounds of stable_step_s(), for cells and for
-      // springs, agree. The tolerance covers single precision: the second bound is a small difference of two
-      // long times.
+      // springs, agree. The tolerance covers single precision: the bound for springs is a small difference of
+      // two long times.
       EXPECT_NEAR(lattice.stable_step_s(rest_stability_fraction) / inertia_step_s, 1.0, 1e-3)
           << poissons_ratio << ", " << damping_time_s;
     }

@@ -231,8 +231,8 @@ TEST(LatticeForces, SpringsStiffenAndSoftenWithTheirStrain) {
   EXPECT_NEAR(force_on_corner(100.0, 0.3) / force_on_corner(0.0, 0.3), 2.0, 1e-4);
 }
 
-// Below Poisson's ratio 1/4, the pressure of a dilated cell is a pull that dilates it further. Beyond a
-// dilation of a tenth, this pull becomes weaker.
+// Below Poisson's ratio 1/4, the volume forces have a negative stiffness: they dilate a dilated cell further
+// and compress a compressed cell further. Beyond a change of volume of a tenth, they become weaker.
 TEST(LatticeForces, NegativeVolumeForcesGiveWay) {
   const auto pressure = [](double poisson, double dilation) {
     const Material material = elastic_material(5000.0, poisson, 1000.0);
