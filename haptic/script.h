@@ -19,7 +19,7 @@
 // rest (minimum jerk). "turn" and "turn_to" are rotations from the world axes, not from the previous
 // orientation. Times are whole milliseconds. Commands with fields of old documents are converted (see
 // old_documents.h). The conversion uses the number of iterations that an earlier command of the script gave
-// the tool, or 6 if there is none.
+// the tool, or 6 if no earlier command did.
 #pragma once
 
 #include <cstdint>

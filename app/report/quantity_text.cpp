@@ -19,8 +19,8 @@ std::string with_decimals(double number, int decimals, const char* unit) {
   return text.data();
 }
 
-// Formats the number with three significant digits: two decimals down to 0.1, and more below, so that no
-// quantity reads as 0.00.
+// Formats the number with three significant digits from 1 to 999 and below 0.1, so that no quantity reads as
+// 0.00, and with two decimals in between.
 std::string with_three_digits(double number, const char* unit) {
   const double size = std::abs(number);
   if (size >= 0.0995 || !(size > 0.0))

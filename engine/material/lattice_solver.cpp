@@ -314,7 +314,8 @@ void solve_tool(const Relaxation& relaxation, const TouchingTool& tool, const Su
   tool.contacts->start(views, *tool.state, h, static_cast<double>(substep.index) / substep.count);
   if (substep.index == 0) solve_with_solvers(relaxation, tool, caps);
   if (with_springs) {
-    // One pass favours the later points: a sphere on many points of one cell would shake the body for ever.
+    // A single pass favours the points that it solves last. A sphere on many points of one cell would then
+    // shake the body for ever.
     for (const bool is_reversed : {false, true}) {
       tool.contacts->pass(views, *tool.state, {h, MovedBy::springs, is_reversed, caps});
     }

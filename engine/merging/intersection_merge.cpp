@@ -470,7 +470,7 @@ double interpolate(double from, double to, double fraction) {
 using LineShape = std::function<Vector3(double u, const CornerLine& line, double s)>;
 
 // Shape of the kept part of a patch, or of the fillet. A point of it is given by u of the first patch, which
-// selects a line of the part, and by the fraction of the way along this line.
+// selects a line of the part, and by the fraction of the length of this line.
 struct PartShape {
   LineShape at;
   bool pole_at_start = false, pole_at_end = false;

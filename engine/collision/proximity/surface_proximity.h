@@ -44,8 +44,8 @@ class NearPoints {
   // Compares the sample (i, j) of the finest grid with `patch`, a cell of the other surface with the given
   // corners, and remembers the nearest point.
   void offer(int i, int j, const SurfaceLevels& other, const LevelCell& patch, const PatchCorners& corners);
-  // Returns the distance of a sample from the nearest cell with which it has been compared; infinite if there
-  // is none. A cell is treated as two triangles.
+  // Returns the distance of a sample from the nearest cell with which it has been compared; infinite if it
+  // has been compared with no cell. A cell is treated as two triangles.
   double offered_distance_m(int sample) const;
   // Replaces each sample's nearest point by the nearest point of the exact other surface. Removes samples
   // beyond the margin. `outside` is -1 if the other surface's du x dv points inward, else 1.

@@ -48,7 +48,8 @@ struct ToolMotion {
 
 // Key of the first of the points that are or were nearest to the tool. The keys of further such points count
 // down from it. Keys identify a pushed point from tick to tick, so that its push starts from the force of the
-// last substep. A point at a sample of the surface has the sample's number as its key.
+// last substep. A point at a sample of the surface has the sample's number as its key. Points between samples
+// have larger keys than all samples.
 inline constexpr int nearest_point_key = -1;
 // Key of a point that differs in every tick, whose push starts from zero.
 inline constexpr int changing_point_key = -1000;

@@ -191,8 +191,8 @@ SpringLattice::RestMode SpringLattice::measure_fastest_mode() {
   return {spring_weight_, fastest_square_, power_x_, power_y_, power_z_};
 }
 
-// Returns a copy without displacements and velocities, with the rest lengths at construction, every node free
-// and an inertia scale of 1.
+// Returns a copy without displacements and velocities, with the rest lengths and rest volumes at
+// construction, every node free and an inertia scale of 1.
 SpringLattice SpringLattice::at_rest() const {
   SpringLattice copy = *this;
   for (Floats* a : {&copy.dx_, &copy.dy_, &copy.dz_, &copy.vx_, &copy.vy_, &copy.vz_}) {
