@@ -51,7 +51,8 @@ struct RecordingWriter::State {
   // the pending readings are not written.
   std::string leave() {
     const std::unique_lock lock(mutex, std::chrono::milliseconds(200));
-    if (lock.owns_lock() && failure.ok() && !finished) [[maybe_unused]]
+    if (!lock.owns_lock()) return "the recording " + out.written_file().string() + " can be replayed";
+    if (failure.ok() && !finished) [[maybe_unused]]
       const Status flushed = flush_motion();
     return "the recording of " + std::to_string(ticks - pending.size()) + " ticks is " +
            out.written_file().string() + ", which can be replayed";

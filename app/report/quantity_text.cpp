@@ -20,11 +20,11 @@ std::string with_decimals(double number, int decimals, const char* unit) {
 }
 
 // Formats the number with three significant digits from 1 to 999 and below 0.1, so that no quantity reads as
-// 0.00, and with two decimals in between.
+// 0.00, and with two decimals in between. A number below 1e-9 counts as a rounding error and reads as 0.00.
 std::string with_three_digits(double number, const char* unit) {
-  const double size = std::abs(number);
-  if (size >= 0.0995 || !(size > 0.0))
-    return with_decimals(number, size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2, unit);
+  const double size = std::abs(number) < 1e-9 ? 0.0 : std::abs(number);
+  if (size == 0.0) return with_decimals(0.0, 2, unit);
+  if (size >= 0.0995) return with_decimals(number, size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2, unit);
   return with_decimals(number, static_cast<int>(std::ceil(2.0 - std::log10(1.005 * size))), unit);
 }
 

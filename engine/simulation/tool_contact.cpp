@@ -11,7 +11,7 @@
 namespace spoonbill {
 namespace {
 
-constexpr int constraint_capacity = 1024;
+constexpr int constraint_capacity = 2048;
 
 // Gap below which a constraint is added for a sample, in lattice cells. It is the largest distance that the
 // refit may leave between the surface used for collision and the lattice.
@@ -57,6 +57,7 @@ ToolContact::ToolContact(std::span<const BodyState> bodies, const ToolModel& mod
 
 void ToolContact::release() {
   constraints_.forget();
+  for (BodyContact& contact : contacts_) contact.points.fill({});
   gripped_ = false;
 }
 
@@ -99,7 +100,19 @@ void ToolContact::prepare(std::span<const BodyState> bodies, const Tool& tool, c
 void ToolContact::push(std::span<const BodyState> bodies, const ToolHold& hold) {
   constraints_.clear();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    if (contacts_[b].collision.found) add_pushes(static_cast<int>(b), bodies[b], hold);
+    if (contacts_[b].collision.found) {
+      add_pushes(static_cast<int>(b), bodies[b], hold);
+    } else {
+      contacts_[b].points.fill({});
+    }
+  }
+  // These points are the most numerous. They come last, so that those of one body cannot leave another body
+  // without constraints.
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const int body = static_cast<int>(b);
+    if (contacts_[b].collision.found && rests_on_lattice(body, bodies[b])) {
+      add_pushes_between_samples(body, bodies[b], hold.reach_m);
+    }
   }
 }
 
@@ -141,6 +154,14 @@ void ToolContact::find(BodyContact& contact, const BodyState& body, const Tool& 
 
 bool ToolContact::is_small(const BodyState& body) const {
   return !is_solid_ && shape_.radius_m < static_cast<double>(body.lattice.cell_size_m());
+}
+
+bool ToolContact::is_centre_outside(int body) const {
+  return contacts_[body].collision.nearest.depth_m <= shape_.radius_m;
+}
+
+bool ToolContact::rests_on_lattice(int body, const BodyState& state) const {
+  return !is_solid_ && !(state.shell_thickness_m > 0.0) && !is_small(state) && is_centre_outside(body);
 }
 
 void ToolContact::select_shell_face(BodyContact& contact, const BodyState& body, double margin) const {
@@ -327,7 +348,7 @@ constexpr double between_margin_cells = 0.1;
 // Largest depth, in lattice cells, to which a sphere may reach between pushed points.
 constexpr double largest_reach_cells = 0.005;
 // Largest number of parts into which the side of a patch between samples is divided.
-constexpr int most_parts = 8;
+constexpr int most_parts = 32;
 
 // Coordinates in [0, 1) x [0, 1) of a point on the bilinear patch between four samples.
 struct PatchPoint {
@@ -353,6 +374,7 @@ int count_parts(const Vector3& one_side, const Vector3& other_side, double longe
 // nearest point would move, and its force would depend on its path.
 void ToolContact::add_pushes_between_samples(int body, const BodyState& state, double reach_m) {
   const BodyMapping& mapping = state.mapping();
+  SurfaceLevels& levels = contacts_[body].collider.levels();
   const Grid& grid = mapping.nested().grid;
   const auto &u = grid.u.parameters, &v = grid.v.parameters;
   const int columns = grid.columns(), sample_count = grid.rows() * columns;
@@ -367,20 +389,25 @@ void ToolContact::add_pushes_between_samples(int body, const BodyState& state, d
       rest[c] = mapping.sample(samples[c]).rest_m(state.lattice);
       corners[c] = mapping.sample(samples[c]).position_m(state.lattice);
     }
+    const PatchCorners on_surface = levels.corners(cell);
+    const double farthest_m = margin_m + levels.bulge(cell);
+    const bool starts_at_pole = rest[0] == rest[2];
     const int parts_u = count_parts(rest[2] - rest[0], rest[3] - rest[1], longest_m);
     const int parts_v = count_parts(rest[1] - rest[0], rest[3] - rest[2], longest_m);
     for (int part = 1; part < parts_u * parts_v; ++part) {
       const PatchPoint at{static_cast<double>(part / parts_v) / parts_u,
                           static_cast<double>(part % parts_v) / parts_v};
-      if (shape_.distance(at.position(corners)) > margin_m) continue;
+      if (starts_at_pole && at.t == 0.0) continue;
+      const Vector3 on_chord = at.position(corners);
+      if (shape_.distance(on_chord) > farthest_m) continue;
       const double at_u = u[cell.i] + at.s * (u[cell.i + 1] - u[cell.i]);
       const double at_v = v[cell.j] + at.t * (v[cell.j + 1] - v[cell.j]);
+      // Embedded points between samples are on chords, over which the surface bulges.
+      const Vector3 bulge = position(levels.pieces(), at_u, at_v) - at.position(on_surface);
+      if (shape_.distance(on_chord + bulge) > margin_m) continue;
       if (state.trim && !state.trim->contains(at_u, at_v)) continue;
-      const EmbeddedPoint point = mapping.at(at_u, at_v);
-      // Embedded points between samples are on chords, over which the surface of the rest shape bulges.
-      const Vector3 bulge = position(mapping.rest(), at_u, at_v) - at.position(rest);
       const int key = sample_count + first * most_parts * most_parts + part;
-      overflow_ |= !constraints_.add_push(body, state.lattice, point, key, bulge);
+      overflow_ |= !constraints_.add_push(body, state.lattice, mapping.at(at_u, at_v), key, bulge);
     }
   }
 }
@@ -389,11 +416,13 @@ void ToolContact::add_pushes_between_samples(int body, const BodyState& state, d
 // and would dent a plastic body unevenly.
 void ToolContact::add_sphere_pushes(int body, const BodyState& state, const ToolHold& hold) {
   BodyContact& contact = contacts_[body];
-  for (const NearSample& sample : contact.collider.near_samples()) {
-    overflow_ |=
-        !constraints_.add_push(body, state.lattice, state.mapping().sample(sample.index), sample.index);
+  if (is_small(state) || is_centre_outside(body)) {
+    for (const NearSample& sample : contact.collider.near_samples()) {
+      overflow_ |=
+          !constraints_.add_push(body, state.lattice, state.mapping().sample(sample.index), sample.index);
+    }
   }
-  if (!is_small(state)) return add_pushes_between_samples(body, state, hold.reach_m);
+  if (rests_on_lattice(body, state)) return contact.points.fill({});
   const SurfaceContact& nearest = contact.collision.nearest;
   const std::size_t point = track_nearest(body, state, hold.reach_m);
   overflow_ |= !constraints_.add_plane_push(body, state.lattice, state.mapping().at(nearest.u, nearest.v),

@@ -115,6 +115,12 @@ class ToolContact {
   void add_earlier_pushes(int body, const BodyState& state, std::size_t nearest, const ToolHold& hold);
   // Returns whether the tool is a point, or a sphere with a radius less than a lattice cell.
   bool is_small(const BodyState& body) const;
+  // Returns whether the centre of the tool's sphere is outside the body. The sphere can push only points that
+  // it reaches from outside.
+  bool is_centre_outside(int body) const;
+  // Returns whether the tool is a sphere that is pushed at fixed points of the body only, not at the nearest
+  // point.
+  bool rests_on_lattice(int body, const BodyState& state) const;
   // Returns whether the tool in the hand is a B-spline. Checks the tool's kind as well, because the model may
   // belong to an earlier solid tool.
   bool is_surface() const { return is_solid_ && placed_ != nullptr; }

@@ -501,7 +501,9 @@ TEST(QuantityText, HasThreeDigitsAndAUnit) {
   EXPECT_EQ(modulus_text(1.234e6), "1.23 MPa");
   EXPECT_EQ(volume_text(1.234e-9), "0.00123 cm\u00b3");
   EXPECT_EQ(volume_text(9.996e-8), "0.10 cm\u00b3");
-  EXPECT_EQ(volume_text(0.0), "0.00 cm\u00b3");
+  for (const double rounding_error : {0.0, 1e-22, -1e-22}) {
+    EXPECT_EQ(volume_text(rounding_error), "0.00 cm\u00b3");
+  }
   EXPECT_EQ(modulus_text(999.9), "1.00 kPa");
   EXPECT_EQ(modulus_text(2.1e11), "210 GPa");
   EXPECT_EQ(millimetres_text(0.008), "8.0 mm");

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdlib>
 #include <cstring>
-#include <limits>
+#include <string>
 
 #include "engine/base/assert.h"
 
@@ -54,16 +55,8 @@ std::optional<double> parse_number(std::string_view word) {
   double number = 0.0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
   if (end != word.data() + word.size() || word.empty()) return {};
-  if (error == std::errc::result_out_of_range) {
-    // A number that is too small becomes zero; a number that is too large becomes infinite. The sign of the
-    // exponent decides or, without an exponent, whether the integer part is zero.
-    const std::size_t exponent = word.find_first_of("eE");
-    const bool is_small =
-        exponent != std::string_view::npos
-            ? word.substr(exponent + 1).starts_with('-')
-            : word.substr(0, word.find('.')).find_first_of("123456789") == std::string_view::npos;
-    return is_small ? 0.0 : std::numeric_limits<double>::infinity();
-  }
+  // Unlike from_chars(), strtod() rounds a number out of range to zero or to infinity.
+  if (error == std::errc::result_out_of_range) return std::strtod(std::string(word).c_str(), nullptr);
   return error == std::errc() ? std::optional(number) : std::nullopt;
 }
 

@@ -111,8 +111,11 @@ void ContactConstraints::start(std::span<const LatticeView> lattices, ToolState&
   if (motion_.carried.body >= 0) tool_impulse_[motion_.carried.body] += h_s * carried_force_;
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[c];
+    const LatticeView& lattice = lattices[constraint.body];
+    // A grip lasts for many ticks, in which the inertia may change.
+    constraint.compliance = motion_.body_yields ? constraint.point.compliance(lattice) : 0.0;
     constraint.drag_ns.setZero();
-    if (constraint.force_n > 0.0) start_push(lattices[constraint.body], constraint, tool, h_s);
+    if (constraint.force_n > 0.0) start_push(lattice, constraint, tool, h_s);
   }
 }
 
@@ -124,9 +127,6 @@ void ContactConstraints::pass(std::span<const LatticeView> lattices, ToolState& 
     Constraint& constraint = constraints_[pass.is_reversed ? count_ - 1 - c : c];
     if (constraint.is_implicit != by_solver) continue;
     const LatticeView& lattice = lattices[constraint.body];
-    // The compliance is computed in each pass, because a grip lasts for many ticks, in which the inertia may
-    // change.
-    constraint.compliance = motion_.body_yields ? constraint.point.compliance(lattice) : 0.0;
     if (constraint.compliance + response_compliance_ == 0.0) continue;
     const auto cap = static_cast<double>(pass.push_speed_caps_m_per_s[constraint.body]);
     if (constraint.kind == Kind::grip) {

@@ -134,7 +134,7 @@ class ContactConstraints {
     Vector3 rest_m = Vector3::Zero();
     Vector3 direction = Vector3::Zero();  // normal of a plane push, or offset of a grip in the tool's frame
     double offset_m = 0.0;                // distance of the plane from the tool's centre; plane push only
-    // Velocity change of the point per impulse, 1/kg, as of the last pass(); 0 if the body does not yield.
+    // Velocity change of the point per impulse, 1/kg, as of the last start(); 0 if the body does not yield.
     double compliance = 0.0;
     double friction = 0.0;  // friction coefficient of the body's surface; tools have none
     int key = changing_point_key;

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <random>
 #include <utility>
 #include <variant>
 
+#include "engine/exchange/scans/number_lines.h"
 #include "engine/exchange/scans/ply_file.h"
 
 namespace spoonbill {
@@ -167,6 +169,18 @@ TEST(PcdPoints, RefusesEachDamageWithItsReason) {
       parse_pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2\nDATA ascii\n1 2 3\n4 5 six\n"),
       "point 2 of 2");
   expect_refusal(parse_pcd_points("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 1\nDATA zipped\n"), "zipped");
+}
+
+TEST(Numbers, OutOfRangeBecomeZeroOrInfinite) {
+  const std::string zeros(400, '0');
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(parse_number("1e400"), infinity);
+  EXPECT_EQ(parse_number("-1e400"), -infinity);
+  EXPECT_EQ(parse_number("1e-400"), 0.0);
+  EXPECT_EQ(parse_number("0." + zeros + "1e10"), 0.0);
+  EXPECT_EQ(parse_number("1" + zeros + "e-10"), infinity);
+  EXPECT_EQ(parse_number("0." + zeros + "1"), 0.0);
+  EXPECT_EQ(parse_number("1" + zeros), infinity);
 }
 
 TEST(TextPoints, BlanksCommasHeadersAndNormals) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <ostream>
 
+#include "engine/bspline/evaluate.h"
 #include "tests/engine/forces/samples.h"
 
 namespace spoonbill {
@@ -111,6 +112,35 @@ TEST(HeldSphere, FeelsASteadyForceWhereSeveralPlacesAreEquallyDeep) {
   scene.sculpting.is_critically_damped = true;
   Simulation simulation = make_simulation(scene);
   EXPECT_LT(press_and_hold(simulation, 0.5, 2500).ripple, 0.005);
+}
+
+// Returns how far the block's upper face is below its first height, at most, in the middle of the block.
+double dent_m(const Surface& surface) {
+  constexpr int samples = 400;
+  double lowest_m = top_m;
+  for (int i = 0; i < samples; ++i) {
+    for (int j = 0; j <= samples; ++j) {
+      const Vector3 point =
+          position(surface, surface.u.domain_start() + surface.u.domain_length() * i / samples,
+                   surface.v.domain_start() + surface.v.domain_length() * j / samples);
+      if (point.y() > 0.0 && std::hypot(point.x(), point.z()) < 0.2 * sphere_m) {
+        lowest_m = std::min(lowest_m, point.y());
+      }
+    }
+  }
+  return top_m - lowest_m;
+}
+
+// The surface follows the lattice to within a few hundredths of a millimetre. If the points that the sphere
+// pushes were on chords of the dented surface, the dent would be 0.3 mm too deep.
+TEST(HeldSphere, DentsTheBlockAsDeepAsItIsPressed) {
+  if (const std::string reason = find_skip_reason(ForceRun::always); !reason.empty()) GTEST_SKIP() << reason;
+  Scene scene = block_scene("silicone-00-30", 600);
+  scene.tool.substeps = 4;
+  scene.sculpting.is_critically_damped = true;
+  Simulation simulation = make_simulation(scene);
+  press_and_hold(simulation, 0.5, 1500);
+  EXPECT_NEAR(dent_m(simulation.surface()), press_m, 1e-4);
 }
 
 // The sphere rests on many points of each cell. Contacts that are solved in one order only shake such a block
