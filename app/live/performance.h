@@ -20,7 +20,7 @@ struct PerformanceSettings {
   OutputOptions output;  // how the recording replaces an older file
 };
 
-// Results of a performance.
+// Results of perform(), which plays a recording in a live session.
 struct PerformanceReport {
   LoopFigures loop;        // figures of the whole session, also before and after the recording
   RecordedTicks recorded;  // ticks of the recording alone, as a replay reports them
