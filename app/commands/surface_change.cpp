@@ -140,7 +140,7 @@ Result<ChangedSurfaces> remove_knot_copies(const Surface& surface, const ChangeR
     return Error{ErrorCode::not_converged,
                  "removing the knot at " + number_text(request.parameter) + " leaves a deviation of " +
                      short_length_text(fewer->deviation_m) + "; allow a larger --tolerance than " +
-                     short_length_text(allowed.tolerance_m) + ", or remove it fewer times",
+                     short_length_text(allowed.tolerance_m) + ", or remove the knot fewer times",
                  "--tolerance"};
   }
   return approximate_change(std::move(fewer));
