@@ -269,7 +269,7 @@ const std::vector<Change>& all_changes() {
       {ChangeKind::cap, bulge, 1, add_cap, nullptr, "cap", "v_end [3mm]",
        "close an open end of a tube, flat or with a bulge of this height"},
       {ChangeKind::open, end, 1, open_end, nullptr, "open", "v_end",
-       "cut off the pole where the sides become straight"}};
+       "cut off the pole, up to where the sides become straight"}};
   return changes;
 }
 

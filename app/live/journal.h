@@ -209,7 +209,7 @@ class Journal {
   std::optional<SavedDocument> saved_;
   std::optional<std::filesystem::path> save_conflict_;
   std::optional<std::uint64_t> known_content_;
-  std::uint64_t autosave_count_ = 0;     // number of times that autosave_ was replaced
+  std::uint64_t autosave_count_ = 0;     // number of times that autosave_ was replaced or set aside
   std::uint64_t autosave_document_ = 0;  // number of the document that autosave_ holds
   std::uint64_t saved_change_ = 0;       // LiveScene::change of the last saved scene
 

@@ -245,8 +245,8 @@ bool is_body_within(const FittedBody& body, double tolerance_m) {
   return body.errors.data_to_surface.p95_m <= tolerance_m;
 }
 
-// Returns true if 95 % of the whole scan is within the tolerance and, in addition, 95 % of the points of each
-// body are; stray points are not counted among the points of a body. Returns nullopt for a tolerance of 0.
+// Returns true if at least 95 % of the whole scan and at least 95 % of the points of each body are within the
+// tolerance. Stray points do not count as points of a body. Returns nullopt for a tolerance of 0.
 std::optional<bool> is_within_tolerance(const ScanFit& fit, double tolerance_m) {
   if (tolerance_m <= 0.0) return std::nullopt;
   const bool are_bodies = std::all_of(fit.bodies.begin(), fit.bodies.end(),
