@@ -123,8 +123,8 @@ void answer_write(const std::vector<std::string>& arguments, std::ostream& out) 
   write_frame(out, FrameKind::ending, json_to_line(ending));
 }
 
-// Sends one frame per solid. The last frame has the indices of the surfaces that belong to no solid, and the
-// notes.
+// Sends one frame per solid, then a last frame with the notes and with the indices of the surfaces that
+// belong to no solid.
 void answer_solids(const SolidMeshing& meshing, std::ostream& out) {
   const auto model = read_model(std::cin);
   if (!model) return write_failure(out, model.error().message);

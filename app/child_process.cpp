@@ -55,7 +55,7 @@ void forget_handlers() {
   }
 }
 
-// Closes every descriptor but the three standard ones at exec.
+// Makes exec close all descriptors except the three standard ones.
 void inherit_no_descriptors() {
   if (close_range(first_free_descriptor, ~0U, CLOSE_RANGE_CLOEXEC) == 0) return;
   for (int descriptor = first_free_descriptor; descriptor < descriptors_limit; ++descriptor) {

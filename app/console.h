@@ -76,8 +76,8 @@ class CancellableJob {
   CancellableJob(Console& console, std::string label, std::filesystem::path out)
       : out_(std::move(out)), bar_(console, std::move(label), false) {}
 
-  // Calls `work` with the Progress that it must report to and returns its result, or ErrorCode::cancelled
-  // after Ctrl+C.
+  // Calls `work` with a Progress, to which `work` must report. Returns the result of `work`, or
+  // ErrorCode::cancelled after Ctrl+C.
   template <class Work>
   auto run(const Work& work) -> decltype(work(Progress())) {
     const Progress progress([this](double fraction) {

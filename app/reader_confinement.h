@@ -1,4 +1,4 @@
-// Limits what a child process that parses a foreign file can do once a hostile file has taken it over.
+// Limits what a child process can do if the foreign file that it parses is hostile and takes control of it.
 #pragma once
 
 #include "engine/base/result.h"

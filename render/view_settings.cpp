@@ -64,7 +64,8 @@ void FrameBudget::add_frame(double took_s) {
 void FrameBudget::consider_raising(double took_s) {
   if (quality_ == FrameQuality::full) return;
   const bool spare = took_s <= spare_fraction[static_cast<std::size_t>(quality_)] * frame_s_;
-  // Number of fast frames that one slow frame cancels. A single slow frame among many is only weak evidence.
+  // Number of fast frames that one slow frame cancels. A slow frame does not cancel all of them: one among
+  // many fast frames does not show that the machine is too slow.
   constexpr int slow_frame_penalty = 10;
   spare_frames_ = spare ? spare_frames_ + 1 : std::max(0, spare_frames_ - slow_frame_penalty);
   if (spare_frames_ < patience_frames_) return;

@@ -146,7 +146,8 @@ CommandEntry add_change(OptionSet root) {
   parser.set_final_check([options]() -> Status {
     if (options->continuity && options->change.kind != ChangeKind::close) {
       return Error{ErrorCode::inconsistent,
-                   "--continuity: applies only to the seam that 'close' makes; remove it", "--continuity"};
+                   "--continuity: applies only to the seam that 'close' makes; remove --continuity",
+                   "--continuity"};
     }
     return {};
   });

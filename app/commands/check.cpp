@@ -200,7 +200,7 @@ CommandEntry add_check(OptionSet root) {
       "straight inwards from samples a third of a knot span apart. It counts only if the line meets the\n"
       "opposite wall within 50 degrees of that wall's normal, so that blunt edges do not count as thin.\n"
       "Trimmed areas do not count, and regions have the mass of their material. Bodies that are faces of\n"
-      "one solid, as in parts from CAD, are joined to that solid if they close; the solid has the volume,\n"
+      "one solid, as in parts from CAD, are joined into that solid if they close; the solid has the volume,\n"
       "area, mass, centre and smallest thickness. Its thickness is measured on a mesh, and the error is\n"
       "reported. Solid bodies that overlap are listed with their depth; an overlap alone is not a fault. A\n"
       "body is sound if it does not intersect itself and either encloses its material or is a face of a\n"

@@ -23,7 +23,7 @@ namespace {
 
 constexpr Range<int> fit_control_range{4, 200};
 constexpr Range<double> fit_tolerance_range_m{1e-6, 0.1};
-// Smallest distance at which the colour scale of the error cloud may end.
+// Lower limit on the distance at the end of the error cloud's colour scale, which begins at 0.
 constexpr double least_scale_m = 1e-6;
 
 struct FitOptions {
@@ -142,8 +142,8 @@ void add_options(OptionSet parser, const std::shared_ptr<FitOptions>& options) {
       parser, "--tolerance", "LENGTH",
       [](const std::string& text) { return parse_length(text, fit_tolerance_range_m); },
       [options](double length) { options->request.settings.tolerance_m = length; },
-      "Distance from the scan below which no control points are added; a note says if less than 95 % of the "
-      "scan is within. Default: none; range: " +
+      "Tolerance of the fit: control points are added only where the scan is farther from the surface; a "
+      "note reports if less than 95 % of the scan is within it. Default: none; range: " +
           short_length_text(fit_tolerance_range_m.low) + " to " +
           short_length_text(fit_tolerance_range_m.high));
   add_parsed_option(

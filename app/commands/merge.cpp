@@ -52,7 +52,8 @@ struct MergeOptions {
 
 // The input of a merge.
 struct MergeParts {
-  // First document. The merged document takes its material and its tool, and its view if there is one patch.
+  // First document of the merge. The merged document gets the material and the tool of this document. If
+  // there is only one patch, it also gets the view.
   std::optional<Document> first;
   std::vector<Body> bodies;
   std::vector<Surface> patches;  // surfaces of the bodies, resampled so that they have no trims
@@ -399,19 +400,19 @@ void add_joint_options(OptionSet parser, const std::shared_ptr<MergeOptions>& op
       parser, "--continuity", "C0..C8", parse_continuity,
       [options](int order) { options->continuity = order; },
       "Continuity of joints and of a ring's seam; default: C2, or C1 for a fillet, because a C2 fillet is "
-      "tighter than its radius");
+      "tighter than the given radius");
   add_parsed_option(
       parser, "--tolerance", "LENGTH", length_in(merge_tolerance_range_m),
       [options](double length_m) { options->request.join.tolerance_m = length_m; },
-      "Largest distance from the patches outside blends; default: " + short_length_text(join.tolerance_m) +
-          ", range: " + short_length_text(merge_tolerance_range_m.low) + " to " +
-          short_length_text(merge_tolerance_range_m.high));
+      "Largest distance of the result from the patches, except in blends; default: " +
+          short_length_text(join.tolerance_m) + ", range: " + short_length_text(merge_tolerance_range_m.low) +
+          " to " + short_length_text(merge_tolerance_range_m.high));
   add_parsed_option(
       parser, "--blend", "LENGTH", length_in(blend_range_m),
       [options](double length_m) { options->request.join.blend_m = length_m; },
       "Length of blends, up to 1 m; patches with a gap or a kink between them are cut back to make room. "
-      "Default: none; a kink is rounded within the tolerance, a small gap is bridged between two knots over "
-      "10 to 40 times its width");
+      "Default: none; a kink is rounded within the tolerance, and a small gap is bridged over a length of 10 "
+      "to 40 times its width");
   parser
       .add_parsed_list(
           "--edges",
@@ -423,8 +424,8 @@ void add_joint_options(OptionSet parser, const std::shared_ptr<MergeOptions>& op
             }
             return {};
           },
-          "Edges to join instead of those found, once per joint: 1.v_end:2.v_start; -2.v_start if the second "
-          "edge runs against the first, +2.v_start if it runs along the first")
+          "Edges to join, such as 1.v_end:2.v_start; -2.v_start if the second edge runs against the first, "
+          "+2.v_start if it runs along the first. Given once per joint; default: the edges near each other")
       .show_as("EDGE:EDGE");
 }
 
@@ -465,7 +466,7 @@ CommandEntry add_merge(OptionSet root) {
   parser.set_final_check([options]() -> Status {
     if (options->crossing && options->fillet_m == 0.0 && options->continuity.value_or(0) > 0) {
       return Error{ErrorCode::inconsistent,
-                   "--continuity: without --fillet crossing bodies meet at a sharp edge, which is C0; add "
+                   "--continuity: without --fillet, crossing bodies meet at a sharp edge, which is C0; add "
                    "--fillet, or remove --continuity",
                    "--continuity"};
     }

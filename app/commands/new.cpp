@@ -102,8 +102,8 @@ NewKind add_box(OptionSet root) {
   const auto sides = add_size(parser, 3, "Lengths along x, y and z, such as 60x40x20mm");
   const LengthOption rounding = add_length(
       parser, "--rounding",
-      "Radius of the edges around two opposite faces. They are the ends of the longest side, or of the "
-      "shortest side if the ends of the longest are slender. The other four edges have twice the radius, at "
+      "Radius of the edges around the two end faces, which are perpendicular to the longest side or, if they "
+      "would then be slender, to the shortest side. The other four edges have twice the radius, at "
       "most half the shortest side. Default: a tenth of the shortest side; largest: two fifths of it");
   return {parser, [=] {
             BoxSize size{{(*sides)[0], (*sides)[1], (*sides)[2]}};
@@ -198,7 +198,8 @@ Result<NewShape> apply_thickness(ExactShape shape, const LengthOption& thickness
   const bool open = !shape.is_closed();
   if (!open && *thickness) {
     return Error{ErrorCode::inconsistent,
-                 "--thickness applies to open shapes, and this one is closed; remove it", "--thickness"};
+                 "--thickness applies to open shapes, and this one is closed; remove --thickness",
+                 "--thickness"};
   }
   NewShape made{std::move(shape)};
   if (!open) return made;
@@ -368,8 +369,8 @@ void add_shape_facts(FactSheet& facts, const ExactShape& shape, const FittedShap
   if (closed) facts.add("Volume", volume_text(mass.volume_m3), "volume_m3", mass.volume_m3);
 }
 
-// Adds the smallest radius of curvature of the surface and, for comparison, the radius `asked_m` that the
-// sizes request. The fit's tolerance limits the deviation in position but not in curvature.
+// Adds the smallest radius of curvature of the surface and, for comparison, the radius `asked_m` that follows
+// from the requested sizes. The fit's tolerance limits the deviation in position but not in curvature.
 void add_radius_facts(FactSheet& facts, const Surface& surface, double asked_m) {
   const CurvatureRange range = find_curvature_range(surface);
   const double sharpest = range.exists ? std::max(std::abs(range.smallest.curvature_per_m),

@@ -36,7 +36,7 @@ constexpr std::uint64_t ticks_between_checks = 10;  // ticks between progress up
 
 Error stopped_recording(std::uint64_t ticks, const std::filesystem::path& file) {
   return Error{ErrorCode::cancelled, "stopped after " + std::to_string(ticks) + " ticks; the recording is " +
-                                         file.string() + ", which can be replayed up to there"};
+                                         file.string() + ", which can be replayed up to that tick"};
 }
 
 Status run_recording(Lockstep& lockstep, Session& session, const std::filesystem::path& file,
@@ -92,7 +92,7 @@ std::string microseconds_text(double seconds) {
 }
 
 void add_loop_facts(const LoopFigures& loop, FactSheet& facts) {
-  facts.add("Ticks", std::to_string(loop.ticks) + ", also before and after the recording", "ticks",
+  facts.add("Ticks", std::to_string(loop.ticks) + ", including those before and after the recording", "ticks",
             loop.ticks);
   facts.add("Missed", std::to_string(loop.missed), "missed", loop.missed);
   facts.add("", "", "late", loop.late);

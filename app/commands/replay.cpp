@@ -55,7 +55,7 @@ Error stopped_replay(const Replay& replay, InterruptWatch& interrupt) {
   if (!replay.options.no_frames) text += "; the frames written so far are complete";
   if (replay.writer != nullptr) {
     text += "; the recording is " + replay.writer->written_file().string() +
-            ", which can be replayed up to there";
+            ", which can be replayed up to that tick";
   }
   return Error{ErrorCode::cancelled, text};
 }

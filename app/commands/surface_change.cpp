@@ -140,7 +140,7 @@ Result<ChangedSurfaces> remove_knot_copies(const Surface& surface, const ChangeR
     return Error{ErrorCode::not_converged,
                  "removing the knot at " + number_text(request.parameter) + " leaves a deviation of " +
                      short_length_text(fewer->deviation_m) + "; allow a larger --tolerance than " +
-                     short_length_text(allowed.tolerance_m) + ", or remove it fewer times",
+                     short_length_text(allowed.tolerance_m) + ", or remove the knot fewer times",
                  "--tolerance"};
   }
   return approximate_change(std::move(fewer));
@@ -269,7 +269,7 @@ const std::vector<Change>& all_changes() {
       {ChangeKind::cap, bulge, 1, add_cap, nullptr, "cap", "v_end [3mm]",
        "close an open end of a tube, flat or with a bulge of this height"},
       {ChangeKind::open, end, 1, open_end, nullptr, "open", "v_end",
-       "cut off the pole where the sides become straight"}};
+       "cut off the pole, up to where the sides become straight"}};
   return changes;
 }
 

@@ -64,12 +64,12 @@ class EditWindow {
 struct ShownFrame {
   std::uint64_t tick = 0;
   std::uint64_t session = 0;     // number of sessions started after the first
-  std::uint64_t edit_count = 0;  // number of commands, and of ticks with contact, so far
+  std::uint64_t edit_count = 0;  // number of commands so far plus number of ticks with contact
   bool recording = false;
   bool in_stroke = false;
   bool can_undo = false;
   bool can_redo = false;
-  bool pressing = false;  // true while the left button holds a press that began on the picture
+  bool pressing = false;  // true during a press of the left button that began on the picture
   std::string prompt;     // prompt that is open: "file", "shape", "question", or empty
   std::string typed;      // text of the file prompt
   std::vector<std::array<double, 2>> answers_px;  // button centres of the open question

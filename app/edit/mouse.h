@@ -39,7 +39,8 @@ struct Pointer {
 
 enum class CameraMotion { none, orbit, pan, zoom };
 
-// Returns the camera motion of the pressed buttons. `on_model` is true if the drag began on the model.
+// Returns the camera motion that the pressed buttons select. `on_model` is true if the drag began on the
+// model.
 CameraMotion camera_motion(NavigationPreset preset, const Pointer& pointer, bool on_model);
 
 // Returns the camera after a motion of the pointer. An orbit turns the camera about its target.

@@ -192,7 +192,7 @@ bool is_face_of_solid(const CadSurface& surface) {
 
 struct ModelMeshing {
   double chord_m = default_chord_m;
-  std::filesystem::path file;  // file that messages name
+  std::filesystem::path file;  // file to name in messages
   CadChild child;              // child process that joins the faces of solids
   Progress progress;           // progress of the meshing
 };

@@ -105,8 +105,8 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-// Returns the largest of several shell thicknesses with which a lattice can be made for the body. If none
-// works, returns the smallest of them.
+// Tries several shell thicknesses. Returns the largest one with which a lattice can be made for the body, or
+// the smallest one if none works.
 double find_shell_thickness(Body body, double size_m) {
   double thickness = shell_thickness_range_m.low;
   for (int halving = 0; halving <= thickness_halvings; ++halving) {

@@ -104,7 +104,7 @@ struct PictureRequest {
   int height_px = 0;
   std::uint64_t frame_count = 0;  // frames of the whole replay, 60 per second
   std::uint64_t every = 1;        // interval between drawn frames, in frames
-  // Receives the frames and the contact sheet. If empty, none are written.
+  // Folder for the frames and the contact sheet. If empty, neither frames nor contact sheet are written.
   std::optional<std::filesystem::path> folder;
   std::optional<std::filesystem::path> video;
   bool replaces_read_only = false;  // if true, read-only files of earlier runs are replaced too

@@ -1,6 +1,6 @@
 // Autosaved documents: unsaved work that survives a crash. Each window has one file in the program's state
-// folder, which is removed when the document is saved or closed normally. The locks beside these files show
-// which documents are open in other windows.
+// folder. The file is removed when the document is saved or closed normally. The locks beside these files
+// show which documents are open in other windows.
 //
 //  {"spoonbill_autosave": 1, "of": "/home/ada/spoon.json", "document": {...}}
 #pragma once

@@ -107,7 +107,7 @@ void HapticSide::abandon_tick(const FailedAssertion& failure) {
 
 void HapticSide::run_tick(const LoopTick& tick) {
   if (journal_->consume_recording_failure()) recording_ = false;
-  // If the watchdog has cut the force, the tick is treated as one after a stall.
+  // If the watchdog has cut the force, the tick is treated as the first one after a stall.
   const std::uint64_t cut_ticks = watched_device_.consume_cut() ? stall_ticks - 1 : 0;
   const DeviceReading reading = safe_device_.read(std::max(tick.dropped, cut_ticks));
   if (lent_.session == nullptr) reclaim_if_done();

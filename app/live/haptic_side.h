@@ -71,9 +71,9 @@ struct LiveFrame {
   SessionFacts facts;
   std::uint32_t safety_flags = 0;  // SafetyFlag bits of the last tick
   bool recording = false;
-  std::uint64_t session = 0;     // number of sessions started after the first
-  std::uint64_t edit_count = 0;  // number of commands and of ticks with contact so far: edits worth saving
-  std::uint64_t document = 0;    // number of documents opened after the first
+  std::uint64_t session = 0;         // number of sessions started after the first
+  std::uint64_t edit_count = 0;      // number of commands so far plus number of ticks with contact
+  std::uint64_t document = 0;        // number of documents opened after the first
   std::uint64_t completed_jobs = 0;  // number of completed jobs: documents opened, recordings started
   std::uint64_t failed_jobs = 0;     // bit n % 64 is set if job n failed; jobs are counted from 0
 };
@@ -148,7 +148,7 @@ class HapticSide {
   // last changes to the journal. Must be called only after the thread has stopped.
   void close();
 
-  // The watchdog of the device, whose thread the owner starts and stops.
+  // Returns the device with its watchdog. The caller starts and stops the watchdog's thread.
   WatchedDevice& watched_device() { return watched_device_; }
 
   const Session* session() const { return lent_.session.get(); }
@@ -178,7 +178,7 @@ class HapticSide {
   std::unique_ptr<Device> device_;
   WatchedDevice watched_device_;
   SafeDevice safe_device_;  // the only access to the device
-  bool force_on_ = true;    // true if the user has the force switched on; outlives the session
+  bool force_on_ = true;    // true if the user has switched the force on; kept for later sessions
 
   LiveExchange* exchange_;
   Journal* journal_;

@@ -79,8 +79,8 @@ void Journal::set_autosave(std::optional<Autosave> autosave, std::uint64_t docum
   ++autosave_count_;
 }
 
-// Holds the mutex until the file has its new name. If the journal's thread is writing the autosave, it waits
-// for the mutex in was_superseded().
+// Holds the mutex until the file has its new name. If the journal's thread is writing the autosave in the
+// meantime, it waits for the mutex in was_superseded().
 Result<std::filesystem::path> Journal::set_autosave_aside() {
   const std::lock_guard lock(mutex_);
   if (!autosave_) return Error{ErrorCode::unavailable, "there is no autosave"};
@@ -248,7 +248,7 @@ void Journal::autosave(const LiveScene& scene) {
   }
   if (!target || scene.change == autosaved_change_) return;
   const Status written = target->write(make_document(scene));
-  if (was_superseded(count)) return target->remove();  // another autosave was set during the write
+  if (was_superseded(count)) return target->remove();  // autosave_ was replaced or set aside during the write
   if (written) autosaved_change_ = scene.change;
   // Only the first failure of a series is reported, because later autosaves fail in the same way.
   if (!written && !autosave_failed_) {

@@ -52,7 +52,7 @@ class Exporter {
  public:
   // The notices must outlive the exporter.
   explicit Exporter(Notices& notices) : notices_(&notices) {}
-  ~Exporter();  // cancels a running export; an older file of that name remains
+  ~Exporter();  // cancels a running export and leaves an existing file unchanged
   Exporter(const Exporter&) = delete;
   Exporter& operator=(const Exporter&) = delete;
 
@@ -178,8 +178,8 @@ class Journal {
   void save(SaveRequest save);
   // Returns the last document that was saved since the previous call, or nullopt.
   std::optional<SavedDocument> consume_saved_document();
-  // Returns the file that a save since the last call did not replace, because its content is not known to
-  // this session; nullopt if no save was refused.
+  // Returns the file of a save that was refused since the last call, because this session does not know the
+  // content of the file; nullopt if no save was refused.
   std::optional<std::filesystem::path> consume_save_conflict();
   // Sets the hash of the content of the document's file as it was read, see content_hash(); empty if there is
   // no file.
@@ -209,7 +209,7 @@ class Journal {
   std::optional<SavedDocument> saved_;
   std::optional<std::filesystem::path> save_conflict_;
   std::optional<std::uint64_t> known_content_;
-  std::uint64_t autosave_count_ = 0;     // number of times that autosave_ was replaced
+  std::uint64_t autosave_count_ = 0;     // number of times that autosave_ was replaced or set aside
   std::uint64_t autosave_document_ = 0;  // number of the document that autosave_ holds
   std::uint64_t saved_change_ = 0;       // LiveScene::change of the last saved scene
 

@@ -32,7 +32,8 @@ std::string describe_real_time_limit(int substeps) {
          "; a replay can take any number";
 }
 
-// Switches real time off if a live session cannot run it. Returns the reason, or an empty text.
+// Switches real time off if a tick would need more substeps than a live session can take. Returns the reason,
+// or an empty text.
 std::string limit_real_time(Simulation& simulation) {
   Sculpting sculpting = simulation.scene().sculpting;
   const int substeps = simulation.real_time_substeps();

@@ -12,7 +12,7 @@
 
 namespace spoonbill {
 
-// Settings of a performance.
+// Settings of perform().
 struct PerformanceSettings {
   LiveSettings live;
   bool draw = false;  // if true, draws 60 frames per second at 1280x720 into memory
@@ -20,9 +20,9 @@ struct PerformanceSettings {
   OutputOptions output;  // how the recording replaces an older file
 };
 
-// Results of a performance.
+// Results of perform(), which plays a script in a live session and records it.
 struct PerformanceReport {
-  LoopFigures loop;        // figures of the whole session, also before and after the recording
+  LoopFigures loop;        // figures of the whole session, including the ticks outside the recording
   RecordedTicks recorded;  // ticks of the recording alone, as a replay reports them
   std::uint64_t frames = 0;
   std::vector<Notice> notices;

@@ -153,7 +153,8 @@ void add_solid_mass(FactSheet& facts, const CadSolid& solid, const std::vector<B
         return other.name == material.name && other.density_kg_per_m3 == material.density_kg_per_m3;
       });
   if (!is_same) {
-    facts.add("  Mass", "unknown: its faces have several materials; give them the same", "", nullptr);
+    facts.add("  Mass", "unknown: its faces have several materials; give all of them the same material", "",
+              nullptr);
     return;
   }
   const double mass_kg = solid.volume_m3 * material.density_kg_per_m3;

@@ -106,7 +106,7 @@ std::array<CleaningCount, 9> list_cleaning(const MeshReport& report) {
            {report.specks_dropped, "specks_dropped", "specks dropped"},
            {report.parts_flipped, "parts_turned", "parts inside out, reversed"},
            {report.open_edges, "open_edges", "open edges found"},
-           {report.branching_edges, "non_manifold_edges", "edges with more than two triangles found"}}};
+           {report.branching_edges, "non_manifold_edges", "edges found with more than two triangles"}}};
 }
 
 void append_part(std::string& text, const std::string& part) {

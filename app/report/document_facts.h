@@ -45,9 +45,10 @@ void add_elasticity_facts(FactSheet& facts, const Simulation& simulation);
 // top level.
 void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot, const std::vector<Body>& bodies);
 
-// Adds the quality of the cells of each lattice. A feature map, if a body has one, distributes the nodes
-// inside the body evenly; the quality before that is added too. `maps` are the reports of the bodies that
-// have a feature map, in the order of the bodies. "cells" in the JSON is a list, or one object for one body.
+// Adds the quality of the cells of each lattice. A feature map distributes the nodes inside a body evenly;
+// for a body with a feature map, also adds the quality without the map. `maps` are the reports of the bodies
+// that have a feature map, in the order of the bodies. "cells" in the JSON is a list, or an object if
+// there is only one body.
 void add_cell_facts(FactSheet& facts, const Simulation& simulation,
                     const std::vector<FeatureMapReport>& maps);
 

@@ -217,8 +217,8 @@ std::optional<std::string> find_detail_note(const ScanFit& fit) {
   };
   if (std::none_of(fit.bodies.begin(), fit.bodies.end(), is_loose)) return std::nullopt;
   return "5 % of the scan or more is farther from the surface than a hundredth of its size; one surface "
-         "cannot have a handle or a hole, so fit the parts of such a scan; fine detail needs more control "
-         "points";
+         "cannot have a handle or a hole, so fit the parts of such a scan separately; fine detail needs more "
+         "control points";
 }
 
 namespace {
@@ -232,7 +232,7 @@ double share_within(const ScanFit& fit, double tolerance_m) {
     const auto near = std::count_if(distances.begin(), distances.end(),
                                     [&](double distance) { return distance <= tolerance_m; });
     // If the scan is a coarse mesh, the distances are those of samples all over the mesh, not those of its
-    // points. The two numbers then differ.
+    // points. The number of distances then differs from the number of points.
     if (!distances.empty()) {
       within += static_cast<double>(body.points_m.size()) * static_cast<double>(near) /
                 static_cast<double>(distances.size());
@@ -245,8 +245,8 @@ bool is_body_within(const FittedBody& body, double tolerance_m) {
   return body.errors.data_to_surface.p95_m <= tolerance_m;
 }
 
-// Returns true if 95 % of the whole scan is within the tolerance, and also 95 % of each body's points except
-// strays. Returns nullopt for a tolerance of 0.
+// Returns true if at least 95 % of the whole scan and at least 95 % of the points of each body are within the
+// tolerance. Stray points do not count as points of a body. Returns nullopt for a tolerance of 0.
 std::optional<bool> is_within_tolerance(const ScanFit& fit, double tolerance_m) {
   if (tolerance_m <= 0.0) return std::nullopt;
   const bool are_bodies = std::all_of(fit.bodies.begin(), fit.bodies.end(),

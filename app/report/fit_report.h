@@ -14,7 +14,8 @@
 
 namespace spoonbill {
 
-// Returns the maximum, 95th percentile and mean of the distances of all bodies' points except strays.
+// Returns the maximum, the 95th percentile and the mean of the distances between the points of all bodies and
+// the fitted surfaces. Stray points are not counted.
 Deviation deviation_of_all(const ScanFit& fit);
 
 // Returns a note for a scan that is implausibly small or large, whose unit may be wrong.

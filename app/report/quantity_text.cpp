@@ -19,8 +19,9 @@ std::string with_decimals(double number, int decimals, const char* unit) {
   return text.data();
 }
 
-// Formats the number with three significant digits from 1 to 999 and below 0.1, so that no quantity reads as
-// 0.00, and with two decimals in between. A number below 1e-9 counts as a rounding error and reads as 0.00.
+// Formats a number from 1 to 999, and also a number below 0.1, with three significant digits. A small
+// quantity therefore never reads as 0.00, except below 1e-9, where it counts as a rounding error. A number
+// from 0.1 to 1 gets two decimals.
 std::string with_three_digits(double number, const char* unit) {
   const double size = std::abs(number) < 1e-9 ? 0.0 : std::abs(number);
   if (size == 0.0) return with_decimals(0.0, 2, unit);

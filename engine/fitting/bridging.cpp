@@ -143,7 +143,7 @@ std::vector<std::uint32_t> order_ring(const FitPoints& points, const std::vector
 }
 
 // Returns true if the ring runs counterclockwise around the opening, seen from outside the body. Each node
-// votes with its normal. Without normals, the area that the ring encloses as seen from `towards` decides.
+// votes with its normal. Without normals, `towards` is taken as the direction out of the body.
 bool runs_counterclockwise(const FitPoints& points, const std::vector<std::uint32_t>& ring,
                            const ShortestPaths& paths, double reach, const Vector3& towards) {
   const PointGraph& graph = points.graph;

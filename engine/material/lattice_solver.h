@@ -90,9 +90,9 @@ struct TouchingTool {
 };
 
 // Advances at most lattice_capacity lattices by one tick, in as many substeps as the stiffest one needs. A
-// lattice with an implicit solver takes one implicit step per tick. Its velocities at the end of the tick are
-// computed before the contacts. They move the lattice in each substep and change in response to the contacts.
-// If all lattices have implicit solvers, a tick takes one substep.
+// lattice with an implicit solver takes one implicit step per tick, which computes its velocities without the
+// contacts. The lattice moves with these velocities in each substep, and the contacts change them. If all
+// lattices have implicit solvers, a tick takes one substep.
 //
 // In each substep the tools act in their order, then bodies on each other, then the ground. A tool that
 // touches only implicitly stepped lattices acts once, at the start of the tick. The caller must flush

@@ -44,7 +44,7 @@ class LinesFromLoop {
   double turn_at(const Eigen::Vector2d& start) const;
   // Returns (u, v) at a fraction of the length of the line that begins at `start`.
   Eigen::Vector2d at(const Eigen::Vector2d& start, double fraction) const;
-  // Returns the fraction of a line's length at which it becomes a line of constant u of the body.
+  // Returns the fraction of a line's length beyond which it is a line of constant u of the body.
   double bend_fraction() const { return bend_; }
 
  private:
@@ -327,8 +327,8 @@ Surface start_at_nearer_pole(const Surface& body, const std::vector<LineCrossing
   return sum > centre * static_cast<double>(crossings.size()) ? reverse_along_v(body) : body;
 }
 
-// Returns, for each line of the first patch that crosses the second, where it starts along the second patch.
-// This is the u of the second patch or, beside a pole, the angle about the loop in turns.
+// Returns, for each line of the first patch that crosses the second, the position of the crossing along the
+// intersection: its u on the second patch or, beside a pole, its angle about the loop's centre in turns.
 std::vector<double> find_starts_along(const CrossingPatches& patches,
                                       const std::vector<LineCrossing>& crossings) {
   std::vector<double> starts;

@@ -95,7 +95,7 @@ class RoundedRectangle {
   double slowed() const { return 4.0 * rounding_; }
 
   // Returns the position on a side, measured from its centre. The position is a cubic function of
-  // `off_centre` over the whole side or, on a long side, over the slowed parts at its ends.
+  // `off_centre` over the length slowed() at each end of the side, or over the whole of a shorter side.
   double position_on_side(double half_side, double off_centre, double slower) const {
     if (!(half_side > 0.0)) return 0.0;
     if (half_side <= slowed()) {

@@ -84,7 +84,7 @@ struct CellLines {
 };
 
 // Appends each edge of the outer faces of the lattice once, except edges with an end outside the body. If the
-// lattice is a box of cells around the body, all edges are appended to `near`.
+// lattice is a box of cells around the body, these edges go to lines.near, wherever the eye is.
 void append_cell_lines(const LatticeSnapshot& lattice, const Eigen::Vector3f& eye_m, CellLines& lines);
 
 // Appends the rows and columns of the control net as thin lines, closed in periodic directions, with a

@@ -47,8 +47,8 @@ TEST(AutosaveClaim, WindowsOnOneDocumentDoNotShareAnAutosave) {
   auto one = std::optional(AutosaveClaim::acquire(place.path("."), "/a/spoon.json"));
   const auto other = AutosaveClaim::acquire(place.path("."), "/a/spoon.json");
   EXPECT_NE(one->autosave().file(), other.autosave().file());
-  // The first window crashes, and the next window that opens recovers its work. The second window keeps its
-  // own autosave.
+  // The first of two open windows crashes. A third window, opened later, recovers the work of the first. The
+  // second keeps its own autosave.
   ASSERT_TRUE(one->autosave().write(handle("first")));
   ASSERT_TRUE(other.autosave().write(handle("second")));
   one.reset();

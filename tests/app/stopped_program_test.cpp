@@ -187,7 +187,7 @@ TEST(StoppedProgram, EndsInTheMidstOfALongTick) {
   }
 }
 
-// Both commands spend a long time in work that never checks for a signal.
+// Stops `replay` while it draws and `sample` while it evaluates. Neither checks for signals in this work.
 TEST(StoppedProgram, LeavesNoTemporaryFile) {
   const Workplace place;
   place.record("bend.jsonl");
@@ -209,7 +209,8 @@ TEST(StoppedProgram, LeavesNoTemporaryFile) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(place.path("")), {}), before + 3);
 }
 
-// Waits until this process has no child. A process whose parent has ended becomes a child of this process.
+// Waits at most a second until this process has no child, and returns whether it has none. A process whose
+// parent has ended becomes a child of this process.
 bool has_lost_all_children() {
   const auto give_up = StopClock::now() + std::chrono::seconds(1);
   while (StopClock::now() < give_up) {

@@ -20,8 +20,8 @@ struct Press {
 // Reads a recording and returns its inputs tick by tick.
 Result<Press> recorded_press(const std::filesystem::path& recording);
 
-// Reads a recording as recorded_press() does, but makes the bodies of a plastic so stiff that only the
-// implicit method can step it.
+// Reads a recording as recorded_press() does, and replaces the material of each body by ABS, a plastic so
+// stiff that only the implicit method can step it.
 Result<Press> stiff_press(const std::filesystem::path& recording);
 
 // Returns a press of a block of clay with 60 mm edges and count^3 nodes, fixed at one end. A sphere presses

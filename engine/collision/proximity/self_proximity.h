@@ -161,8 +161,8 @@ class SelfProximity {
   std::vector<NearCell> cells_;  // cells of the elements in the slots
   std::uint32_t generation_ = 0;
   int slots_used_ = 0;
-  // Control points at which no two elements were within the margin plus lead_cells of each other. Valid while
-  // clear_ is true.
+  // Control net of the last search in which every two elements were farther apart than the margin plus
+  // lead_cells cells. Valid while clear_ is true.
   ControlNet clear_net_;
   bool clear_ = false;
   bool missing_elements_ = false;

@@ -15,7 +15,8 @@ namespace spoonbill {
 // One region in which two meshes overlap or touch.
 struct MeshPairContact {
   // Points between which the depth is measured: the deepest point of one mesh, and the point of the other
-  // mesh's surface nearest to it. If a part is inside the other mesh, the nearest points of the two surfaces.
+  // mesh's surface nearest to it. If a connected part of a mesh is entirely inside the other mesh, they are
+  // the nearest points of the two surfaces instead.
   Vector3 first_m = Vector3::Zero(), second_m = Vector3::Zero();
   // Unit vector in the direction in which the first mesh leaves the second.
   Vector3 normal = Vector3::UnitY();
@@ -25,7 +26,7 @@ struct MeshPairContact {
 // Result of collide_meshes().
 struct MeshPairResult {
   bool touching = false;   // true if the meshes touch, to within touch_tolerance_m
-  bool contained = false;  // true if the surfaces do not cross, but a part of one mesh is inside the other
+  bool contained = false;  // true if the surfaces do not cross, but a connected part is inside the other mesh
   bool complete = true;    // false if more triangles cross than the limit, so that contacts may be missing
   // Nearest points of meshes that do not touch, and their distance.
   double distance_m = std::numeric_limits<double>::infinity();

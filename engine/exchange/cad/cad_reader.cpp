@@ -294,7 +294,7 @@ void add_solid_notes(const std::vector<NamedFace>& faces, const std::vector<bool
   model.notes.push_back(counted + std::to_string(all) + " faces of " +
                         (solids.size() == 1 ? "a solid" : std::to_string(solids.size()) + " solids") +
                         (read == 1 ? " is imported as a body" : " are imported as a body each") +
-                        "; on export they are joined again where they still close");
+                        "; on export, the bodies of a solid are joined again if they still enclose it");
 }
 
 // Returns the factor from OpenCASCADE's coordinates to metres. OpenCASCADE has multiplied the file's numbers

@@ -56,7 +56,9 @@ enum class MovedBy { springs, solvers };
 struct ContactPass {
   double h_s;
   MovedBy moved_by;
-  bool is_reversed;  // true: solves the last constraint first, because a pass favours the later ones
+  // Solves the constraints from last to first. A pass favours the constraints that it solves last; a second,
+  // reversed pass balances this.
+  bool is_reversed;
   std::span<const float> push_speed_caps_m_per_s;  // largest correction speed for each body
 };
 

@@ -129,7 +129,7 @@ constexpr double initial_lightness = 8.0, max_lightness = 1e5;
 // Position of a node of one grid in another grid over the same body, along one axis.
 struct GridPosition {
   int first;
-  double fraction;  // fraction of the step to the next node
+  double fraction;  // position between this node and the next, from 0 to 1
 };
 
 GridPosition locate_in(int at, int count, int other_count) {

@@ -158,8 +158,8 @@ class ImplicitSolver {
   // Replaces all forces on the hexahedral block's nodes by the forces, N, that the lattice has on `nodes`.
   // Forces on fixed nodes are ignored, because they do not move the block.
   void set_node_forces(const SpringLattice& lattice, std::span<const int> nodes);
-  // For the coming steps, sets the velocity of the nodes of the hexahedral block that the lattice nodes
-  // `nodes` fix. `nodes` must be in ascending order.
+  // Sets the velocity of fixed nodes for the coming steps: of the lattice nodes `nodes`, in ascending order,
+  // and of the nodes of the hexahedral block that they fix.
   void move_fixed(std::span<const int> nodes, const Vector3& velocity_m_per_s);
   // Returns the force of cells, loads and gravity on the fixed lattice nodes `nodes` and on the nodes of the
   // hexahedral block that they fix, at the start of the last step, N.

@@ -50,7 +50,8 @@ Surface ball() {
   });
 }
 
-// Returns a rod from the ball's centre outwards along a direction, with round ends. It starts at the far end.
+// Returns a rod with round ends from the ball's centre to a point in the given direction. Its v runs towards
+// the ball's centre.
 Surface rod(const Vector3& direction) {
   const Vector3 across = direction.unitOrthogonal(), other = direction.cross(across);
   const double far = 0.06, quarter = 0.5 * pi * rod_radius, straight = far - 2 * rod_radius;

@@ -87,8 +87,8 @@ void expect_covers(const Grid& grid, const TrimmedArea& area, double cell_diagon
   for (const auto& [side, count] : sides) {
     EXPECT_LE(count, 2);
     if (count == 2) continue;
-    // A side with a single triangle must be at an end of an open direction or on a loop. Beside a loop only
-    // one side is kept.
+    // An edge of a single triangle must be at an end of an open direction or on a loop, because the surface
+    // is kept on only one side of a loop.
     const Eigen::Vector2d a = vertices[side.first], b = unrolled(vertices[side.second], grid, a);
     const Eigen::Vector2d middle = 0.5 * (a + b), across(a.y() - b.y(), b.x() - a.x());
     const auto at_end = [&](const KnotVector& knots, double parameter) {

@@ -1,4 +1,4 @@
-// Tests which bodies that are embedded in a box of cells count as thinner than two cells.
+// Tests which bodies in a box of cells count as thinner than two cells.
 #include <gtest/gtest.h>
 
 #include <array>
