@@ -45,9 +45,9 @@ class StrokeHistory {
   void begin_stroke();
   Status restore_shape(std::size_t index, Simulation& simulation);
 
-  // Sequence that undo and redo step through: shapes_[0 .. count_ - 1]. The body has the shape
-  // shapes_[current_]. After the start of a stroke, and until the next stroke starts or the stroke is undone,
-  // the body has a later shape that is not stored yet; open_stroke_ is then true.
+  // Sequence that undo and redo step through: shapes_[0 .. count_ - 1]. Unless open_stroke_ is true, the body
+  // has the shape shapes_[current_]. open_stroke_ is true from the start of a stroke until the next stroke
+  // starts or the stroke is undone; the body then has a later shape that is not stored yet.
   std::vector<ShapeState> shapes_;
   std::size_t count_ = 1;
   std::size_t current_ = 0;

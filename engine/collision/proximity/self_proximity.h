@@ -22,9 +22,9 @@ namespace spoonbill {
 inline constexpr double neighbour_cells = 4.0;
 inline constexpr double neighbour_thicknesses = 3.0;
 
-// Two points that face each other through the body count as points of opposite sides, which never meet, up to
-// this multiple of the distance below which points are neighbours. Points farther apart, such as those at the
-// ends of a bar, may meet.
+// Distance between two points up to which they count as points of opposite sides if they face each other
+// through the body. Such points never meet. Points farther apart, such as those at the ends of a bar, may
+// meet. The distance is given as a multiple of the distance below which points are neighbours.
 inline constexpr double through_body = 2.0;
 
 // Decides which pairs of points of one body's surface can ever touch from outside, by the positions of the
