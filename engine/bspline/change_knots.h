@@ -27,9 +27,9 @@ struct Approximation {
   double deviation_m = 0.0;
 };
 
-// Fits the surface by least squares over the knots `coarser`, which must have the same domain. Clamped ends
-// are interpolated. A periodic surface may become open; an open surface whose edges meet may become periodic.
-// Refuses knots with a different domain.
+// Fits the surface by least squares over the knots `coarser`, and interpolates it at clamped ends. A periodic
+// surface may become open; an open surface whose edges meet may become periodic. Refuses knots with a
+// different domain.
 Result<Approximation> fit_coarser_knots(const Surface& surface, Direction direction,
                                         const KnotVector& coarser);
 

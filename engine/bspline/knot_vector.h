@@ -48,8 +48,8 @@ class KnotVector {
   int degree() const { return degree_; }
   int control_point_count() const { return control_point_count_; }
   bool is_periodic() const { return periodic_; }
-  // Returns true if the surface interpolates its control points at the end of the domain if `at_end`,
-  // otherwise at the start. Returns false for a periodic direction.
+  // Returns whether the surface interpolates its control points at the end of the domain (`at_end` is true)
+  // or at the start (`at_end` is false). Always false for a periodic direction.
   bool is_clamped(bool at_end) const {
     if (periodic_) return false;
     return at_end ? knots_.back() == domain_end() : knots_.front() == domain_start();

@@ -336,8 +336,8 @@ double v_at(const TrimmedArea::Edge& edge, double u) {
   return edge.from.y() + (u - edge.from.x()) / (edge.to.x() - edge.from.x()) * (edge.to.y() - edge.from.y());
 }
 
-// A straight line that bounds a piece of a cell below or above. The piece extends from one value of u to a
-// higher one. v_first is the v of the line at the lower of these values, v_last at the higher.
+// A straight line that bounds a piece of a cell from below or from above. The piece extends from one value of
+// u to a higher one. v_first is the v of the line at the lower of these values, v_last at the higher.
 struct CutSide {
   double v_first, v_last;
 };

@@ -62,9 +62,10 @@ class RestPairs {
   std::vector<bool> neighbours_;
 };
 
-// Finds rings of a surface (its elements between two knots of v) that may be near each other. Tests the boxes
-// of the rings, then the intervals that they occupy along each ring's axis. For a long body that is not
-// folded, all pairs are ruled out in a few microseconds. Not thread-safe. Allocates only on construction.
+// Finds pairs of rings of a surface that may be near each other. A ring consists of the elements between two
+// neighbouring knots of v. Tests the boxes of the rings, then the intervals that they occupy along each
+// ring's axis. For a long body that is not folded, all pairs are ruled out in a few microseconds. Not
+// thread-safe. Allocates only on construction.
 class RingSeparation {
  public:
   // `pairs` lists the pairs of rings to be tested. A ring is given by the index of its elements along v.
