@@ -94,7 +94,8 @@ Status Lockstep::run_tick() {
     if (Status reset = reset_proxy(); !reset) return reset;
   }
   const TickResult result = advance(*session_, reading);
-  // The tick is recorded after it has run, so that a recording that a signal interrupts has only whole ticks.
+  // A tick is recorded only after it has run. The recording therefore has only whole ticks, even if a signal
+  // ends the process.
   if (writer_ != nullptr) {
     if (Status written = writer_->reading(reading); !written) return written;
   }

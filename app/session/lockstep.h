@@ -31,7 +31,7 @@ struct LockstepInput {
   // applied.
   std::vector<Checkpoint> expected;
   std::optional<Checkpoint> expected_end;
-  std::uint64_t missed = 0;  // missed ticks of a live recording that is replayed; copied to the new recording
+  std::uint64_t missed = 0;  // ticks that the replayed live recording had missed; copied to the new recording
   std::string source;        // names the input in messages
 };
 

@@ -80,12 +80,12 @@ struct Session {
   DeviceSpecification device;
   DeviceReading reading;                 // reading of the last tick
   std::uint32_t flags = tick_flag_none;  // TickFlag bits, accumulated until a frame has shown them
-  // Requests for files that consume_marks() has not consumed yet. A new one replaces one of the same kind and
-  // name.
+  // Requests for files that consume_marks() has not consumed yet. A new request replaces an earlier one of
+  // the same kind and name.
   std::vector<FileMark> marks;
   // False if documents will not be written; the documents in `marks` are then empty.
   bool keeps_documents = true;
-  // Document of the last request to save one; null if anything has changed since.
+  // Document made by the last save request; null if the session has changed since that request.
   std::shared_ptr<const Document> saved = {};
   std::size_t saves_at_tick = 0;  // number of different documents saved at this tick
   bool force_on = true;           // false while the user has switched the device's force off
@@ -112,8 +112,8 @@ Document make_session_document(const Session& session);
 // request) is false.
 Status apply_request(Session& session, const Request& request);
 
-// Returns true if applying the request takes milliseconds and allocates. It does so if it rebuilds grids or
-// lattices, or makes a document to be written.
+// Returns true if the request takes milliseconds and allocates. This is so for a request that rebuilds grids
+// or lattices, and for a request that makes a document to be written.
 bool needs_rebuild(const Session& session, const Request& request);
 
 // Applies a request given as JSON. An error names the command's origin.

@@ -45,9 +45,10 @@ class StrokeHistory {
   void begin_stroke();
   Status restore_shape(std::size_t index, Simulation& simulation);
 
-  // Sequence that undo and redo step through: shapes_[0 .. count_ - 1]. The body has the shape
-  // shapes_[current_]. After the start of a stroke, and until the next stroke starts or the stroke is undone,
-  // the body has a later shape that is not stored yet; open_stroke_ is then true.
+  // Shapes through which undo and redo step: shapes_[0 .. count_ - 1]. While open_stroke_ is true,
+  // shapes_[current_] is the shape before the last stroke; the shape after it is not stored yet. Otherwise
+  // shapes_[current_] is the shape that undo(), redo() or cancel() restored last; it is unused before the
+  // first stroke.
   std::vector<ShapeState> shapes_;
   std::size_t count_ = 1;
   std::size_t current_ = 0;

@@ -85,7 +85,7 @@ inline constexpr std::array<StageChoice, 8> stage_choices = {{
 // thread that draws.
 class StageFinder {
  public:
-  // Sets settings.stages; to null if no contact debug view is shown.
+  // Stores the computed data in settings.stages, or sets it to null if no contact debug view is shown.
   void fill(const Snapshot& snapshot, ViewSettings& settings) {
     settings.stages = nullptr;
     if (settings.overlays.contact_stage == ContactStage::none) return;

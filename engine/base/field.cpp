@@ -20,8 +20,8 @@ std::string name_in_si(const FieldForm& form) {
   return in_millimetres ? std::string(name.substr(0, name.size() - 2)) + "m" : std::string(name);
 }
 
-// The field's name is built only if the number is refused, because a valid tool must be accepted between two
-// ticks without allocating.
+// Builds the field's name only if the number is refused, because building it allocates. Valid numbers are
+// also accepted between two ticks, where nothing may be allocated.
 Status check_value(const std::string& about, const FieldForm& form, double value, Range<double> range) {
   if (range.contains(value)) return {};
   return with_field(check_range(about + name_in_si(form), value, range), form);

@@ -379,7 +379,7 @@ Status OutputFile::finish(Durability durability, bool with_backup) {
     }
     if (::rename(written_.c_str(), target_.c_str()) != 0) {
       Error error = write_error("cannot be replaced");
-      if (mode_ == Mode::growing) error.message += "; the new content is " + written_.string();
+      if (mode_ == Mode::growing) error.message += "; the new content is in " + written_.string();
       return error;
     }
     written_ = target_;

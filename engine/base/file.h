@@ -36,9 +36,9 @@ std::string read_last_bytes(const std::filesystem::path& file, std::size_t count
 // `later` and then flushed by one call of flush_to_disk().
 enum class Durability { now, later };
 
-// Origin of a file's name. A name given by a person may be a link, whose target is then written, or a device
-// or pipe, which is written directly. A name made by the program, a script or a recording may be in a folder
-// of unknown origin: whatever has that name is replaced, and links are not followed.
+// Origin of a file's name. A person may name a link, whose target is then written, or a device or pipe, which
+// is written directly. The program, a script or a recording may name a file in a folder of unknown origin.
+// Whatever has this name there is replaced, and links are not followed.
 enum class NamedBy { person, program };
 
 // Options for writing a file whose name may be in use. A regular file that this process may not write is

@@ -43,7 +43,7 @@ struct Pose {
   Quaternion orientation = Quaternion::Identity();
 };
 
-// Range of each coordinate that files, commands and the panel accept.
+// Range of every coordinate in files, in commands and in the panel.
 inline constexpr Range<double> position_range_m{-100.0, 100.0};
 
 // Returns an error if a coordinate is outside position_range_m. The error names the first such coordinate.

@@ -40,7 +40,7 @@ std::string position_text(const Vector3& point_m) {
 namespace {
 
 // Returns the length in bytes of the UTF-8 character at the start of the text and sets `number` to its code
-// point. Returns 0, and leaves `number`, if the text does not start with a valid character.
+// point. If the text does not start with a valid character, returns 0 and leaves `number` unchanged.
 std::size_t read_character(std::string_view text, unsigned& number) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned>(static_cast<unsigned char>(text[k])); };
   const unsigned first = byte(0);

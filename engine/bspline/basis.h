@@ -51,8 +51,8 @@ struct ControlLines {
 };
 
 // Bound of a surface's first derivative in one direction. The bound is the length of the derivative's longest
-// control vector; these vectors are degree (P[i+1] - P[i]) / (knot[i+degree+1] - knot[i+1]) (Piegl and Tiller
-// 1997, section 3.3). Immutable once made; any thread may read it.
+// control vector. A control vector is degree * (P[i+1] - P[i]) / (knot[i+degree+1] - knot[i+1]) (Piegl and
+// Tiller 1997, section 3.3). Immutable once made; any thread may read it.
 class DerivativeBound {
  public:
   explicit DerivativeBound(const KnotVector& knots);

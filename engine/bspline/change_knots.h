@@ -27,7 +27,7 @@ struct Approximation {
   double deviation_m = 0.0;
 };
 
-// Fits a surface over any knots of the same domain by least squares and interpolates clamped ends. A periodic
+// Fits the surface by least squares over the knots `coarser`, and interpolates it at clamped ends. A periodic
 // surface may become open; an open surface whose edges meet may become periodic. Refuses knots with a
 // different domain.
 Result<Approximation> fit_coarser_knots(const Surface& surface, Direction direction,

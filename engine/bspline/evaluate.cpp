@@ -55,7 +55,8 @@ double max_value(const std::vector<double>& values) {
   return *std::max_element(values.begin(), values.end());
 }
 
-// Returns true if the first sample (ends_on_edge: the last sample) is at a clamped end of the domain.
+// starts_on_edge() returns true if the first sample is at a clamped end of the domain, ends_on_edge() if the
+// last sample is.
 bool starts_on_edge(const GridDirection& direction) {
   return !direction.knots.is_periodic() && direction.values.values.front() == 1.0;
 }

@@ -28,10 +28,10 @@ struct GridSamples {
 // Evaluates surfaces with the knots of one grid. An evaluator owns its working memory, so that each thread
 // needs its own, and does not allocate after construction. The grid must outlive it.
 //
-// A clamped edge whose control points coincide to a millionth of the net's extent counts as collapsed. Its
-// normals are the limits from inside the surface. Elsewhere, if du x dv is only rounding noise, the normal is
-// computed by unit_normal(). To bound the time, this is done for a limited number of samples in each
-// evaluation; further such samples get zero normals.
+// A clamped edge whose control points coincide within a millionth of the net's extent counts as collapsed.
+// Its normals are the limits from inside the surface. Elsewhere, if du x dv is only rounding noise, the
+// normal is computed by unit_normal(). To bound the time, this is done for a limited number of samples in
+// each evaluation; further such samples get zero normals.
 template <class Real>
 class GridEvaluator {
  public:
@@ -72,8 +72,8 @@ class GridEvaluator {
   // Sum of the magnitudes of the basis functions' derivatives, for each row (u) or column (v) of samples.
   std::vector<double> u_magnitude_, v_magnitude_;
   DerivativeBound u_bound_, v_bound_;
-  // Number of blocks (of evaluate_block columns) for the grid's columns and two more. The normals at
-  // collapsed edges are computed in these two columns.
+  // Number of blocks of evaluate_block columns. The blocks contain the columns of the grid and two more, in
+  // which the normals at collapsed edges are computed.
   int blocks_ = 0;
   std::vector<EvaluateReach> reaches_;
   AlignedVector<Real> v_values_, v_derivatives_;

@@ -19,9 +19,10 @@ struct EvaluateReach {
   int block;
 };
 
-// The blending matrix A_v in blocks. Each entry of `reaches` has evaluate_block values and as many
-// derivatives, namely of the control point's basis function at the samples of the block. The entries are
-// ordered by control point. Consecutive sums then go into different blocks and do not wait for each other.
+// The blending matrix A_v in blocks. For each entry of `reaches`, `values` and `derivatives` contain
+// evaluate_block numbers each: the control point's basis function and its derivative at the samples of the
+// block. The entries are ordered by control point. Consecutive sums then go into different blocks and do not
+// wait for each other.
 template <class Real>
 struct EvaluateBand {
   const EvaluateReach* reaches;
@@ -72,8 +73,9 @@ struct EvaluateKernels {
   int (*points_and_normals)(const EvaluateRow<Real>& row, int first_block, int blocks,
                             const EvaluateOutput<Real>& out);
 
-  // Computes the same as points_and_normals(), bit for bit, at a fraction of the cost. Returns true if |du x
-  // dv|^2 exceeds row.surely_regular at every sample; otherwise the normals are undefined.
+  // Computes the points and unit normals of a row at a fraction of the cost of points_and_normals(). Returns
+  // true if |du x dv|^2 exceeds row.surely_regular at every sample; the results then equal those of
+  // points_and_normals() bit for bit. Otherwise returns false, and the normals are undefined.
   bool (*points_and_normals_if_regular)(const EvaluateRow<Real>& row, int first_block, int blocks,
                                         const EvaluateOutput<Real>& out);
 };

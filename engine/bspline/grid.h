@@ -59,10 +59,10 @@ std::vector<double> uniform_parameters(const KnotVector& knots, int count);
 // Returns `count` parameters evenly spaced over one period, with the seam only once.
 std::vector<double> uniform_parameters_without_seam(const KnotVector& knots, int count);
 
-// Parameters of a grid with nested levels: each polynomial piece is cut into pieces_per_span * 2^levels equal
-// parts, both domain ends included. Level l (0 = coarsest) has every 2^(levels - l)-th parameter. No cell of
-// any level has a knot inside. The blending matrices of a coarse level consist of rows of the finest level's
-// matrices.
+// Parameters of a grid with nested levels. They divide each polynomial piece into pieces_per_span * 2^levels
+// equal parts and include both ends of the domain. Level l (0 = coarsest) has every 2^(levels - l)-th
+// parameter. No cell of any level has a knot inside. The blending matrices of a coarse level consist of rows
+// of the finest level's matrices.
 struct NestedParameters {
   int levels = 0;
   std::vector<double> parameters;
@@ -99,10 +99,10 @@ PointGrid sample_grid_points(const Surface& surface, std::vector<double> u, std:
 // Returns the largest distance in metres between a point of the grid and the surface at its parameters.
 double largest_deviation_m(const Surface& surface, const PointGrid& points);
 
-// Searches for the largest value of a function of two parameters near the sample (u, v), and returns it;
-// never less than the value at the sample. The search goes in ever smaller steps, which start from half of
-// `step_u` and `step_v`, the distances between samples. `value` must accept parameters up to these distances
-// outside the sampled range.
+// Searches for the largest value of a function of two parameters near the sample (u, v). Returns this value,
+// which is never less than the value at the sample. `step_u` and `step_v` are the distances between samples.
+// The search starts with steps of half these distances and halves them repeatedly. `value` must accept
+// parameters up to these distances outside the sampled range.
 template <class Value>
 double find_peak(const Value& value, double u, double v, double step_u, double step_v) {
   SPOONBILL_ASSERT(step_u >= 0.0 && step_v >= 0.0);

@@ -29,7 +29,7 @@ class KnotVector {
   // Constructs an empty knot vector, to be assigned before any use other than comparison.
   KnotVector() = default;
 
-  // Makes an open knot vector from n + degree + 1 nondecreasing knots for n control points, clamped or not.
+  // Makes an open knot vector, clamped or not, from n + degree + 1 nondecreasing knots for n control points.
   // The domain is [knots[degree], knots[n]]. Refuses a degree outside 1..max_degree, fewer than degree + 1
   // control points, non-finite or decreasing knots, an empty domain, and a multiplicity above the degree
   // inside the domain or above degree + 1 at its ends.
@@ -48,7 +48,8 @@ class KnotVector {
   int degree() const { return degree_; }
   int control_point_count() const { return control_point_count_; }
   bool is_periodic() const { return periodic_; }
-  // Returns true if the surface interpolates its control points at this end; false for a periodic direction.
+  // Returns whether the surface interpolates its control points at the end of the domain (`at_end` is true)
+  // or at the start (`at_end` is false). Always false for a periodic direction.
   bool is_clamped(bool at_end) const {
     if (periodic_) return false;
     return at_end ? knots_.back() == domain_end() : knots_.front() == domain_start();
@@ -104,8 +105,8 @@ struct KnotMultiplicity {
 // direction counts as clamped; the start of a period has the multiplicity of the seam.
 std::vector<KnotMultiplicity> knot_multiplicities(const KnotVector& knots);
 
-// Returns the first two positions at or after `start` at which a knot occurs that is repeated in every
-// period. In an open direction, returns the knot itself.
+// Returns the first two positions of a knot at or after `start` in a periodic direction, where the knot
+// occurs once in every period. In an open direction, returns the knot itself.
 std::vector<double> knot_positions_from(const KnotVector& knots, double knot, double start);
 
 // Returns a knot vector of a higher or equal degree that represents every spline over `knots`: each

@@ -149,8 +149,8 @@ namespace {
 template <class Real>
 constexpr double product_noise = 16.0 * std::numeric_limits<Real>::epsilon();
 
-// Distance from an edge, in domain lengths. The edge counts as collapsed if du x dv grows by more than its
-// value at the edge over this distance. The control points of a collapsed edge need not coincide exactly,
+// Distance from an edge, in domain lengths. The edge counts as collapsed if, over this distance, du x dv
+// grows by more than its value at the edge. The control points of a collapsed edge need not coincide exactly,
 // because after a refit in single precision they coincide only to about 1e-7. The edge is then the border of
 // a tiny hole, around which du x dv has an arbitrary direction.
 constexpr double hole = 1e-6;
@@ -181,7 +181,8 @@ LimitTangents tangents_at(const KnotVector& u_knots, const KnotVector& v_knots, 
     const int index = u_knots.control_index(bu.span, i) * net.columns + v_knots.control_index(bv.span, j);
     return Vector3(net.x[index], net.y[index], net.z[index]);
   };
-  // Uses offsets from one control point, so that a distant origin adds no rounding noise.
+  // Coordinates are relative to one control point, so that a large distance from (0, 0, 0) adds no rounding
+  // noise.
   const Vector3 origin = control(0, 0);
   LimitTangents tangents;
   double reach = 0.0;
@@ -220,8 +221,8 @@ bool exceeds(const Vector3& product, double threshold) {
   return length > threshold && std::isfinite(length);
 }
 
-// Returns +1 at the start of an open domain, where inside means greater parameters, -1 at its end, and 0
-// elsewhere.
+// Returns the sign of the direction from an end of an open domain into the domain: +1 at its start, -1 at its
+// end. Returns 0 elsewhere.
 int inward(const KnotVector& knots, double u) {
   if (knots.is_periodic()) return 0;
   return u <= knots.domain_start() ? 1 : u >= knots.domain_end() ? -1 : 0;

@@ -75,7 +75,8 @@ std::optional<PolygonCrossing> find_crossing(const std::vector<std::vector<Eigen
       if (edges[j].low_y() > high_y || edges[j].high_y() < low_y) continue;
       if (!cross_each_other(edges[i], edges[j])) continue;
       const auto [first, second] = std::minmax(edges[i].polygon, edges[j].polygon);
-      // The midpoint of the shorter edge is used, because it is nearer to the crossing.
+      // The crossing is at most half the length of either edge away from the midpoint of that edge. The
+      // shorter edge therefore gives the better estimate.
       const PolygonEdge& shorter =
           (edges[i].to - edges[i].from).norm() < (edges[j].to - edges[j].from).norm() ? edges[i] : edges[j];
       return PolygonCrossing{first, second, (0.5 * (shorter.from + shorter.to)).cwiseProduct(tolerance)};

@@ -60,11 +60,11 @@ Result<TrimLoop> make_trim_loop(const KnotVector& along_u, const KnotVector& alo
 // Returns the point of the curve at a parameter of its own domain.
 Eigen::Vector2d position(const TrimLoop& loop, double parameter);
 
-// Returns the corners of a polygon that is within trim_chord_fraction of the loop; only a loop with very
-// distant control points may be farther away (see polygon_error_fraction()). Each corner occurs once; none is
-// outside the domain of an open direction. Every polynomial piece of the curve is divided evenly. A chord
-// over a parameter range of length h deviates from the curve by at most h^2 / 8 times the largest second
-// derivative, for which the control points of the derivative give a bound.
+// Returns the corners of a polygon that is within trim_chord_fraction of the loop. Only if the loop has very
+// distant control points may the polygon be farther away (see polygon_error_fraction()). Each corner occurs
+// once; none is outside the domain of an open direction. Every polynomial piece of the curve is divided
+// evenly. A chord over a parameter range of length h deviates from the curve by at most h^2 / 8 times the
+// largest second derivative, for which the control points of the derivative give a bound.
 std::vector<Eigen::Vector2d> to_polygon(const TrimLoop& loop, const KnotVector& along_u,
                                         const KnotVector& along_v);
 

@@ -21,15 +21,15 @@ namespace {
 using Polygon = std::vector<Eigen::Vector2d>;
 
 constexpr std::size_t column_count_limit = 1024;
-constexpr std::size_t max_mean_listings = 16;  // largest mean number of columns for one edge
+constexpr std::size_t max_mean_listings = 16;  // largest mean number of columns that list an edge
 // Largest number of a loop's edges beside which winding numbers are sampled.
 constexpr std::size_t sampled_edge_count = 32;
 // Distance from an edge at which winding numbers are sampled, in domain lengths. It is larger than rounding
 // errors, but smaller than the overlap that touching loops may have.
 constexpr double sample_offset = 1e-9;
 
-// Wraps a parameter into a periodic domain. Clamps it into an open domain, away from the ends by at least 2
-// trim_rounding_fraction of the domain's length.
+// Wraps a parameter into a periodic domain. In an open domain, clamps it to a distance from the ends of at
+// least 2 * trim_rounding_fraction times the length of the domain.
 double inside(const KnotVector& knots, double parameter) {
   const double within = knots.into_domain(parameter);
   if (knots.is_periodic()) return within;
@@ -336,8 +336,8 @@ double v_at(const TrimmedArea::Edge& edge, double u) {
   return edge.from.y() + (u - edge.from.x()) / (edge.to.x() - edge.from.x()) * (edge.to.y() - edge.from.y());
 }
 
-// Lower or upper side of a piece of a cell, a straight line. The piece is between two values of u; v_first
-// and v_last are the values of v on the line at the lower and the higher of them.
+// A straight line that bounds a piece of a cell from below or from above. The piece extends from one value of
+// u to a higher one. v_first is the v of the line at the lower of these values, v_last at the higher.
 struct CutSide {
   double v_first, v_last;
 };

@@ -37,9 +37,9 @@ class TrimmedArea {
   bool is_whole() const { return edges_.empty(); }
 
   // Returns true if the point is in the remaining part, according to the loops' winding number. u, v are
-  // wrapped or clamped into the domain. In an open direction, a point closer to an end than 2
-  // trim_rounding_fraction of the domain's length is moved inwards to that distance. On a loop the result is
-  // undefined. Does not allocate.
+  // wrapped or clamped into the domain. In an open direction, a point closer to an end than 2 *
+  // trim_rounding_fraction times the length of the domain is moved inwards to that distance. On a loop the
+  // result is undefined. Does not allocate.
   bool contains(double u, double v) const;
 
   // Returns the fraction of the domain's (u, v) area that remains, above 0 and at most 1.
@@ -102,8 +102,8 @@ class GridLines {
   double snap_ = 0.0;
 };
 
-// For each cell of a grid: whether the cell is inside a trimmed area, outside it or cut by its edges, and the
-// edges in each cut cell. Immutable once made; any thread may read it.
+// Classification of the cells of a grid as inside a trimmed area, outside it, or cut by its boundary, with
+// the parts of the boundary in each cut cell. Immutable once made; any thread may read it.
 class TrimmedCells {
  public:
   // State of a cell: outside the area (away), cut by edges of the area, or entirely inside (kept).

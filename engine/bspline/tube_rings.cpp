@@ -31,8 +31,8 @@ std::size_t near_rim(const Profile& profile, bool from_end) {
   return station(s);
 }
 
-// Largest distance from a pole, as a fraction of the body's length, to which a hollow around the pole and the
-// material that protrudes around the hollow may extend.
+// Length of the region around a pole that is searched for a hollow and the material that protrudes around it,
+// as a fraction of the body's length.
 constexpr double end_fraction = 0.4;
 
 std::size_t shoulder(const Profile& profile, bool from_end) {
@@ -55,8 +55,8 @@ std::size_t shoulder(const Profile& profile, bool from_end) {
   return station(s);
 }
 
-// A section is not bent if the straight line along its wide axis, through its centre, crosses the outline
-// close to both tips. Close means at more than this fraction of the distance from the centre to the tip.
+// Fraction of the distance from the centre of a section to a tip. A section is not bent if the line along its
+// wide axis, through the centre, crosses the outline only beyond this fraction, once towards each tip.
 constexpr double bent_fraction = 0.9;
 
 // Indices of the ring's points that are farthest along +e1 and along -e1.
@@ -323,9 +323,9 @@ RingParameters ring_parameters(const Surface& surface, const Ring& ring, const C
   const double along_narrow = nj - 1, along_wide = ni - 1;
   std::array<double, 5> corner{};
   for (int q = 0; q < 4; ++q) {
-    // The corner divides the arc between two crossings in proportion to the cells of the two sides that it
-    // joins. The narrow side comes first after a crossing of the wide axis, the wide side after a crossing of
-    // the narrow axis.
+    // The corner joins two sides and divides the arc between two crossings in proportion to the numbers of
+    // cells on these sides. The narrow side comes first after a crossing of the wide axis, the wide side
+    // after a crossing of the narrow axis.
     const double first = q % 2 == 0 ? along_narrow : along_wide;
     corner[q] =
         arc.crossing[q] + (arc.crossing[q + 1] - arc.crossing[q]) * first / (along_narrow + along_wide);

@@ -56,8 +56,9 @@ struct Rims {
   std::size_t first = 0, last = 0;
 };
 
-// Returns, for each end of the tube, the station nearest to the pole with a perimeter of at least 85 % of the
-// largest perimeter near the pole. Stations within a tenth of the tube's length count as near.
+// Returns the rim at each end of the tube. It is the station nearest to the pole among all stations whose
+// perimeter is at least 85 % of the largest perimeter near the pole. Stations within a tenth of the tube's
+// length count as near.
 Rims near_rims(const Profile& profile);
 
 // Returns, for each end of the tube, the first station from which the tube advances at least as fast as its

@@ -165,8 +165,9 @@ class CellPairs {
   // Returns two elements that are likely to be near each other, each as a cell of level 0.
   CellPair find_likely_near_elements() const;
 
-  // Returns all pairs of cells that may be within `reach_m` of each other, at the finest level. If the
-  // surfaces meet over a large area, returns the pairs of the finest level at which they fit the capacity.
+  // Returns all pairs of cells that may be within `reach_m` of each other, at the finest level. If these
+  // pairs exceed the capacity, because the surfaces meet over a large area, returns the pairs of the finest
+  // level at which they fit.
   std::vector<CellPair>& find_within(double reach_m);
   // Returns the pairs of cells at one level, 0 being the coarsest, that may be within `reach_m` of each
   // other.

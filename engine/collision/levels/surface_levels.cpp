@@ -257,9 +257,9 @@ const PatchKernels& kernels_for(InstructionSet set) {
 
 constexpr int tile_padding = 4;
 
-// Returns the multiplicity of the knot at the end of an element, or 0 for the last element of an open
-// direction. The sample at this knot belongs to the next element, whose first control point comes that many
-// control points later.
+// Returns the number of control points from the first one of an element to the first one of the next element.
+// It is the multiplicity of the knot between the two, or 0 for the last element of an open direction. The
+// sample at this knot belongs to the next element.
 int knots_at_end(const GridDirection& direction, int levels, int element) {
   const KnotVector& knots = direction.knots;
   const int elements = (static_cast<int>(direction.parameters.size()) - 1) >> levels;

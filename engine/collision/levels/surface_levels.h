@@ -129,9 +129,10 @@ class SurfaceLevels {
   explicit SurfaceLevels(const NestedGrid& nested, InstructionSet set = best_instruction_set());
 
   // Starts a query. Must be called whenever the control points may have moved. Returns false if none has
-  // moved since the last call; all evaluated values then remain valid. The surface must have the grid's knots
-  // and exist until the next begin(). The optional `samples` contain all samples of the surface on the finest
-  // grid, in the order of GridEvaluator<double>. They must exist just as long; no sample is then evaluated.
+  // moved since the last call; all evaluated values then remain valid. The optional `samples` contain all
+  // samples of the surface on the finest grid, in the order of GridEvaluator<double>; if they are given, no
+  // sample is evaluated. The surface must have the grid's knots. The surface and the given samples must exist
+  // until the next begin().
   bool begin(const Surface& surface, const PlanarPoints& samples = {});
 
   const Surface& surface() const { return *surface_; }

@@ -91,9 +91,9 @@ BoxTree::BoxTree(const std::vector<Box>& boxes, std::uint32_t leaf_size) {
 
 namespace {
 
-// Smallest cosine of the angle between a line and the outward normal where the line passes through a wall:
-// that of 50 degrees. The common edge angles of 45 and 60 degrees are far enough from it that rounding cannot
-// change the result.
+// Smallest cosine of the angle between the outward normal and a line that counts as passing through a wall.
+// The angle is 50 degrees. At the common edge angles of 45 and 60 degrees, rounding therefore cannot change
+// the result.
 constexpr double wall_cosine = 0.6428;
 
 // Returns true if a ray hits a box, by the slab method (Kay and Kajiya 1986).
@@ -131,8 +131,8 @@ std::optional<LineExit> LineExits::first(const Vector3& from, const Vector3& dir
   };
   const auto test_triangle = [&](std::uint32_t position) {
     const Triangle& triangle = triangles_[position];
-    // Tolerance, as a fraction of the triangle's sides, with which a line through an edge hits at least one
-    // of the triangles of the edge.
+    // Tolerance of the intersection, as a fraction of the triangle's sides. It ensures that a line through an
+    // edge hits at least one of the two triangles at the edge.
     constexpr double tolerance = 1e-6;
     const auto hit =
         intersect_line_triangle(from, direction, triangle[0], triangle[1], triangle[2], tolerance);

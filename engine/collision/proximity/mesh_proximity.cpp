@@ -101,9 +101,8 @@ void MeshProximity::search_element(const ElementTree::Node& element, const Box& 
   if (is_near) collect_samples(element, mesh, margin);
 }
 
-// Updates the candidate of the vertex's patch with the distance of the vertex from an element, if the
-// element's box is within the margin. The candidate of a patch is the first near vertex that is found; the
-// other vertices of the patch are skipped.
+// Compares a vertex with an element if the element's box is within the margin of the vertex. The first such
+// vertex of a patch becomes the patch's candidate; the other vertices of the patch are skipped.
 void MeshProximity::offer_vertex(const ElementTree::Node& element, const Box& box, std::uint32_t vertex,
                                  const Vector3& point, double margin) {
   const int patch = patches_[vertex];

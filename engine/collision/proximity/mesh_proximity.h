@@ -92,10 +92,11 @@ class MeshProximity {
   std::vector<std::uint32_t> first_vertex_;
   std::vector<std::uint32_t> patch_vertices_;  // vertex indices, by patch
   std::vector<std::uint32_t> sampled_at_;      // number of the find() call that last visited each sample
-  // Number of the find() call that last added each patch to candidates_, at the index candidate_index_.
+  // For each patch, the number of the last find() call in which it had a candidate. In this call, the
+  // candidate is candidates_[candidate_index_[patch]].
   std::vector<std::uint32_t> patch_at_;
-  // Number of the element with which each patch's candidate was last compared. Elements are counted over all
-  // searches.
+  // For each patch, the serial number of the last element that was compared with its candidate. The numbering
+  // continues from one find() call to the next.
   std::vector<std::uint32_t> offered_at_;
   std::vector<int> candidate_index_;
   std::vector<Candidate> candidates_;

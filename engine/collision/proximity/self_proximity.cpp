@@ -17,8 +17,8 @@ namespace {
 // Smallest cosine of the angle between a direction and the inward normal for which the direction counts as
 // leading into the body.
 constexpr double inward_cosine = 0.3;
-// Least thickness of a body, in lattice cells. Facing points that are nearer to each other are on two parts
-// that already touch in the rest shape.
+// Least thickness of a body, in lattice cells. Facing points at a smaller distance are on two parts that
+// already touch in the rest shape.
 constexpr double least_thickness_cells = 0.25;
 // Largest numbers of blocks into which the surface is divided along u and v to find neighbours.
 constexpr int most_blocks_u = 32, most_blocks_v = 64;
@@ -231,8 +231,8 @@ namespace {
 
 // Approximate number of positions around a ring at which it is tested whether the ring can meet another ring.
 constexpr int positions_around = 24;
-// Extra search distance beyond the margin, in lattice cells. If no two elements are within the margin plus
-// this distance of each other, none can come within the margin until a control point has moved by half of
+// Extra search distance beyond the margin, in lattice cells. If every two elements are farther apart than the
+// margin plus this distance, no two can come within the margin until a control point has moved by half of
 // this distance.
 constexpr double lead_cells = 1.0;
 constexpr std::size_t element_pair_capacity = 1 << 14;
@@ -317,7 +317,8 @@ void SelfProximity::find(const Surface& surface, double margin_m) {
     const bool missing = missing_elements_;
     find_near_elements(margin_m + lead_cells * cell_m_);
     clear_ = nearby_.empty() && !missing_elements_;
-    // If only the wider search was incomplete, the missing elements are too far away to matter.
+    // If the wider search found some pairs but missed others, the missed pairs do not matter, because they
+    // are beyond the margin.
     missing_elements_ = missing || (nearby_.empty() && missing_elements_);
     if (clear_) clear_net_ = surface.net;
     return;

@@ -22,9 +22,9 @@ namespace spoonbill {
 inline constexpr double neighbour_cells = 4.0;
 inline constexpr double neighbour_thicknesses = 3.0;
 
-// Two points that face each other through the body count as points of opposite sides, which never meet, up to
-// this multiple of the distance below which points are neighbours. Points farther apart, such as those at the
-// ends of a bar, may meet.
+// Distance between two points up to which they count as points of opposite sides if they face each other
+// through the body. Such points never meet. Points farther apart, such as those at the ends of a bar, may
+// meet. The distance is given as a multiple of the distance below which points are neighbours.
 inline constexpr double through_body = 2.0;
 
 // Decides which pairs of points of one body's surface can ever touch from outside, by the positions of the
@@ -62,9 +62,10 @@ class RestPairs {
   std::vector<bool> neighbours_;
 };
 
-// Finds rings of a surface (its elements between two knots of v) that may be near each other. Tests the boxes
-// of the rings, then the intervals that they occupy along each ring's axis. For a long body that is not
-// folded, all pairs are ruled out in a few microseconds. Not thread-safe. Allocates only on construction.
+// Finds pairs of rings of a surface that may be near each other. A ring consists of the elements between two
+// neighbouring knots of v. Tests the boxes of the rings, then the intervals that they occupy along each
+// ring's axis. For a long body that is not folded, all pairs are ruled out in a few microseconds. Not
+// thread-safe. Allocates only on construction.
 class RingSeparation {
  public:
   // `pairs` lists the pairs of rings to be tested. A ring is given by the index of its elements along v.

@@ -12,7 +12,7 @@ namespace spoonbill {
 
 namespace {
 
-// Returns the weights of the two edges from the first corner that give the triangle's point nearest to
+// Returns the weights a and b with which corner + a edge_a + b edge_b is the point of the triangle nearest to
 // `point`. Unlike nearest_on_triangle(), accepts triangles without area, which cells have at poles.
 std::array<double, 2> nearest_edge_weights(const Vector3& point, const Vector3& corner, const Vector3& edge_a,
                                            const Vector3& edge_b) {

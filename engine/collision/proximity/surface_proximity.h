@@ -50,7 +50,8 @@ class NearPoints {
   // Replaces each sample's nearest point by the nearest point of the exact other surface. Removes samples
   // beyond the margin. `outside` is -1 if the other surface's du x dv points inward, else 1.
   void compute_nearest(const SurfaceLevels& other, double outside, double margin_m);
-  // Adds the locally nearest points between samples, where a surface may be nearer than at any sample.
+  // Adds the locally nearest points between samples, where the surfaces may be nearer to each other than at
+  // any sample.
   void add_between_samples(const SurfaceLevels& other, double outside);
 
   // Removes the points for which keep(point) returns false. `keep` may modify the point.
@@ -113,16 +114,16 @@ class SurfaceProximity {
     second_.keep_if(keep_second);
   }
 
-  // first_points() and second_points() return the points of each surface near the other that the last find()
-  // found.
+  // Points that the last find() found: first_points() returns the points of the first surface near the
+  // second, second_points() those of the second surface near the first.
   const std::vector<NearPoint>& first_points() const { return first_.points(); }
   const std::vector<NearPoint>& second_points() const { return second_.points(); }
   double least_gap_m() const;  // infinite if no points are near each other
   // Returns true if a capacity was exceeded, so that points may be missing. Fewer control points or a smaller
   // margin help.
   bool overflow() const { return missing_cells_ || first_.overflow() || second_.overflow(); }
-  // first_evaluations() and second_evaluations() return the numbers of surface points that the last find()
-  // evaluated for the points of each surface.
+  // first_evaluations() returns the number of surface points that the last find() evaluated for
+  // first_points(), second_evaluations() the number for second_points().
   int first_evaluations() const { return first_.evaluations(); }
   int second_evaluations() const { return second_.evaluations(); }
 

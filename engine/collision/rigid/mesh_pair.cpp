@@ -24,10 +24,10 @@ namespace spoonbill {
 
 namespace {
 
-// A point of a triangle of one mesh, and the depth of the mesh's surface there in the other mesh.
+// A point on a triangle of one mesh, and its depth inside the other mesh.
 struct DeepPoint {
-  // Depth of the mesh's surface in the other mesh; negative outside. The surface of a plate is half the
-  // plate's thickness from its triangles.
+  // Depth to which the mesh's surface reaches into the other mesh at this point; negative outside. The
+  // surface of a plate is half the plate's thickness from its triangles.
   double depth_m = -std::numeric_limits<double>::infinity();
   Vector3 point_m = Vector3::Zero();
   DistanceSample other;  // signed distance from the point to the other mesh
@@ -52,8 +52,8 @@ class MeshDepths {
   void visit_edge(std::uint32_t from, std::uint32_t to, double least_m,
                   const std::function<void(const DeepPoint&)>& visit);
 
-  // Returns the triangle of the other mesh nearest to the point, if the half thicknesses of plates of both
-  // meshes fill the space between the point and this triangle.
+  // Returns the triangle of the other mesh that is nearest to the point, if its distance from the point is
+  // less than the sum of the half thicknesses of both plates (0 for a solid). Otherwise returns nothing.
   std::optional<std::uint32_t> find_plate_neighbour(const DeepPoint& deep) const;
 
   // Returns the outward direction of the other mesh at a point of its surface.
@@ -310,7 +310,7 @@ class ContactSearch {
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return pairs_[a][1 - s] < pairs_[b][1 - s]; });
-    // At each vertex, the first pair whose triangle of mesh `s` has this vertex.
+    // For each vertex of mesh `s`, the first pair whose triangle has this vertex.
     std::unordered_map<std::uint32_t, std::size_t> pair_at;
     for (std::size_t k = 0; k < order.size(); ++k) {
       const Pair& pair = pairs_[order[k]];
@@ -353,8 +353,9 @@ class ContactSearch {
     }
   }
 
-  // Finds the deepest points of those edges of a triangle that have no end inside the other mesh, and updates
-  // the deepest points of their regions. The pairs from `first` to `end` all have this triangle of mesh `s`.
+  // Finds the deepest points on the edges of a triangle of mesh `s`, and updates the deepest points of the
+  // regions that contain them. Skips edges that have an end inside the other mesh. All pairs from `first` to
+  // `end` have this triangle.
   void find_deepest_between(int s, std::size_t first, std::size_t end) {
     const TriangleCorners& corners = meshes_[s]->corners(pairs_[first][s]);
     for (int k = 0; k < 3; ++k) {

@@ -41,9 +41,9 @@ struct MeshPairResult {
 //
 // The position of a contact is the deepest of the vertices and edge points of both meshes in a region. On
 // edges it is exact up to rounding if the other mesh is convex; otherwise edges are searched in steps of 1/32
-// of that mesh's size. A part inside another leaves through the nearest wall: its depth is the distance to
-// the wall plus the length of the shorter part along that direction. Deterministic. May be called from any
-// thread.
+// of that mesh's size. If a part is entirely inside another, its depth is measured in the direction of the
+// nearest wall: the distance to the wall plus the length of the shorter part along this direction.
+// Deterministic. May be called from any thread.
 MeshPairResult collide_meshes(const CleanMesh& first, const CleanMesh& second, const Pose& second_pose,
                               double thickness_m = sheet_thickness_m);
 

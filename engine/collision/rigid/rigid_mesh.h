@@ -1,4 +1,4 @@
-// Rigid meshes in FCL's trees of boxes, with their distances and crossing triangles; and posed meshes, which
+// Rigid meshes in FCL's trees of boxes, which find distances and crossing triangles, and posed meshes, which
 // consist of several rigid meshes. Queries allocate, so they are for loading, checks and reports, not for the
 // tick.
 #pragma once

@@ -46,8 +46,8 @@ double power_of_two(int power) {
 
 }  // namespace
 
-// Splits x into k log(2) / parts, with the nearest integer k, and a rest, at which the Taylor series is
-// evaluated. The series' term of order six is below rounding.
+// Splits x into k log(2) / parts, where k is the nearest integer, and a rest. Evaluates the Taylor series at
+// the rest, at which the term of order six is below rounding.
 double stable_exp(double x) {
   if (!(x > -700.0)) return 0.0;
   const double whole = (x * (parts * 1.4426950408889634) + to_whole) - to_whole;

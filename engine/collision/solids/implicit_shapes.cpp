@@ -96,8 +96,8 @@ class TorusDistance final : public SignedDistance {
 // is w - 1).
 //
 // The point of the surface nearest to y is x_i = r_i y_i / (w + r_i - 1), where r_i = (e_i / e_m)^2 and w >=
-// 0 is the root of sum (x_i / e_i)^2 = 1. In terms of w, no digits cancel inside, where w goes to 0. Near the
-// surface, y_i - x_i = y_i (w - 1) / (w + r_i - 1) does not cancel either.
+// 0 is the root of sum (x_i / e_i)^2 = 1. This form loses no digits inside the ellipsoid, where w approaches
+// 0, nor near the surface, where y_i - x_i = y_i (w - 1) / (w + r_i - 1).
 class EllipsoidDistance final : public SignedDistance {
  public:
   explicit EllipsoidDistance(const EllipsoidShape& shape);
