@@ -55,8 +55,8 @@ std::optional<double> parse_number(std::string_view word) {
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
   if (end != word.data() + word.size() || word.empty()) return {};
   if (error == std::errc::result_out_of_range) {
-    // A number that is too small becomes zero; a number that is too large becomes infinite. The sign of the
-    // exponent decides or, without an exponent, whether the integer part is zero.
+    // A number with a negative exponent, or with no exponent and an integer part of zero, is too small and
+    // becomes zero. Any other number out of range is too large and becomes infinite.
     const std::size_t exponent = word.find_first_of("eE");
     const bool is_small =
         exponent != std::string_view::npos
