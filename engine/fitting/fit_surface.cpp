@@ -441,8 +441,8 @@ constexpr std::size_t held_out_stride = 4;
 // largest fairness within this ratio is chosen.
 constexpr double most_error_ratio = 1.03;
 
-// Sets the fairness of all spans; spans with few data get up to `unseen_fairness` times more, and small spans
-// around a pole get less.
+// Sets the fairness of all spans. Spans with few data get up to `unseen_fairness` times the given fairness.
+// Small spans around a pole get less.
 void SurfaceFitter::set_fairness(double fairness, const FittedData& data) {
   const std::size_t u_spans = span_count(structure_.u), v_spans = span_count(structure_.v);
   std::vector<double> weight(u_spans * v_spans, 0.0);

@@ -156,8 +156,8 @@ constexpr double difference_fraction = 1e-5, longest_difference_m = 1e-5;
 // Largest change of the gradient at which the difference counts as a curvature. At a larger change, an edge
 // of the solid is between the two points.
 constexpr double edge_change = 0.2;
-// Smallest cosine of the angle between two gradients that count as gradients of the same face. Only one
-// expansion of a face is stored.
+// Two gradients count as gradients of the same face if the cosine of the angle between them is above this.
+// Only one expansion of a face is stored.
 constexpr double same_face = 0.9995;
 // Least curvature, multiplied by the solid's size. It limits the step in flat directions.
 constexpr double least_curvature = 1e-6;

@@ -300,8 +300,8 @@ void SurfacePairCollider::find_nearest(const PairQuery& query, PairResult& resul
   }
 }
 
-// Returns true if one of two bodies whose surfaces do not meet is inside the other. The inner body's nearest
-// point is then behind the outer surface.
+// Returns true if one body is inside the other, for surfaces that do not meet. The inner body's nearest point
+// is then behind the outer surface.
 bool SurfacePairCollider::is_contained(const PairQuery& query) const {
   const SurfacePair& best = search_.best();
   const Vector3 apart = best.first_m - best.second_m;

@@ -1,6 +1,7 @@
-// Contact of a B-spline surface, open, periodic or closed, with itself. The search is that of
-// SurfacePairCollider with the same surface twice. Cells that are joined (at an edge or a corner, across a
-// seam or at a pole) always meet there. They are split until PatchFolds proves that they meet nowhere else.
+// Contact of a B-spline surface, open, periodic or closed, with itself. The search is the same as in
+// SurfacePairCollider, with the same surface as both arguments. Cells that are joined (at an edge or a
+// corner, across a seam or at a pole) always meet there. They are split until PatchFolds proves that they
+// meet nowhere else.
 #pragma once
 
 #include <array>
