@@ -26,10 +26,10 @@ struct CadSurface {
   // Thickness of a shell whose outer side is the surface; 0 if the body is not a shell. Exported meshes
   // include the inner side and the walls of the shell, CAD files do not.
   double shell_thickness_m = 0.0;
-  // Largest distance between the file's edges and the trim loops. For an untrimmed surface, between the
+  // Largest distance between the file's edges and the trim loops or, if the surface is untrimmed, between the
   // file's edges and the sides of the surface.
   double trim_deviation_m = 0.0;
-  std::string solid = {};  // name of the solid of several faces to which the surface belongs; otherwise empty
+  std::string solid = {};  // name of the solid, if the surface is one of its several faces; otherwise empty
 };
 
 struct CadModel {
@@ -42,7 +42,7 @@ struct CadModel {
 
 struct CadReading {
   FileFormat format = FileFormat::step;  // step or iges
-  double unit_m = 0.0;                   // length of one unit of the file; 0: take it from the file
+  double unit_m = 0.0;                   // length of one unit of the file; 0: as stated in the file
   double tolerance_m = 1e-5;             // largest deviation of approximated surfaces
   std::size_t face_limit = 1000;         // files with more faces are refused
 };

@@ -15,8 +15,9 @@
 
 namespace spoonbill {
 
-// Returns true if the field must be read. A field whose form names a partner, which is another field, is read
-// if the partner is present. An optional field is read if it is present itself, and any other field always.
+// Returns true if the field must be read. If the form of a field names another field as its partner, the
+// field is read if the partner is present. An optional field is read if it is present itself. Any other field
+// is always read.
 bool is_field_expected(const FieldReader& reader, const FieldForm& form);
 
 // Each read_value() reads one value. A problem is stored in the reader.

@@ -34,7 +34,7 @@ class FieldReader {
   bool has(std::string_view field) const;
 
   // version() reads the version number of the file's format and refuses a version outside `known`. The second
-  // overload returns it.
+  // overload returns the version number.
   void version(std::string_view field, int known);
   int version(std::string_view field, Range<int> known);
 

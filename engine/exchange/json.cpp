@@ -244,8 +244,8 @@ std::optional<double> shortest_millimetres(double metres) {
   return best;
 }
 
-// Returns the shortest decimal of `metres` with its point moved three places to the right. The result need
-// not equal any double.
+// Returns the shortest decimal of `metres`, with the decimal point moved three places to the right. The
+// result need not equal any double.
 std::string decimal_millimetres(double metres) {
   std::array<char, 32> text{};
   const auto end =

@@ -1,7 +1,7 @@
 // Conversion of former fields. In documents of versions 1 and 2, a tick consisted of `iterations` steps, and
 // each step advanced the material by one millisecond. Damping and flow therefore ran `iterations` times
-// faster than their constants stated. The conversion replaces these fields of JSON by the current ones, in
-// real time, so that only the current fields are read. With n iterations:
+// faster than their constants stated. The conversion replaces these fields of JSON by the current ones, whose
+// constants refer to real time. Only the current fields are read afterwards. With n iterations:
 //
 //   tool       iterations n            substeps n
 //   sculpting  damping_per_s d         drag_per_s n d

@@ -11,7 +11,7 @@ namespace spoonbill {
 namespace {
 
 constexpr Range<double> knot_range{-1e6, 1e6};
-// Smallest distance of unequal knots, as a fraction of the domain; smaller distances make derivatives
+// Smallest distance between unequal knots, as a fraction of the domain; smaller distances make derivatives
 // overflow.
 constexpr double smallest_knot_step = 1e-9;
 constexpr Range<double> parameter_range{-1e7, 1e7};

@@ -263,7 +263,8 @@ FitPoints combine(const FitPoints& a, const FitPoints& b, std::vector<std::uint3
   return both;
 }
 
-// Rotates ring b so that it starts where the sum of squared distances to ring a is smallest.
+// Rotates the order of the nodes of ring b so that the sum of their squared distances from the nodes of ring
+// a is smallest.
 void align_rings(const PointGraph& graph, const std::vector<std::uint32_t>& a,
                  std::vector<std::uint32_t>& b) {
   const auto squares = [&] {
@@ -337,8 +338,8 @@ Result<FitPoints> join_at(const FitPoints& a, const FitPoints& b, const NearestP
 }
 
 // Returns true if more than a third of a loop's nodes are far from all other components: farther than a
-// quarter of the loop's diameter. Ends that face each other across a gap in one body are nearer to each other
-// than that.
+// quarter of the loop's diameter. If two ends face each other across a gap in one body, they are nearer to
+// each other than this.
 bool is_free_end(const FitPoints& island, const BoundaryLoop& loop, const NearestPoints& others) {
   constexpr double most_distance_ratio = 0.25, most_node_fraction = 1.0 / 3.0;
   const double far = most_distance_ratio * loop.length_m / M_PI;

@@ -143,7 +143,7 @@ std::vector<NodePair> mesh_pairs(const Scan& scan, const std::vector<std::uint32
   return pairs;
 }
 
-// Pairs each node with its nearest nodes, except with nodes much farther away than usual or with opposed
+// Pairs each node with its nearest nodes, unless they are much farther away than usual or have opposed
 // normals.
 std::vector<NodePair> cloud_pairs(const Scan& nodes) {
   const NearestPoints nearest(nodes.points_m);

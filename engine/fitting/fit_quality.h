@@ -27,8 +27,8 @@ class ClosestParameters {
   ClosestParameters(const ClosestParameters&) = delete;
   ClosestParameters& operator=(const ClosestParameters&) = delete;
 
-  // Searches the closest point by at most `steps` Newton steps from the parameters `start`. Each step is
-  // shortened until it reduces the distance, and is never longer than 0.75 of a mean knot span. The search
+  // Searches for the closest point with at most `steps` Newton steps from the parameters `start`. Each step
+  // is shortened until it reduces the distance, and is never longer than 0.75 of a mean knot span. The search
   // ends early if a step hardly reduces the distance.
   ClosestPoint project_from(const Vector3& point, const Vector2& start, int steps) const;
 
@@ -74,8 +74,8 @@ struct NormalsAtParameters {
 // opposes that of the next sample.
 //
 // Cusps: each span has 12 x 12 samples. A cusp is a turn of the normal by more than 120 degrees between
-// neighbouring samples. It is a loop smaller than the spacing of the points, or an edge sharper than the
-// knots can follow.
+// neighbouring samples. Its cause is a loop smaller than the spacing of the points, or an edge sharper than
+// the knots can follow.
 FoldCheck check_folds(const Surface& surface, const NormalsAtParameters& data);
 
 struct Deviation {

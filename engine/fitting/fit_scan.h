@@ -46,7 +46,7 @@ struct ScanFit {
   std::vector<FittedBody> bodies;        // fitted bodies, the largest first
   std::size_t islands = 0;               // number of connected components found
   std::vector<UnfittedIsland> unfitted;  // sorted by size, the largest first; only with IslandChoice::all
-  // Number of bridged components whose open ends away from the gaps were capped.
+  // Number of bridged components that had open ends away from the gaps; these ends were capped.
   std::size_t open_bridged = 0;
   // Number of given points at different positions. For a mesh, the number of vertices after joining.
   std::size_t distinct = 0;

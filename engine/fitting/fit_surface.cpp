@@ -69,7 +69,7 @@ class SurfaceFitter {
   Result<FittedSurface> run();
 
  private:
-  // Copy of the state that unfold() changes, to which it can return.
+  // Copy of the state that unfold() changes and may restore.
   struct Folding {
     Surface surface;
     FoldCheck folds;
@@ -208,8 +208,8 @@ Status SurfaceFitter::solve(FittedData& data) {
   return {};
 }
 
-// Adds the initial positions of the poles to the data of each solution, so that the surface does not extend
-// beyond the points.
+// Stores the initial positions of the poles. Every later solution also fits these positions, so that the
+// surface does not extend beyond the points.
 void SurfaceFitter::add_poles() {
   constexpr double near = 0.02;
   for (const double v : {0.0, 1.0}) {
@@ -441,8 +441,8 @@ constexpr std::size_t held_out_stride = 4;
 // largest fairness within this ratio is chosen.
 constexpr double most_error_ratio = 1.03;
 
-// Sets the fairness of all spans; spans with few data get up to `unseen_fairness` times more, and small spans
-// around a pole get less.
+// Sets the fairness of all spans. Spans with few data get up to `unseen_fairness` times the given fairness.
+// Small spans around a pole get less.
 void SurfaceFitter::set_fairness(double fairness, const FittedData& data) {
   const std::size_t u_spans = span_count(structure_.u), v_spans = span_count(structure_.v);
   std::vector<double> weight(u_spans * v_spans, 0.0);
@@ -512,8 +512,8 @@ Status SurfaceFitter::choose_fairness(const FittedData& data) {
 constexpr double huber_deviations = 3.0;
 constexpr double stray_deviations = 5.0, most_strays = 0.15;
 constexpr std::size_t stray_neighbours = 15;
-// Smallest distance at which a point may count as a stray, as a fraction of the scan's size, even if all
-// other points are exactly on the surface.
+// A point whose height differs from its neighbours' heights by at most this fraction of the scan's size is
+// not a stray, even if all other points are exactly on the surface.
 constexpr double least_stray_fraction = 3e-4;
 
 // Distance beyond an open edge within which points still pull the edge outwards, as a fraction of the scan's
@@ -585,7 +585,7 @@ void SurfaceFitter::distrust_strays() {
   const double reach = std::max(stray_deviations * 1.4826 * *median,
                                 least_stray_fraction * bounding_diagonal_m(points_->scan.points_m));
   const auto strays = std::count_if(off.begin(), off.end(), [&](double height) { return height > reach; });
-  // More strays than this fraction mean that the surface cannot follow the data.
+  // If more than the fraction most_strays of the points are strays, the surface cannot follow the data.
   if (static_cast<double>(strays) > most_strays * static_cast<double>(count)) return;
   for (std::size_t p = 0; p < count; ++p) {
     if (off[p] > reach) all_.trust[p] = 0.0;

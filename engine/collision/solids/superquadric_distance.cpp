@@ -9,7 +9,7 @@ namespace spoonbill {
 
 namespace {
 
-constexpr double nothing = -1e300;     // logarithm of a zero coordinate
+constexpr double nothing = -1e300;     // stands for the logarithm of 0
 constexpr double least_ratio = 1e-60;  // fraction of a semi-axis below which a coordinate counts as 0
 // Convergence tolerance of log(price), where `price` is a Lagrange multiplier (mu in
 // superquadric_distance.h). It also determines the accuracy of the distance.
@@ -23,8 +23,8 @@ double log_of_sum(double a, double b) {
   return low - high < -40.0 ? high : high + stable_log(1.0 + stable_exp(low - high));
 }
 
-// One coordinate x of the nearest point, as L = log(x / a) with the semi-axis a. L is the root of e^L + price
-// e^((q-1) L) = target, where `price` is a Lagrange multiplier.
+// One coordinate x of the nearest point. It is stored as L = log(x / a), where a is the semi-axis. L is the
+// root of e^L + price e^((q-1) L) = target, where `price` is a Lagrange multiplier.
 struct Coordinate {
   double log_value = nothing;
   // The term price e^((q-1) L). It is the offset of the point from the surface along this axis, divided by
@@ -127,7 +127,7 @@ DistanceSample SuperquadricDistance::outside(const Vector3& point) const {
     double move = std::clamp(-gauge / slope, -8.0, 8.0);
     if (!(std::abs(move) >= 0.0)) move = gauge > 0.0 ? 8.0 : -8.0;
     double next = log_price + move;
-    // As long as only one bound is known, a step can pass that bound only because of rounding.
+    // While only one bound is known, a step beyond this bound is due to rounding, and the iteration ends.
     const bool bounded = low > -1e300 && high < 1e300, leads_back = next <= low || next >= high;
     if (leads_back) next = bounded ? 0.5 * (low + high) : log_price;
     const bool converged = std::abs(gauge) < 2e-16 || std::abs(next - log_price) < convergence_step;
@@ -143,7 +143,7 @@ DistanceSample SuperquadricDistance::outside(const Vector3& point) const {
 namespace {
 
 constexpr double farthest_logit = 600.0;
-// Smallest relative decrease of the squared distance that is more than rounding.
+// A smaller relative decrease of the squared distance counts as rounding error.
 constexpr double least_distance_gain = 1e-15;
 
 double bounded(double logit) {
@@ -174,7 +174,7 @@ struct Fractions {
 struct SuperquadricDistance::Expansion {
   double half_square;  // half the squared distance
   double slope[2];
-  double curvature[3];  // second derivatives: twice by around; by around and along; twice by along
+  double curvature[3];  // second derivatives: around-around, around-along, along-along
 };
 
 void SuperquadricDistance::expand(const Spot& spot, const Vector3& point, Expansion& out) const {

@@ -33,8 +33,8 @@ class SuperquadricDistance final : public SignedDistance {
 
  private:
   // A point of the surface in the first octant, in coordinates that keep their precision near an edge.
-  // `around` is the logit of the fraction that (x/a)^q2 has of (x/a)^q2 + (z/c)^q2. `along` is the logit of
-  // the fraction that rho^q1 has of rho^q1 + (y/b)^q1, where rho = |(x/a, z/c)|_q2.
+  // `around` is the logit of (x/a)^q2 / ((x/a)^q2 + (z/c)^q2). `along` is the logit of rho^q1 / (rho^q1 +
+  // (y/b)^q1), where rho = |(x/a, z/c)|_q2.
   struct Spot {
     double around, along;
   };

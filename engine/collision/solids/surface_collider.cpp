@@ -48,15 +48,15 @@ constexpr std::size_t cell_capacity = 16384;
 constexpr std::size_t patch_capacity = 512;
 constexpr std::size_t near_capacity = 4096;
 constexpr int deepest_patch = 24;
-// Proven accuracy of the nearest distance in metres. It is below the resolution of a haptic device (0.055
+// Proven accuracy of the nearest distance, in metres. It is below the resolution of a haptic device (0.055
 // mm). Newton's method itself is usually exact to the last digit. A smaller value would cost time, above all
 // where surface and tool fit snugly and all points are equally near.
 constexpr double nearest_tolerance_m = 2e-5;
-// Proven accuracy in metres for a solid of unknown concavity. For such a solid, patches must be cut until
-// they are as small as the tolerance.
+// Proven accuracy of the nearest distance, in metres, for a solid of unknown concavity. For such a solid, the
+// search must cut patches until they are as small as this accuracy.
 constexpr double unbent_tolerance_m = 5e-5;
 constexpr double clearance_fraction = 0.75;
-// Smallest decrease of the distance, in metres, by a Newton step that is more than rounding.
+// A Newton step that decreases the distance by less than this, in metres, makes no progress beyond rounding.
 constexpr double least_gain_m = 1e-15;
 
 double search_tolerance(const ToolShape& tool) {
@@ -161,7 +161,7 @@ double SurfaceCollider::depth_inside(const ToolShape& tool, const SurfaceContact
   return std::max(depth_behind(tool, nearest.point_m, nearest.normal), -best_.distance_m);
 }
 
-// Compares the best point with the coarsest samples, except those of elements that are too far away. The
+// Compares the best point with the coarsest samples, except samples of elements that are too far away. The
 // nearest column comes first, because its samples reduce the distance beyond which elements are too far.
 void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
   const Grid& grid = levels_.nested().grid;

@@ -57,8 +57,9 @@ inline constexpr int surface_cut_limit = 20000;
 
 // Result of SurfaceCollider::collide().
 struct CollisionResult {
-  // True if the surface is within the margin or encloses the tool. May be false if the surface is within the
-  // margin by less than 1e-6 m for a margin of 0, otherwise by less than the accuracy of `nearest`.
+  // True if the surface is within the margin or encloses the tool. May be false for a surface that is barely
+  // within the margin: by less than 1e-6 m for a margin of 0, otherwise by less than the accuracy of
+  // `nearest`.
   bool found = false;
   // Deepest contact, valid if `found` is true. No point is deeper by more than 2e-5 m, or 5e-5 m for a
   // non-convex solid of unknown concavity.
@@ -84,7 +85,7 @@ class SurfaceCollider {
  public:
   // The optional `trim` restricts the surface to the trimmed area. Nearest points on trim loops are points of
   // the polygons that replace the loops. In cells that loops cross, the nearest point is the best that
-  // Newton's method finds from samples and loops; it is not proven to be the nearest.
+  // Newton's method finds, starting from samples and loop points; it is not proven to be the nearest.
   explicit SurfaceCollider(const NestedGrid& nested, std::shared_ptr<const TrimmedArea> trim = nullptr);
 
   // Finds the deepest contact within `margin_m`. The surface must have the grid's knots. `closed` is true if
@@ -102,7 +103,7 @@ class SurfaceCollider {
   bool regions_overflow() const { return regions_overflow_; }
 
   // Returns a lower bound of the distance between the tool and the surface. A tool inside a closed surface
-  // counts as separate from it unless it touches the wall.
+  // counts as separate from the surface unless the tool touches the wall.
   Clearance clearance(const Surface& surface, const ToolShape& tool);
 
   const std::vector<NearSample>& near_samples() const { return near_; }
@@ -145,7 +146,7 @@ class SurfaceCollider {
   void update_best(const ToolShape& tool, double u, double v, const Vector3& point);
   bool is_trimmed_away(const LevelCell& cell) const { return trimmed_ && trimmed_->is_trimmed_away(cell); }
   bool is_cut(const LevelCell& cell) const { return trimmed_ && trimmed_->is_cut(cell); }
-  // The edge of a trim loop nearest to the tool, and the edge that meets it at the nearest point.
+  // The trim loop edge that is nearest to the tool, and the edge that meets it at the nearest point.
   struct TrimEdges {
     const TrimmedArea::Edge* first = nullptr;
     const TrimmedArea::Edge* second = nullptr;
@@ -171,13 +172,13 @@ class SurfaceCollider {
 
   SurfaceLevels levels_;
   std::shared_ptr<const TrimmedLevels> trimmed_;  // null if the surface is not trimmed
-  // Lower bounds of the tool's distance: one for the elements of each span of v, and one for those of each
-  // span of u.
+  // column_bound_ has, for each span of v, a lower bound of the tool's distance from all elements of the
+  // span. row_bound_ has the same for each span of u.
   std::vector<double> column_bound_, row_bound_;
   std::vector<LevelCell> cells_, finest_;
   std::vector<Patch> patches_;
   std::vector<NearSample> near_;
-  std::vector<std::uint32_t> near_at_;  // number of the query that last visited each sample
+  std::vector<std::uint32_t> near_at_;  // serial number of the query that last visited each sample
   std::uint32_t query_ = 0;
   SurfaceSpot best_;
   SurfaceSpot last_;       // best point of the previous query
@@ -193,9 +194,10 @@ class SurfaceCollider {
     int region;  // -1 until it is assigned
   };
   std::vector<TouchedCell> touched_;
-  std::vector<int> grouped_;               // indices into touched_, grouped by region
-  std::vector<int> touched_index_;         // index into touched_ of each cell, by finest_index()
-  std::vector<std::uint32_t> touched_at_;  // number of the query in which the tool last touched each cell
+  std::vector<int> grouped_;        // indices into touched_, grouped by region
+  std::vector<int> touched_index_;  // index into touched_ of each cell, by finest_index()
+  // For each cell, the serial number of the query in which the tool last touched it.
+  std::vector<std::uint32_t> touched_at_;
   std::vector<ToolContactRegion> regions_;
   int region_ = -1;  // region that Newton's method must not leave; -1 for none
   bool regions_overflow_ = false;

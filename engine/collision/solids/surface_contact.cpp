@@ -150,14 +150,14 @@ using Eigen::Vector2d;
 constexpr int max_contact_steps = 60, max_restarts = 2;
 // Smallest decrease of the distance for which a step is worthwhile, as a fraction of the solid's size.
 constexpr double least_depth_gain = 1e-12;
-// Half the distance between the two points of a central difference of the gradient: a fraction of the solid's
-// size, and its largest value in metres.
+// A central difference of the gradient uses two points. Half the distance between them is difference_fraction
+// of the solid's size, but at most longest_difference_m.
 constexpr double difference_fraction = 1e-5, longest_difference_m = 1e-5;
 // Largest change of the gradient at which the difference counts as a curvature. At a larger change, an edge
 // of the solid is between the two points.
 constexpr double edge_change = 0.2;
-// Smallest cosine of the angle between two gradients that count as gradients of the same face. Only one
-// expansion of a face is stored.
+// Two gradients count as gradients of the same face if the cosine of the angle between them is above this.
+// Only one expansion of a face is stored.
 constexpr double same_face = 0.9995;
 // Least curvature, multiplied by the solid's size. It limits the step in flat directions.
 constexpr double least_curvature = 1e-6;
@@ -210,7 +210,8 @@ class Descent {
     double gain;
   };
 
-  // Evaluates and stores the expansion of the face of the solid that is nearest at the given parameters.
+  // Stores the second-order expansion, at the given parameters, of the distance to the nearest face of the
+  // solid.
   void evaluate_face(const Vector2d& at) {
     const SurfacePoint point =
         evaluate(surface_, surface_.u.into_domain(at.x()), surface_.v.into_domain(at.y()));
@@ -227,8 +228,9 @@ class Descent {
     store_face(face, point.position_m);
   }
 
-  // Returns the change of the gradient per unit of the parameter along a derivative, by central differences.
-  // Returns zero across an edge of the solid.
+  // Returns the change of the gradient per unit of a parameter, by central differences. `along` is the
+  // derivative of the surface by this parameter. Returns zero if an edge of the solid is between the two
+  // points of the difference.
   Vector3 gradient_change(const Vector3& from, const Vector3& along) const {
     const double length = along.norm();
     if (!(length > 0.0)) return Vector3::Zero();
@@ -306,8 +308,8 @@ class Descent {
     for (int k = 0; k < count_; ++k) {
       const ShapeFace& face = faces_[k];
       const Vector2d slope = face.slope + face.curvature * (at_ - face.at);
-      // The expansion of any face except the current one is limited to the current distance. If a minimum can
-      // be on an edge of the solid, the distance is the maximum over the faces, so no face exceeds it.
+      // If a minimum can be on an edge of the solid, the distance is the maximum over the faces. The
+      // expansions of all faces except the current one are therefore limited to the current distance.
       planes[k] = {k == current_ ? 0.0 : std::min(face.value(at_) - here, 0.0), scale.cwiseProduct(slope)};
     }
     Matrix2d curvature = quadratic();

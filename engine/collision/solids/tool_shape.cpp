@@ -24,9 +24,9 @@ CornerValues tangent_at_corners(const DistanceSample& sample, const Vector3& fro
   return values;
 }
 
-// Returns a lower bound from two linear lower bounds, each given by its values at four corners. Any mixture
-// of the two is a bound, too. Its least value at the corners is a concave function of the mixing fraction.
-// Returns the largest such value.
+// Combines two linear lower bounds, each given by its values at four corners. Every weighted mean of the two
+// is also a lower bound. The smallest of its four corner values is a concave function of the weight. Returns
+// the maximum of this function.
 double best_mix(const CornerValues& a, const CornerValues& b) {
   double low = 0.0, high = 1.0;
   const auto mixed = [&](double fraction) {
@@ -47,8 +47,8 @@ double best_mix(const CornerValues& a, const CornerValues& b) {
 }
 
 // Returns a lower bound of the distance from the hull of a patch's corners to a solid. The distance to a
-// convex solid is nowhere below a tangent or a mixture of two tangents; mixtures matter at the solid's edges.
-// Over the hull, a tangent is lowest at a corner. For other solids, a tangent is lowered by half the
+// convex solid is nowhere below a tangent or a weighted mean of two tangents; means matter at the solid's
+// edges. Over the hull, a tangent is lowest at a corner. For other solids, a tangent is lowered by half the
 // concavity times the square of the hull's radius. For any solid, the distance at the hull's centre minus the
 // hull's radius is a bound.
 double solid_bound(const ToolShape& tool, const PatchCorners& corners, double enough) {
@@ -121,8 +121,8 @@ double lower_bound(const ToolShape& tool, const PatchCorners& corners, double bu
   return foremost - tool.radius_m - bulge;
 }
 
-// Returns the depth of the tool's extreme point behind the plane. The nearest point of a solid to a point far
-// away in a direction is the solid's extreme point in that direction.
+// Returns the depth of the tool's deepest point behind the plane. The deepest point of a solid is its nearest
+// point to a point far behind the plane.
 double depth_behind(const ToolShape& tool, const Vector3& point, const Vector3& normal) {
   SPOONBILL_ASSERT_DEBUG(std::abs(normal.squaredNorm() - 1.0) < 1e-6);
   if (tool.kind == ToolShape::Kind::half_space) return infinity;

@@ -13,8 +13,8 @@ namespace spoonbill {
 
 namespace {
 
-// Number of grid steps along the longest side of the points' box. With this number, six times the volume of a
-// tetrahedron, a sum of six products of three differences, stays below 2^63.
+// Number of grid steps along the longest side of the points' box. Six times the volume of a tetrahedron is a
+// sum of six products of three differences. With this number of steps, it stays below 2^63.
 constexpr double steps_a_side = 1 << 20;
 
 // Smallest bend at which an edge of the hull is drawn. Edges within nearly flat sides are omitted, because
@@ -63,8 +63,8 @@ class HullBuilder {
     const Steps& a = points_[face[0]];
     return (points_[face[1]] - a).cross(points_[face[2]] - a);
   }
-  // Returns six times the volume of the tetrahedron of the triangle and the point. It is positive if the
-  // point sees the triangle.
+  // Returns six times the volume of the tetrahedron that the triangle and the point form. It is positive if
+  // the point sees the triangle.
   std::int64_t volume(const Plane& plane, int point) const {
     return plane.normal.dot(points_[point] - points_[plane.face[0]]);
   }

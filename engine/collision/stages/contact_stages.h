@@ -31,8 +31,8 @@ struct HullFacets {
 // be called from any thread.
 HullFacets hull_facets(const std::vector<Vector3>& points_m);
 
-// Finest level of the spheres that are drawn. The grid of a contact search may have fewer levels. Beyond its
-// finest level, the search cuts patches into four, as the drawing does from level to level.
+// Finest level of the spheres that are drawn. The grid of a contact search may have fewer levels. Beyond the
+// grid's finest level, the search cuts patches into four, as the drawing does at each level.
 inline constexpr int finest_stage_level = 3;
 
 // Largest number of stored items of each kind. If there are more, ContactStages::overflow is set.

@@ -62,8 +62,8 @@ void ToolStages::add_spheres(int surface, ContactStages& stages) {
     return other.i >= cell.i && other.i < cell.i + step && other.j >= cell.j && other.j < cell.j + step;
   };
   ElementMarks within(levels);
-  // Position in `visited` of the children of the next refined cell, and position in `finest` of the next
-  // finest cell.
+  // `finer` is the position in `visited` of the children of the next refined cell. `last` is the position in
+  // `finest` of the next finest cell.
   std::size_t finer = 0, last = 0;
   while (finer < visited.size() && visited[finer].level == 0) ++finer;
   for (const LevelCell& cell : visited) {

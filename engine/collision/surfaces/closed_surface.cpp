@@ -47,7 +47,7 @@ Status check_thickness(const Surface& surface) {
 }
 
 // Checks the sign of the enclosed volume. The normals of a single ring would not suffice: a ring of a hollow
-// body may be on its inner wall, where the normals point toward the axis.
+// body may be on the body's inner wall, where the normals point toward the axis.
 Status check_outward(const Surface& surface) {
   const double volume = enclosed_volume_m3(make_skin(surface));
   if (volume > 0.0) return {};

@@ -37,8 +37,8 @@ int ContactRegions::root(int pair) {
   return pair;
 }
 
-// Joins the pairs of `cell` with the pairs of `other`, which are equal or neighbouring cells of the first
-// surface. Two pairs are joined if their cells of the second surface are equal or neighbours, too.
+// `cell` and `other` are equal or neighbouring cells of the first surface. Joins the pairs of `cell` with the
+// pairs of `other`. Two pairs are joined if their cells of the second surface are equal or neighbours, too.
 void ContactRegions::join(const std::vector<CellPair>& pairs, const Paired& cell, const Paired& other) {
   const int step = second_->step(pairs[cell.last_pair].second.level);
   const bool same = &cell == &other, whole = !same && !cell.split && !other.split;
@@ -128,7 +128,7 @@ namespace {
 
 constexpr std::size_t depth_seeds = 8;
 
-// Range of the finest samples that some cells cover.
+// Range of the samples of the finest grid that are in some given cells.
 struct SampleRange {
   int i0 = std::numeric_limits<int>::max(), i1 = 0, j0 = std::numeric_limits<int>::max(), j1 = 0;
   void widen(const LevelCell& cell, int step) {

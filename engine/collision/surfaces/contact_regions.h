@@ -37,7 +37,7 @@ class ContactRegions {
   }
   // A cell of the first surface that belongs to at least one pair.
   struct Paired {
-    std::uint32_t at = 0;  // number of the last group() call in which the cell was in a pair
+    std::uint32_t at = 0;  // serial number of the last group() call in which the cell was in a pair
     int last_pair = 0;
     bool split = false;  // true if the cell's pairs are not all connected
   };

@@ -16,9 +16,10 @@ using Matrix2 = Eigen::Matrix2d;
 constexpr int max_polish_steps = 40;
 constexpr int max_tries = 12;
 constexpr double least_damping = 1e-9;
-// Smallest decrease of the distance, in metres, that is more than rounding.
+// A smaller decrease of the distance, in metres, counts as rounding error.
 constexpr double least_polish_gain_m = 1e-15;
-// Smallest decrease of the distance, in metres, that the quadratic model must predict for a step to be tried.
+// A step is tried only if the quadratic model predicts that the distance decreases by at least this, in
+// metres.
 constexpr double least_promise_m = 1e-17;
 
 // Returns true if the parameter is at an end of an open domain and the step would leave the domain.

@@ -27,8 +27,8 @@ struct SurfacePair {
 // stay within the domains.
 SurfacePair nearest_pair(const PiecewiseSurface& first, const PiecewiseSurface& second, PairParameters from);
 
-// Number of surface points that the searches of one object may still evaluate. It bounds the time of a tick.
-// A search that uses it up returns the best point found so far.
+// Number of surface points that all searches with this budget together may still evaluate. It bounds the time
+// of a tick. A search that uses it up returns the best point found so far.
 struct PolishBudget {
   int evaluations_left;
 
@@ -66,9 +66,9 @@ struct DeepestPair {
 double depth_behind(const PiecewiseSurface& first, const PiecewiseSurface& second, const PairParameters& from,
                     double outside);
 
-// Finds the point of the first surface that is locally deepest behind the second, along the normal of the
-// second's nearest point. Stops early once the depth exceeds `enough_m`. `outside` is 1 if that normal is du
-// x dv, -1 if it is opposite to du x dv.
+// Finds the point of the first surface that is locally deepest behind the second. The depth is measured along
+// the second surface's normal at its nearest point. Stops early once the depth exceeds `enough_m`. `outside`
+// is 1 if the second surface's outward normal is du x dv, -1 if it is opposite.
 //
 // The depth is f = -d(A(u, v)), where A is the first surface and d the signed distance from the second
 // surface B(s, t). Its gradient is -(A_u . n, A_v . n), with the normal n of B. Let I and II be the

@@ -86,9 +86,9 @@ void SurfacePairCollider::find_contacts(const PairQuery& query) {
   }
 }
 
-// Returns the starting points that the last collide() stored for this region, or null. First tries those of
-// the contact with the same number, because contacts usually keep their order, and the ranges of several
-// regions may overlap.
+// Returns the starting points that the last collide() stored for this region, or null. Several regions may
+// have overlapping ranges, so the points of the contact with the same number are tried first: contacts
+// usually keep their order.
 const SurfacePairCollider::Seed* SurfacePairCollider::last_seed(const PairContact& contact) const {
   for (std::size_t k = 0; k < last_seeds_.size(); ++k) {
     const Seed& seed = last_seeds_[(contacts_.size() + k) % last_seeds_.size()];
@@ -164,9 +164,9 @@ RegionCentre SurfacePairCollider::find_centre(const RegionCells& cells) const {
 
 // Returns a starting point for each side of the second surface: of several candidates, the deepest and the
 // one farthest in front. The candidates are the centre of the region, the deepest points of the last call,
-// and points in the directions from the centre to a few pairs at which the surfaces cross. The latter are at
-// half and at twice the distance of the pair. If the last call stored points for this region, only one of
-// them is evaluated per call.
+// and points in the directions from the centre to a few pairs at which the surfaces cross, at half and at
+// twice the distance of the pair. If the last call stored points for this region, only one of the points in
+// these directions is evaluated per call.
 SurfacePairCollider::Seeds SurfacePairCollider::find_seeds(const RegionCells& cells, const Seed* last) const {
   const RegionCentre centre = find_centre(cells);
   Seeds seeds;
@@ -194,8 +194,8 @@ SurfacePairCollider::Seeds SurfacePairCollider::find_seeds(const RegionCells& ce
   return seeds;
 }
 
-// Computes the depth where the surfaces touch while their outward normals agree, so that one body is inside
-// the other. Uses the candidate with the shortest exit among a few.
+// Computes the depth if one body is inside the other and touches it from within. The outward normals then
+// agree where the surfaces touch. Of a few candidates, uses the one with the shortest exit.
 void SurfacePairCollider::find_inner_touch(const RegionCells& cells, PairContact& contact) const {
   const Surface& first = first_.surface();
   const Surface& second = second_.surface();
@@ -226,7 +226,7 @@ void SurfacePairCollider::deepen_contact(PairContact& contact, PairParameters& f
   const DeepestPair first_deepest = deepest_pair(first, second, from, outside, shortest);
   from = first_deepest.pair.at;
   if (!(first_deepest.depth_m > contact.depth_m)) return;
-  // The outer sides of the surfaces face each other where the surfaces penetrate each other.
+  // If the surfaces penetrate each other, their outer sides face each other.
   const PairParameters& deep = first_deepest.pair.at;
   const double outside_first =
       facing_side(first_deepest.normal, unit_normal(first_.surface(), deep.u, deep.v));
@@ -300,8 +300,8 @@ void SurfacePairCollider::find_nearest(const PairQuery& query, PairResult& resul
   }
 }
 
-// Returns true if one of two bodies whose surfaces do not meet is inside the other. The inner body's nearest
-// point is then behind the outer surface.
+// Returns true if one body is inside the other, for surfaces that do not meet. The inner body's nearest point
+// is then behind the outer surface.
 bool SurfacePairCollider::is_contained(const PairQuery& query) const {
   const SurfacePair& best = search_.best();
   const Vector3 apart = best.first_m - best.second_m;

@@ -33,8 +33,8 @@ struct PairResult {
   // distance by at most 1e-4 of the distance or of the smaller surface's size, whichever is larger.
   double distance_m = std::numeric_limits<double>::infinity();
   SurfacePair nearest;
-  // True if a capacity was exceeded, so that a contact may be missing. Surfaces of fewer elements or a
-  // smaller reach help.
+  // True if a capacity was exceeded, so that a contact may be missing. Use surfaces with fewer elements, or a
+  // smaller reach.
   bool overflow = false;
   int samples_evaluated = 0;
 };

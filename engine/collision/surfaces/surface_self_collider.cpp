@@ -15,8 +15,8 @@ namespace {
 constexpr double all_directions = std::numbers::pi;
 constexpr double right_angle = 0.5 * std::numbers::pi;
 
-// Returns the half angle of the cone, about a vector of the given length, that contains all vectors within
-// `radius` of this vector.
+// Returns the half angle of the cone that contains all vectors within `radius` of a given vector. This
+// vector, of length `length`, is the axis of the cone.
 double half_angle(double length, double radius) {
   return radius < length ? std::asin(radius / length) : all_directions;
 }
@@ -380,7 +380,7 @@ void SurfaceSelfCollider::deepen_contact(PairContact& contact, const PairParamet
   const DeepestPair first_deepest = deepest_pair(pieces, pieces, from, outside, infinity);
   const PairParameters& deep = first_deepest.pair.at;
   if (!(first_deepest.depth_m > 0.0) || !not_joined_.counts(deep)) return;
-  // The outer sides of the two parts face each other where the parts penetrate each other.
+  // If the two parts penetrate each other, their outer sides face each other.
   const double outside_first =
       facing_side(first_deepest.normal, unit_normal(levels_.surface(), deep.u, deep.v));
   if (query.closed && outside_first < 0.0) return;

@@ -1,6 +1,7 @@
-// Contact of a B-spline surface, open, periodic or closed, with itself. The search is that of
-// SurfacePairCollider with the same surface twice. Cells that are joined (at an edge or a corner, across a
-// seam or at a pole) always meet there. They are split until PatchFolds proves that they meet nowhere else.
+// Contact of a B-spline surface, open, periodic or closed, with itself. The search is the same as in
+// SurfacePairCollider, with the same surface as both arguments. Cells that are joined (at an edge or a
+// corner, across a seam or at a pole) always meet there. They are split until PatchFolds proves that they
+// meet nowhere else.
 #pragma once
 
 #include <array>
@@ -81,8 +82,8 @@ struct SelfQuery {
 // Result of SurfaceSelfCollider::collide().
 struct SelfResult {
   bool touching = false;  // true if the surface touches itself, to within touch_tolerance_m
-  // True if a capacity was exceeded, so that a contact may be missing. A surface of fewer elements or fewer
-  // levels helps.
+  // True if a capacity was exceeded, so that a contact may be missing. Use a surface with fewer elements, or
+  // fewer levels.
   bool overflow = false;
   bool stopped = false;  // true if the progress callback stopped the search; contacts found so far are valid
 };
@@ -101,8 +102,8 @@ class SurfaceSelfCollider {
 
   SelfResult collide(const Surface& surface, const SelfQuery& query);
 
-  // Returns the contacts of the last collide(), one for each region. The order of the two parts of the
-  // surface is arbitrary.
+  // Returns the contacts of the last collide(), one for each region. In a contact, either of the two touching
+  // parts of the surface may be the first.
   const std::vector<PairContact>& contacts() const { return contacts_; }
 
  private:

@@ -149,8 +149,8 @@ Eigen::MatrixXd distances(const Patch& patch, const Surface& surface, const std:
   return result;
 }
 
-// Returns the largest distance within each knot span. Successive rows of `distances` are for increasing
-// parameters, checks_per_piece for each span.
+// Returns the largest distance within each knot span. The rows of `distances` belong to increasing
+// parameters; each span has checks_per_piece rows.
 std::vector<double> piece_errors(const Eigen::MatrixXd& distances, std::size_t pieces) {
   std::vector<double> errors(pieces, 0.0);
   for (std::size_t k = 0; k < pieces; ++k) {

@@ -34,9 +34,9 @@ TopoDS_Shell make_shell(const TopoDS_Face& face);
 //
 // A side whose control points coincide is a pole of the body; two opposite sides that coincide are its seam.
 // The surface closes if every side is a pole or part of a seam. Faces of a surface that closes, trimmed or
-// not, have outward normals, whatever the direction of the surface's normals. A face of a solid becomes a
-// shell and keeps its orientation. Refused: a surface or trim loops from which OpenCASCADE cannot build a
-// valid shape, and loops that leave no position for a seam or for the cut into two parts.
+// not, have outward normals, whatever the direction of the surface's normals. A surface that is one face of a
+// solid becomes a shell and keeps its orientation. Refused: a surface or trim loops from which OpenCASCADE
+// cannot build a valid shape, and loops that leave no position for a seam or for the cut into two parts.
 Result<BodyShape> build_body_shape(const CadSurface& part);
 
 }  // namespace spoonbill

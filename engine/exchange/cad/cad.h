@@ -39,9 +39,9 @@ Result<CadModel> read_cad(const std::filesystem::path& file, const CadReading& r
 // Returns the text of a file. In STEP each surface becomes a product with the surface's name: a
 // MANIFOLD_SOLID_BREP if the surface closes, otherwise an open shell. In IGES it becomes a named entity: type
 // 186 if the surface closes, 128 if it does not, 144 for each face of a trimmed surface. The faces of one
-// solid are joined under its name where they close. A surface that find_closing() classifies as solid is
-// written exactly closed. Notes report by how much such a surface was open. They also report surfaces that
-// would close but are not written as solids, and bridged gaps between the faces of a solid.
+// solid are joined into a solid with its name if they enclose it. A surface that find_closing() classifies as
+// solid is written exactly closed. Notes report by how much such a surface was open. They also report
+// surfaces that would close but are not written as solids, and bridged gaps between the faces of a solid.
 Result<CadFileContent> write_cad(const CadModel& model, const CadWriting& writing,
                                  const Progress& progress = {});
 

@@ -116,7 +116,7 @@ std::string to_step_ascii(std::string_view text) {
   return ascii;
 }
 
-// Largest displacement of points of a surface by which it is closed without a note.
+// No note is added if closing a surface moves its points by at most this distance.
 constexpr double smallest_move_m = 1e-9;
 
 int face_count(const TopoDS_Shape& shape) {

@@ -36,9 +36,8 @@ namespace spoonbill {
 namespace {
 
 constexpr int samples_per_edge = 16;
-// Largest distance in (u, v) between an edge and a side of the parameter box at which the edge counts as
-// being on that side. It is a fraction of the box's length in the same direction. Files store curves less
-// exactly than surfaces.
+// An edge counts as on a side of the parameter box if its distance from the side in (u, v) is at most this
+// fraction of the box's length across the side. Files store curves less exactly than surfaces.
 constexpr double side_fraction = 1e-5;
 
 // Returns the projections of a point onto the four sides of a box.
@@ -53,8 +52,9 @@ gp_Pnt2d clamp_into(const gp_Pnt2d& point, const ParameterBox& box) {
 }
 
 // Returns true if all samples of the edge are on the same side of the box. A sample is on a side if its
-// distance from the side in space is at most `tolerance` or the edge's own tolerance. If the sample is inside
-// the box, its distance from the side in (u, v) must also be at most side_fraction of the box's length.
+// distance from the side in space is at most `tolerance` or the edge's own tolerance, whichever is larger. If
+// the sample is inside the box, its distance from the side in (u, v) must also be at most side_fraction of
+// the box's length.
 bool is_on_side(const TopoDS_Edge& edge, const TopoDS_Face& face, const ParameterBox& box, double tolerance) {
   double first = 0.0, last = 0.0;
   const auto curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
@@ -111,9 +111,9 @@ double snap_bound(double bound, double full, double length) {
 
 bool is_polynomial(const Geometry& surface);
 
-// Cuts off the part of the box beyond the end of a polynomial surface, where OpenCASCADE cannot cut the
-// surface. Edges overshoot such an end by the rounding or the tolerance of their file. A periodic direction
-// has no end.
+// Removes the part of the box that is beyond the end of a polynomial surface, because OpenCASCADE cannot cut
+// the surface there. Edges overshoot such an end by the rounding or the tolerance of their file. A periodic
+// direction has no end.
 void clip_to_surface(const Geometry& surface, const ParameterBox& full, ParameterBox& box) {
   if (!is_polynomial(surface)) return;
   if (!surface->IsUPeriodic()) {
@@ -181,8 +181,8 @@ bool is_whole(const Geometry& surface, const ParameterBox& box) {
          box.v_end == full.v_end;
 }
 
-// Returns the whole domain of a B-spline surface that is not rational, because the loops of the face trim it.
-// If the face crosses the surface's seam, or for any other surface, returns the box.
+// Returns the whole domain of a non-rational B-spline surface, because the loops of the face trim it. Returns
+// the box for any other surface, or if the face crosses the surface's seam.
 ParameterBox widen_to_spline(const Geometry& surface, const ParameterBox& box) {
   ParameterBox full;
   surface->Bounds(full.u_start, full.u_end, full.v_start, full.v_end);

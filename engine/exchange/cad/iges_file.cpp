@@ -62,9 +62,9 @@ struct LineCounts {
   std::map<char, long> counts;  // number of lines of each section
   std::string last;             // last line of the file, which states the number of lines of each section
   int null_entities = 0;
-  long farthest = 0;  // number of the last parameter line that an entity refers to
-  // Number of the first parameter line of the entity that is being counted. The first of the entity's two
-  // directory lines states it.
+  long farthest = 0;  // line number of the last parameter line that an entity refers to
+  // Line number of the present entity's first parameter line. The first of the entity's two directory lines
+  // states it.
   std::optional<long> parameters_of_next;
 };
 

@@ -24,7 +24,7 @@ struct JoinedFaces {
   std::vector<std::size_t> loose;
 };
 
-// Joins faces to solids by sewing their edges. Edges may be up to 0.1 mm apart, because approximated faces
+// Joins faces into solids by sewing their edges. Edges may be up to 0.1 mm apart, because approximated faces
 // may have such gaps. The orientation of most of a shell's faces decides which side is outside. A shell whose
 // normals point inwards is a cavity of the solid around it, or loose if no solid is around it. Refused: a
 // surface or trim loops from which OpenCASCADE cannot build a face.

@@ -26,7 +26,7 @@ struct OcctDirection {
   std::vector<int> controls;
 };
 
-// Returns the knots of one period with clamped ends. The knot at the seam must have the multiplicity of the
+// Returns the knots of one period with clamped ends. The multiplicity of the knot at the seam must equal the
 // degree.
 std::vector<double> clamped_period(const KnotVector& knots) {
   const auto degree = static_cast<std::size_t>(knots.degree());
@@ -153,9 +153,8 @@ ControlMatrix opened_lines(const Surface& periodic, Direction direction) {
   return opened;
 }
 
-// Largest distance of the control points of an edge from their mean at which they are joined to a pole, as a
-// multiple of closing_tolerance_m. It is above 1, because control points are farther apart than the points of
-// their edge.
+// An edge is joined to a pole if none of its control points is farther from their mean than this multiple of
+// closing_tolerance_m. It is above 1, because control points are farther apart than the points of the edge.
 constexpr double control_spread = 10.0;
 constexpr int moved_samples = 64;
 

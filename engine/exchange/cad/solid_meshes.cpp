@@ -293,9 +293,9 @@ Result<std::optional<ShapeMesh>> mesh_with_deflection(const TopoDS_Shape& shape,
   return std::optional(std::move(found));
 }
 
-// Meshes a closed shape so that faces share the points of their edges, with a smaller deflection at each try.
-// The tries end when samples of faces and edges are within the requested chord error plus `gap_m`, the widest
-// gap between two faces. The gap is added, because a shared point cannot be on both faces. Returns the most
+// Meshes a closed shape so that faces share the points of their edges. Each try has a smaller deflection. The
+// tries end when samples of faces and edges are within the requested chord error plus `gap_m`, the widest gap
+// between two faces. The gap is added, because a shared point cannot be on both faces. Returns the most
 // accurate mesh found, or nullopt if none is watertight. Refused: more triangles than the limit before a
 // watertight mesh is found.
 Result<std::optional<ShapeMesh>> mesh_shape(const TopoDS_Shape& shape, const SolidMeshing& meshing,
@@ -344,8 +344,8 @@ class SolidMesher {
  public:
   SolidMesher(const CadModel& model, const SolidMeshing& meshing) : model_(model), remaining_(meshing) {}
 
-  // Adds the solid that the surface `index` belongs to, unless another of its faces has added it. A surface
-  // without a solid is loose.
+  // Adds the solid to which the surface `index` belongs, unless another face of this solid has added it. A
+  // surface without a solid is loose.
   Status add(std::size_t index) {
     const std::string& name = model_.surfaces[index].solid;
     if (name.empty()) {

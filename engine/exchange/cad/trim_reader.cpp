@@ -280,12 +280,12 @@ Result<TrimLoop> make_loop(const std::vector<CubicPiece>& chain, const KnotVecto
 }
 
 constexpr int samples_per_piece = 8, nearest_steps = 8;
-// Samples whose parameter is nearer to an end of an edge than this fraction of the edge's range count as that
-// end.
+// A sample counts as the end of an edge if its parameter is nearer to the end than this fraction of the
+// edge's range.
 constexpr double end_fraction = 1e-9;
 
-// Returns the distance of a point from an edge's curve near a parameter, by Gauss-Newton steps; all in the
-// unit of the face.
+// Returns the distance of a point from an edge's curve, in the unit of the face. Gauss-Newton steps search
+// for the nearest point of the curve, starting from the parameter `at`.
 double distance_to_edge(const gp_Pnt& point, const Geom_Curve& curve, double first, double last, double at) {
   double nearest = 1e300;
   for (int step = 0; step < nearest_steps; ++step) {

@@ -12,7 +12,8 @@ namespace spoonbill {
 
 struct FaceTrims {
   std::vector<TrimLoop> loops;
-  // Largest distance of samples of the loops, on the surface, from the 3D curves of the file's edges.
+  // Largest distance between the loops on the surface and the 3D curves of the file's edges, measured at
+  // samples of the loops.
   double deviation_m = 0.0;
 };
 

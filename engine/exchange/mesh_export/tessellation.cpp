@@ -463,8 +463,8 @@ Result<Tessellation> make_tessellation(const Sheet& sheet, const Surface& surfac
   return result;
 }
 
-// Largest fraction of a mesh's area whose triangles may turn over when the mesh is thickened. Slivers may
-// turn over because of rounding.
+// When a mesh is thickened, triangles with at most this fraction of its area may turn over. Slivers may turn
+// over because of rounding.
 constexpr double turned_fraction = 1e-3;
 
 Vector3 twice_area(const std::vector<Vector3>& points_m, const TriangleCorners& corners) {

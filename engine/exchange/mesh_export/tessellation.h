@@ -15,14 +15,14 @@
 namespace spoonbill {
 
 struct Tessellation {
-  // Seams and poles are welded where they are within closing_tolerance_m. Normals point outward if every side
-  // of the surface is a seam or a pole.
+  // Seams and poles are welded if their points coincide to closing_tolerance_m. Normals point outward if
+  // every side of the surface is a seam or a pole.
   TriangleMesh mesh;
-  bool closed = false;  // every side is a seam or a pole, and no trim loop cuts the surface
-  // Largest distance of a point of the surface from the point of its triangle at the same parameters, or of a
-  // trim loop from the edges that replace it. It may exceed the requested error by closing_tolerance_m
-  // because of welding. It may also exceed it by the error of the edges along trim loops, if that error is
-  // more than half of the requested error.
+  bool closed = false;  // true if every side is a seam or a pole, and no trim loop cuts the surface
+  // Largest distance between a point of the surface and the point of its triangle at the same parameters, or
+  // between a trim loop and the edges that replace it. It may exceed the requested error by
+  // closing_tolerance_m because of welding. It may also exceed the requested error by the error of the edges
+  // along trim loops, if that error is more than half of the requested error.
   double chord_error_m = 0.0;
 };
 

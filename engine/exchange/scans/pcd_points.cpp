@@ -20,8 +20,8 @@ struct PcdField {
   std::string_view name;
   NumberType type = NumberType::float32;
   std::uint64_t count = 1;
-  // Position of the field's first number. In text it counts numbers within a point, in binary form bytes
-  // within a point, in compressed form bytes within the decompressed data.
+  // Position of the field's first number: in text, its index among the numbers of a point; in binary form,
+  // its byte offset within a point; in compressed form, its byte offset within the decompressed data.
   std::size_t offset = 0;
 };
 

@@ -139,7 +139,8 @@ Status check_vertices(const PlyNumbers& numbers, const PlyElement& element) {
 template <class Receive>
 Status read_vertices(PlyNumbers& numbers, const PlyElement& element, const Receive& receive) {
   static constexpr std::array<std::string_view, 6> names{"x", "y", "z", "nx", "ny", "nz"};
-  // Index of the coordinate that each property holds: x, y and z, then the normal's; -1 for other properties.
+  // For each property, the index of the coordinate that it holds: 0 to 2 for x, y and z, 3 to 5 for the
+  // normal, -1 for other properties.
   std::vector<int> coordinate(element.properties.size(), -1);
   for (int k = 0; k < 6; ++k) {
     const int column = element.find(names[k], false);

@@ -23,8 +23,8 @@ struct PlyElement {
   std::uint64_t rows = 0;
   std::vector<PlyProperty> properties = {};
 
-  // Returns the index of the list (if `is_list`) or scalar property with this name; -1 if the element
-  // has no such property.
+  // Returns the index of the property with this name, which must be a list if `is_list` is true, otherwise a
+  // scalar; -1 if the element has no such property.
   int find(std::string_view property, bool is_list) const;
   bool has_lists() const;
 };

@@ -22,7 +22,7 @@ inline constexpr std::size_t point_file_bytes_limit = std::size_t{1} << 30;
 struct PointCloud {
   std::vector<Vector3> points;   // in the file's own unit
   std::vector<Vector3> normals;  // one normal for each point, of any length; may be empty
-  // Number of points skipped because a coordinate is NaN, which depth cameras write.
+  // Number of points skipped because a coordinate is NaN. Depth cameras write such points.
   std::size_t skipped = 0;
 };
 
