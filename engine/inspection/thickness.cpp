@@ -127,8 +127,8 @@ ExactWalls::ExactWalls(const std::vector<const Surface*>& surfaces, double error
   }
 }
 
-// Returns the exit nearest to `expected` through a surface whose control net's bounding box is near that
-// point.
+// Returns the exit nearest to `expected`. Considers only surfaces whose control nets have bounding boxes near
+// `expected`.
 std::optional<ExactWalls::FoundExit> ExactWalls::find_exit_near(const Vector3& from, const Vector3& expected,
                                                                 const Vector3& direction) const {
   std::optional<FoundExit> best;
