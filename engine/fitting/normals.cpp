@@ -70,8 +70,8 @@ bool are_inconsistent(const Scan& nodes, const std::vector<NodePair>& pairs) {
          std::min(above, below) > least_side_fraction * flipped;
 }
 
-// Returns the cosine between the normal at one end of a chord and the normal at the other end, mirrored in
-// the plane that bisects the chord.
+// Returns the cosine of the angle between the normal at one end of a chord and the mirror image of the normal
+// at the other end. The mirror is the plane that bisects the chord.
 double agreement(const Vector3& normal_a, const Vector3& normal_b, const Vector3& chord) {
   const double square = chord.squaredNorm();
   if (!(square > 0.0)) return normal_a.dot(normal_b);
@@ -201,8 +201,8 @@ std::vector<NodePair> pairs_between(const PointGraph& graph, const std::vector<V
   return pairs;
 }
 
-// Numbers of points of each component, by whether the surface normal at the point agrees with the normal of
-// the point's node or opposes it.
+// For each component, the number of points at which the surface normal agrees with the normal of the point's
+// node (`along`) or opposes it (`against`).
 struct Votes {
   std::vector<double> along, against;
 

@@ -119,8 +119,8 @@ std::optional<ShapeEnds> find_poles(const PointGraph& graph, const Vector3& cent
                                                  : ShapeEnds{{on_axis[1]}, {on_axis[0]}};
 }
 
-// Returns the nodes where the short axis of a round, flat shape (bowl, plate) leaves the shape; for any other
-// shape, uses its long axis.
+// Returns the two nodes where an axis leaves the shape, or nothing if there are not exactly two. The axis is
+// the short one for a round, flat shape (bowl, plate), and the long one for any other shape.
 std::optional<ShapeEnds> find_axis_poles(const PointGraph& graph) {
   const Axes axes = principal_axes(graph);
   const bool is_disc = axes.squares[2] - axes.squares[1] < roundness * axes.squares[2] &&

@@ -105,8 +105,8 @@ class SmoothNeighbours {
   std::vector<bool> smooth_after_;
 };
 
-// Detects flips of the normal on the straight line between two parameter pairs. A flip remains if the steps
-// are refined, unlike a fast turn of the normal about a tight rim.
+// Detects flips of the normal on the straight line between two parameter pairs, from steps along the line. If
+// the steps are refined, a flip remains, unlike a fast turn of the normal about a tight rim.
 class NormalFlips {
  public:
   NormalFlips(const Surface& surface, double least_area) : surface_(surface), least_area_(least_area) {}

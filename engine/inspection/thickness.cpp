@@ -12,7 +12,7 @@ namespace {
 
 constexpr int lines_per_span = 3;
 constexpr int newton_steps = 12;
-// Largest distance from the line at which Newton's method counts as converged, as a fraction of the distance
+// Newton's method counts as converged if the distance from the line is at most this fraction of the distance
 // to the exit.
 constexpr double newton_tolerance = 1e-9;
 

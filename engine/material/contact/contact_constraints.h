@@ -137,7 +137,7 @@ class ContactConstraints {
     double compliance = 0.0;
     double friction = 0.0;  // friction coefficient of the body's surface; tools have none
     int key = changing_point_key;
-    bool is_implicit = false;  // true if the implicit solver moves the lattice
+    bool is_implicit = false;  // true if an implicit solver steps the lattice
     // True if a push starts from the force of the last substep. False for grips, for changing_point_key, and
     // on implicitly stepped lattices. The contact mass of such a lattice is an estimate, and the force of the
     // last substep would amplify its error.

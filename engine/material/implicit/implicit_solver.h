@@ -132,7 +132,7 @@ class ImplicitSolver {
   const LatticeMesh& mesh() const { return body_.mesh(); }
   const LatticeReport& report() const { return body_.report(); }
   const std::vector<Vector3>& rest_m() const { return rest_m_; }
-  // Sets the body's inertia divided by its mass, at least 1. The caller must pass the new
+  // Sets the ratio of the body's inertia to its mass, at least 1. The caller must pass the new
   // contact_inverse_mass() to the lattice.
   void set_inertia_scale(double scale);
 

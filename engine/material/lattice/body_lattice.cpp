@@ -298,9 +298,10 @@ Outward find_outward(const Surface& surface, const RingParameters& ring, const L
   return {ring_parameter_at(surface, ring, ring_position(on_s, on_t, ni, nj)), radius};
 }
 
-// Returns the weight of a slice's narrow side in fill_slice(), at a fraction of the slice's width from this
-// side. The weight is linear, except in a bent section. There the centre of a narrow side is at the rim of
-// the bend, higher than the side's corners, so the weight is concentrated near the side.
+// Returns the weight of a slice's narrow side in fill_slice(). `fraction` is the distance from this side, as
+// a fraction of the slice's width. The weight is linear, except in a bent section. There the centre of a
+// narrow side is at the rim of the bend, higher than the side's corners, so the weight is concentrated near
+// the side.
 double side_influence(double fraction, bool bent) {
   const double rest = 1.0 - fraction;
   return bent ? rest * rest * rest * rest : rest;
