@@ -24,18 +24,21 @@ struct FittedSurface {
   Surface surface;
   std::vector<Vector2> uv;         // parameters of each point
   std::vector<double> distance_m;  // distance of each point from the surface
-  // Factor on the weight of each point, from 1 to 0: reduced for a point far from the surface, 0 for a stray.
+  // Factor on the weight of each point: 1 for a point near the surface, less for a point far from it, 0 for
+  // an outlier.
   std::vector<double> trust;
   FoldCheck folds;
 };
 
 // Fits a cubic surface. `start` holds the initial parameters of the nodes. Alternates between least squares
-// and closest-point parameters, from few control points to many. Knots are added where errors are large, and
-// outliers get less weight (Huber 1964). The fairness is the largest that cross-validation permits, raised
-// further where the surface folds. If the first result folds or has a large error, other rules for keeping
-// points on their face of a thin wall are tried, and the best result is returned. Normals point out of closed
-// shapes. On open shapes they agree with the scan's normals. Without such normals they point away from a
-// tube's axis, away from a sheet's hollow side or, on a flat sheet, to +z.
+// and closest-point parameters, from few control points to many. Adds knots where errors are large, and gives
+// outliers less weight (Huber 1964). The fairness is the largest that cross-validation permits; it is raised
+// further where the surface folds.
+//
+// If the first result folds or has a large error, tries other rules that keep points on their face of a thin
+// wall, and returns the best result. The normals of a closed shape point outwards. On an open shape they
+// agree with the scan's normals. Without scan normals they point away from a tube's axis, away from a sheet's
+// hollow side or, on a flat sheet, to +z.
 Result<FittedSurface> fit_surface(const FitPoints& points, const Parameterisation& start,
                                   const FitSettings& settings);
 

@@ -140,8 +140,8 @@ Vector3 estimate_local_normal(const PointGraph& graph, std::uint32_t node) {
 
 enum class SquareSide : unsigned char { none, left, right };
 
-// A cut along the shortest path between the ends. `side` is the side of the path on which a node near the
-// path is; none for all other nodes.
+// A cut along the shortest path between the ends. For a node near the path, `side` is the side of the path on
+// which the node is; for all other nodes it is none.
 struct Cut {
   std::vector<SquareSide> side;
   std::vector<bool> near_pole;
@@ -293,8 +293,8 @@ Result<std::vector<Vector2>> harmonic_square_map(const PointGraph& graph,
 
 ShapeEnds farthest_ends(const PointGraph& graph) {
   SPOONBILL_ASSERT(graph.size() > 0);
-  // Uses the centroid of the 4 % of the nodes that are farthest away. They cover one end of the shape,
-  // whereas the single farthest node may be at any corner of that end.
+  // Chooses the node nearest to the centroid of the 4 % of the nodes that are farthest from `from`. They
+  // cover one end of the shape, whereas the single farthest node may be at any corner of that end.
   constexpr double nearly = 0.04;
   const auto farthest = [&](std::uint32_t from) {
     const std::array<std::uint32_t, 1> source{from};

@@ -13,17 +13,18 @@
 namespace spoonbill {
 namespace {
 
-// Ratio of the length of a pair of nodes to the median length, above which the pair may bridge a gap.
+// A pair of nodes may bridge a gap if its length exceeds the median length of the pairs by this factor.
 constexpr double doubtful_length = 1.5;
-// Smallest ratio of the width of a gap to the widest step between the points of a node, which is the longest
-// edge of their minimum spanning tree. Random points within one surface have no gap as wide as this.
+// A gap between two nodes is at least this many times as wide as the widest step between the points of either
+// node. The widest step is the longest edge of the points' minimum spanning tree. Random points within one
+// surface have no gap as wide as this.
 constexpr double gap_steps = 3.0;
-// Smallest cosine of the angle between the gap and the normals on both sides (45 degrees).
+// Smallest cosine of the angle between the direction across a gap and the normal on either side (45 degrees).
 constexpr double facing_fraction = 0.7;
 constexpr std::size_t least_around = 5;
-// Smallest number of points of a node from which the spacing of its points is measured.
+// Smallest number of points that a node must have if a gap is to be measured from the spacing of its points.
 constexpr std::size_t least_island_points = 3;
-// Largest number of points of a node that are used; more points are subsampled.
+// Largest number of points of a node that are compared. If a node has more, a regular subset is used.
 constexpr std::size_t most_points = 64;
 
 // Returns the direction in which a node and its neighbours spread least, which is normal to the surface.

@@ -12,7 +12,7 @@ namespace spoonbill {
 // Removes the pairs of nodes that bridge a gap between bodies and returns the others. `groups` assigns
 // `points_m` to the nodes. A gap is at least three times as wide as the widest step between the points of
 // either node. The surfaces on both sides of a gap face each other, unlike the two sides of an unscanned
-// stripe of one surface. Both surfaces belong to bodies that are larger than dust.
+// stripe of one surface. Both surfaces belong to bodies that are too large to count as dust (dust_fraction).
 std::vector<NodePair> remove_gap_pairs(const std::vector<Vector3>& points_m, const VoxelGroups& groups,
                                        const std::vector<Vector3>& nodes_m, std::vector<NodePair> pairs);
 

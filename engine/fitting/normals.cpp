@@ -18,17 +18,18 @@ namespace {
 // Number of neighbours of a node. It is large enough to reach all around the node even if nodes coincide in
 // pairs with opposite normals.
 constexpr std::size_t normal_neighbours = 12;
-// Largest length of a pair of neighbours, relative to the median length. Longer pairs are ignored.
+// Largest distance between two neighbours, relative to the median distance. Pairs that are farther apart are
+// ignored.
 constexpr double longest_pair = 3.0;
 constexpr double opposite_cosine = -0.5;
 // Largest height of a neighbour above or below a node's tangent plane, relative to the distance between the
 // two nodes, at which both count as being on the same face. A greater height means that the neighbour is on
 // the other face of a wall.
 constexpr double most_height_fraction = 0.25;
-// Limits for inconsistent normals; both must be exceeded. The first is the fraction of all pairs that have
-// opposite normals. In some of these opposite pairs, each node is above the tangent plane of the other; in
-// the rest, it is below. The second limit is the fraction of the opposite pairs that is of the rarer kind. At
-// a thin wall, all opposite pairs are of one kind.
+// Two limits above which normals count as inconsistent; both must be exceeded. The first limits the opposite
+// pairs, as a fraction of all pairs. There are two kinds of opposite pairs: each node is above the tangent
+// plane of the other, or each is below it. The second limits the rarer kind, as a fraction of the opposite
+// pairs. At a thin wall, all opposite pairs are of one kind.
 constexpr double least_flipped_fraction = 0.003, least_side_fraction = 0.2;
 constexpr double clear_majority = 0.75;
 
@@ -69,8 +70,8 @@ bool are_inconsistent(const Scan& nodes, const std::vector<NodePair>& pairs) {
          std::min(above, below) > least_side_fraction * flipped;
 }
 
-// Returns the cosine between the normal at one end of a chord and the normal at the other end, mirrored in
-// the plane that bisects the chord.
+// Returns the cosine of the angle between the normal at one end of a chord and the mirror image of the normal
+// at the other end. The mirror is the plane that bisects the chord.
 double agreement(const Vector3& normal_a, const Vector3& normal_b, const Vector3& chord) {
   const double square = chord.squaredNorm();
   if (!(square > 0.0)) return normal_a.dot(normal_b);
@@ -200,8 +201,8 @@ std::vector<NodePair> pairs_between(const PointGraph& graph, const std::vector<V
   return pairs;
 }
 
-// Numbers of points of each component, by whether the surface normal at the point agrees with the normal of
-// the point's node or opposes it.
+// For each component, the number of points at which the surface normal agrees with the normal of the point's
+// node (`along`) or opposes it (`against`).
 struct Votes {
   std::vector<double> along, against;
 
@@ -243,10 +244,10 @@ std::vector<Vector3> estimate_normals(const FitPoints& points, const Surface& su
 namespace {
 
 constexpr int orientation_samples = 32;
-// A sheet counts as flat if the sum of offset . area over its samples is below this fraction of the sum of
-// |offset| |area|. The offset is measured from the centre, and the area is a vector along the normal. It is
-// then not clear which side of the sheet is hollow. An example is a cap whose height is below a sixtieth of
-// its width.
+// A sheet counts as flat if |sum of offset . area| over its samples is below this fraction of the sum of
+// |offset| |area|. The offset is measured from the centre, and the area is a vector along the normal. The
+// hollow side of a flat sheet is not clear. An example is a cap whose height is below a sixtieth of its
+// width.
 constexpr double flat_cap_fraction = 0.05;
 // Fraction of the mean normal's length below which a component of the mean normal counts as zero.
 constexpr double upright_fraction = 0.1;

@@ -27,8 +27,8 @@ std::vector<bool> find_inconsistent_normals(const Scan& nodes);
 // Estimates a normal for each parameter pair in `uv`. The first pairs belong to the points in order; any
 // further pairs get zero normals. A normal is perpendicular to the local plane of the nodes, or zero where
 // the nodes have no clear plane. In each component, normals are oriented consistently and agree with the
-// surface's normals at most points. All normals of a component are zero if more than a fifth of them oppose
-// the surface's normals, which happens where both faces of a thin wall are mixed.
+// surface's normals at the majority of the points. All normals of a component are zero if more than a fifth
+// of them oppose the surface's normals, which happens where both faces of a thin wall are mixed.
 std::vector<Vector3> estimate_normals(const FitPoints& points, const Surface& surface,
                                       const std::vector<Vector2>& uv);
 

@@ -17,9 +17,9 @@ namespace spoonbill {
 namespace {
 
 constexpr double sheet_fraction = 0.12;
-// Smallest ratio of the area within the longest boundary loop to the area of the surface at which a surface
-// with outward normals counts as a sheet. It is larger than sheet_fraction, because the underside of a closed
-// body may not have been scanned.
+// A surface with outward normals counts as a sheet if the area within its longest boundary loop exceeds this
+// fraction of the area of the surface. The limit is larger than sheet_fraction, because the underside of a
+// closed body may not have been scanned.
 constexpr double outward_sheet_fraction = 0.3;
 constexpr double tube_fraction = 0.75;
 constexpr double roundness = 0.12;
@@ -82,8 +82,8 @@ void span_holes(FitPoints& island, std::size_t first_loop) {
   }
 }
 
-// Returns the nodes near the axis at which the distance from it is a local minimum. They are at least 0.4 of
-// the largest radius apart.
+// Returns the nodes near the axis that are no farther from it than any of their neighbours. They are at least
+// 0.4 of the largest radius apart.
 std::vector<std::uint32_t> find_axis_nodes(const PointGraph& graph, const Vector3& centre,
                                            const Vector3& axis) {
   std::vector<double> radius(graph.size());
@@ -119,8 +119,8 @@ std::optional<ShapeEnds> find_poles(const PointGraph& graph, const Vector3& cent
                                                  : ShapeEnds{{on_axis[1]}, {on_axis[0]}};
 }
 
-// Returns the nodes where the short axis of a round, flat shape (bowl, plate) leaves the shape; for any other
-// shape, uses its long axis.
+// Returns the two nodes where an axis leaves the shape, or nothing if there are not exactly two. The axis is
+// the short one for a round, flat shape (bowl, plate), and the long one for any other shape.
 std::optional<ShapeEnds> find_axis_poles(const PointGraph& graph) {
   const Axes axes = principal_axes(graph);
   const bool is_disc = axes.squares[2] - axes.squares[1] < roundness * axes.squares[2] &&
@@ -171,7 +171,7 @@ Result<Parameterisation> start_tube(FitPoints& island) {
 }
 
 // Returns the indices, within the boundary loop, of the nodes that become the corners of the parameter
-// domain: those farthest from the centre along the diagonals of the principal plane.
+// domain. They are the nodes farthest from the centre along the diagonals of the principal plane.
 std::array<std::size_t, 4> find_corners(const PointGraph& graph, const BoundaryLoop& loop) {
   const Axes axes = principal_axes(graph);
   std::array<std::size_t, 4> corners{};
@@ -271,8 +271,8 @@ constexpr double axis_roundness = 0.1;
 // in raster cells, at which its two faces can be separated.
 constexpr double thin_fraction = 0.1;
 constexpr double separable_cells = 3.0;
-// Mean number of points per raster cell for which the cell size is chosen. The choice assumes that the
-// profile is three times as long as the shape is large.
+// The cell size is chosen so that filled raster cells have about this many points each, if the profile is
+// three times as long as the shape is large.
 constexpr double points_per_cell = 12.0;
 constexpr double face_fraction = 0.2;  // largest depth of points on a face, relative to the wall's thickness
 // Depth below the outline, as a fraction of the wall's thickness. If half of the points are deeper, all
@@ -281,7 +281,8 @@ constexpr double between_fraction = 0.25;
 constexpr double covered_fraction = 0.85;
 constexpr int least_cell_points = 2;  // smallest number of points in a filled cell
 constexpr int dilation = 2;           // number of cells by which filled cells are dilated
-// Distance from the axis below which a column of cells is near the axis, as a fraction of the raster's width.
+// A column of cells is near the axis if its distance from the axis is below this fraction of the raster's
+// width.
 constexpr double near_axis_fraction = 0.05;
 
 struct Axis {
@@ -404,8 +405,8 @@ class ProfileRaster {
 };
 
 std::vector<Vector2> ProfileRaster::outline() const {
-  // A corner has the row and the column of the cell above it on its right. The path keeps filled cells on its
-  // right and starts at the top filled cell on the axis.
+  // `row` and `column` are those of the cell to the upper right of the present corner. The path keeps filled
+  // cells on its right and starts at the top filled cell on the axis.
   int row = rows_;
   while (row > 0 && !inside(0, row - 1)) --row;
   if (row == 0) return {};

@@ -104,11 +104,11 @@ constexpr std::size_t neighbours_per_point = 8, plane_neighbours = 16;
 // A point is an outlier if the mean distance to its neighbours exceeds the median of these means by more than
 // this number of standard deviations. Scanner noise stays within three.
 constexpr double outlier_deviations = 6.0;
-// Largest spacing of points on a surface, relative to the median. From voxel to voxel, the sampling density
-// of one surface does not drop faster than this.
+// Largest spacing of points on a surface, relative to the median spacing. Even an unevenly sampled surface
+// has no larger spacing.
 constexpr double sparse_spacings = 8.0;
 // Largest spread of points across a plane, relative to their spread along it, at which they count as being on
-// the plane. For points that fill space, this ratio is about twice as large.
+// the plane. Points that fill space have a ratio of about twice this limit.
 constexpr double flatness = 0.3;
 
 // Quantiles of values with weights: `counts` holds the number of given points for each value.
@@ -177,8 +177,9 @@ bool is_on_plane(const Vector3& point, const std::vector<Vector3>& points_m,
          std::abs(axes.eigenvectors().col(0).dot(point - mean)) < 2.0 * along;
 }
 
-// Clears the outlier flag of a point on a plane if two thirds of its neighbours are on planes too. Points
-// that fill space can be on a plane by chance, but then most of their neighbours are not.
+// Clears the outlier flag of a point that is on a plane, if at least two thirds of its neighbours are on
+// planes or have no outlier flag. Points that fill space can be on a plane by chance, but most of their
+// neighbours are not.
 void clear_surface_points(const std::vector<Vector3>& points_m, const NearestPoints& nearest,
                           std::vector<bool>& is_outlier) {
   std::vector<NearestPoints::Neighbour> found;

@@ -39,10 +39,10 @@ double voxel_side_for(const Scan& scan, std::size_t groups);
 Scan average_groups(const Scan& scan, const VoxelGroups& groups);
 
 // Flags points that are much farther from their neighbours than usual. `counts` holds how many given points
-// each point represents: 1, or in a thinned cloud the number of points in its voxel. The usual values are
-// weighted by these counts, as most given points are on the surface. A thinned point that represents far
-// fewer points than usual is an outlier too. In a thinned cloud, sparse points are not flagged where they and
-// most of their neighbours are on planes, as on a surface.
+// each point represents: 1, or in a thinned cloud the number of points in its voxel. The usual distance is a
+// median weighted by these counts, because most given points are on the surface. A thinned point that
+// represents far fewer points than usual is an outlier, too. In a thinned cloud, sparse points are not
+// flagged where they and most of their neighbours are on planes, as on a surface.
 std::vector<bool> find_outliers(const std::vector<Vector3>& points_m, const std::vector<double>& counts);
 
 // Moves the tip of each spike to the centre of its ring of vertices and returns the tips; the connectivity

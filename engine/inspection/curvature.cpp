@@ -12,8 +12,8 @@
 namespace spoonbill {
 namespace {
 
-// Fractions of a polynomial piece that its cells leave out: the first at each knot, the second at a collapsed
-// edge.
+// Fractions of a polynomial piece that its cells do not cover: `off_knots` next to each knot, `off_poles`
+// next to a collapsed edge.
 constexpr double off_knots = 1e-6;
 constexpr double off_poles = 1e-2;
 // Largest number of cells in which the minimum is refined. They are the cells with the smallest values.
@@ -43,7 +43,7 @@ ParameterMinimum find_best_in_cell(const PieceCell& cell,
 }
 
 // Searches for a minimum within the cell by a pattern search. Each step moves to the best of the eight
-// neighbours, or halves the distance of the neighbours if none is better.
+// neighbours of the present point. If no neighbour is better, the step halves their distance instead.
 ParameterMinimum search_cell(Candidate from, const std::function<double(double, double)>& value) {
   double step_u = 0.5 * (from.cell.u1 - from.cell.u0), step_v = 0.5 * (from.cell.v1 - from.cell.v0);
   for (int halving = 0; halving < halvings;) {

@@ -77,8 +77,8 @@ void visit_whole_surface(const Surface& surface, const AreaVisitor& visit) {
   }
 }
 
-// Visits the seven points of Radon's rule in a triangle of parameters: the centroid, and three points on the
-// medians at each of two distances from it.
+// Visits the seven points of Radon's rule in a triangle of parameters: the centroid and, at each of two
+// distances from it, three points on the medians.
 void visit_triangle(const Surface& surface, const std::array<Parameters, 3>& corners,
                     const AreaVisitor& visit) {
   const Parameters first = corners[1] - corners[0], second = corners[2] - corners[0];

@@ -24,8 +24,8 @@ struct PieceQuadrature {
 // for polynomials up to degree 2 * nodes - 1.
 PieceQuadrature make_piece_quadrature(const KnotVector& knots, int nodes);
 
-// Function that receives a surface point and its weight, the part of the parameter domain that the point
-// represents. `weight` times |du x dv| is an area.
+// Function that receives a surface point and a weight. The weight is the part of the parameter domain that
+// the point represents; `weight` times |du x dv| is an area.
 using AreaVisitor = std::function<void(const SurfacePoint& point, double weight)>;
 
 // Visits the quadrature points of the area within the trims. For a whole surface the rule is exact up to

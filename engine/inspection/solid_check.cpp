@@ -137,8 +137,9 @@ class Walls {
   double min_height_m_;
 };
 
-// Search for the thinnest wall. The search is refined in the cells that have the thinnest walls of the mesh
-// at their centres and whose walls agree with the exact surfaces. If no cell agrees, the mesh alone is used.
+// Search for the thinnest wall. It first measures the walls of the mesh at the centres of all cells, and
+// chooses the cells with the thinnest walls among those that agree with the exact surfaces. It is then
+// refined in these cells. If no cell agrees, the mesh alone is used.
 class ThinnestWallSearch {
  public:
   ThinnestWallSearch(const Walls& walls, const ExactWalls& exact) : walls_(walls), exact_(exact) {}

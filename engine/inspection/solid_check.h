@@ -28,9 +28,9 @@ struct SolidCheck {
 };
 
 // Checks a solid by its mesh. The mesh must be watertight, have outward normals and deviate from the bounding
-// surfaces by at most `error_m`. Intersections no deeper than twice the error are ignored. If there are no
-// surfaces, or the normals of some point inwards, thicknesses are those of the mesh. Returns nothing if
-// `progress` stopped the check.
+// surfaces by at most `error_m`. Intersections no deeper than twice the error are ignored. Thicknesses are
+// those of the mesh if `surfaces` is empty or if a surface has inward normals. Returns nothing if `progress`
+// stopped the check.
 std::optional<SolidCheck> check_solid(const TriangleMesh& mesh, const std::vector<const Surface*>& surfaces,
                                       double error_m, const Progress& progress = {});
 
@@ -45,7 +45,7 @@ struct BodyOverlap {
 struct BodyOverlaps {
   // Deepest contact of each touching pair of bodies, in ascending order of the bodies' indices.
   std::vector<BodyOverlap> found;
-  bool complete = true;  // false if surfaces are near each other in too many points to search them all
+  bool complete = true;  // false if surfaces are near each other at too many points to search them all
 };
 
 // Finds the overlaps of bodies, each bounded by one closed surface with outward normals. FCL's tree selects

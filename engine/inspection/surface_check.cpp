@@ -14,7 +14,7 @@ namespace {
 
 constexpr int edge_samples = 512;
 
-// Compares the two ends of a direction: of u (edges along v) if `along_u`, otherwise of v.
+// Compares the two ends of u (edges along v) if `along_u` is true, otherwise the two ends of v.
 EdgeGap measure_edge_gap(const Surface& surface, bool along_u) {
   EdgeGap gap;
   const KnotVector& knots = along_u ? surface.u : surface.v;
@@ -84,8 +84,8 @@ constexpr std::size_t large_net = 2500;
 class SmoothNeighbours {
  public:
   explicit SmoothNeighbours(const KnotVector& knots) {
-    // Each entry is the start of a piece. The first entry is also the end of the last piece; in an open
-    // direction it counts as clamped, so that no piece follows smoothly.
+    // Each entry is the knot at the start of a piece. The first entry is also the end of the last piece. In
+    // an open direction the first knot counts as clamped, so the surface is not smooth after the last piece.
     const std::vector<KnotMultiplicity> starts = knot_multiplicities(knots);
     for (std::size_t piece = 0; piece < starts.size(); ++piece) {
       smooth_after_.push_back(starts[(piece + 1) % starts.size()].multiplicity < knots.degree());
@@ -105,8 +105,8 @@ class SmoothNeighbours {
   std::vector<bool> smooth_after_;
 };
 
-// Detects flips of the normal on the straight line between two parameter pairs. A flip remains if the steps
-// are refined, unlike a fast turn of the normal about a tight rim.
+// Detects flips of the normal on the straight line between two parameter pairs, from steps along the line. If
+// the steps are refined, a flip remains, unlike a fast turn of the normal about a tight rim.
 class NormalFlips {
  public:
   NormalFlips(const Surface& surface, double least_area) : surface_(surface), least_area_(least_area) {}

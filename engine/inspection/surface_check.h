@@ -32,16 +32,18 @@ struct EdgeGap {
 struct Closing {
   Closedness closedness = Closedness::sheet;
   EdgeGap u, v;
-  // Width of the gap that keeps the surface from being closed. For a solid it is 0, for a tube the width of
-  // its widest open end. For a sheet it is the smaller of two values, one for each direction: the larger of
-  // the distance between that direction's ends and the width of the other direction's widest end.
+  // Width of the gap that keeps the surface from being closed: 0 for a solid, and for a tube the width of its
+  // widest open end. For a sheet it is the smaller of two values. The first value is the distance between the
+  // ends of u or the width of the widest end of v, whichever is larger. The second is the same with u and v
+  // exchanged.
   double gap_m = 0.0;
 };
 
 // Measures how nearly a surface is closed, from samples of its edges. Trims are ignored.
 Closing find_closing(const Surface& surface);
 
-// A point at which du x dv vanishes, other than a pole, or flips within a smooth part of the surface.
+// A point, other than a pole, at which du x dv vanishes; or a point within a smooth part of the surface at
+// which du x dv flips.
 struct SurfaceDefect {
   double u = 0.0, v = 0.0;
   Vector3 position_m = Vector3::Zero();

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int lines_per_span = 3;
 constexpr int newton_steps = 12;
-// Largest distance from the line at which Newton's method counts as converged, as a fraction of the distance
+// Newton's method counts as converged if the distance from the line is at most this fraction of the distance
 // to the exit.
 constexpr double newton_tolerance = 1e-9;
 
@@ -127,8 +127,8 @@ ExactWalls::ExactWalls(const std::vector<const Surface*>& surfaces, double error
   }
 }
 
-// Returns the exit nearest to `expected` through a surface whose control net's bounding box is near that
-// point.
+// Returns the exit nearest to `expected`. Considers only surfaces whose control nets have bounding boxes near
+// `expected`.
 std::optional<ExactWalls::FoundExit> ExactWalls::find_exit_near(const Vector3& from, const Vector3& expected,
                                                                 const Vector3& direction) const {
   std::optional<FoundExit> best;

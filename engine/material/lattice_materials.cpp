@@ -28,8 +28,9 @@ Status assign_material(const MaterialRegion& region, const LatticeMesh& mesh,
     contains_any |= mesh.filled.empty() || mesh.filled[c];
   }
   if (contains_any) return {};
-  return Error{ErrorCode::too_few,
-               "contains no cell centre of the lattice; make it larger or give the lattice more nodes"};
+  return Error{
+      ErrorCode::too_few,
+      "contains no cell centre of the lattice; make the region larger or give the lattice more nodes"};
 }
 
 Status assign_friction(const MaterialRegion& region, const std::vector<BodyCoordinates>& nodes,
@@ -44,10 +45,10 @@ Status assign_friction(const MaterialRegion& region, const std::vector<BodyCoord
     contains_any |= nodes[n].depth_m == 0.0;
   }
   if (contains_any || !region.friction) return {};
-  return Error{
-      ErrorCode::too_few,
-      "friction: the region contains no node of the surface; make it larger or let its depth begin at 0",
-      "friction"};
+  return Error{ErrorCode::too_few,
+               "friction: the region contains no node of the surface; make the region larger or let its "
+               "depth begin at 0",
+               "friction"};
 }
 
 }  // namespace

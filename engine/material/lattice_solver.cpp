@@ -200,13 +200,13 @@ struct Substep {
   float h;
 };
 
-// Gravity acts in at most this number of the substeps of a tick. If the substeps were more and shorter,
-// rounding would swallow part of the change of a falling node's velocity.
+// Gravity acts in at most this number of the substeps of a tick. With more and shorter substeps, rounding
+// would swallow part of the velocity change of a falling node.
 constexpr int most_weighted_substeps = 64;
 
 // Returns the factor by which gravity is multiplied in a substep. It is 1 in a tick of at most
-// most_weighted_substeps substeps. In a tick of more, gravity acts in every n-th substep only, n times as
-// strongly. The factors of a tick add up to its number of substeps.
+// most_weighted_substeps substeps. In a tick with more substeps, gravity acts in every n-th substep only, n
+// times as strongly. The factors of a tick add up to its number of substeps.
 int count_weights(const Substep& substep) {
   const int stride = (substep.count + most_weighted_substeps - 1) / most_weighted_substeps;
   return substep.index % stride == 0 ? std::min(stride, substep.count - substep.index) : 0;
@@ -228,8 +228,8 @@ void kick(Relaxation& relaxation, const Substep& substep) {
   }
 }
 
-// Returns true if the tool has a constraint on a lattice of the given kind: one that springs step if
-// `springs` is true, otherwise one that an implicit solver steps.
+// Returns true if the tool has a constraint on a lattice of the given kind: one stepped explicitly by its
+// springs if `springs` is true, otherwise one stepped by an implicit solver.
 bool touches(const Relaxation& relaxation, const TouchingTool& tool, bool springs) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (relaxation.has_springs(at) == springs && tool.contacts->has_constraint_on(static_cast<int>(at))) {
@@ -242,8 +242,9 @@ bool touches(const Relaxation& relaxation, const TouchingTool& tool, bool spring
 // Number of passes over the contacts of implicitly stepped lattices in a tick.
 constexpr int solver_passes = 2;
 
-// Response of the implicitly stepped lattices to the impulses of contacts: the work of the impulses as the
-// contacts assumed it, and as the lattices respond.
+// Response of the implicitly stepped lattices to the impulses of contacts. `assumed_work_j` is the work of
+// the impulses with the velocity changes that the contacts assumed; `work_j` is their work with the velocity
+// changes of the lattices.
 struct Response {
   double assumed_work_j = 0.0, work_j = 0.0;
   std::array<bool, lattice_capacity> responds{};
@@ -526,8 +527,8 @@ void flow(Relaxation& relaxation) {
   }
 }
 
-// Creeps the springs of one direction, which depends on `turn`. The time step is the time until the next call
-// for the same direction.
+// Applies creep to the springs of one direction; `turn` selects the direction. The time step is the time
+// until the next call for the same direction.
 void creep(Relaxation& relaxation, std::uint64_t turn) {
   const int direction = static_cast<int>(turn % lattice_direction_count);
   const double time_s = relaxation.time_s * static_cast<double>(creep_pause * lattice_direction_count);

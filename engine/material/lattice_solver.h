@@ -69,7 +69,7 @@ struct RelaxSettings {
 struct RelaxedLattice {
   SpringLattice* lattice;
   Vector3 gravity_m_per_s2 = Vector3::Zero();
-  // Implicit solver that steps the lattice instead of its springs; null if the springs step it.
+  // Implicit solver that advances the lattice; null if the lattice is advanced explicitly by its springs.
   ImplicitSolver* implicit_solver = nullptr;
   std::span<SupportedNodes> supports = {};
 };

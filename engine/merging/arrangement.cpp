@@ -325,8 +325,8 @@ Error layout_error(const std::string& what) {
                what + "; merge patches that make a row or a full grid, or name the edges");
 }
 
-// Sorts the matches between patches that are not neighbours in the grid. Such matches close the grid if there
-// is one for each row or for each column; otherwise they stay open.
+// Classifies the matches between patches that are not neighbours in the grid. If there is one for each row or
+// for each column, they close the grid; otherwise their edges stay open.
 void sort_closing_matches(const std::vector<std::optional<GridCell>>& cells,
                           const std::vector<EdgeMatch>& matches, Arrangement& arrangement) {
   arrangement.closing_u.clear();

@@ -73,8 +73,8 @@ Eigen::Matrix3d nearest_turn(const Eigen::Matrix3d& change) {
   Eigen::Matrix3d left = svd.matrixU();
   if ((left * svd.matrixV().transpose()).determinant() < 0.0) left.col(2) *= -1.0;
   const Eigen::Quaterniond near(Eigen::Matrix3d(left * svd.matrixV().transpose()));
-  // The quaternion `near` is accurate to the rounding of 1. It is corrected by the residual skew part of
-  // S = R^T F, which is computed from small numbers alone: [w] S + S [w] = S - S^T.
+  // The quaternion `near` has the rounding errors of numbers near 1. A small rotation w with [w] S + S [w] =
+  // S - S^T corrects them. The skew part of S = R^T F is computed from small numbers alone.
   const Eigen::Matrix3d turn = turn_from(near);
   const Eigen::Matrix3d stretch_change = turn.transpose() + change + turn.transpose() * change;
   const Eigen::Matrix3d stretch = Eigen::Matrix3d::Identity() + stretch_change;

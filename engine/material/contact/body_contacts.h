@@ -11,7 +11,7 @@
 
 namespace spoonbill {
 
-// A point of a body. `body` is the index of its lattice in the views passed to pass().
+// A point of a body. `body` is the index of the body's lattice in the views passed to pass().
 struct BodyPoint {
   int body = 0;
   const SpringLattice* lattice = nullptr;
@@ -44,8 +44,8 @@ class BodyContacts {
   void begin();
 
   // Calls visit(node, impulse) for nodes of a body. The impulses, N s, are the forces of the last tick times
-  // `time_s`, for the constraints between two lattices that implicit solvers move. The solvers need these
-  // impulses at the start of their steps.
+  // `time_s`. Only constraints between two implicitly stepped lattices are visited, because implicit solvers
+  // need these impulses at the start of their steps.
   template <class Visit>
   void visit_known_impulses(int body, double time_s, const Visit& visit) const {
     for (int c = 0; c < count_; ++c) {
@@ -57,16 +57,17 @@ class BodyContacts {
     }
   }
 
-  // Pushes with the forces of the last substep, except where implicit solvers move both lattices: these
-  // solvers already include the impulses of visit_known_impulses(). Call after the kick of a substep of h_s.
+  // Pushes with the forces of the last substep. Leaves out the constraints between two implicitly stepped
+  // lattices, whose solvers already include the impulses of visit_known_impulses(). Call after the kick of a
+  // substep of h_s.
   void start(std::span<const LatticeView> lattices, double h_s);
-  // Solves once the constraints of the kind pass.moved_by. Call after start() and before the drift of a
+  // Solves each constraint of the kind pass.moved_by once. Call after start() and before the drift of a
   // substep of h_s. A reversed pass solves the last constraint first.
   void pass(std::span<const LatticeView> lattices, const ContactPass& pass);
-  // Scales by `fraction` the changes of force in the last pass() with MovedBy::solvers. The caller must scale
-  // the impulses on the nodes in the same way.
+  // Multiplies by `fraction` the changes that the last pass() with MovedBy::solvers made to the forces. The
+  // caller must scale the impulses on the nodes in the same way.
   void shorten_solver_pass(double fraction);
-  // Returns whether there is a constraint between two lattices that implicit solvers move.
+  // Returns whether there is a constraint between two implicitly stepped lattices.
   bool has_constraint_between_solvers() const;
 
   int count() const { return count_; }

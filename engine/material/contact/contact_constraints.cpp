@@ -11,7 +11,7 @@ namespace {
 // Pace of a tool's contacts. A push starts from the force of the last substep, so a slow correction suffices;
 // a fast one would make the force oscillate.
 constexpr ContactPace tool_pace{0.5, 10.0};
-// Pace of a tool's contacts with implicitly stepped lattices. Their pushes start from zero.
+// Pace of a tool's contacts with implicitly stepped lattices. The pushes of these contacts start from zero.
 constexpr ContactPace stiff_body_pace{1.0, 300.0};
 // Rates at which gripped points return to the tool, 1/s.
 constexpr double grip_correction_per_s = 1800.0, stiff_grip_correction_per_s = 300.0;

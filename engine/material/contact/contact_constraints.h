@@ -46,10 +46,10 @@ struct ToolMotion {
   CarriedNodes carried;
 };
 
-// Key of the first of the points that are or were nearest to the tool. The keys of further such points count
-// down from it. Keys identify a pushed point from tick to tick, so that its push starts from the force of the
-// last substep. A point at a sample of the surface has the sample's number as its key. Points between samples
-// have larger keys than all samples.
+// Keys identify a pushed point from tick to tick, so that its push starts from the force of the last substep.
+// A point at a sample of the surface has the sample's number as its key. Some points are or were nearest to
+// the tool: their keys are nearest_point_key, nearest_point_key - 1 and so on. Points between samples have
+// larger keys than all samples.
 inline constexpr int nearest_point_key = -1;
 // Key of a point that differs in every tick, whose push starts from zero.
 inline constexpr int changing_point_key = -1000;
@@ -64,8 +64,8 @@ class ContactConstraints {
   void clear();
   // Removes the constraints and their forces.
   void forget();
-  // Each add function returns false when full. `body` is the index of the lattice in the views passed to
-  // start() and pass().
+  // Each add function returns false if there are already as many constraints as the capacity permits. `body`
+  // is the index of the lattice in the views passed to start() and pass().
   //
   // Adds a point that the tool's sphere may push outward but never pulls. The pushed point is at the constant
   // offset `offset_m` from `point`.
@@ -93,9 +93,9 @@ class ContactConstraints {
 
   // start(), pass() and finish() are the parts of a substep of h_s, after the kick and before the drift of
   // the lattices. start() changes the tool's velocity so that it follows the hand, and pushes with the forces
-  // of the last substep; `fraction` [0, 1) is the part of the tick that has passed. Each pass() solves once
-  // the constraints on lattices of one kind: lattices that springs move, or lattices that implicit solvers
-  // move. finish() moves the tool. Impulses on nodes and tool are equal and opposite.
+  // of the last substep; `fraction` [0, 1) is the part of the tick that has passed. Each pass() solves each
+  // constraint of one kind once: those on explicitly stepped lattices, or those on implicitly stepped ones.
+  // finish() moves the tool. Impulses on nodes and tool are equal and opposite.
   void start(std::span<const LatticeView> lattices, ToolState& tool, double h_s, double fraction);
   void pass(std::span<const LatticeView> lattices, ToolState& tool, const ContactPass& pass);
   void finish(ToolState& tool, double h_s) { tool.position_m += h_s * tool.velocity_m_per_s; }
@@ -129,8 +129,7 @@ class ContactConstraints {
     Kind kind = Kind::sphere_push;
     int body = 0;
     EmbeddedPoint point;
-    // Rest position of the constrained point. Until add() completes it, only the offset from the embedded
-    // point.
+    // Rest position of the constrained point. In the argument of add(), it is only the offset from `point`.
     Vector3 rest_m = Vector3::Zero();
     Vector3 direction = Vector3::Zero();  // normal of a plane push, or offset of a grip in the tool's frame
     double offset_m = 0.0;                // distance of the plane from the tool's centre; plane push only
@@ -138,9 +137,9 @@ class ContactConstraints {
     double compliance = 0.0;
     double friction = 0.0;  // friction coefficient of the body's surface; tools have none
     int key = changing_point_key;
-    bool is_implicit = false;  // true if the implicit solver moves the lattice
+    bool is_implicit = false;  // true if an implicit solver steps the lattice
     // True if a push starts from the force of the last substep. False for grips, for changing_point_key, and
-    // on lattices that the implicit solver moves: their contact mass is an estimate, and the force of the
+    // on implicitly stepped lattices. The contact mass of such a lattice is an estimate, and the force of the
     // last substep would amplify its error.
     bool keeps_force = false;
     double force_n = 0.0;               // push in the last substep

@@ -1,4 +1,4 @@
-// Velocity constraint between two points that may push each other but never pull, as all contacts use it.
+// Velocity constraint between two points that may push each other but never pull. All contacts use it.
 #pragma once
 
 #include <algorithm>
@@ -48,8 +48,9 @@ struct ContactPush {
   }
 };
 
-// Kind of solver that moves the lattices of a contact. Contacts whose lattices are all moved by implicit
-// solvers are solved once a tick, all others in each substep.
+// Kind of solver that advances the lattices of a contact. `solvers`: all lattices are stepped implicitly, and
+// the contact is solved once a tick. `springs`: at least one lattice is stepped explicitly by its springs,
+// and the contact is solved in each substep.
 enum class MovedBy { springs, solvers };
 
 // One pass over the contacts. It solves each contact of the kind `moved_by` once.

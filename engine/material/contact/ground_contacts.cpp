@@ -15,8 +15,8 @@ auto contact_key(const GroundContact& contact) {
   return std::make_tuple(contact.body, contact.node);
 }
 
-// Updates the mean push. It is the plain mean since the node touched the ground, and exponentially weighted
-// after friction_memory_s.
+// Updates the mean push. For the first friction_memory_s after the node touched the ground it is the plain
+// mean of all pushes, and later an exponentially weighted mean.
 void remember(GroundContact& contact, double push_n, double h_s) {
   contact.time_s = std::min(contact.time_s + h_s, friction_memory_s + h_s);
   contact.mean_push_n += h_s / contact.time_s * (push_n - contact.mean_push_n);

@@ -38,8 +38,8 @@ struct GroundContact {
 // imperceptibly.
 inline constexpr double friction_memory_s = 0.01;
 
-// Rigid ground under bodies: velocity constraints on their nodes. Lattices with springs solve them in each
-// substep, after all other contacts. Implicit solvers solve them once a tick.
+// Rigid ground under bodies: velocity constraints on their nodes. In lattices stepped by their springs, the
+// constraints are solved in each substep, after all other contacts. Implicit solvers solve them once a tick.
 //
 // Stores the contacts of one tick and the friction state that the next tick continues from. Each contact
 // constrains a single node, so one pass solves the contacts of spring-stepped lattices exactly, and sticking

@@ -117,8 +117,8 @@ inline void compute_stretch(const CellBatch& b, const Matrix& h, Matrix& stretch
   }
 }
 
-// Computes the inverse of tr S - S for the symmetric part of the stretch S. For a crushed cell, whose matrix
-// is nearly singular, sets the inverse for an unstrained cell.
+// Computes the inverse of tr S - S for the symmetric part of the stretch S. The matrix of a crushed cell is
+// nearly singular; its inverse is replaced by that of an unstrained cell.
 inline void compute_spin_map(CellBatch& b, const Matrix& s) {
   for (int l = 0; l < lanes; ++l) {
     const double xx = 1.0 + s.at[0][l], yy = 1.0 + s.at[4][l], zz = 1.0 + s.at[8][l];
@@ -153,8 +153,8 @@ inline void spin_map_times(const CellBatch& b, const Rotation& a, Rotation& resu
   }
 }
 
-// Rotates the cells by one Newton step, limited to half a radian: the direction of a longer step is useful,
-// but not its length.
+// Rotates the cells by one Newton step. The rotation is limited to half a radian: a longer step has a useful
+// direction, but not a useful length.
 inline void rotate_further(CellBatch& b, const Matrix& s) {
   Rotation skew, w;
   for (int l = 0; l < lanes; ++l) {

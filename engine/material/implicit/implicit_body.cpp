@@ -297,8 +297,8 @@ void ImplicitBody::apply_matrix(double inertia, double stiffness, const Doubles&
   free_only(out);
 }
 
-// Removes the velocities of fixed nodes and adds the forces that the prescribed motion of fixed nodes exerts
-// on free nodes.
+// Sets the velocities of fixed nodes to zero, and adds the forces that the prescribed motion of fixed nodes
+// exerts on free nodes.
 void ImplicitBody::apply_fixed_motion(double stiffness, double h) {
   free_only(velocity_);
   apply_matrix(0.0, stiffness, fixed_velocity_, image_);

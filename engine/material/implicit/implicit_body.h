@@ -127,7 +127,7 @@ class ImplicitBody {
   // Mass of a node, kg; 0 for the second of two joined nodes.
   double mass_kg(int node) const { return mass_[static_cast<std::size_t>(node)]; }
   double damping_time_s() const { return damping_time_; }
-  // Sets the inertia of the nodes divided by their mass, at least 1 (SpringLattice::inertia_scale()).
+  // Sets the ratio of the nodes' inertia to their mass, at least 1 (SpringLattice::inertia_scale()).
   void set_inertia_scale(double scale);
   const LatticeReport& report() const { return report_; }
 

@@ -21,8 +21,8 @@ constexpr double min_diagonal_fraction = 0.1;
 // Bounds of the spectral mass (see ImplicitGroundContacts), relative to the body's mass.
 constexpr double min_mass_ratio = 1e-5, max_mass_ratio = 10.0;
 
-// Smallest sum of the weights of free nodes at which a contact point responds. A point attached mostly to
-// fixed nodes would hardly move, or would move its few free nodes far too much.
+// A contact point responds only if the weights of its free nodes have at least this sum. A point attached
+// mostly to fixed nodes would hardly move, or would move its few free nodes far too much.
 constexpr double min_free_fraction = 0.5;
 
 double free_fraction(const GridPoint& point, const ImplicitBody& body) {

@@ -1,5 +1,5 @@
-// Implicit solver of a lattice whose material is too stiff to be stepped by springs, and the solver's
-// contacts with the ground.
+// Implicit solver of a lattice whose material is too stiff for the explicit spring solver, and the contacts
+// of such a lattice with the ground.
 #pragma once
 
 #include <array>
@@ -124,14 +124,15 @@ struct RigidMove {
 // Owned by the body. It is built outside the tick and allocates nothing afterwards.
 class ImplicitSolver {
  public:
-  // Builds the solver of a lattice, unstrained when the lattice's nodes are at `rest_m`.
+  // Builds the solver of a lattice. The solver's block is unstrained when the lattice's nodes are at
+  // `rest_m`.
   static Result<ImplicitSolver> make(const LatticeMesh& mesh, const std::vector<Vector3>& rest_m,
                                      const LatticeMaterials& materials, InstructionSet set);
 
   const LatticeMesh& mesh() const { return body_.mesh(); }
   const LatticeReport& report() const { return body_.report(); }
   const std::vector<Vector3>& rest_m() const { return rest_m_; }
-  // Sets the body's inertia divided by its mass, at least 1. The caller must pass the new
+  // Sets the ratio of the body's inertia to its mass, at least 1. The caller must pass the new
   // contact_inverse_mass() to the lattice.
   void set_inertia_scale(double scale);
 
@@ -139,8 +140,8 @@ class ImplicitSolver {
   double contact_inverse_mass() const { return contact_inverse_mass_; }
 
   // Fixes nodes of the lattice, one byte per node. Each node of the hexahedral block is fixed if the lattice
-  // node nearest to it is fixed. If a fixed lattice node would then follow only free block nodes, the one of
-  // them with the largest weight is fixed too.
+  // node nearest to it is fixed. A fixed lattice node may still follow only free block nodes. Of these, the
+  // node with the largest weight is then fixed, too.
   void fix_nodes(std::span<const std::uint8_t> fixed);
   // Sets the displacements and velocities of the hexahedral block from those of the lattice.
   void adopt_shape(const SpringLattice& lattice);
@@ -158,11 +159,11 @@ class ImplicitSolver {
   // Replaces all forces on the hexahedral block's nodes by the forces, N, that the lattice has on `nodes`.
   // Forces on fixed nodes are ignored, because they do not move the block.
   void set_node_forces(const SpringLattice& lattice, std::span<const int> nodes);
-  // Sets the velocity of fixed nodes for the coming steps: of the lattice nodes `nodes`, in ascending order,
-  // and of the nodes of the hexahedral block that they fix.
+  // `nodes` are fixed lattice nodes in ascending order; each may fix some nodes of the hexahedral block. Sets
+  // the velocity of these block nodes for the coming steps.
   void move_fixed(std::span<const int> nodes, const Vector3& velocity_m_per_s);
-  // Returns the force of cells, loads and gravity on the fixed lattice nodes `nodes` and on the nodes of the
-  // hexahedral block that they fix, at the start of the last step, N.
+  // `nodes` are fixed lattice nodes in ascending order; each may fix some nodes of the hexahedral block.
+  // Returns the force of cells, loads and gravity on all these nodes at the start of the last step, N.
   Vector3 force_on_fixed(const SpringLattice& lattice, std::span<const int> nodes,
                          const Vector3& gravity_m_per_s2) const;
 
@@ -180,8 +181,8 @@ class ImplicitSolver {
     double assumed_work_j = 0.0, work_j = 0.0;
   };
   ContactResponse find_response(const SpringLattice& lattice);
-  // Applies this fraction of the response that find_response() computed to the hexahedral block, and updates
-  // the lattice's velocities.
+  // Multiplies the response computed by find_response() by `fraction` and applies it to the hexahedral block.
+  // Then updates the lattice's velocities.
   void respond(double fraction, SpringLattice& lattice);
   // Ground contacts of the lattice, passed to end_step().
   struct GroundPush {

@@ -208,8 +208,8 @@ void fill_from_hull(LatticeMesh& mesh) {
     const std::array<int, 3> at = mesh.grid_index(n);
     if (mesh.node_location(at[0], at[1], at[2]) != NodeLocation::in_body) continue;
     Vector3 point = Vector3::Zero();
-    // The Boolean sum adds faces, subtracts edges and adds corners, which are at an end of one, two and three
-    // axes, respectively.
+    // Faces are at an end of one axis, edges of two and corners of three. The Boolean sum adds faces,
+    // subtracts edges and adds corners.
     for (int ends = 1; ends < 27; ++ends) {
       const std::array<int, 3> end = {ends / 9, ends / 3 % 3, ends % 3};  // 0: not at an end of this axis
       if (mesh.closed && end[0] != 0) continue;
@@ -298,9 +298,10 @@ Outward find_outward(const Surface& surface, const RingParameters& ring, const L
   return {ring_parameter_at(surface, ring, ring_position(on_s, on_t, ni, nj)), radius};
 }
 
-// Returns the weight of a slice's narrow side in fill_slice(), at a fraction of the slice's width from this
-// side. The weight is linear, except in a bent section. There the centre of a narrow side is at the rim of
-// the bend, higher than the side's corners, so the weight is concentrated near the side.
+// Returns the weight of a slice's narrow side in fill_slice(). `fraction` is the distance from this side, as
+// a fraction of the slice's width. The weight is linear, except in a bent section. There the centre of a
+// narrow side is at the rim of the bend, higher than the side's corners, so the weight is concentrated near
+// the side.
 double side_influence(double fraction, bool bent) {
   const double rest = 1.0 - fraction;
   return bent ? rest * rest * rest * rest : rest;
@@ -386,8 +387,8 @@ Result<TubeBlock> make_block(const Surface& surface, const Profile& profile, con
   const double first_distance = profile.distance[rims.first], last_distance = profile.distance[rims.last];
   const double centre_v = LinearTable{profile.distance, profile.v}.at(0.5 * (first_distance + last_distance));
   const Ring centre_ring = sample_ring(surface, centre_v);
-  // The section is perpendicular to the tube's direction at its centre, not to the line between its ends,
-  // because the ends of a coil may be anywhere.
+  // The section is perpendicular to the tube's direction at the section's centre. The line between the tube's
+  // ends would not do, because the ends of a coil may be anywhere.
   if (!(centre_ring.along.norm() > 0.0)) {
     return Error{ErrorCode::degenerate,
                  "surface: its rings coincide along v at half its length; spread its control points there",
@@ -395,11 +396,12 @@ Result<TubeBlock> make_block(const Surface& surface, const Profile& profile, con
   }
   const CrossSection section = principal_axes(centre_ring, centre_ring.along.normalized());
   if (!(section.thickness >= min_thickness_ratio * section.width)) {
-    return Error{ErrorCode::degenerate,
-                 "surface: " + number_text(section.thickness * 1e3) +
-                     " mm thick at half its length where it is " + number_text(section.width * 1e3) +
-                     " mm wide: too flat for a lattice; make the thickness at least 1/10000 of the width",
-                 "surface"};
+    return Error{
+        ErrorCode::degenerate,
+        "surface: at half its length it is " + number_text(section.thickness * 1e3) + " mm thick and " +
+            number_text(section.width * 1e3) +
+            " mm wide, which is too flat for a lattice; make the thickness at least 1/10000 of the width",
+        "surface"};
   }
   const Extents extents = lattice_extents(surface, profile, rims, section);
   const Result<std::array<int, 3>> counts =
@@ -437,8 +439,8 @@ std::vector<int> nodes_inside(const LatticeMesh& mesh) {
 
 // Builds a block for a body whose cells fold if the block is filled slice by slice. The interior is filled
 // from the whole hull and unfolded. The first attempt uses caps up to the near rims or the shoulders (see
-// Rims), whichever are farther from the pole; the second uses caps up to the shoulders. The near rim of a
-// narrow nose may be on a flank as steep as the side. Returns nothing if both blocks fold.
+// Rims), whichever are farther from the pole. The second attempt uses caps up to the shoulders, because the
+// near rim of a narrow nose may be on a flank as steep as the side. Returns nothing if both blocks fold.
 std::optional<TubeBlock> make_unfolded_block(const Surface& surface, const Profile& profile,
                                              const LatticeRequest& request) {
   const Rims shoulders = shoulder_rims(profile);

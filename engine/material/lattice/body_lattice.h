@@ -12,7 +12,8 @@
 namespace spoonbill {
 
 // Returns the lattice of a body of a scene at rest, solid or shell. Fails if solid_lattice() or
-// shell_lattice() fails. `watch` receives the progress of order_by_feature_map(), if the body requests it.
+// shell_lattice() fails. If the body requests a feature map, `watch` receives the progress of
+// order_by_feature_map().
 Result<LatticeMesh> make_body_lattice(const Body& body, const FeatureMapWatch& watch = {});
 
 // Returns the lattice of a closed body: that of tube_lattice() if the body is a tube and no cell folds,
@@ -26,9 +27,9 @@ Result<LatticeMesh> solid_lattice(const Surface& surface, const LatticeRequest& 
 // slender cells and twice as many substeps. The nodes of the two end slices are on the caps of the tube.
 //
 // If cells fold, as in a body that is hollow at a pole, further attempts use larger caps, which reach at
-// least to the shoulders (shoulder_rims()). They interpolate the interior nodes from the whole hull and then
-// unfold the cells. Fails on a surface that is not a closed tube, counts below 2, and cells that remain
-// folded. `watch` receives the progress of order_by_feature_map().
+// least to the shoulders (shoulder_rims()). These attempts interpolate the interior nodes from the whole hull
+// and then unfold the cells. Fails on a surface that is not a closed tube, counts below 2, and cells that
+// remain folded. `watch` receives the progress of order_by_feature_map().
 Result<LatticeMesh> tube_lattice(const Surface& surface, const LatticeRequest& request,
                                  const FeatureMapWatch& watch = {});
 

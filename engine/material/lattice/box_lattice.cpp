@@ -87,9 +87,10 @@ Result<LatticeMesh> box_lattice(const ShellDistance& inside, double volume_m3,
   const Vector3 size = bounds.high - bounds.low;
   if (!(size.minCoeff() >= min_cell_thickness_ratio * size.maxCoeff())) {
     return Error{ErrorCode::degenerate,
-                 "mesh: " + number_text(size.minCoeff() * 1e3) + " mm thick where it is " +
+                 "mesh: it is " + number_text(size.minCoeff() * 1e3) + " mm thick and " +
                      number_text(size.maxCoeff() * 1e3) +
-                     " mm long: too flat for a lattice; make the thickness at least 1/10000 of the length",
+                     " mm long, which is too flat for a lattice; make the thickness at least 1/10000 of the "
+                     "length",
                  "mesh"};
   }
   LatticeMesh box = box_mesh(size, counts);
@@ -219,9 +220,10 @@ Status check_thick(const ClosedSkin& skin, double volume_m3, double size_m) {
   const double thickness = 2.0 * volume_m3 / area;
   if (thickness >= min_cell_thickness_ratio * size_m) return {};
   return Error{ErrorCode::degenerate,
-               "surface: " + number_text(thickness * 1e3) + " mm thick where it is " +
+               "surface: it is " + number_text(thickness * 1e3) + " mm thick and " +
                    number_text(size_m * 1e3) +
-                   " mm long: too flat for a lattice; make the thickness at least 1/10000 of the length",
+                   " mm long, which is too flat for a lattice; make the thickness at least 1/10000 of the "
+                   "length",
                "surface"};
 }
 

@@ -42,8 +42,8 @@ EmbeddedPoint embed_in_box(const LatticeMesh& box, const Vector3& point_m);
 
 // Builds a box of cells about a closed surface. The fraction of a cell is its part inside the surface. Parts
 // of the body thinner than a cell are too stiff in bending. Counts are along x, y and z. Nodes and cells get
-// body coordinates from the nearest sample of the surface, and their depth. A feature map in the request is
-// ignored.
+// the body coordinates of the nearest sample of the surface, except that their depth is measured at the node
+// or cell centre itself. A feature map in the request is ignored.
 //
 // Fails on counts below 2, and on a body whose volume divided by half its area is below a ten-thousandth of
 // its size.

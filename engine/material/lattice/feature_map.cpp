@@ -16,7 +16,8 @@ constexpr int draws_per_report = 4096;
 // Radius of the neighbourhood that is updated, relative to the width of its Gaussian. Nodes beyond it would
 // move by less than a ninetieth of the nearest node's move.
 constexpr double neighbourhood_reach = 3.0;
-// Number of halvings of a node's move before it is rejected, and number of passes over all nodes.
+// A node's move is halved up to `grid_halvings` times before it is rejected. All nodes are moved in `passes`
+// passes.
 constexpr int grid_halvings = 4, passes = 3;
 
 // Calls visit(node of the first corner, cell) for each cell.

@@ -20,8 +20,8 @@ CellQuality measure_cell_quality(const LatticeMesh& mesh);
 
 struct FeatureMapReport {
   CellQuality before, after;
-  // Fraction of the displacements wanted by the map that was applied. Displacements are shortened so that the
-  // worst cell gets no worse.
+  // Applied displacements as a fraction of those that the map requested. Displacements are shortened so that
+  // the worst cell gets no worse.
   double applied_fraction = 0.0;
 };
 

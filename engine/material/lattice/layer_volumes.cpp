@@ -11,7 +11,7 @@ namespace spoonbill {
 namespace {
 
 constexpr double min_layer_factor = 0.5, max_layer_factor = 2.0;
-// Number of steps along the surface's curve over an outer edge of a slice.
+// Number of straight steps that approximate the surface's curve along one outer edge of a slice.
 constexpr int arc_steps = 16;
 
 double tetrahedron_volume(const Vector3& a, const Vector3& b, const Vector3& c) {

@@ -177,8 +177,9 @@ std::vector<double> ShellSurface::along_fractions(int least) const {
 
 using Position = ShellSurface::Position;
 
-// Smallest numbers of parts per direction into which the surface is cut: to measure arc lengths, for the
-// lines over which arc lengths are averaged, and to compute volumes.
+// Smallest numbers of parts per direction into which the surface is cut. `length_stations` is for measuring
+// arc lengths, and `volume_stations` for computing volumes. `lines` is for choosing the lines over which arc
+// lengths are averaged.
 constexpr int length_stations = 200, lines = 16, volume_stations = 48;
 // A point of a bowl's rim counts as the farthest from the rim's centre if its distance is at least this
 // fraction of the largest distance. The start of the grid thus does not depend on rounding.
@@ -429,7 +430,7 @@ Result<LatticeMesh> shell_lattice(const Surface& surface, double thickness_m, co
   }
   if (request.feature_map) {
     return Error{ErrorCode::inconsistent,
-                 "lattice: feature_map: a shell has no inside to spread nodes in; leave it out",
+                 "lattice: feature_map: a shell has no inside to spread nodes in; remove feature_map",
                  "feature_map"};
   }
   const Result<ShellSurface> face = ShellSurface::make(surface);

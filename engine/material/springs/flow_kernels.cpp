@@ -116,7 +116,8 @@ void compute_dilation_roots(const LatticeView& view, float* __restrict root) {
   for (int i = 0; i < view.padded_count; ++i) root[i] = cube_root(dilation[i]);
 }
 
-// Flows the springs of one direction. `rule_at` returns the rule of the block whose first node it receives.
+// Applies plastic flow to the springs of one direction. `rule_at` receives the first node of a block and
+// returns the block's rule.
 template <class RuleAt>
 inline void flow_springs(const LatticeView& view, const SpringArrays& s, const RuleAt& rule_at) {
   const float* const root = view.fx;

@@ -139,10 +139,11 @@ inline void tangent_block(const LatticeView& view, int offset, const ConstField&
   }
 }
 
-// Calls for_block(springs, start, near) for every active block of every direction and adds the result in
-// `near` to each of the sums. Blocks are grouped into tiles, direction by direction: positions and forces
-// stay in the first-level cache, and few enough arrays are read at once for prefetching. Forces on near
-// ends are summed separately, so that no load waits for an overlapping store just before it.
+// Calls for_block(springs, start, near) for every active block of every direction. The call adds the block's
+// forces on near ends to `near`, and these are later added to `sums`. Because they are collected separately,
+// no load waits for an overlapping store just before it. Blocks are grouped into tiles, direction by
+// direction: positions and forces stay in the first-level cache, and few enough arrays are read at once for
+// prefetching.
 template <int count, class ForBlock>
 inline void over_springs(const LatticeView& view, const Field (&sums)[count], const ForBlock& for_block) {
   constexpr int tile_blocks = 8, tile = tile_blocks * block;

@@ -32,9 +32,9 @@ struct SpringArrays {
   const float* first_rest_length = nullptr;  // rest length at construction, m
   float* crept = nullptr;                    // strain of the rest length due to creep()
   float* tangent = nullptr;                  // linearisation, see tangent_runs
-  // Properties of each spring in which the materials of the lattice differ; null for properties in which they
-  // do not differ. The flow rate is 0 for springs that do not flow, and relaxing_fraction is 0 for springs
-  // that do not creep.
+  // If the materials of the lattice differ in a property, its array has one value for each spring; otherwise
+  // it is null. The flow rate is 0 for springs that do not flow, and relaxing_fraction is 0 for springs that
+  // do not creep.
   const float* stiffening = nullptr;
   const float* further_damping = nullptr;  // N s/m, see damp_further()
   const float* yield = nullptr;

@@ -208,7 +208,8 @@ class SpringLattice {
   Floats stiffness_[lattice_direction_count], rest_length_[lattice_direction_count];
   Floats square_difference_[lattice_direction_count], first_rest_length_[lattice_direction_count];
   Floats crept_[lattice_direction_count], tangent_[lattice_direction_count];
-  // Properties of each spring in which the materials of the body differ; empty if they do not differ.
+  // If the materials of the body differ in a property, its array has one value for each spring; otherwise it
+  // is empty.
   Floats stiffening_[lattice_direction_count], further_damping_[lattice_direction_count];
   Floats yield_[lattice_direction_count], hardening_[lattice_direction_count];
   Floats flow_rate_[lattice_direction_count], relaxing_fraction_[lattice_direction_count];

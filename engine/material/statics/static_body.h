@@ -95,8 +95,8 @@ void fix_node(int node, const Vector3& displacement_m, std::vector<FixedAxis>& f
 // Cells of a lattice and the masses of its nodes. Immutable. It is built for a study, never within a tick.
 class StaticBody {
  public:
-  // Builds the body of a study. Fails on materials outside their ranges, folded cells, and springs below a
-  // Poisson's ratio of 1/4.
+  // Builds the body of a study. Fails on materials outside their ranges, on folded cells, and on springs with
+  // a Poisson's ratio below 1/4.
   static Result<StaticBody> make(const LatticeMesh& mesh, const LatticeMaterials& materials, CellKind kind);
 
   const LatticeMesh& mesh() const { return mesh_; }

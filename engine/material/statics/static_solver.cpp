@@ -143,7 +143,7 @@ Error too_large(int nodes, double work, double limit) {
   const int enough = static_cast<int>(reserve * nodes * std::pow(limit / work, exponent)) / 100 * 100;
   return Error{ErrorCode::too_many,
                "lattice: " + std::to_string(nodes) + " nodes in this shape take too long; use about " +
-                   std::to_string(std::max(enough, 100)) + " as node_budget or in nodes",
+                   std::to_string(std::max(enough, 100)) + " in total (node_budget or nodes)",
                "lattice"};
 }
 
