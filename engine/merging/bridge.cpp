@@ -247,8 +247,8 @@ Cells cells_along(const KnotVector& knots) {
   return cells;
 }
 
-// A strip is sampled on at least this number of lines, and at no fewer than this number of steps along each
-// line. The limits matter only for strips with few polynomial pieces.
+// Smallest number of lines on which a strip is sampled, and smallest number of steps along each line. These
+// limits matter only for strips with few polynomial pieces.
 constexpr int least_lines = 32, least_steps = 24;
 
 std::vector<double> sample_lines(const KnotVector& u) {

@@ -166,10 +166,10 @@ Result<Surface> align_seam(const Surface& before, const Surface& patch, const Jo
   const EdgeCurve a = edge_curve(before, Side::v_end), b = edge_curve(patch, Side::v_start);
   const Vector3 seam_point = position(a, a.knots.domain_start());
   const double nearest = nearest_on_ring(b, seam_point);
-  // The seam is the best fit or, if it is close enough to the previous ring's seam, the point p of this ring
-  // that is nearest to that seam. The limit is the tolerance if the rings do not touch, and this fraction of
-  // the tolerance if they touch. The point p differs from the best fit if the rings have different parameters
-  // or, by rounding, if they are identical and have corners.
+  // Let p be the point of this ring that is nearest to the previous ring's seam. If the distance is within a
+  // limit, p becomes the seam of this ring instead of the best fit. The limit is the tolerance if the rings
+  // do not touch, and this fraction of the tolerance if they touch. The best fit differs from p if the rings
+  // have different parameters or, by rounding, if the rings are identical and have corners.
   constexpr double coincidence_fraction = 1e-6;
   const double near_m =
       request.tolerance_m * (match->gap_m > request.tolerance_m ? 1.0 : coincidence_fraction);
@@ -212,8 +212,8 @@ Vector3 blended(const BlendingMatrix& blending, int row, const ControlNet& net, 
   return sum;
 }
 
-// Returns one distance for each pair of corresponding parameters u. At these parameters, the two surfaces are
-// nowhere farther apart at equal v. Both surfaces must have equal v knots.
+// Returns an upper bound for each pair of corresponding parameters u. Points of the two surfaces at these
+// parameters and at equal v are no farther apart than the bound. The surfaces must have equal v knots.
 std::vector<double> distances_m(const Surface& surface, const std::vector<double>& along,
                                 const Surface& other, const std::vector<double>& matching) {
   const BlendingMatrix own = blending_matrix(surface.u, along, 0),

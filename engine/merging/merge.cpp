@@ -26,7 +26,7 @@ struct PatchGrid {
   }
 };
 
-// Returns the side of the patch that becomes the side `in_grid` by the orientation.
+// Returns the side of the patch that the orientation turns into the side `in_grid`.
 Side own_side(Side in_grid, const Orientation& orientation) {
   for (const Side side : all_sides) {
     if (turn_side(side, orientation).side == in_grid) return side;

@@ -65,8 +65,8 @@ std::vector<Vector3> evaluate_positions(const Surface& surface, const Polygon& p
   return points_m;
 }
 
-// A closed polygon over the parameters, as a function of the fraction of its length. Lengths are measured in
-// space.
+// A closed polygon in the parameter plane, as a function of the fraction of its length. Lengths are measured
+// in space.
 class RoundEdge {
  public:
   RoundEdge(Polygon polygon, const std::vector<Vector3>& points_m) : polygon_(std::move(polygon)) {
@@ -150,7 +150,7 @@ std::optional<Result<FittedShape>> resample_round_part(const Surface& surface,
 namespace {
 
 using Edge = TrimmedArea::Edge;
-// Loops over the parameters, with the kept part on their left.
+// Loops in the parameter plane, with the kept part on their left.
 using Polygons = std::vector<std::vector<Eigen::Vector2d>>;
 
 // A point of a trim counts as a corner if the cosine of the angle between its two chords is less than this.
@@ -161,7 +161,8 @@ constexpr double edge_margin = 1e-7;
 constexpr int trim_lines_checked = 64;
 // Fraction of the longest line's length. A shorter line at an end of the part counts as a point.
 constexpr double point_fraction = 1e-3;
-// Largest jump of a line's ends across a corner of the loops, relative to the part's extent in v.
+// Largest change of a line's ends across a corner that does not count as a jump, relative to the part's
+// extent in v.
 constexpr double jump_fraction = 1e-3;
 
 struct Interval {

@@ -95,8 +95,8 @@ class RoundedRectangle {
   double slowed() const { return 4.0 * rounding_; }
 
   // Returns the position on a side, measured from its centre. Towards each end of the side, a point slows
-  // down by the fraction `slower`. It does so over the length slowed(), or over the whole half of a shorter
-  // side. There the position is a cubic function of `off_centre`.
+  // down by the fraction `slower`. It does so over the length slowed() or, if half the side is shorter, from
+  // the centre on. There the position is a cubic function of `off_centre`.
   double position_on_side(double half_side, double off_centre, double slower) const {
     if (!(half_side > 0.0)) return 0.0;
     if (half_side <= slowed()) {

@@ -250,7 +250,7 @@ void BodyMapping::embed(const SpringLattice& lattice) {
   embedding_.reserve(samples);
   for (int i = 0; i < grid.rows(); ++i) {
     for (int j = 0; j < grid.columns(); ++j) {
-      // Samples at the same point share one embedding, so that they stay together to the last bit.
+      // Samples at the same point share one embedding, so that their positions stay bitwise equal.
       const int twin = find_twin(i, j);
       if (twin != i * grid.columns() + j) {
         embedding_.push_back(embedding_[static_cast<std::size_t>(twin)]);

@@ -30,7 +30,7 @@ struct BodyState {
   std::variant<BodyMapping, MeshMapping> skin;
   Smoothing smoothing;
   std::vector<std::uint8_t> fixed, touched;            // one byte per node: 1 if fixed, 1 if touched
-  std::optional<ImplicitSolver> implicit_solver = {};  // empty: uses the spring solver
+  std::optional<ImplicitSolver> implicit_solver = {};  // empty: the body uses the spring solver
   // Placeholder for one node, which make_body_state() replaces.
   BodyHold hold = BodyHold(1);
   BodyLoads loads = {};
@@ -91,9 +91,9 @@ struct BodyState {
 Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlane>& planes,
                                   InstructionSet set, const FeatureMapWatch& watch = {});
 
-// Elastic bodies with at least this Young's modulus use the implicit solver, at their true stiffness. The few
-// newtons of a hand dent such bodies by less than a third of a millimetre, but can bend them. Softer bodies
-// can be dented. This requires a finer lattice, for which the spring solver is used.
+// Linear elastic bodies with at least this Young's modulus use the implicit solver, at their true stiffness.
+// The few newtons of a hand dent such bodies by less than a third of a millimetre, but can bend them. Softer
+// bodies can be dented. This requires a finer lattice, for which the spring solver is used.
 inline constexpr double stiff_youngs_modulus_pa = 1e6;
 
 // Makes the implicit solver of a lattice, which is unstrained while its nodes are at `rest_m`. Returns

@@ -103,8 +103,8 @@ class BodyGroundContact {
   };
   struct BodyFootings {
     SkinHeights heights;
-    // The size of a cell. In a box of cells, the largest distance at rest of a followed sample from its node,
-    // if that is larger than a cell.
+    // The size of a cell or, in a box of cells, the largest distance at rest between a followed sample and
+    // its node, whichever is larger.
     double max_sample_distance_m;
     std::vector<Footing> footings;
     std::vector<int> followed;  // indices of samples of the mapping

@@ -348,9 +348,9 @@ int count_parts(const Vector3& one_side, const Vector3& other_side, double longe
 }  // namespace
 
 // Adds pushes at fixed points between the samples. The points are so close together that the sphere rests on
-// the lattice as if every point were pushed; at most most_parts of them are used along the side of a patch. A
-// sphere of radius R reaches d^2 / (8 R) between points that are d apart. The points are fixed because a push
-// at the nearest point would move, and its force would depend on its path.
+// the lattice as if every point were pushed, unless this needs more than most_parts parts per side of a
+// patch. A sphere of radius R reaches d^2 / (8 R) between points that are d apart. The points are fixed
+// because a push at the nearest point would move, and its force would depend on its path.
 void ToolContact::add_pushes_between_samples(int body, const BodyState& state, double reach_m) {
   const BodyMapping& mapping = state.mapping();
   const Grid& grid = mapping.nested().grid;
