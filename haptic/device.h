@@ -30,7 +30,7 @@ struct DeviceSpecification {
   bool workspace_follows_model = false;
 
   // Limits of the safety chain (haptic/safe_device.h).
-  double quiet_force_n = 0.2;  // the force stays off until the request was below this for 10 ticks
+  double quiet_force_n = 0.2;  // the force stays off until 10 ticks in a row request less than this
   // Time for the force to ramp from zero to full. The short default suits the virtual device, which cannot
   // hurt anybody; use 2 s for real hardware.
   double ramp_time_s = 0.2;
@@ -55,7 +55,7 @@ inline constexpr Range<double> device_speed_range_m_per_s{1e-2, 100.0};
 Status check_specification(const DeviceSpecification& specification);
 
 inline constexpr std::uint32_t button_main = 1u;   // pressed: the tool grips the material and can pull it
-inline constexpr std::uint32_t button_hover = 2u;  // set: the hand only points, like a mouse, without contact
+inline constexpr std::uint32_t button_hover = 2u;  // set: the tool moves with the hand but touches nothing
 
 // Largest valid coordinate of a reading, farther from the origin than any device reaches.
 inline constexpr std::int64_t reading_limit_nm = 10'000'000'000;

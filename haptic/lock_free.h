@@ -77,8 +77,8 @@ class BoundedQueue {
   BoundedQueue(const BoundedQueue&) = delete;
   BoundedQueue& operator=(const BoundedQueue&) = delete;
 
-  // Returns false and leaves `value` unchanged if the queue is full. Otherwise `value` receives the previous
-  // contents of the slot: T(), or the value that an earlier pop() replaced in its argument.
+  // Returns false and leaves `value` unchanged if the queue is full. Otherwise swaps `value` with the
+  // contents of the slot: T(), or what the argument of an earlier pop() contained before the call.
   bool push(T&& value) noexcept {
     const std::size_t end = pushed_.load(std::memory_order_relaxed);
     if (end - popped_.load(std::memory_order_acquire) == slots_.size()) return false;

@@ -14,8 +14,8 @@
 // longer than its number of ticks.
 //
 // Faults of the device and the program are recorded by their effects, so that a session with faults replays
-// to the same states. Without a valid reading the tool only points (button_hover). Resetting the proxy and
-// switching the force on or off are recorded as commands.
+// to the same states. A tick without a valid reading is recorded as hovering (button_hover): the tool touches
+// nothing. Resetting the proxy and switching the force on or off are recorded as commands.
 //
 // The version of the format is 1. If the document of a recording has an old version, the reader converts the
 // document and the commands (old_documents.h). The replay of such a recording passes through other states, so

@@ -57,7 +57,7 @@ bool agree_beyond_second(const Surface& before, const Surface& after, double str
   if (!last || !first) return false;
   const double length = breaks_before.back() - breaks_before[breaks_before.size() - 2];
   const double ratio = length / (stretch * (breaks_after[1] - breaks_after[0]));
-  // Binomial coefficient of the k-th difference.
+  // Binomial coefficient "degree choose k", the factor of the k-th difference. It starts with k = 2.
   double choices = 0.5 * before.v.degree() * (before.v.degree() - 1.0);
   for (int k = 3; k <= std::min(continuity, before.v.degree()); ++k) {
     choices *= (before.v.degree() - k + 1.0) / k;
@@ -247,8 +247,8 @@ Cells cells_along(const KnotVector& knots) {
   return cells;
 }
 
-// Smallest numbers of lines across a strip and of steps along each line at which a strip is sampled. They
-// matter for strips with few polynomial pieces.
+// Smallest number of lines on which a strip is sampled, and smallest number of steps along each line. These
+// limits matter only for strips with few polynomial pieces.
 constexpr int least_lines = 32, least_steps = 24;
 
 std::vector<double> sample_lines(const KnotVector& u) {
@@ -368,8 +368,8 @@ Result<Surface> make_strip(const Surface& before, const Surface& after, const Br
   return bridge(before, moved.value(), continuity);
 }
 
-// Returns the length of a bridge over which the mean derivative along v is that of `before` at the gap.
-// `after` is stretched to have the same derivative there.
+// Returns the length along v of a bridge whose mean derivative equals the mean derivative of `before` at the
+// gap. The stretch in the result gives `after` the same mean derivative at the gap.
 Result<BridgeLength> even_speed_length(const Surface& before, const Surface& after) {
   double chord = 0.0, speed_before = 0.0, speed_after = 0.0;
   const std::vector<double> parameters = uniform_parameters_without_seam(before.u, 64);
@@ -388,7 +388,7 @@ Result<BridgeLength> even_speed_length(const Surface& before, const Surface& aft
 }
 
 // Form of a bridge between two rings. Further columns of control points are added between the two ends if the
-// bridge bends, or if it is long. In a long bridge, irregular patch ends would grow into folds.
+// bridge bends, or if it is long. Without them, irregular patch ends would grow into folds in a long bridge.
 struct BridgeForm {
   // Rotation that makes the ring after the gap face the ring before it.
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
@@ -439,7 +439,8 @@ Result<Surface> bridge(const Surface& before, const Surface& after, int continui
   SPOONBILL_ASSERT(before.u.control_point_count() == after.u.control_point_count() &&
                    before.v.degree() == after.v.degree());
   const int degree = before.v.degree();
-  // The order of continuity is at least half of the degree, which needs no more than two polynomial pieces.
+  // An order of up to half the degree needs no more than two polynomial pieces. The order is therefore at
+  // least half the degree.
   const int order = std::max(continuity, degree / 2);
   const BridgeForm form = choose_form(before, after);
   const int between = form.has_columns_between ? columns_between : 0;

@@ -60,11 +60,12 @@ std::optional<Vector3> find_fold(const Surface& surface);
 // neighbouring lines of constant u oppose each other, although they agree at both edges.
 std::optional<Vector3> find_fold_between(const Surface& surface, double start, double end);
 
-// Length of a bridge along v. It follows from the mean distance between the edges and the mean derivative of
-// the first patch along v there; the second patch is stretched to have the same derivative. The length is
-// reduced until the bridge does not fold. Between rings it is also reduced, to about a quarter at most, until
-// the bridge is nowhere narrower than the narrower ring. Fails for edges at which the derivatives along v
-// vanish, and for bridges that fold at any length unless `may_fold` is set.
+// Length of a bridge along v. bridge_length() computes it from the mean distance between the edges and from
+// the mean derivative of the first patch along v at its edge. `stretch_of_after` gives the second patch the
+// same derivative. If the bridge folds, bridge_length() reduces the length until it does not. Between rings
+// it also reduces the length, but not below about a quarter, until the bridge is nowhere narrower than the
+// narrower ring. It fails for edges at which the derivatives along v vanish and, unless `may_fold` is set,
+// for a bridge that folds at any length.
 struct BridgeLength {
   double parameter = 0.0;
   double stretch_of_after = 1.0;

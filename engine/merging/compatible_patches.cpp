@@ -139,8 +139,8 @@ std::vector<double> corresponding_parameters(const EdgeCurve& a, const EdgeCurve
   return matching;
 }
 
-// Returns the largest distance between the points of a at `along` and the corresponding points of b at
-// `matching`.
+// Returns the largest distance between the points of curve `a` at the parameters `along` and the
+// corresponding points of curve `b` at the parameters `matching`.
 double largest_distance_m(const EdgeCurve& a, const EdgeCurve& b, const std::vector<double>& along,
                           const std::vector<double>& matching) {
   double largest = 0.0;
@@ -166,10 +166,10 @@ Result<Surface> align_seam(const Surface& before, const Surface& patch, const Jo
   const EdgeCurve a = edge_curve(before, Side::v_end), b = edge_curve(patch, Side::v_start);
   const Vector3 seam_point = position(a, a.knots.domain_start());
   const double nearest = nearest_on_ring(b, seam_point);
-  // Let p be the point of this ring that is nearest to the previous ring's seam. If p is close enough to that
-  // seam, p becomes the seam instead of the best fit. The limit is the tolerance for rings that do not touch,
-  // and this fraction of the tolerance for rings that touch. p differs from the best fit if the parameters
-  // differ or, by rounding, for identical rings with corners.
+  // Let p be the point of this ring that is nearest to the previous ring's seam. If the distance is within a
+  // limit, p becomes the seam of this ring instead of the best fit. The limit is the tolerance if the rings
+  // do not touch, and this fraction of the tolerance if they touch. The best fit differs from p if the rings
+  // have different parameters or, by rounding, if the rings are identical and have corners.
   constexpr double coincidence_fraction = 1e-6;
   const double near_m =
       request.tolerance_m * (match->gap_m > request.tolerance_m ? 1.0 : coincidence_fraction);
@@ -212,8 +212,8 @@ Vector3 blended(const BlendingMatrix& blending, int row, const ControlNet& net, 
   return sum;
 }
 
-// Returns, for each pair of corresponding parameters u, an upper bound over all v of the distance between two
-// surfaces with equal v knots.
+// Returns an upper bound for each pair of corresponding parameters u. Points of the two surfaces at these
+// parameters and at equal v are no farther apart than the bound. The surfaces must have equal v knots.
 std::vector<double> distances_m(const Surface& surface, const std::vector<double>& along,
                                 const Surface& other, const std::vector<double>& matching) {
   const BlendingMatrix own = blending_matrix(surface.u, along, 0),

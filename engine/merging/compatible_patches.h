@@ -19,8 +19,8 @@ struct JoinRequest {
   double blend_m = 0.0;            // length of a blend at joints that lack the continuity; 0 for none
   double twist = 0.0;              // rotation of each ring from its best fit, as a fraction of a turn
   int largest_count = 200;         // largest number of control points in each direction
-  bool shared_parameters = false;  // edges have equal parameters and seams; neither is matched
-  bool bridges_may_fold = false;   // true if the user has set the relative direction of edges
+  bool shared_parameters = false;  // true: edges already agree in parameters and seams
+  bool bridges_may_fold = false;   // true: a bridge that folds is not refused
   Progress progress = {};          // progress of the whole request
 };
 

@@ -31,9 +31,9 @@ namespace {
 // Lines on a body from a loop near one pole to the pole on the far side.
 //
 // The body's parameters are mapped to a plane by polar coordinates: v, from the near pole on, is the radius
-// and u the angle. Each line leaves the loop away from the loop's centre, bends, and becomes a line of
-// constant u of the body at a circle around the loop. Beyond the circle, the body's curvature is aligned with
-// the lines. All lines leave the loop at the same speed, as they would the end of a fillet.
+// and u the angle. Each line leaves the loop away from the loop's centre and bends. At a circle around the
+// loop it becomes a line of constant u of the body. Beyond the circle, the body's curvature is aligned with
+// the lines. All lines leave the loop at the same speed, as lines leave the end of a fillet.
 class LinesFromLoop {
  public:
   // `body` starts along v at the pole near the loop, is periodic in u, and must outlive this object. `loop`
@@ -69,9 +69,9 @@ struct CrossingPatches {
   bool beside_pole = false;
 };
 
-// Line that follows the first patch at one u up to the intersection and continues along the second patch: the
-// point where it leaves the first patch, and the point where it starts on the second. With a fillet, an arc
-// connects these points.
+// Line that follows the first patch at one u up to the intersection and continues along the second patch. It
+// is given by the point at which it leaves the first patch and the point at which it starts on the second.
+// With a fillet, an arc connects these points.
 struct CornerLine {
   double first_v = 0.0;
   double second_u = 0.0, second_v = 0.0;
@@ -104,9 +104,9 @@ class CornerLines {
 
 using std::numbers::pi;
 
-// The circle at which the lines become lines of constant u has a radius of circle_ratio times the distance of
-// the loop's farthest point from the near pole. The radius exceeds this distance by at most
-// most_rest_fraction of the distance that is left to the far pole.
+// The lines become lines of constant u at a circle about the near pole. Let d be the distance of the loop's
+// farthest point from this pole. The radius of the circle is d times circle_ratio, but at most d plus the
+// fraction most_rest_fraction of the remaining distance to the far pole.
 constexpr double circle_ratio = 1.3, most_rest_fraction = 0.5;
 
 Eigen::Vector2d polar(double radius, double angle) {
@@ -135,7 +135,8 @@ LinesFromLoop::LinesFromLoop(const Surface& body, const std::vector<Eigen::Vecto
     shortest = std::min(shortest, length);
   }
   bend_ = to_circle / (to_circle + 1.0 - circle_);
-  // Largest speed of the lines, relative to the length of the shortest line, which would otherwise turn back.
+  // Largest speed of the lines, as a multiple of the shortest line's length. At a higher speed, the shortest
+  // line would turn back.
   constexpr double most_shortest_ratio = 1.5;
   speed_at_bend_ = std::min(to_circle, most_shortest_ratio * shortest) / bend_;
   start_speed_m_ = most_shortest_ratio * shortest_m;
@@ -327,8 +328,8 @@ Surface start_at_nearer_pole(const Surface& body, const std::vector<LineCrossing
   return sum > centre * static_cast<double>(crossings.size()) ? reverse_along_v(body) : body;
 }
 
-// Returns, for each line of the first patch that crosses the second, the position of the crossing along the
-// intersection: its u on the second patch or, beside a pole, its angle about the loop's centre in turns.
+// Returns the position of each crossing along the intersection. The position is u on the second patch or,
+// beside a pole, the angle about the centre of the loop that the crossings form, in turns.
 std::vector<double> find_starts_along(const CrossingPatches& patches,
                                       const std::vector<LineCrossing>& crossings) {
   std::vector<double> starts;
@@ -355,8 +356,9 @@ std::vector<double> steps_between(std::vector<double> starts, bool closed, doubl
 }
 
 // Reverses u of the second patch if needed, so that its lines of constant u are in the same order along the
-// intersection as those of the first. Fails if they are not in one order or, for a closed patch, do not run
-// around it exactly once.
+// intersection as the lines of the first patch. Fails if successive crossings change direction along the
+// intersection. Also fails if the first patch is closed and its crossings do not go around the intersection
+// exactly once.
 Result<Surface> align_along(const CrossingPatches& patches, const std::vector<LineCrossing>& crossings) {
   const Surface &first = patches.first, &second = patches.second;
   const double length = patches.beside_pole ? 1.0 : second.u.domain_length();

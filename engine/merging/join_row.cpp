@@ -71,10 +71,10 @@ JointState joint_state(const std::vector<PreparedRow>& rows, std::size_t joint, 
   return state;
 }
 
-// Limits of blends at small gaps where the patches do not continue straight ahead, so that a bridge as long
-// as the gap would make a step or fold. A blend is as long as the shortest polynomial piece beside the joint,
-// but at least least_gap_ratio and at most most_gap_ratio times the gap. At most most_cut_fraction of each
-// patch is cut off.
+// Limits of blends at small gaps across which the patches do not continue straight ahead. A bridge as long as
+// such a gap would make a step or a fold. A blend is as long as the shortest polynomial piece beside the
+// joint, within two limits: least_gap_ratio times the gap and most_gap_ratio times the gap. No more than the
+// fraction most_cut_fraction of a patch is cut off.
 constexpr double least_gap_ratio = 10.0, most_gap_ratio = 40.0, most_cut_fraction = 0.25;
 // Largest overlap, relative to the gap, that is bridged without cutting if the patches are too short to be
 // cut.
@@ -211,8 +211,8 @@ Result<std::vector<Surface>> place_in_row(const PreparedRow& row) {
     const double start = placed.back().v.domain_end() + gap;
     const double length = patch.v.domain_length();
     double end = start + stretch * length;
-    // Parts of one patch must have knots that are equal to the last bit. An end that differs only by rounding
-    // is therefore set to the patch's end.
+    // Parts of one patch must have bitwise equal knots. If an end differs from the patch's end only by
+    // rounding, it is therefore set to the patch's end.
     if (std::abs(end - patch.v.domain_end()) <= same_knot_fraction * length) end = patch.v.domain_end();
     auto moved = with_domain(patch, Direction::v, start, end);
     if (!moved) return moved.error();

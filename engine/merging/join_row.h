@@ -16,7 +16,7 @@ struct JointMeasure {
   bool bridged = false;
   double gap_m = 0.0;          // largest gap between the edges; mean gap at a bridge
   double gap_parameter = 0.0;  // length of a bridge along v
-  // Factor on the length of the next patch's domain, so that the speed is equal on both sides.
+  // Factor on the length of the next patch's domain that makes the speed equal on both sides of the joint.
   double stretch_of_after = 1.0;
   double apart_m = 0.0;     // largest gap before patches were cut back
   double cut_back_m = 0.0;  // length cut off each of the two patches
@@ -29,12 +29,12 @@ struct PreparedRow {
   double deviation_m = 0.0;
 };
 
-// Prepares adjacent rows with equal numbers of patches. The patches of a column get the v domain of their
-// patch in the first row, and are cut back and joined at the same parameters. They are cut back in two cases:
+// Prepares adjacent rows with equal numbers of patches. All patches of a column get the v domain of the
+// column's first patch, and are cut back and joined at the same parameters. They are cut back in two cases:
 // for a requested blend, if the joint lacks the continuity; and at small gaps where the patches do not
-// continue straight ahead, to avoid a step. Fails if a joint touches in one row and is open in another
-// without a blend, if a blend takes more than half of a patch, or if make_compatible() or bridge_length()
-// fails.
+// continue straight ahead, to avoid a step. Fails if no blend is requested and a joint touches in one row and
+// is open in another. Fails if a blend takes more than half of a patch, or if make_compatible() or
+// bridge_length() fails.
 Result<std::vector<PreparedRow>> prepare_rows(std::vector<std::vector<Surface>> rows,
                                               const JoinRequest& request);
 

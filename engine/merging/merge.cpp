@@ -26,7 +26,7 @@ struct PatchGrid {
   }
 };
 
-// Returns the side of the patch that becomes the side `in_grid` by the orientation.
+// Returns the side of the patch that the orientation turns into the side `in_grid`.
 Side own_side(Side in_grid, const Orientation& orientation) {
   for (const Side side : all_sides) {
     if (turn_side(side, orientation).side == in_grid) return side;
@@ -183,8 +183,8 @@ Result<Merged> merge_grid(const PatchGrid& grid, const JoinRequest& request) {
   return merged;
 }
 
-// Largest ratio of the radii of two openings that are bridged. With a larger ratio, the bridge would have a
-// step.
+// Largest ratio of the radii of two openings that are cut for a bridge. With a larger ratio, the bridge would
+// have a step.
 constexpr double wider = 1.25;
 
 // Cuts the poles of a pair of ends open. Ends that are rings are not changed.
@@ -217,7 +217,7 @@ std::vector<ChosenEdges> edges_to_join(const std::vector<Surface>& patches, cons
   return pairs;
 }
 
-// If exactly two ends of a row of tubes are still free, and these two touch, adds a match of them.
+// If exactly two ends in a row of tubes are still free and touch each other, adds a match between them.
 void add_closing_ends(const std::vector<Surface>& tubes, double touching_m, std::vector<EdgeMatch>& matches) {
   std::vector<PatchEdge> free;
   for (int p = 0; p < static_cast<int>(tubes.size()); ++p) {
@@ -279,7 +279,7 @@ Status check_different(const std::vector<Surface>& patches, double tolerance_m) 
       if (!are_same(patches[a], patches[b], tolerance_m)) continue;
       return Error(ErrorCode::duplicate,
                    "patches " + std::to_string(a + 1) + " and " + std::to_string(b + 1) +
-                       " are the same surface at the same position; name one of them, or move the other");
+                       " are the same surface at the same position; name only one, or move one away");
     }
   }
   return {};

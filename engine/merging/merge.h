@@ -42,12 +42,12 @@ struct Merged {
   std::vector<OpenEdges> left_open = {};  // pairs of edges that touch but were not joined
 };
 
-// Merges patches. A row or grid whose last edges meet its first becomes periodic with the requested
-// continuity, or stays open if that fails. Poles that are chosen edges, or the nearest ends of two tubes, are
-// cut off, and a bridge joins the tubes. Bridges may fold only if some chosen pair has a given direction. A
-// single patch is returned unchanged. Fails for no patches, more than 64, or two identical ones; for
-// contradicting chosen edges; for patches that do not fill a grid; if join_row() fails; or for a deviation
-// above the tolerance. Can be stopped.
+// Merges patches. A row or grid whose last edges meet its first edges becomes periodic with the requested
+// continuity, or stays open if that fails. If a chosen edge, or one of the nearest ends of two tubes, is a
+// pole, the pole is cut off and a bridge joins the tubes. Bridges may fold only if some chosen pair has a
+// given direction. A single patch is returned unchanged. Fails for no patches, more than 64, or two identical
+// ones; for contradicting chosen edges; for patches that do not fill a grid; if join_row() fails; or for a
+// deviation above the tolerance. Can be stopped.
 Result<Merged> merge(const std::vector<Surface>& patches, const MergeRequest& request);
 
 }  // namespace spoonbill

@@ -19,7 +19,7 @@ namespace {
 
 using Polygon = std::vector<Eigen::Vector2d>;
 
-// Smallest cosine of the angle between consecutive chords at which a loop counts as smooth.
+// A loop counts as smooth if the cosine of the angle between consecutive chords is nowhere less than this.
 constexpr double smooth_cosine = 0.98;
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
@@ -65,7 +65,8 @@ std::vector<Vector3> evaluate_positions(const Surface& surface, const Polygon& p
   return points_m;
 }
 
-// A closed polygon as a function of the fraction of its length in metres.
+// A closed polygon in the parameter plane, as a function of the fraction of its length. Lengths are measured
+// in space.
 class RoundEdge {
  public:
   RoundEdge(Polygon polygon, const std::vector<Vector3>& points_m) : polygon_(std::move(polygon)) {
@@ -149,10 +150,10 @@ std::optional<Result<FittedShape>> resample_round_part(const Surface& surface,
 namespace {
 
 using Edge = TrimmedArea::Edge;
-// Loops over the parameters, with the kept part on their left.
+// Loops in the parameter plane, with the kept part on their left.
 using Polygons = std::vector<std::vector<Eigen::Vector2d>>;
 
-// Smallest cosine of the angle between consecutive chords at which a trim counts as smooth.
+// A point of a trim counts as a corner if the cosine of the angle between its two chords is less than this.
 constexpr double corner_cosine = 0.98;
 // Distance of the outermost lines from the part's edge, and largest width that is ignored as too narrow. Both
 // are fractions of the part's extent in u.
@@ -160,7 +161,8 @@ constexpr double edge_margin = 1e-7;
 constexpr int trim_lines_checked = 64;
 // Fraction of the longest line's length. A shorter line at an end of the part counts as a point.
 constexpr double point_fraction = 1e-3;
-// Largest jump of a line's ends across a corner of the loops, relative to the part's extent in v.
+// Largest change of a line's ends across a corner that does not count as a jump, relative to the part's
+// extent in v.
 constexpr double jump_fraction = 1e-3;
 
 struct Interval {
@@ -251,8 +253,8 @@ class KeptPart {
   }
 
  private:
-  // Returns true if the ends of the lines do not jump from one side of a corner to the other, as they would
-  // at a step.
+  // Returns true if the ends of the lines change continuously at every corner of the loops. They jump where
+  // an edge of the part runs along a line of constant u.
   bool changes_steadily() const {
     const double beside = 2.0 * edge_margin * along_u_.length();
     for (const double at : breaks_in_u()) {
@@ -329,7 +331,8 @@ constexpr double piece_fraction = 0.3;
 // Largest number of pieces. A piece has at least six control points and a patch at most 200.
 constexpr std::size_t most_pieces = 33;
 
-// Resamples each piece between corners, where the ends of the lines have kinks, and joins the pieces.
+// Divides the part at the corners of the trims, at which the ends of the lines have kinks. Resamples each
+// piece, then joins the pieces.
 Result<FittedShape> resample(const Surface& surface, const KeptPart& part, double tolerance_m) {
   const std::vector<double> breaks = part.breaks_in_u();
   if (breaks.size() > most_pieces + 1) {

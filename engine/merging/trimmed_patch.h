@@ -13,12 +13,12 @@
 
 namespace spoonbill {
 
-// Resamples the part between a smooth outer loop and its centroid or a smooth hole. `polygons` are loops over
-// the parameters with the kept part on their left. The result is periodic in u, which follows the outer loop
-// by its length in metres. Its lines along v are straight in the old parameters. They run towards the
-// centroid of the hole and end at its edge. Without a hole they end in a pole at the centroid of the outer
-// loop. Returns nothing if there are more than two loops, a loop has corners, or a line from the centroid
-// meets a loop more than once. Fails if fit_shape() fails.
+// Resamples the part between a smooth outer loop and its centroid or a smooth hole. `polygons` are loops in
+// the parameter plane, with the kept part on their left. The result is periodic in u, which is proportional
+// to the distance along the outer loop, measured in space. The lines along v are straight in the old
+// parameters. They run towards the centroid of the hole and end at the edge of the hole. Without a hole they
+// end in a pole at the centroid of the outer loop. Returns nothing if there are more than two loops, a loop
+// has corners, or a line from the centroid meets a loop more than once. Fails if fit_shape() fails.
 std::optional<Result<FittedShape>> resample_round_part(
     const Surface& surface, const std::vector<std::vector<Eigen::Vector2d>>& polygons, double tolerance_m);
 

@@ -39,7 +39,7 @@ TubeEnd tube_end(const Surface& surface, Side side);
 // Closes an open end, whose ring must be nearly plane, with a cap of height `height_m`. A cap with a height
 // above zero continues the sides with the requested continuity, as a quarter ellipse: the cubic with the
 // ellipse's tangents and midpoint (Goldapp 1991). A cap of height zero is flat and meets the sides at an
-// edge. Fails if a flat cap would fold because the whole ring is not visible from its centre.
+// edge. Fails if a flat cap would fold because part of the ring is not visible from the ring's centre.
 Result<Joined> add_cap(const Surface& surface, Side side, double height_m, const JoinRequest& request);
 
 // Cuts off a pole so that the tube ends in a ring. The cut is where the radius grows by less than 0.1 of the

@@ -25,7 +25,7 @@ struct Material {
   // times the damping time.
   double damping_time_s = 0.0;
   bool plastic = false;
-  double yield_strain = 0.0;  // deviatoric strain of a spring above which its rest length flows
+  double yield_strain = 0.0;  // a spring's rest length flows above this deviatoric strain
   // Rate at which a spring's rest length flows, per unit of strain beyond the yield strain and per second of
   // real time.
   double flow_rate_per_s = 0.0;

@@ -47,7 +47,7 @@ Vector3 mirror_point(const Symmetry& symmetry, const Vector3& point_m);
 Pose mirror_pose(const Symmetry& symmetry, const Pose& pose);
 
 struct Scene {
-  // Bodies that touch push each other. A document may have more bodies than can be simulated.
+  // Bodies push each other where they touch. A document may have more bodies than can be simulated.
   std::vector<Body> bodies;
   std::vector<FixingPlane> planes;  // each plane fixes nodes of all bodies
   Tool tool;

@@ -40,8 +40,8 @@ struct ToolParameter {
   Range<double> range{0.0, 0.0};
 };
 
-// Key of the window, a digit or a capital letter. It selects the action of the ToolActionRow that contains
-// it, together with a kind of tool.
+// Key of the window, a digit or a capital letter. It selects a kind of tool, and the action of the
+// ToolActionRow that contains the key.
 struct ToolKey {
   const char* key = nullptr;  // null if there is no key
   ToolKind kind = ToolKind::sphere;
@@ -178,7 +178,7 @@ struct Tool {
   // Radius of a sphere; 0 for a point. For a solid that smooths: radius of the smoothed area around the
   // surface point nearest to the tool.
   double radius_m = 0.008;
-  int substeps = 6;  // steps of the springs per tick, 1 to 8; with more steps, bodies respond faster
+  int substeps = 6;  // substeps per tick, 1 to 8; with more substeps, bodies respond faster
   // Body of the tool. Required for the kind `solid`; may be kept while another kind is in use.
   std::shared_ptr<const ToolBody> body = {};
 };

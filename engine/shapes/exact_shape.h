@@ -47,8 +47,8 @@ struct ShapeTangents {
 };
 ShapeTangents tangents(const ExactShape& shape, double u, double v);
 
-// Returns an upper bound of the distance from a point to the shape: the distance to the shape's point at u,
-// v, reduced by Gauss-Newton steps.
+// Returns an upper bound of the distance from a point to the shape: the distance to a point of the shape that
+// is found by Gauss-Newton steps from (u, v).
 double distance_near(const ExactShape& shape, const Vector3& point_m, double u, double v);
 
 // Returns the unit normal at the pole at the start or the end of v; nullopt if the shape has no tangent plane

@@ -37,9 +37,9 @@ class ShapeKnots {
   // open domain; the seam of a periodic domain occurs once.
   std::vector<double> parameters(int in_each_span) const;
 
-  // Divides the cells whose error is above `allowed_m` into more spans. Their number follows from the order
-  // of convergence, degree + 1. Cells with a much smaller error than the worst cell must wait for a later
-  // call. `at` are the parameters of the errors. Returns true if an error is above `allowed_m`.
+  // Divides the cells whose error is above `allowed_m` into more spans. The number of spans follows from the
+  // order of convergence, degree + 1. Cells with a much smaller error than the worst cell must wait for a
+  // later call. `at` are the parameters of the errors. Returns true if an error is above `allowed_m`.
   bool refine(const std::vector<double>& at, const std::vector<double>& error_m, double allowed_m);
   // Adds a span to the cell with the largest error.
   void refine_worst(const std::vector<double>& at, const std::vector<double>& error_m);

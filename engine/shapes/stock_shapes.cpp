@@ -20,8 +20,8 @@ namespace spoonbill {
 
 namespace {
 
-// A rectangle with rounded corners around the origin. It is parametrised by arc length and runs from the
-// midpoint of its side at +x through +y.
+// A rectangle with rounded corners, centred at the origin. It is parametrised by arc length from the midpoint
+// of the side at +x, in the direction of +y.
 class RoundedRectangle {
  public:
   RoundedRectangle(double half_x, double half_y, double rounding)
@@ -94,8 +94,9 @@ class RoundedRectangle {
   // the lines across the outline nearly straight.
   double slowed() const { return 4.0 * rounding_; }
 
-  // Returns the position on a side, measured from its centre. The position is a cubic function of
-  // `off_centre` over the length slowed() at each end of the side, or over the whole of a shorter side.
+  // Returns the position on a side, measured from its centre. Towards each end of the side, a point slows
+  // down by the fraction `slower`. It does so over the length slowed() or, if half the side is shorter, from
+  // the centre on. There the position is a cubic function of `off_centre`.
   double position_on_side(double half_side, double off_centre, double slower) const {
     if (!(half_side > 0.0)) return 0.0;
     if (half_side <= slowed()) {

@@ -188,9 +188,9 @@ double squared_distance(const Section& a, const Section& b, std::size_t start, b
   return sum;
 }
 
-// Changes the order of a section's points so that they match those of the section `before`: possibly reverses
-// the order and, if the section is closed, starts at another point. The sum of squared distances between
-// points with the same index is then least, if the centroids of both sections are moved to the origin.
+// Reorders the points of a section to match the section `before`. May reverse the order and, if the section
+// is closed, start at another point. The new order minimises the sum of squared distances between points with
+// the same index, with the centroids of both sections moved to the origin.
 void align_to(const Section& before, Section& section, bool closed) {
   std::size_t best_start = 0;
   bool best_backwards = false;

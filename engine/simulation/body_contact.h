@@ -18,10 +18,10 @@
 
 namespace spoonbill {
 
-// Returns the gap of a shell's surface minus the gap of the face that a contact touches, m: 0 if the contact
-// touches the surface itself, the thickness if it pushes the far face straight towards the surface. `push` is
-// the unit vector along which the contact pushes the shell, `normal` the surface's unit normal. Exact for
-// flat shells.
+// Returns by how much the gap of a shell's surface exceeds the gap of the face that a contact touches, in
+// metres. The result is 0 if the contact touches the surface itself, and the thickness if the contact pushes
+// the far face straight towards the surface. `push` is the unit vector along which the contact pushes the
+// shell, `normal` the surface's unit normal. Exact for flat shells.
 double far_face_offset_m(double thickness_m, const Vector3& normal, const Vector3& push);
 
 // Finds the gap from a point to the near face of a shell, and the outward normal of that face. (u, v) is the
@@ -36,8 +36,9 @@ struct ShellOrSolid {
   const Surface* surface;
   double thickness_m;
 };
-// Corrects the gap and normal of `near`, a point of the body `of` near the body `other`, for the thickness of
-// both. Returns false if the gap exceeds the margin. Allocates nothing.
+// Corrects the gap and the normal of `near` for the thickness of both bodies. The point belongs to the first
+// body and is near the second. Returns false if the gap exceeds the margin, or if the point is beside the rim
+// of a shell and touches neither face. Allocates nothing.
 bool resolve_shell_gap(const ShellOrSolid& of, const ShellOrSolid& other, double margin_m, NearPoint& near);
 
 // Largest penetration of two bodies pressed together at up to 60 mm/s, in lattice cells of the coarser body.

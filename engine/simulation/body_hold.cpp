@@ -14,10 +14,10 @@ namespace {
 // one. The extents are the singular values in BodyHold::measure().
 constexpr double least_second_extent = 1e-6;
 // Largest turn of an intact body in a tick, rad. A larger turn means that the shape has lost its orientation,
-// for instance by turning inside out, and it is not undone.
+// for instance by turning inside out. Such a turn is not undone.
 constexpr double largest_turn_rad = 0.2;
-// Largest displacement and turn per tick that are not corrected, so that a body at rest stays the same to the
-// last bit.
+// If the displacement and the turn in a tick are both below these values, they are not corrected. A body at
+// rest therefore stays bitwise the same.
 constexpr double least_move_m = 1e-9, least_turn_rad = 1e-8;
 
 struct MassCentre {

@@ -20,7 +20,7 @@ class BodyHold {
 
   // Returns false if the positions and velocities of all nodes are finite and no node is farther than
   // `reach_m` from the centre of mass. Otherwise restores the displacements at the start of the tick, with
-  // zero velocities, and returns true. `solver` is null if the springs step the body.
+  // zero velocities, and returns true. `solver` is null if the body uses the spring solver.
   bool limit(SpringLattice& lattice, ImplicitSolver* solver, double reach_m) const;
 
   // Returns the body to its mean position and orientation at the start of the tick, and removes its linear

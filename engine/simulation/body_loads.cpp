@@ -133,8 +133,8 @@ struct BodyLoads::Builder {
   }
 
   static Status no_face() {
-    return Error{ErrorCode::too_few, "the region contains no face centre of the lattice's shell; enlarge it",
-                 "region"};
+    return Error{ErrorCode::too_few,
+                 "the region contains no face centre of the lattice's shell; enlarge the region", "region"};
   }
 };
 

@@ -145,9 +145,9 @@ void search_cells_around(const LatticeMesh& mesh, int node, const Vector3& point
   }
 }
 
-// Embeds a point in one of the cells around the node nearest to it, or around that node's twin across a seam:
-// the cell that contains the point, or else the nearest of these cells. If that cell is more than one cell
-// size away, attaches the point to the node alone.
+// Embeds a point in a cell. Considers the cells around the nearest node and around that node's twin across a
+// seam, and chooses the one that contains the point or, if none does, the one nearest to it. If the chosen
+// cell is more than one cell size away, attaches the point to the nearest node alone.
 EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
   int nearest = 0;
   double least = std::numeric_limits<double>::infinity();
@@ -250,7 +250,7 @@ void BodyMapping::embed(const SpringLattice& lattice) {
   embedding_.reserve(samples);
   for (int i = 0; i < grid.rows(); ++i) {
     for (int j = 0; j < grid.columns(); ++j) {
-      // Samples at the same point share one embedding, so that they stay together to the last bit.
+      // Samples at the same point share one embedding, so that their positions stay bitwise equal.
       const int twin = find_twin(i, j);
       if (twin != i * grid.columns() + j) {
         embedding_.push_back(embedding_[static_cast<std::size_t>(twin)]);

@@ -63,8 +63,8 @@ class BodyMapping {
   Result<BodyMapping> refine_at(double u, double v, const SpringLattice& lattice,
                                 const std::vector<FixingPlane>& planes) const;
 
-  // sample() returns the embedding of a grid sample. at() returns that of any point, blended from the samples
-  // around it.
+  // sample() returns the embedding of a grid sample. at() returns the embedding of any point, blended from
+  // the embeddings of the samples around the point.
   const EmbeddedPoint& sample(int index) const { return embedding_[index]; }
   EmbeddedPoint at(double u, double v) const;
 

@@ -30,8 +30,8 @@ struct BodyState {
   std::variant<BodyMapping, MeshMapping> skin;
   Smoothing smoothing;
   std::vector<std::uint8_t> fixed, touched;            // one byte per node: 1 if fixed, 1 if touched
-  std::optional<ImplicitSolver> implicit_solver = {};  // empty if the springs step the body
-  // Made for a single node until make_body_state() replaces it.
+  std::optional<ImplicitSolver> implicit_solver = {};  // empty: the body uses the spring solver
+  // Placeholder for one node, which make_body_state() replaces.
   BodyHold hold = BodyHold(1);
   BodyLoads loads = {};
   BodySupports supports = {};
@@ -56,7 +56,7 @@ struct BodyState {
     lattice.fix_nodes(fixed);
     lattice.set_contact_inverse_mass(implicit_solver ? implicit_solver->contact_inverse_mass() : 0.0);
   }
-  // Returns the implicit solver if it steps the body; null if the springs do.
+  // Returns the implicit solver of the body; null if the body uses the spring solver.
   ImplicitSolver* solver() { return implicit_solver ? &*implicit_solver : nullptr; }
   const ImplicitSolver* solver() const { return implicit_solver ? &*implicit_solver : nullptr; }
   // Sets the inertia scale for substeps of about step_s.
@@ -91,16 +91,16 @@ struct BodyState {
 Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlane>& planes,
                                   InstructionSet set, const FeatureMapWatch& watch = {});
 
-// Young's modulus from which elastic bodies are stepped implicitly at their true stiffness. The few newtons
-// of a hand dent such bodies by less than a third of a millimetre, but can bend them. Softer bodies are
-// dented, which requires a finer lattice, stepped by springs.
+// Linear elastic bodies with at least this Young's modulus use the implicit solver, at their true stiffness.
+// The few newtons of a hand dent such bodies by less than a third of a millimetre, but can bend them. Softer
+// bodies can be dented. This requires a finer lattice, for which the spring solver is used.
 inline constexpr double stiff_youngs_modulus_pa = 1e6;
 
-// Makes the implicit solver of a lattice, unstrained when its nodes are at `rest_m`. Only a body whose
-// materials are all linear elastic has one, and only if one of three conditions holds: the stiffest material
-// has at least stiff_youngs_modulus_pa; a Poisson's ratio is below min_spring_poissons_ratio; or the body is
-// a shell, which a single layer of springs would make twice too stiff in bending. Empty for bodies that are
-// stepped by their springs.
+// Makes the implicit solver of a lattice, which is unstrained while its nodes are at `rest_m`. Returns
+// nothing if the body uses the spring solver. A body uses the implicit solver if all its materials are linear
+// elastic and one of three conditions holds: the stiffest material has at least stiff_youngs_modulus_pa; a
+// Poisson's ratio is below min_spring_poissons_ratio; or the body is a shell, which a single layer of springs
+// would make twice too stiff in bending.
 Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& lattice,
                                                            const std::vector<Vector3>& rest_m,
                                                            InstructionSet set);

@@ -14,8 +14,8 @@ namespace {
 constexpr int height_levels = 2;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-// Returns how far the lowest point of a parabola through three points is below the middle point; 0 if it is
-// not between the outer points.
+// Returns how far the lowest point of a parabola through three points is below the middle point. Returns 0 if
+// the lowest point is not between the outer points.
 double dip(double before, double middle, double after, double step_before, double step_after) {
   const double rise_before = (middle - before) / step_before, rise_after = (after - middle) / step_after;
   const double steps = step_before + step_after;
@@ -122,8 +122,8 @@ namespace {
 // Gap in lattice cells that is added to the movement of a tick when contacts are searched.
 constexpr double ground_margin_cells = 0.25;
 
-// Time constant of the filter on a footing's skin height (Footing::skin_m). It applies at an inertia scale of
-// 1 and is longer than a round body takes to roll over. Without the filter a node would push its neighbours'
+// Time constant of the filter on a footing's skin height (Footing::skin_m), for an inertia scale of 1. It is
+// longer than the time in which a round body rolls over. Without the filter a node would push its neighbours'
 // skin at once, and round bodies would roll for ever.
 constexpr double skin_time_constant_s = 0.07;
 

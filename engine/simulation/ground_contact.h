@@ -82,9 +82,10 @@ class BodyGroundContact {
 
  private:
   // A node together with the samples attached to it. "Followed" samples of the mapping move exactly with the
-  // lattice; samples of the skin are on the surface of the control net, which differs slightly. The node is
-  // on the surface or, in a box of cells, any node with attached samples. In a box, a node without followed
-  // samples of its own gets the followed samples nearest to its skin samples.
+  // lattice; samples of the skin are on the surface of the control net, which differs slightly. There is a
+  // footing for each node on the outer shell of the lattice or, in a box of cells, for each node with
+  // attached samples. In a box, a node without followed samples of its own gets the followed samples nearest
+  // to its skin samples.
   struct Footing {
     int node = 0;
     int first_followed = 0, followed_count = 0;  // range in BodyFootings::followed
@@ -102,8 +103,8 @@ class BodyGroundContact {
   };
   struct BodyFootings {
     SkinHeights heights;
-    // One cell or, in a box of cells, the largest distance at rest of a followed sample from its node if that
-    // is larger.
+    // The size of a cell or, in a box of cells, the largest distance at rest between a followed sample and
+    // its node, whichever is larger.
     double max_sample_distance_m;
     std::vector<Footing> footings;
     std::vector<int> followed;  // indices of samples of the mapping

@@ -28,8 +28,8 @@ struct ToolInput {
   // Stiffness of the spring between hand and tool, N/m; 0 for a hand that holds the tool rigidly. If a body
   // has an implicit solver, a spring of 1000 N/m replaces a rigid hold.
   double coupling_n_per_m = 0.0;
-  // True while the hand points without touching. The tool does not act until hovering ends and the tool is
-  // outside the bodies.
+  // True while the hand moves the tool without touching the bodies, as a mouse moves a pointer. The tool does
+  // not act until hovering ends and the tool is outside the bodies.
   bool hovering = false;
 };
 

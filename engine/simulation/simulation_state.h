@@ -24,8 +24,8 @@ struct HeldTool {
   Pose hand{};  // pose of the hand in the last tick
   ToolState state{};
   bool placed = false;
-  // touch_m is the position of the hand when a soft tool last began to touch a body; touched is true while it
-  // touches one.
+  // touch_m is the position of the hand when a soft tool last began to touch a body. touched is true while
+  // the soft tool touches a body.
   Vector3 touch_m = Vector3::Zero();
   bool touched = false;
 
@@ -66,7 +66,7 @@ struct Simulation::State {
     return scene.tool.kind == ToolKind::solid && bodies.size() > scene.bodies.size();
   }
   std::span<BodyState> scene_bodies() { return {bodies.data(), scene.bodies.size()}; }
-  // Number of bodies that are stepped. A soft tool pauses while the hand holds another tool.
+  // Number of bodies that a tick moves. A soft tool pauses while the hand holds another tool.
   std::size_t stepped_count() const { return scene.bodies.size() + (tool_is_soft() ? 1 : 0); }
   const Material& material(std::size_t body) const {
     return body < scene.bodies.size() ? scene.bodies[body].material : scene.tool.body->soft->material;
@@ -79,9 +79,9 @@ std::vector<BodySelfContact> make_self_contacts(const std::vector<BodyState>& bo
 BodyContacts make_contact_buffer();
 
 // Chooses the substeps of a tick and the inertia scale of each body. A body with fixed nodes has its own
-// scale, which is 1 if it is stepped implicitly. All other bodies share the largest of their scales, so that
-// momentum is exchanged correctly and all fall alike. Call after a change of bodies, fixed nodes, tool or
-// settings; may allocate.
+// scale, which is 1 if the body uses the implicit solver. All other bodies share the largest of their scales,
+// so that momentum is exchanged correctly and all fall alike. Call after a change of bodies, fixed nodes,
+// tool or settings; may allocate.
 void update_inertia(Simulation::State& state);
 
 // Bodies and tool in a tick, as ToolKernel::constrain() receives them.

@@ -13,8 +13,8 @@ namespace {
 // Largest number of nodes that are smoothed in a tick.
 constexpr std::size_t nodes_per_tick = 24;
 
-// Fraction of a bump that is removed in one step. The largest eigenvalue of the smoothing flow is 8, 4 for
-// each of two lattice lines, so an explicit step is stable below 2 / 8.
+// Fraction of a bump that is removed in one step. The largest eigenvalue of the smoothing flow is 8: each of
+// the two lattice lines adds 4. An explicit step is therefore stable below 2 / 8.
 constexpr double shell_fraction = 0.15;
 
 // Fraction by which an inner node returns, in one step, to its rest position among its six neighbours. This
@@ -60,7 +60,8 @@ std::array<int, 2> Smoothing::beside(int node, int axis) const {
 void Smoothing::connect(const LatticeMesh& mesh, int node) {
   const std::array<int, 3> at = mesh.grid_index(node);
   ShellNode& shell = shell_[static_cast<std::size_t>(node)];
-  // Neighbours one step inwards along each axis at whose end the node is. Those along i and j come first.
+  // Neighbours one step inwards, one for each axis along which the node is at an end of the block, in the
+  // order i, j, k.
   std::array<int, 3> inward{};
   std::size_t ends = 0;
   Vector3 outward = Vector3::Zero();
@@ -96,8 +97,8 @@ std::optional<Smoothing::Curvature> Smoothing::curvature_at(int node, const Posi
     if (!(to_a > 0.0 && to_b > 0.0)) return std::nullopt;
     along[p] = b - a;
     over_chord[p] = here - (to_b * a + to_a * b) / (to_a + to_b);
-    // A point on a circle of radius r is a b / (2 r) above a chord, if a and b are its distances from the
-    // ends of the chord.
+    // A point on a circle of radius r is at the height to_a * to_b / (2 r) above a chord. The two factors are
+    // its distances from the ends of the chord.
     curvature.height_factor[p] = 0.5 * to_a * to_b;
   }
   const Vector3 across = along[0].cross(along[1]);

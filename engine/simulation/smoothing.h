@@ -62,7 +62,7 @@ class Smoothing {
   // no curvature. Lowers `height_factor` to the neighbour's height factor if the latter is less.
   std::optional<double> bend_toward(const SpringLattice& lattice, int neighbour, int node,
                                     double& height_factor) const;
-  // Returns the vector by which a shell node's bump raises the node above the shape without the bump.
+  // Returns the displacement of a shell node from its position on the shape without the bump.
   Vector3 measure_bump(const SpringLattice& lattice, int node) const;
   // Position of an inner node relative to its six neighbours.
   struct NeighbourCentre {

@@ -18,7 +18,7 @@ namespace spoonbill {
 
 struct SurfaceSnapshot {
   KnotVector u, v;
-  std::uint64_t structure = 0;  // fingerprint of the knot vectors; if it is equal, so is the Grid
+  std::uint64_t structure = 0;  // fingerprint of the knots; equal fingerprints mean equal Grids
   std::vector<float> x, y, z;   // control points in metres, as in ControlNet
   std::shared_ptr<const TrimmedArea> trim = {};  // area within the trims; null without trims
 };
@@ -74,7 +74,7 @@ struct MaterialSnapshot {
   std::string name;
   double youngs_modulus_pa = 0.0;
   double inertia_scale = 1.0;  // r: the body responds sqrt(r) times slower than the real one
-  int implicit_nodes = 0;      // number of nodes of the implicit solver; 0 if springs step the body
+  int implicit_nodes = 0;      // number of nodes of the implicit solver; 0 for the spring solver
   double poissons_ratio = 0.0;
   double density_kg_per_m3 = 0.0;
   double drag_per_s = 0.0;  // mass-proportional drag
@@ -82,8 +82,8 @@ struct MaterialSnapshot {
   double lattice_mass_kg = 0.0;  // mass of the lattice, which ignores the trims of the body
 };
 
-// Part of the lattice's displacement that a body's surface does not follow. It is counted since the body's
-// knots, fixing planes or rest shape last changed.
+// Part of the lattice's displacement that a body's surface does not follow. The displacement is measured from
+// the last change of the body's knots, fixing planes or rest shape.
 struct ResidualSnapshot {
   double largest_m = 0.0;
   double root_mean_square_m = 0.0;

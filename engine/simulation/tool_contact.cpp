@@ -21,8 +21,8 @@ double find_margin_m(const BodyState& body) {
   return tool_margin_cells * static_cast<double>(body.lattice.cell_size_m());
 }
 
-// Returns the direction in which the tool pushes a point: the gradient of its distance function; zero at a
-// sphere's centre.
+// Returns the direction in which the tool pushes a point: the gradient of the tool's distance function, or
+// zero at a sphere's centre.
 Vector3 push_direction_at(const ToolShape& tool, const Vector3& point_m) {
   if (tool.is_solid()) return tool.at(point_m).gradient;
   const Vector3 from_centre = point_m - tool.centre_m;
@@ -368,10 +368,10 @@ int count_parts(const Vector3& one_side, const Vector3& other_side, double longe
 
 }  // namespace
 
-// Adds pushes at fixed points between the samples, so close together that the sphere rests on the lattice as
-// if every point were pushed, unless samples are more than most_parts such distances apart. A sphere of
-// radius R reaches d^2 / (8 R) between points that are d apart. The points are fixed because a push at the
-// nearest point would move, and its force would depend on its path.
+// Adds pushes at fixed points between the samples. The points are so close together that the sphere rests on
+// the lattice as if every point were pushed, unless this needs more than most_parts parts per side of a
+// patch. A sphere of radius R reaches d^2 / (8 R) between points that are d apart. The points are fixed
+// because a push at the nearest point would move, and its force would depend on its path.
 void ToolContact::add_pushes_between_samples(int body, const BodyState& state, double reach_m) {
   const BodyMapping& mapping = state.mapping();
   SurfaceLevels& levels = contacts_[body].collider.levels();
@@ -412,8 +412,8 @@ void ToolContact::add_pushes_between_samples(int body, const BodyState& state, d
   }
 }
 
-// Adds pushes that keep the lattice, not the surface, out of the tool: the surface follows the lattice late
-// and would dent a plastic body unevenly.
+// Adds pushes that keep the lattice, rather than the surface, out of the tool. The surface follows the
+// lattice with a delay and would dent a plastic body unevenly.
 void ToolContact::add_sphere_pushes(int body, const BodyState& state, const ToolHold& hold) {
   BodyContact& contact = contacts_[body];
   if (is_small(state) || is_centre_outside(body)) {

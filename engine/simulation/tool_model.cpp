@@ -106,8 +106,8 @@ struct ModelBuilder {
   // Makes the model of a soft tool. The hand holds the nodes behind its grip plane.
   Result<ToolModel> make_soft_model(Result<BodyState> soft) const {
     if (!soft.ok()) return soft.error().in("tool");
-    // The lattice of a soft tool is stepped by its springs, not by an implicit solver, because the hand moves
-    // single nodes of the lattice.
+    // A soft tool uses the spring solver, not an implicit solver, because the hand moves single nodes of the
+    // lattice.
     soft->set_implicit_solver(std::nullopt);
     soft->fixed = find_nodes_behind(soft->lattice, {body.soft->grip});
     ToolModel model;
