@@ -165,8 +165,8 @@ void expect_sound(const MeshPairResult& result, const CleanMesh& first, const Cl
     EXPECT_LE(contact.depth_m, last);
     last = contact.depth_m;
     EXPECT_NEAR(contact.normal.norm(), 1.0, 1e-9);
-    // The second point of a contact is reached from the first along the normal, over at most the depth. The
-    // depth is larger than this distance if one mesh is completely inside the other.
+    // The vector from the first to the second point of a contact is along its normal and at most as long as
+    // the depth. It is shorter than the depth if one mesh is completely inside the other.
     const Vector3 apart = contact.second_m - contact.first_m;
     EXPECT_LT(apart.cross(contact.normal).norm(), 2e-6);
     EXPECT_LT(apart.dot(contact.normal), contact.depth_m + 2e-6);
