@@ -57,14 +57,15 @@ enum SafetyFlag : std::uint32_t {
   safety_flag_softened = 1u << 16,
 };
 
-// Smallest number of ticks between two calls of make_safe() that counts as a stall. In that time a hand moves
-// by several millimetres, so the force is no longer valid.
+// If two calls of make_safe() are at least this many ticks apart, the gap between them is a stall. In that
+// time a hand moves by several millimetres, so the force is no longer valid.
 inline constexpr std::uint64_t stall_ticks = 10;
 
-// Tick rate below which the force is cut, counted over the last 100 ms.
+// The force is cut if the tick rate over the last 100 ms is below this value.
 inline constexpr double lowest_tick_rate_hz = 200.0;
 
-// Multiple of the device's maximum speed above which a change of position counts as a fault of the sensor.
+// A change of position that is faster than this multiple of the device's maximum speed counts as a fault of
+// the sensor.
 inline constexpr double jump_speed_factor = 5.0;
 
 // Returns true if a hand on the device cannot have moved by `offset_m` in dropped_ticks + 1 ticks.
@@ -119,10 +120,10 @@ std::string safety_text(std::uint32_t flags);
 //   or, without a simulation to advance:  read(dropped ticks) -> give_none()
 //
 // A device that does not answer, or answers with an invalid reading, gets no force. Its last valid reading
-// replaces the missing reading, with a hand that only points: the tool releases the material and touches
-// nothing. During an impossibly fast motion the hand also only points. When the fault is over, the proxy is
-// reset to the position of the hand, and the force returns as after any other fault. After a stall the proxy
-// is reset in the same tick.
+// replaces the missing reading, with button_hover as its only button: the tool releases the material and
+// touches nothing. A reading that reports an impossibly fast motion also gets button_hover as its only
+// button. When the fault is over, the proxy is reset to the position of the hand, and the force returns as
+// after any other fault. After a stall the proxy is reset in the same tick.
 //
 // A recording contains the replacement readings and the proxy resets. The readings of a playback device are
 // therefore not changed again.

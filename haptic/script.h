@@ -18,8 +18,8 @@
 // at the end of the step before them. A step with "at_s" waits until that time. A move starts and ends at
 // rest (minimum jerk). "turn" and "turn_to" are rotations from the world axes, not from the previous
 // orientation. Times are whole milliseconds. Commands with fields of old documents are converted (see
-// old_documents.h). The conversion uses the number of iterations that an earlier command of the script gave
-// the tool, or 6 if no earlier command did.
+// old_documents.h). The conversion uses the old field "iterations" of the tool, as set by the last command
+// before; default: 6.
 #pragma once
 
 #include <cstdint>

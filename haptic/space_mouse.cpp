@@ -29,7 +29,7 @@ void update_button(const spnav_event_button& event, std::uint32_t& buttons) {
   buttons = event.press != 0 ? buttons | bit : buttons & ~bit;
 }
 
-// Returns true if the daemon has closed the connection. libspnav reports "no event" in this case too, so that
+// Returns true if the daemon has closed the connection. In this case, too, libspnav reports "no event", and
 // the cap would seem to stay displaced.
 bool daemon_has_gone() {
   char byte = 0;

@@ -8,8 +8,9 @@
 namespace spoonbill {
 namespace {
 
-// Number of times per tick that the low-pass filter halves the weight of the old force. One gives a cut-off
-// of about 110 Hz, above the motion of a hand and below the jitter of nodes that gain and lose contact.
+// Number of times per tick that the low-pass filter halves the weight of the old force. With one halving, the
+// cut-off frequency is about 110 Hz, above the motion of a hand and below the jitter of nodes that gain and
+// lose contact.
 constexpr double filter_halvings = 1.0;
 
 // Returns the filter weight of a new force that follows a force held for this many ticks.
@@ -27,8 +28,9 @@ double force_lag_s(double hold_ticks) {
 // Factor by which the damping exceeds the smallest damping that keeps the coupling passive.
 constexpr double damping_reserve = 2.0;
 
-// Force scale up to which the coupling is rigid and no force reaches the hand. If a body has an implicit
-// solver, the engine replaces the rigid coupling by a spring, so that the tool is not at the hand.
+// At or below this force scale, the coupling is rigid and no force reaches the hand. If a body has an
+// implicit solver, the engine uses a spring instead of the rigid coupling. The tool can then be away from the
+// hand.
 constexpr double minimum_force_scale = 1e-9;
 
 // Sets the stiffness for a tick that follows `missed` missed ticks.

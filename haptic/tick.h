@@ -24,8 +24,8 @@ namespace spoonbill {
 //
 // A force that is held for several ticks is even later. The stiffness is therefore scaled by 1 ms divided by
 // the longest hold of the last 100 ms. A spring that becomes stiffer under load would give energy to the
-// hand. Under load, the stiffness therefore recovers only by the energy that its reduction has withheld; the
-// rest recovers once the tool is free.
+// hand. Under load, the stiffness therefore recovers only until this energy equals the energy that the
+// reduction has withheld; the rest recovers once the tool is free.
 //
 // Plain data. The ticking thread owns it together with the simulation.
 struct CouplingState {

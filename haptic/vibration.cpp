@@ -31,8 +31,8 @@ const VibrationState::Sample& at(const VibrationState& state, int ticks_ago) {
   return state.samples[(state.count - 1 - static_cast<std::uint64_t>(ticks_ago)) % VibrationState::capacity];
 }
 
-// Returns the mismatch below which the force counts as repeating with this period. It is at most the mismatch
-// of a sine of `slowest_hz`, which is 1 - cos(x) for the phase error x and is approximated by x^2 / 2.
+// Returns the mismatch below which the force counts as repeating with this period. A sine of `slowest_hz`
+// with the phase error x has the mismatch 1 - cos(x), about x^2 / 2. The result is at most this mismatch.
 double mismatch_limit(int period) {
   const double phase_error = 2.0 * std::numbers::pi * (1.0 - period * tick_s * slowest_hz);
   return std::min(largest_mismatch, 0.5 * phase_error * phase_error);
@@ -42,9 +42,9 @@ bool vibrates(const VibrationState& state, const VibrationLimits& limits, int pe
   const int periods = count_periods(period);
   const int ticks = periods * period;
   if (state.count < static_cast<std::uint64_t>(ticks)) return false;
-  // Sums of |f(t) - f(t - L)|^2, and of the squared displacement of the hand over the same L ticks.
+  // Sums of |f(t) - f(t - L)|^2, and of the squared displacement of the hand over L ticks (see vibration.h).
   double change = 0.0, moved_m2 = 0.0;
-  double energy = 0.0, newest_energy = 0.0, oldest_energy = 0.0;  // sums of |a(t)|^2
+  double energy = 0.0, newest_energy = 0.0, oldest_energy = 0.0;  // sums of |a(t)|^2, see vibration.h
   const int third = periods / 3;
   for (int p = 0; p < periods; ++p) {
     Vector3 sum = Vector3::Zero();

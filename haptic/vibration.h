@@ -16,7 +16,7 @@
 //   - strong: the root mean square of a(t) exceeds the quiet force;
 //   - lasting: the newest and the oldest third of the periods each have at least 0.7 of the mean |a(t)|^2,
 //     unlike the first ticks of a pulse and the bounces after a tap, which die down;
-//   - not caused by the hand that moves across a pattern, such as ridges, or trembles over one ridge: the
+//   - not caused by a hand that moves across a pattern, such as ridges, or trembles over one ridge: the
 //     root mean square of the hand's displacement over one period is below 2.5 mm. The force of a contact
 //     only pushes, so the root mean square of its a(t) is at most half of the maximum force. If it exceeds
 //     0.6 of the maximum force, the force reverses, and this condition does not apply.

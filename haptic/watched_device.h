@@ -42,8 +42,9 @@ class WatchedDevice : public Device {
   // start of a tick. If true, the tick must treat the time since the previous tick as a stall.
   bool consume_cut() { return cut_.exchange(false, std::memory_order_acq_rel); }
 
-  // Writes zero if no force has been set for watchdog_limit_ns, counted from an earlier call of this
-  // function. `now_ns` is from any clock that never goes back and also runs while the machine is suspended.
+  // Writes zero if no force has been set for watchdog_limit_ns. The time counts from the first call of this
+  // function after the last force. `now_ns` is from any clock that never goes back and also runs while the
+  // machine is suspended.
   void check(std::int64_t now_ns);
 
   // Starts a thread that calls check() every millisecond. If `real_time`, requests a higher priority than

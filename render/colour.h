@@ -54,8 +54,9 @@ struct SurfaceLook {
   float translucency = 0.0f;                         // 0: opaque, 1: clear
 };
 
-// Returns the look of the first word in the table of known words that the material's name contains
-// ("modelling-clay", "steel-304"). Upper and lower case are equal. Other names get a neutral matt grey.
+// Returns the look of a material. A table lists words such as "clay" and "steel"; the first of them that the
+// name contains ("modelling-clay", "steel-304") selects the look. Upper and lower case are equal. Other names
+// get a neutral matt grey.
 SurfaceLook find_material_look(std::string_view name);
 
 }  // namespace spoonbill

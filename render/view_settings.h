@@ -96,7 +96,7 @@ class FrameBudget {
   int spare_frames_ = 0;         // count of frames with spare capacity
   int frames_since_change_ = 0;  // frames since the quality changed
   int patience_frames_ = 120;    // frames with spare capacity before the quality is raised
-  bool on_trial_ = false;        // true if the last change raised the quality
+  bool on_trial_ = false;        // true until a raised quality has lasted for trial_frames
 };
 
 }  // namespace spoonbill

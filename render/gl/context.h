@@ -88,7 +88,7 @@ class SharedLibrary {
 };
 
 // Makes the allocator retain freed memory, up to 1 GiB. By default glibc returns large blocks to the system
-// after every frame, and clearing fresh pages costs the software renderer a third of the frame.
+// after every frame. Clearing fresh pages then takes the software renderer a third of the frame's time.
 //
 // Call once at program start, before the first context and before other threads, if the program draws. Does
 // nothing without glibc.

@@ -150,8 +150,8 @@ void main() {
 }
 )";
 
-// Draws the near half of the sphere by the ray through the pixel. If the colour is faint, draws only the
-// outline.
+// Draws the near side of the sphere: intersects the ray through the pixel with the sphere. If the colour is
+// faint, draws only the outline.
 constexpr const char* shell_fragment_source = R"(
 uniform mat4 world_to_clip;
 uniform vec3 eye;

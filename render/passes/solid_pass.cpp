@@ -209,8 +209,9 @@ void SolidPass::use_program(const Program& program, const FrameView& view, const
   program.set("colour", colour);
 }
 
-// Returns the coarsest sphere whose sagitta is small enough on the screen, or the finest sphere if there is
-// none. Each of n equal chords of a circle of radius r deviates from its arc by at most r (pi / n)^2 / 2.
+// Returns the coarsest sphere whose sagitta is small enough on the screen, or the finest sphere if no sphere
+// is fine enough. Each of n equal chords of a circle of radius r deviates from its arc by at most
+// r (pi / n)^2 / 2.
 const SolidPass::Shape& SolidPass::sphere_for(const FrameView& view, const Eigen::Vector3f& centre_m,
                                               float radius_m) const {
   const float depth = std::max((centre_m - view.eye_m).norm() - radius_m, view.nearest_depth_m);

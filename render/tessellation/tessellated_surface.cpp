@@ -79,10 +79,10 @@ class NetLine {
   int stride_;
 };
 
-// Bounds on the derivatives of a surface along one direction. Entry i of each list is the largest value at
-// control point i of a derivative, over all lines of the net. `speed` bounds the length of the first
-// derivative S' in metres per parameter. `bend` estimates the component of S'' perpendicular to S', which
-// curves a line.
+// Bounds on the derivatives of a surface along one direction. On each line of the net, a derivative is a
+// spline with its own control points. Entry i of each list is the largest value at control point i of this
+// spline, over all lines. `speed` bounds the length of the first derivative S' in metres per parameter.
+// `bend` estimates the component of S'' perpendicular to S', which curves a line.
 struct DerivativeBounds {
   std::vector<double> speed;  // control point i acts on spans i + 1 to i + degree
   std::vector<double> bend;   // control point i acts on spans i + 2 to i + degree

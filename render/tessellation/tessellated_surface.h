@@ -73,8 +73,8 @@ class MeshShading {
  private:
   // Shared ownership, so that no other mesh can get this address, which matches() compares.
   std::shared_ptr<const std::vector<std::array<std::uint32_t, 3>>> triangles_;
-  std::vector<std::uint32_t> indices_;  // index of the drawn vertex of each triangle corner
-  std::vector<std::uint32_t> vertex_;   // index of the mesh vertex of each drawn vertex
+  std::vector<std::uint32_t> indices_;  // for each triangle corner, the index of its drawn vertex
+  std::vector<std::uint32_t> vertex_;   // for each drawn vertex, the index of its mesh vertex
 };
 
 // Returns an error if the size of the control net does not fit the knots.
@@ -84,7 +84,7 @@ Status check_net(const SurfaceSnapshot& surface);
 class TessellatedSurface {
  public:
   // Evaluates the surface at a sampling level. Grid, blending matrices and indices are rebuilt only if the
-  // level has changed, or the surface's structure, knots or trim; otherwise nothing is allocated. Errors: a
+  // level or the surface's structure, knots or trim have changed; otherwise nothing is allocated. Errors: a
   // grid that cannot be built, a control net whose size does not fit its knots.
   Status update(const SurfaceSnapshot& surface, const SamplingLevel& level);
 
@@ -107,7 +107,7 @@ class TessellatedSurface {
   // Number of rebuilds of the indices. GL buffers upload the indices when it has changed.
   std::uint64_t topology_version() const { return topology_version_; }
 
-  // Returns whether the surface encloses a volume, so that its inside is never visible.
+  // Returns whether the surface encloses a volume. The inside of such a surface is never visible.
   bool is_closed() const { return closed_; }
 
   // Returns true if the triangles are cut along trim loops. Samples that no triangle uses are then outside

@@ -73,7 +73,7 @@ class FacingOrder {
   std::uint32_t bucket_index(float distance_m) const;
 
   std::vector<Facing> facing_;
-  std::vector<std::uint32_t> ends_;  // end of the triangles of each bucket, the farthest bucket first
+  std::vector<std::uint32_t> ends_;  // working memory: ends of the buckets, the farthest bucket first
   std::vector<std::uint32_t> indices_;
   float farthest_m_ = 0.0F, buckets_per_m_ = 0.0F;
 };

@@ -72,8 +72,9 @@ TEST(SurfacePick, FindsWhereASphereFirstTouches) {
   const Ray down{Vector3(0.03, 0.1, 0.0), -Vector3::UnitY()};
   const auto touch = pick.first_touch(down, 0.006);
   ASSERT_TRUE(touch);
-  // The section rises about 2.65 mm above the centre line. The sphere touches one of the balls around the
-  // sample points. The radius of these balls is at most half the diagonal of a cell of 1 mm.
+  // The section rises about 2.65 mm above the centre line. first_touch() finds where the sphere touches one
+  // of the balls around sample points of the surface. The radius of these balls is at most half the diagonal
+  // of a cell of 1 mm.
   EXPECT_NEAR(touch->centre_m.y(), 0.0025 + 0.006, 1e-3);
   EXPECT_GT(touch->outward.y(), 0.99);
   EXPECT_FALSE(pick.first_touch({Vector3(0.03, 0.1, 0.05), -Vector3::UnitY()}, 0.006));
@@ -102,7 +103,7 @@ TEST(MouseHand, HoversPressesAndLetsGo) {
   HandTarget pressed;
   for (int frame = 0; frame < 30; ++frame) pressed = follow(true);
   EXPECT_NEAR((hover.pose.position_m - pressed.pose.position_m).norm(), 0.005,
-              1e-4);  // moved down by the hover gap and the strength
+              1e-4);  // the hover gap of 1 mm plus the strength of 4 mm
   pointer.wheel = 2.0;
   const HandTarget deeper = follow(true);
   EXPECT_NEAR((deeper.pose.position_m - pressed.pose.position_m).norm(), 0.002, 1e-9);

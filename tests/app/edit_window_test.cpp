@@ -309,7 +309,7 @@ class RecoveryQuestion : public EditWindow {
     ASSERT_TRUE(wait_question());
   }
 
-  // Clicks an answer of the question that is open.
+  // Clicks the answer with this number in the open dialog.
   void answer(std::size_t number) {
     const Json centre = shown()["answers_px"].at(number);
     const int x = static_cast<int>(centre[0].get<double>()), y = static_cast<int>(centre[1].get<double>());
@@ -329,7 +329,7 @@ class RecoveryQuestion : public EditWindow {
 
   std::filesystem::path folder() const { return place_.path("state") / "spoonbill"; }
   Autosave autosave() const { return {folder(), file_}; }
-  // Returns the documents that are kept beside the autosave.
+  // Returns the documents in the files named *.kept-* beside the autosave.
   std::vector<Document> kept() const {
     std::vector<Document> found;
     for (const auto& entry : std::filesystem::directory_iterator(folder())) {

@@ -33,7 +33,7 @@ class RecoveredSession {
   const Autosave& autosave() const { return autosave_; }
   std::filesystem::path file() const { return place_.path("model.json"); }
 
-  // Returns the documents that are kept beside the autosave.
+  // Returns the documents in the files named *.kept-* beside the autosave.
   std::vector<Document> kept() const {
     std::vector<Document> found;
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
@@ -89,7 +89,7 @@ TEST(EditedDocument, KeepsNoWorkThatWasSaved) {
   EXPECT_FALSE(std::filesystem::exists(session.autosave().file()));
 }
 
-// The next document may change before the window has noticed that it is open.
+// The next document may change before the window has noticed that this document is open.
 TEST(EditedDocument, KeepsNothingOfTheNextDocument) {
   RecoveredSession session;
   Document next = held_handle();

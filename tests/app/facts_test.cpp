@@ -43,8 +43,8 @@ TEST(Info, TellsOfAModel) {
   EXPECT_NE(run({"info", place.text("model.json")}).out.find("Size"), std::string::npos);
 }
 
-// The mass is the same in all reports and computed from the exact volume. The mass of the lattice has another
-// name.
+// All reports give the same mass, computed from the exact volume. The mass of the lattice is reported under
+// another name.
 TEST(Info, AMassIsOneNumber) {
   const Workplace place;
   const Document document = read_document(place.path("model.json")).value();

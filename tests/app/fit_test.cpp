@@ -153,7 +153,8 @@ TEST(FitFacts, SaysOfFoldsWhichBodyHasThem) {
   EXPECT_TRUE(remarks[0].starts_with("the surface of body 2 folds at 3 of 640 samples")) << remarks[0];
 }
 
-// Bridging two halves of a pipe requires caps at their outer ends. Two halves of a ball close each other.
+// A bridge between two halves of a pipe leaves the outer ends open, so they get caps. Two halves of a ball
+// have no other openings, so bridging them closes the body.
 TEST_F(FitTest, SaysWhichIslandsBridgingCaps) {
   const auto bridged = [&](const Scan& scan) {
     return json_of_fit(write("islands.xyz", xyz_of(scan, 1e3)),
@@ -407,8 +408,8 @@ class RealScans : public FitTest {
     if (folder == nullptr) GTEST_SKIP() << "SPOONBILL_SCANS names no folder with scans";
     scans_ = folder;
   }
-  // Expects every body to have no folds, and 95 % of its points to be within 1 mm of the surface. For the
-  // points of all bodies together, the distance at 95 % must also be below 1 mm and below a hundredth of
+  // Expects every body to have no folds, and 95 % of its points to be within 1 mm of the surface. Of the
+  // points of all bodies together, 95 % must also be within 1 mm of the surface, and within a hundredth of
   // `size_m`, the size of the object.
   void expect_good(const std::string& name, const std::vector<std::string>& options, double size_m,
                    std::size_t bodies) {

@@ -93,13 +93,13 @@ class Side {
 
   void cut_force() { exchange_->force_cut.store(true); }
 
-  // Ends the session with its recording.
+  // Ends the session and its recording.
   void close() {
     side_->close();
     journal_->stop();
   }
 
-  // Runs ticks. Returns their number of heap allocations.
+  // Runs ticks. Returns the number of heap allocations during these ticks.
   std::size_t tick(int count, std::uint64_t dropped = 0) {
     const std::size_t before = allocation_count();
     for (int i = 0; i < count; ++i) side_->tick({index_++, dropped});

@@ -86,7 +86,8 @@ TEST(LiveSession, AStrokeIsUndoneAndRedone) {
 }
 
 TEST(LiveSession, ACancelledStrokeLeavesNothingAndTheToolActsAgainOnceItHasLeft) {
-  // Rubber stays in contact with the tool. Clay yields at the first contact, which would end the stroke.
+  // Rubber stays in contact with the tool. Clay would yield at the first touch and lose contact, which would
+  // end the stroke.
   Document rubber = held_handle();
   rubber.scene.bodies[0].material.plastic = false;
   Live live(rubber);

@@ -63,8 +63,8 @@ void expect_refusal(const std::string& file, ErrorCode code, const MeshReading& 
   EXPECT_EQ(mesh.error().code, code) << mesh.error().message;
 }
 
-// The file has two triangles, each with a list of corners and a colour. Truncated anywhere, the file is
-// reported and does not crash the reader.
+// The file has two triangles, each with a list of corners and a colour. Wherever the file is truncated, the
+// program reports an error, and the reader does not crash.
 TEST_F(MeshFileTest, ACutBinaryPlyIsToldOfItsCut) {
   for (const bool big : {false, true}) {
     const std::string header = std::string("ply\nformat binary_") + (big ? "big" : "little") +

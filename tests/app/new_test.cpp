@@ -104,8 +104,8 @@ TEST_P(Lumps, CanBePressed) {
   EXPECT_EQ(json_of(replayed.out)["state_hash"], json_of(recorded.out)["state_hash"]);
 }
 
-// The ball tool is pressed in by a tenth of its radius. The reaction must be perceptible, and the surface
-// must yield by a plausible fraction of the depth.
+// The ball tool is pressed in by a tenth of its radius. The reaction must be perceptible, and the
+// displacement of the surface must be a plausible fraction of the depth.
 TEST_P(Lumps, GiveWayToTheirTool) {
   const Workplace place;
   ASSERT_EQ(run(with(GetParam(), {"--out", place.text("lump.json")})).code, exit_done);

@@ -31,7 +31,7 @@ class Crew : public ::testing::Test {
     write_facts(session_, facts);
     job.panel = make_panel_model(facts, job.snapshot, job.view);
     SurfaceSnapshot& surface = job.snapshot.bodies[0].surface;
-    // The control point is far from the ends of the body, so that they stay closed.
+    // The control point is far from the ends of the body, so that the ends stay closed.
     const int raised = surface.v.control_point_count() / 2;
     surface.y[static_cast<std::size_t>(raised)] += 0.002F * static_cast<float>(frame);
     job.panel.time_s = 0.1 * static_cast<double>(frame);

@@ -163,8 +163,8 @@ TEST(Panel, OffersASolidWhereTheToolHasABody) {
 }
 
 TEST(Panel, SwitchesTheForceOfALiveDevice) {
-  // Clicks at one height after another along the right edge of the panel. Returns whether the first request
-  // to switch the force is to switch it on.
+  // Clicks at one height after another along the right edge of the panel, until a click requests to switch
+  // the force. Returns whether the request is to switch it on.
   const auto find_switch = [](const PanelModel& model) -> std::optional<bool> {
     for (float y = 500.0F; y < 700.0F; y += 10.0F) {
       for (const Request& request : click_once(model, 275.0F, y)) {
@@ -246,7 +246,7 @@ TEST(Panel, LetsUnfixedBodiesMoveAndKeepsThemAgain) {
   }
 }
 
-// Returns the answer after Ctrl+click on the slider at this height and typing of `text`.
+// Ctrl+clicks the slider at this height and types `text`. Returns the panel's answer.
 PanelAnswer type_over_slider(float y, const char* text) {
   Frame frame(1280, 720);
   const PanelModel model = full_model();

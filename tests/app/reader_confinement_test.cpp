@@ -126,8 +126,8 @@ TEST(ReaderConfinement, ThreadsStartButNoProcess) {
   EXPECT_EQ(WEXITSTATUS(state), 0);
 }
 
-// Makes the system call seccomp, which confines a reader, fail for this thread and its children, as on an old
-// kernel.
+// Makes seccomp() fail in this thread and its children, as on an old kernel. A reader is confined with this
+// system call.
 bool forbid_filters() {
   sock_filter calls[] = {
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, static_cast<std::uint32_t>(offsetof(seccomp_data, nr))),

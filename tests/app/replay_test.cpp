@@ -162,7 +162,8 @@ TEST(Session, SavesAtOneTickShareADocument) {
   }
   ASSERT_EQ(session->marks.size(), 450u);
   for (const FileMark& mark : session->marks) EXPECT_EQ(mark.document, session->marks[0].document);
-  // A command before each save makes the session save a document of its own.
+  // Marks without a command between them share a document. A command before each mark makes the session store
+  // another document.
   Status saved;
   int count = 0;
   for (; saved && count < 900; ++count) {

@@ -1,4 +1,4 @@
-// Sheets in FCL's form: meshes of triangles whose vertices are replaced and whose tree is refitted.
+// Sheets in FCL's form: triangle meshes whose vertices are replaced and whose tree is refitted.
 #pragma once
 
 #include <fcl/geometry/bvh/BVH_model.h>

@@ -1,6 +1,6 @@
-// loop_bench SECONDS loop|none idle|drawing: runs the 1 kHz loop with the whole tick of a pressed block, with
-// or without a thread that draws, and prints as JSON how late its ticks began. "none" runs only the thread
-// that draws, while another program measures lateness.
+// loop_bench SECONDS loop|none idle|drawing: runs the 1 kHz loop and prints as JSON how late its ticks began.
+// Each tick simulates a block that a tool presses. With "drawing", another thread draws meanwhile. With
+// "none", there is no loop: the program draws while another program measures lateness.
 #include <chrono>
 #include <cstdlib>
 #include <iostream>

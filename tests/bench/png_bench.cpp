@@ -1,5 +1,5 @@
 // Times the encoding of a frame of 1280 x 720 pixels as PNG, by our encoder and by that of stb_image_write.
-// The frame is the approved picture of the settled bend.
+// The frame is the reference screenshot of the bent handle at rest.
 #include <benchmark/benchmark.h>
 
 #define STB_IMAGE_WRITE_STATIC

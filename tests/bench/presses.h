@@ -21,7 +21,7 @@ struct Press {
 Result<Press> recorded_press(const std::filesystem::path& recording);
 
 // Reads a recording as recorded_press() does, and replaces the material of each body by ABS, a plastic so
-// stiff that only the implicit method can step it.
+// stiff that it requires the implicit solver.
 Result<Press> stiff_press(const std::filesystem::path& recording);
 
 // Returns a press of a block of clay with 60 mm edges and count^3 nodes, fixed at one end. A sphere presses

@@ -41,7 +41,8 @@ SpringLattice block(int count, const Material& material) {
   return lattice;
 }
 
-// Number of substeps of a tick of the bundled recording. They run together, without a tool.
+// A tick of the bundled recording has this many substeps. The benchmark runs that many at once, without a
+// tool.
 constexpr int substeps_a_tick = 6;
 
 void time_ours(benchmark::State& state, const Material& material) {
@@ -88,7 +89,7 @@ void sizes(benchmark::internal::Benchmark* bench) {
   for (const int count : {8, 12, 16, 24, 32}) bench->Arg(count);
 }
 
-// Adds sizes for our code alone, at which Bullet's position-based body diverges.
+// Adds sizes at which only our code is timed, because Bullet's position-based body diverges there.
 void sizes_of_ours(benchmark::internal::Benchmark* bench) {
   sizes(bench);
   for (const int count : {48, 64}) bench->Arg(count);

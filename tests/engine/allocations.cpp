@@ -17,8 +17,8 @@ std::size_t allocation_count() {
 
 }  // namespace spoonbill
 
-// Replacements of operator new that count. The default array forms call them. The nothrow forms are replaced
-// as well, because those of the address sanitizer do not call the throwing forms.
+// Replacements of operator new that count allocations. The default array forms call them. The nothrow forms
+// are replaced as well, because the address sanitizer's nothrow forms do not call the throwing forms.
 void* operator new(std::size_t size) {
   ++count;
   if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;

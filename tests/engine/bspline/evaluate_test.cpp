@@ -141,9 +141,9 @@ std::vector<double> some_of(Random& random, const std::vector<double>& values, i
 
 // Compares a part of a grid with the whole grid. The evaluator tests whole blocks of 16 samples first: if all
 // normals are certainly above the rounding noise, single samples need no test. The part has only 14 samples,
-// fewer than a block, so each of them is tested on its own. The whole grid has only four rows, because the
-// evaluator limits the calls of unit_normal() for samples that fail the test: with four rows, the limit is
-// never reached.
+// fewer than a block, so each of them is tested on its own. The evaluator also limits the calls of
+// unit_normal() for samples that fail the test. The whole grid has only four rows, too few to reach this
+// limit.
 void expect_same_bits_in_parts(Random& random, const Surface& surface) {
   const Grid grid = random_grid(random, surface, 4, random.integer(7, 60));
   const Grid part = make_grid(surface.u, surface.v, some_of(random, grid.u.parameters, 2),

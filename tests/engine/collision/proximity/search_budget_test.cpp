@@ -19,8 +19,8 @@ namespace spoonbill {
 namespace {
 
 constexpr double crumpled_m = 0.005;
-// Upper limit of the evaluations of one search. After its budget is used up, each near point that is left
-// costs one more evaluation, and the step in progress may do so too.
+// Upper limit of the evaluations of one search. After its budget is used up, each remaining near point costs
+// one more evaluation. The second multiple of near_point_limit is a reserve for the step in progress.
 constexpr int most_evaluations = proximity_evaluation_limit + 2 * static_cast<int>(near_point_limit);
 
 // Returns a tube whose control points are at random in a small box.

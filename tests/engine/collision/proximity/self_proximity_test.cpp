@@ -66,7 +66,7 @@ TEST(RestPairs, OfARingAreNeighboursOverTheSeamAsElsewhere) {
   EXPECT_LT(meet, pairs_seen);
 }
 
-// Returns the gaps of the samples of the squeezed torus that are in contact, sorted.
+// Finds the contacts of the squeezed torus with itself. Returns the gaps at its samples in ascending order.
 std::vector<double> gaps_m(int first, double squeeze) {
   const Surface rest = torus(first), now = torus(first, squeeze);
   const NestedGrid nested = nested_grid_of(rest);

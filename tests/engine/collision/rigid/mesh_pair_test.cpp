@@ -71,7 +71,7 @@ double grown_of(const CleanMesh& mesh, std::size_t t) {
   return 0.0;
 }
 
-// Returns the distance of two meshes from all pairs of triangles. It is negative if plates overlap.
+// Computes the distance between two meshes from all pairs of triangles. It is negative if plates overlap.
 double brute_gap(const CleanMesh& a, const CleanMesh& b) {
   double least = 1e300;
   for (std::size_t s = 0; s < a.mesh.triangles.size(); ++s) {
@@ -165,8 +165,8 @@ void expect_sound(const MeshPairResult& result, const CleanMesh& first, const Cl
     EXPECT_LE(contact.depth_m, last);
     last = contact.depth_m;
     EXPECT_NEAR(contact.normal.norm(), 1.0, 1e-9);
-    // The two points of a contact are apart along its normal by at most the depth. The depth is larger than
-    // this distance if one mesh is completely inside the other.
+    // The vector from the first to the second point of a contact is along its normal and at most as long as
+    // the depth. It is shorter than the depth if one mesh is completely inside the other.
     const Vector3 apart = contact.second_m - contact.first_m;
     EXPECT_LT(apart.cross(contact.normal).norm(), 2e-6);
     EXPECT_LT(apart.dot(contact.normal), contact.depth_m + 2e-6);
@@ -335,7 +335,7 @@ TEST(MeshPair, SheetsArePlates) {
 }
 
 TEST(MeshPair, EachRegionIsAContact) {
-  // The shape is a fork: two tines on a block.
+  // Two tines reach into the block, by 0.01 and by 0.02.
   const CleanMesh tines = cleaned(joined(box_of_triangles({0.0, -0.01, 0.0}, {0.01, 0.1, 0.01}),
                                          box_of_triangles({0.05, -0.02, 0.0}, {0.06, 0.1, 0.01})));
   const CleanMesh block = cleaned(box_of_triangles({-1, -1, -1}, {1, 0, 1}));

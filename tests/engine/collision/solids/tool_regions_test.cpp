@@ -69,8 +69,8 @@ TEST(ToolRegions, ARodOverWavesTouchesEachCrest) {
   EXPECT_NEAR(places[2], 0.08, 2e-3);
 }
 
-// Every sample inside the tool is in the range of a region whose deepest point is at least as deep, up to the
-// tolerance. Each region's deepest point is inside the tool.
+// Every sample inside the tool is in the range of a region whose deepest point is at least as deep as the
+// sample, up to the tolerance. Each region's deepest point is inside the tool.
 TEST(ToolRegions, HoldEverySampleInTheTool) {
   Random random(61);
   for (int trial = 0; trial < 60; ++trial) {

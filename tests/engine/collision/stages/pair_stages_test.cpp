@@ -1,5 +1,5 @@
-// Tests the contact stages of two round tubes that cross at a right angle. Their common curve has a closed
-// form.
+// Tests the contact stages of two round tubes that cross at a right angle. The curve in which they intersect
+// has a closed form.
 #include "engine/collision/stages/pair_stages.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Tests that the data which a collider keeps from one query to the next save work but change no result.
+// Tests that a collider reuses data of its previous query to save work, and that this changes no result.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -28,8 +28,8 @@ Surface quadric_sheet(double half_m, double bend_x, double bend_z, int controls)
   const auto at = [&](int k) { return half_m * (2.0 * t[k] - 1.0); };
   for (int i = 0; i < controls; ++i) {
     for (int j = 0; j < controls; ++j) {
-      // `x` and `z` are the polar forms (blossoms) of x and z at the control point's two knots, and `height`
-      // is that of the height.
+      // `x`, `z` and `height` are the polar forms (blossoms) of x, z and the height, at the control point's
+      // two knots.
       const double x = 0.5 * (at(j + 1) + at(j + 2)), z = 0.5 * (at(i + 1) + at(i + 2));
       const double height = bend_x * at(j + 1) * at(j + 2) + bend_z * at(i + 1) * at(i + 2);
       net.set_point(i, j, {x, height, z});
