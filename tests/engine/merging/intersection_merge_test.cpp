@@ -50,8 +50,8 @@ Surface ball() {
   });
 }
 
-// Returns a rod with round ends from the ball's centre to a point in the given direction. Its v runs towards
-// the ball's centre.
+// Returns a rod with round ends between the ball's centre and a point in the given direction. Its v runs
+// towards the ball's centre.
 Surface rod(const Vector3& direction) {
   const Vector3 across = direction.unitOrthogonal(), other = direction.cross(across);
   const double far = 0.06, quarter = 0.5 * pi * rod_radius, straight = far - 2 * rod_radius;
@@ -131,7 +131,8 @@ TEST_P(RodInBall, BecomesOneSurface) {
     for (std::size_t k = 1; k < knots.size(); ++k) EXPECT_GT(knots[k] - knots[k - 1], 1e-3);
     // The fitted ball and rod deviate from the exact ones by 6e-6 m; the rest is the tolerance.
     EXPECT_LT(largest_distance(merged->surface, direction, fillet), 6e-5) << fillet;
-    // Normals point outwards, and the rod adds a cylinder and a half ball minus the ball's own part.
+    // Normals point outwards. The rod adds the volume of a cylinder and of a half ball, without the part of
+    // the rod inside the ball.
     const double volume = compute_enclosed_mass(merged->surface).volume_m3;
     EXPECT_GT(volume, 4.0 / 3.0 * pi * std::pow(ball_radius, 3) + pi * rod_radius * rod_radius * 0.033);
     EXPECT_LT(volume, 4.0 / 3.0 * pi * std::pow(ball_radius, 3) + pi * rod_radius * rod_radius * 0.045);

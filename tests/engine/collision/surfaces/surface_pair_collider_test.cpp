@@ -40,8 +40,8 @@ Surface paraboloid(double a, double b, double c) {
   return make_surface(knots, knots, net).value();
 }
 
-// Returns a closed box with the given half sides: rings of four corners, and ends whose corners coincide in
-// their centre.
+// Returns a closed box with the given half sides. Each ring has four corners. The corners of the first and of
+// the last ring coincide at the centre of their end face.
 Surface box(const Vector3& half, const Vector3& centre) {
   const KnotVector around = KnotVector::periodic_uniform(1, 4).value();
   const KnotVector along = KnotVector::clamped_uniform(1, 4).value();
@@ -149,7 +149,8 @@ TEST(SurfacePair, ABoxInABoxLeavesByTheNearestWall) {
   EXPECT_FALSE(collide(beside, outer, query).result.touching);
 }
 
-// The inner body is 900 times smaller, slightly off the centre of a body of 80 x 80 control points.
+// The inner body is 900 times smaller than the outer one, which has 80 x 80 control points. It is slightly
+// off the centre of the outer body.
 TEST(SurfacePair, ATinyBodyInAFineOneLeavesByTheNearestWall) {
   PairQuery query;
   query.first_closed = query.second_closed = true;
@@ -162,7 +163,8 @@ TEST(SurfacePair, ATinyBodyInAFineOneLeavesByTheNearestWall) {
   const PairAnswer answer = collide(inner, outer, query);
   ASSERT_TRUE(answer.result.contained);
   EXPECT_FALSE(answer.result.overflow);
-  // The inner body leaves through the wall that is nearest by dense samples of the outer body.
+  // The inner body leaves through the nearest wall. Dense samples of the outer body give the distance of this
+  // wall.
   double nearest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 400; ++i) {
     for (int j = 0; j <= 400; ++j) {
@@ -232,8 +234,8 @@ TEST(SurfacePair, GivenSamplesAreNotEvaluatedAndTellTheSame) {
   }
 }
 
-// Every cell is in contact, so all cells together are one region, on whatever level the search has to stop
-// because its number of cell pairs is limited.
+// Every cell is in contact, so all cells form one region. This holds on any level at which the limit on the
+// number of cell pairs stops the search.
 TEST(SurfacePair, CoincidentSheetsAreOneRegionAndNothingOverflows) {
   const KnotVector knots = KnotVector::clamped_uniform(3, 40).value();
   ControlNet net(40, 40);
@@ -263,7 +265,7 @@ TEST(SurfacePair, AllocatesNothing) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-// A point of one surface is moved onto a point of the other.
+// Moves one surface so that a random point of it coincides with a random point of the other surface.
 TEST(SurfacePair, NoCommonPointIsMissed) {
   Random random(77);
   std::map<std::string, int> missed;

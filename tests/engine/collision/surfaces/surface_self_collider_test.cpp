@@ -124,7 +124,7 @@ TEST(SurfaceSelf, ALoopCrossesWhereTheClosedFormSays) {
   const bool swapped = contact.first.u0 > 0.0;
   const ParameterRange& low = swapped ? contact.second : contact.first;
   const ParameterRange& high = swapped ? contact.first : contact.second;
-  // A cell is a quarter of a knot span of 0.3 wide, and a region may extend up to one cell beyond the
+  // A knot span is 0.3 wide, and a cell is a quarter of that. A region may extend up to one cell beyond the
   // crossing.
   constexpr double cell = 0.075;
   EXPECT_LE(low.u0, -1.0);
