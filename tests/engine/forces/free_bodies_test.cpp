@@ -78,7 +78,7 @@ TEST(Ringing, KeepsItsEnergyWithoutDamping) {
         static_cast<int>(std::lround(settings.time_s / lattice.find_real_time_step_s(settings.time_s)));
     const double step_s = settings.time_s / settings.substeps;
     lattice.set_inertia(1.0, step_s);
-    // The rod starts to swing in about its first bending mode, and to vibrate along its length.
+    // The rod starts to swing in approximately its first bending mode, and to vibrate along its length.
     for (int n = 0; n < lattice.mesh().node_count(); ++n) {
       const double along = lattice.mesh().nodes[static_cast<std::size_t>(n)].y() / size.height_m;
       lattice.set_velocity(n, speed_m_per_s * Vector3(std::cos(2.0 * std::numbers::pi * along), along, 0.0));

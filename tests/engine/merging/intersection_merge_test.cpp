@@ -223,7 +223,8 @@ struct Drum {
   Surface surface() const {
     const double flat = radius - rounding, arc = 0.5 * pi * rounding, side = 2.0 * (half_height - rounding);
     const double whole = 2.0 * (flat + arc) + side;
-    // The profile of the upper half, at a distance of `way` along it from the pole, as radius and height.
+    // Returns radius and height of a point on the profile of the upper half. `way` is its distance from the
+    // pole along the profile.
     const auto profile = [=, this](double way) -> Eigen::Vector2d {
       if (way < flat) return {way, half_height};
       const double turn = (way - flat) / rounding;
@@ -241,7 +242,7 @@ struct Drum {
   }
 };
 
-// A rod enters a drum from the side, or is upright on the drum beside its pole.
+// A rod enters a drum from the side, or is upright on the end face of a drum beside the drum's pole.
 TEST(IntersectionMerge, LinesLeadAwayFromACrossingBesideThePole) {
   const Drum tall{0.01, 0.03}, wide{0.03, 0.01};
   const Vector3 x(1, 0, 0), z(0, 0, 1), beside(0.012, 0, 0);

@@ -101,7 +101,7 @@ double top_at(const Simulation& simulation, double x_m) {
   return low;
 }
 
-// Returns the slip of the tool over the surface point below it after the hand has moved half a millimetre
+// Returns how far the tool slips over the surface point below it when the hand moves by half a millimetre
 // along x.
 double slip_m(Simulation& simulation, double x_m) {
   const auto press = [&](double moved_m, int ticks) {

@@ -124,7 +124,7 @@ TEST(SurfacePair, TwoDentsAreTwoRegions) {
   const PairAnswer answer = collide(make_surface(along, across, net).value(), plane, {}, 3);
   ASSERT_EQ(answer.contacts.size(), 2u);
   for (const PairContact& contact : answer.contacts) {
-    // At its peak, a uniform quadratic basis function is 3/4 in each direction.
+    // The peak value of a uniform quadratic basis function is 3/4 in each direction.
     EXPECT_NEAR(contact.depth_m, 2.0 * 0.75 * 0.75 - 1.0, exact_m);
     EXPECT_LT((contact.normal - Vector3(0, 0, 1)).norm(), exact_normal);
     EXPECT_LT(contact.first.u1 - contact.first.u0, 0.5);
@@ -143,7 +143,7 @@ TEST(SurfacePair, ABoxInABoxLeavesByTheNearestWall) {
   const PairAnswer swapped = collide(outer, inner, query);
   ASSERT_TRUE(swapped.result.contained);
   EXPECT_LT((swapped.contacts[0].normal + Vector3(1, 0, 0)).norm(), 1e-6);
-  // Open surfaces have no inside.
+  // With a default query the surfaces count as open, and open surfaces have no inside.
   EXPECT_FALSE(collide(inner, outer, {}).result.touching);
   const Surface beside = box({0.1, 0.1, 0.1}, {0.7, 0, 0});
   EXPECT_FALSE(collide(beside, outer, query).result.touching);

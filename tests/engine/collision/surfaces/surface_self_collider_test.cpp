@@ -138,7 +138,7 @@ TEST(SurfaceSelf, ALoopCrossesWhereTheClosedFormSays) {
   EXPECT_GT(contact.depth_m, 0.0);
 }
 
-// The walls are flat where they are deepest, so the depth equals their distance up to rounding.
+// The walls are flat where they overlap most, so the depth equals the distance between them up to rounding.
 TEST(SurfaceSelf, APressedTubeIsAsDeepInItselfAsItsWallsHavePassed) {
   for (const double depth : {0.05, 0.01, 1e-3}) {
     const SelfAnswer answer = collide_with_itself(pressed_tube(-10.0 * depth), true);

@@ -201,8 +201,8 @@ TEST(Integration, SelfWeightOnASlippingBase) {
   }
 }
 
-// A bar of stiffness E A / L = 50 N/m is carried at its top without friction. A weight of 10 g pulls its
-// lower end down by 1.962 mm.
+// A bar of stiffness E A / L = 50 N/m hangs from contacts without friction at its top. A weight of 10 g pulls
+// its lower end down by 1.962 mm.
 TEST(Integration, HangingWeight) {
   const double length = 1.0, side = 0.02, stiffness = 50.0;
   SpringLattice lattice = block({side, length, side}, {2, 51, 2},
