@@ -51,7 +51,7 @@ TEST(BoundedQueue, MemoryGoesRoundInsteadOfBeingFreed) {
   ASSERT_TRUE(queue.push(std::move(back)));
   EXPECT_EQ(allocation_count(), before);
   EXPECT_EQ(taken, Numbers(100, 5));
-  EXPECT_EQ(back, Numbers(100, 7));  // NOLINT(bugprone-use-after-move): the value that pop() left
+  EXPECT_EQ(back, Numbers(100, 7));  // NOLINT(bugprone-use-after-move): push() swaps it with the slot
 }
 
 }  // namespace

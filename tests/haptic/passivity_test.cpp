@@ -20,8 +20,8 @@
 namespace spoonbill {
 namespace {
 
-// Largest energy, in joules, that the rounding of positions to nanometres may seem to give: at the highest
-// force, over the 2,000 ticks of a press, with all errors of one sign (3.3 N * 0.5 nm * 2000).
+// Largest energy, in joules, that the hand may seem to receive because positions are rounded to nanometres:
+// at the highest force, over the 2,000 ticks of a press, with all errors of one sign (3.3 N * 0.5 nm * 2000).
 constexpr double rounding_j = 3.3e-6;
 
 struct WallPress {
@@ -111,9 +111,10 @@ Energy press_rigid_wall(const WallPress& press, double stiffness_n_per_m,
       next_hold);
 }
 
-// A hand of 0.2 kg and 3 N s/m is lighter and less damped than measured hands, and therefore harder to keep
-// passive. Van Beek et al. (Scientific Reports 5:18004, 2015) measured 0.55 kg, 6.5 N s/m and 135 N/m at an
-// arm's end. A hand adds no energy of its own at these frequencies (Hogan, ICRA 1989).
+// A wall is harder to keep passive if the hand is light and little damped. The hand of 0.2 kg and 3 N s/m is
+// therefore lighter and less damped than measured hands: van Beek et al. (Scientific Reports 5:18004, 2015)
+// measured 0.55 kg, 6.5 N s/m and 135 N/m at an arm's end. A hand adds no energy of its own at these
+// frequencies (Hogan, ICRA 1989).
 TEST(Passivity, AWallWhoseForceIsHeldForSeveralTicksGivesBackNoMoreThanItTook) {
   std::mt19937_64 random(25);
   const auto random_hold = [&random](int longest) {

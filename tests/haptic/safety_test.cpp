@@ -169,7 +169,8 @@ TEST(Safety, FewerThanTwoHundredTicksASecondGetNoForce) {
     const bool is_slow = 1000 / (dropped + 1) < 200;
     EXPECT_EQ(safe.force_n.x(), is_slow ? 0.0 : 3.0) << dropped;
     EXPECT_EQ(safe.flags, is_slow ? safety_flag_slow | safety_flag_cut : safety_flag_softened) << dropped;
-    // At the full rate again, the force waits until the requested force is small, as at the start.
+    // The loop runs at its full rate from here on. A force that was cut waits until the requested force is
+    // small, as at the start.
     for (int tick = 0; tick < 300; ++tick) safe = make_safe(state, device, wanting(3.0));
     EXPECT_EQ(safe.flags, is_slow ? safety_flag_slow | safety_flag_waiting : safety_flag_none) << dropped;
   }

@@ -58,7 +58,7 @@ TEST(SoftPress, BothGiveWayStayApartAndComeBack) {
   EXPECT_LT(farthest, 0.3e-3) << "elastic";
 }
 
-// The bundled soft egg is a mesh. It yields and recovers its shape.
+// The bundled soft egg is a mesh. It is dented and recovers its shape.
 TEST(SoftPress, AMeshGivesWayTooAndComesBack) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const Script script = read_script(scripts / "soft-egg.script.json").value();

@@ -1,5 +1,5 @@
-// Tests bodies without fixed nodes that a tool presses. They yield to the tool. As a whole they keep their
-// position, unless the setting `free` lets them move.
+// Tests bodies without fixed nodes that a tool presses. They deform under the tool. As a whole they keep
+// their position, unless the setting `free` lets them move.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -29,8 +29,8 @@ namespace spoonbill {
 namespace {
 
 // Largest allowed mean difference of a block's channels, in 8-bit steps. Pictures of rasterisers on other
-// processors differ by less than a third of this limit. The smallest change that must be detected differs by
-// more than twice this limit.
+// processors differ by less than a third of this limit. The smallest change that must be detected makes a
+// difference of more than twice this limit.
 constexpr double tolerance = 2.0;
 
 constexpr int width_px = 1280, height_px = 720;

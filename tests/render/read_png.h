@@ -8,7 +8,8 @@
 
 namespace spoonbill {
 
-// Returns the image. Fails with the path for a missing file, a damaged file, or a side above 16384 pixels.
+// Returns the image. Fails, with the path in the message, if the file is missing or damaged or if a side
+// exceeds 16384 pixels.
 Result<Image> read_png(const std::filesystem::path& path);
 
 }  // namespace spoonbill

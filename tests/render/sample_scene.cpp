@@ -41,8 +41,8 @@ Vector3 bent(const Vector3& straight, double bend_rad) {
 Surface make_handle(double bend_rad) {
   ControlNet net(section_points, axis_points);
   for (int j = 0; j < axis_points; ++j) {
-    // Both ends are poles: the first and last ring shrink to a point, and the rings beside them round the
-    // tip.
+    // Both ends are poles: the first and the last ring shrink to a point. The rings beside them are smaller
+    // than the rest, which makes the tip round.
     const int from_end = std::min(j, axis_points - 1 - j);
     const double size = from_end == 0 ? 0.0 : from_end == 1 ? 0.72 : from_end == 2 ? 1.0 : 1.05;
     const double t = static_cast<double>(j) / (axis_points - 1);

@@ -28,8 +28,8 @@ std::string actions_text() {
   return text;
 }
 
-// Returns the schema of the tool made from the table of fields. Properties that no table describes are copied
-// from `old`.
+// Returns the schema of the tool, which is built from the table of fields. Properties that no table describes
+// are copied from `old`.
 Json tool_schema(const Json& old) {
   Json tool = object_schema(Tool{});
   Json& properties = tool["properties"];

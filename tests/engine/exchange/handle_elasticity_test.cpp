@@ -38,8 +38,8 @@ double slice_x_m(const LatticeMesh& mesh, int k) {
   return mesh.nodes[static_cast<std::size_t>(mesh.index(0, 0, k))].x();
 }
 
-// Fixes both ends along x. The far end is displaced, so that the bar is stretched. Both ends may slide across
-// x.
+// Fixes both ends along x, with the far end displaced to stretch the bar. Both ends may slide perpendicular
+// to x.
 std::vector<FixedAxis> drawn_ends(const LatticeMesh& mesh) {
   std::vector<FixedAxis> held;
   const int last = mesh.count[2] - 1;

@@ -1,5 +1,5 @@
-// Tests that documents of versions 1 and 2 are read with their former fields converted to constants in real
-// time.
+// Tests that documents of versions 1 and 2 can be read. Their former fields are converted to the current
+// constants, which apply in real time.
 #include "engine/exchange/old_documents.h"
 
 #include <gtest/gtest.h>

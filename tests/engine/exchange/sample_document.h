@@ -14,8 +14,8 @@ Document sample_document();
 // Returns the sample document with every length random, as in a deformed body.
 Document deformed_document(unsigned seed);
 
-// Compares the names, views, tools, fixing planes, sculpting settings and first bodies of two documents.
-// Numbers must be equal to the last bit; -0 differs from 0.
+// Compares the names, views, tools, fixing planes and sculpting settings of two documents, and the first body
+// of each. Numbers must be equal to the last bit; -0 differs from 0.
 bool same_bits(const Document& a, const Document& b);
 
 // A temporary folder. The destructor removes it with all its contents.

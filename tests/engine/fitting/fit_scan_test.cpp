@@ -127,7 +127,8 @@ TEST(FitScan, HoleIsSpannedSmoothly) {
   ASSERT_EQ(fitted.bodies.size(), 1U);
   EXPECT_EQ(fitted.bodies[0].kind, ShapeKind::closed);
   EXPECT_EQ(fitted.bodies[0].folds.folds, 0U);
-  // A flat cap would be 0.6 mm below the sphere.
+  // The limit is slightly more than the error of a flat cap over the hole, which would be 0.6 mm below the
+  // sphere.
   EXPECT_LT(farthest_off(fitted.bodies[0].surface, from_sphere(0.02)), 8e-4);
 }
 
@@ -198,8 +199,8 @@ TriangleMesh bowl_mesh() {
   return mesh;
 }
 
-// Handles of several slopes start beside the bowl's rim. The hole that is opened there is not planar, and its
-// loop must run in the right direction.
+// Handles of several slopes start beside the bowl's rim. The hole that the fit opens beside the rim is not
+// planar, and the loop of this hole must run in the right direction.
 TEST(FitScan, HandleAtAThinRimIsBridgedTheRightWayRound) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const TriangleMesh bowl = bowl_mesh();

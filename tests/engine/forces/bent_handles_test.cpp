@@ -11,7 +11,7 @@
 namespace spoonbill {
 namespace {
 
-// Stiffness of the spring that couples the tool to the hand with a usual haptic device, N/m. It is divided by
+// Stiffness in N/m of the spring between the tool and the hand, for a usual haptic device. It is divided by
 // the force scale.
 constexpr double device_n_per_m = 700.0;
 

@@ -143,8 +143,8 @@ TEST(HeldSphere, DentsTheBlockAsDeepAsItIsPressed) {
   EXPECT_NEAR(dent_m(simulation.surface()), press_m, 1e-4);
 }
 
-// The sphere rests on many points of each cell. Contacts that are solved in one order only shake such a block
-// for ever after a quick press, with a ripple of 46 % of the force.
+// The sphere rests on many points of each cell. If contacts were always solved in the same order, such a
+// block would shake for ever after a quick press, with a ripple of 46 % of the force.
 TEST(HeldSphere, ComesToRestAfterAQuickPress) {
   if (const std::string reason = find_skip_reason(ForceRun::always); !reason.empty()) GTEST_SKIP() << reason;
   Scene scene = block_scene("silicone-00-30", 600);

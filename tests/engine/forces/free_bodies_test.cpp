@@ -1,5 +1,5 @@
-// Tests free bodies of springs: a body that rings keeps its energy, and two bodies that collide keep their
-// momentum.
+// Tests free bodies made of springs: a vibrating body keeps its energy, and two bodies that collide keep
+// their momentum.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,8 +49,8 @@ Potential find_potential(const SpringLattice& lattice, const StaticBody& springs
   return sum;
 }
 
-// Returns T + V - (h / 2) dV/dt, where T is the kinetic and V the potential energy. Steps h of symplectic
-// Euler (a kick, then a drift) conserve it up to the order of h^2.
+// Returns T + V - (h / 2) dV/dt, where T is the kinetic and V the potential energy. The symplectic Euler
+// method (a kick, then a drift) with the step h conserves this value up to the order of h^2.
 double conserved_energy_j(const SpringLattice& lattice, const StaticBody& springs, double step_s) {
   const Potential potential = find_potential(lattice, springs);
   return kinetic_energy_j(lattice) + potential.energy_j - 0.5 * step_s * potential.power_w;
@@ -78,7 +78,7 @@ TEST(Ringing, KeepsItsEnergyWithoutDamping) {
         static_cast<int>(std::lround(settings.time_s / lattice.find_real_time_step_s(settings.time_s)));
     const double step_s = settings.time_s / settings.substeps;
     lattice.set_inertia(1.0, step_s);
-    // The rod starts to swing in about its first bending mode, and to vibrate along its length.
+    // The rod starts to swing in approximately its first bending mode, and to vibrate along its length.
     for (int n = 0; n < lattice.mesh().node_count(); ++n) {
       const double along = lattice.mesh().nodes[static_cast<std::size_t>(n)].y() / size.height_m;
       lattice.set_velocity(n, speed_m_per_s * Vector3(std::cos(2.0 * std::numbers::pi * along), along, 0.0));

@@ -22,9 +22,9 @@ Vector3 mean_of_slice(const LatticeMesh& mesh, int k, const std::vector<Vector3>
   return sum / (mesh.count[0] * mesh.count[1]);
 }
 
-// Returns the ratio of the Young's modulus of a straight rod, which a force pulls along an axis, to the
-// modulus of its material. The rod's modulus follows from the strain between a third and two thirds of the
-// length, where the stress is uniform. `section_m2(k, length_m)` returns the area of the section of a layer.
+// A force pulls a straight rod along an axis. Returns the ratio of the rod's Young's modulus to that of its
+// material. The rod's modulus follows from the strain between a third and two thirds of the length, where the
+// stress is uniform. `section_m2(k, length_m)` returns the area of the section of a layer.
 template <class SectionOf>
 double modulus_ratio(const LatticeMesh& mesh, const Material& material, CellKind kind, int axis,
                      const SectionOf& section_m2) {

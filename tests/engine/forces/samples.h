@@ -13,7 +13,7 @@
 
 namespace spoonbill {
 
-// The smallest run of the tests that tries a case: tests/run, tests/run --full or tests/run --long.
+// The smallest test run that includes a case: tests/run, tests/run --full or tests/run --long.
 enum class ForceRun { always, full, whole_table };
 
 // Returns the reason to skip a case in the present run; empty if the case is to be tried.
@@ -45,8 +45,8 @@ Material made_elastic(Material material);
 Body stock_body(const std::string& name, const StockShapeSize& size, const Vector3& centre_m,
                 const Material& material, int node_budget);
 
-// Returns the part of a tube at its end with the smaller or the larger coordinate along an axis. `length` is
-// a fraction of the tube's length.
+// Returns the region at one end of a tube: the end with the larger coordinate along an axis if `at_larger` is
+// true, otherwise the opposite end. `length` is a fraction of the tube's length.
 BodyRegion end_region(const Surface& tube, int axis, bool at_larger, double length);
 
 // Returns a scene of these bodies without gravity. Motion is critically damped, so that the scene comes to

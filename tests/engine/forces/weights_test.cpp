@@ -20,8 +20,8 @@ double weight_n(const Body& body) {
 }
 
 // Advances by windows of 200 ticks and returns the mean of a force over the last window. Stops when this mean
-// differs from that of the window before by less than a fraction of 2e-4, but not before six windows have
-// passed, and at the latest after `most_ticks` ticks.
+// differs from the mean of the previous window by less than the fraction 2e-4, but not before six windows
+// have passed, and at the latest after `most_ticks` ticks.
 double settled_force_n(Simulation& simulation, int most_ticks, const std::function<double()>& force_n) {
   constexpr int window = 200;
   double before = 0.0, now = mean_over(simulation, window, idle_tool(), force_n);
@@ -38,7 +38,8 @@ void expect_weight(const std::string& what, double measured_n, double expected_n
   EXPECT_NEAR(measured_n / expected_n, 1.0, 5e-3) << what;
 }
 
-// Returns the body, elastic, with supports at both ends and halfway, so that it hardly sags.
+// Returns a copy of the body without loads and with an elastic material. Supports at both ends and halfway
+// prevent it from sagging noticeably.
 Body supported(Body body) {
   body.supports.clear();
   for (const Range<double> along : {Range<double>{0.0, 0.15}, {0.45, 0.55}, {0.85, 1.0}}) {
@@ -49,7 +50,7 @@ Body supported(Body body) {
   return body;
 }
 
-// Returns the force of the supports of a body against gravity.
+// Returns the force with which the supports bear a body against gravity.
 double support_n(const Simulation& simulation, int body = 0) {
   double sum = 0.0;
   const std::size_t supports = simulation.scene().bodies[static_cast<std::size_t>(body)].supports.size();
@@ -130,7 +131,7 @@ TEST(WeightOnSupport, IsTheSameWithAnyDrag) {
   }
 }
 
-// Without drag the force of a body that was let go oscillates about the weight.
+// Without drag, the force on the support of a released body oscillates about the weight.
 TEST(WeightOnSupport, IsTheMeanWithoutDrag) {
   if (const std::string reason = find_skip_reason(ForceRun::full); !reason.empty()) GTEST_SKIP() << reason;
   Scene scene;

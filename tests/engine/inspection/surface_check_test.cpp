@@ -59,7 +59,7 @@ TEST(SurfaceCheck, ASheetIsOpenBothWays) {
   EXPECT_TRUE(is_clean(check));
 }
 
-// The tube is not periodic here. It counts as closed around if its edges coincide, and as open if they are
+// The surface is not periodic here. It counts as a closed tube if its edges coincide, and as open if they are
 // 1 mm apart.
 TEST(SurfaceCheck, EdgesThatMeetCloseATube) {
   for (const double apart : {0.0, 1e-3}) {

@@ -68,7 +68,7 @@ TEST(Thickness, FindsAWaist) {
 TEST(Thickness, DoesNotHangOnWhichDirectionRunsAround) {
   const Surface tube = ellipsoid_tube(12, 16);
   Surface turned = transposed(tube);
-  // Exchanging the directions flips the normals; a mirrored surface has them outward again.
+  // Exchanging u and v flips the normals. Mirroring the surface makes them point outwards again.
   for (double& x : turned.net.x) x = -x;
   EXPECT_NEAR(ThicknessSearch(tube).smallest()->thickness_m, ThicknessSearch(turned).smallest()->thickness_m,
               1e-7);

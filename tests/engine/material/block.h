@@ -12,7 +12,7 @@ Material elastic_material(double youngs_modulus_pa, double poissons_ratio, doubl
 SpringLattice block(const Vector3& size_m, std::array<int, 3> counts, const Material& material,
                     InstructionSet set = InstructionSet::baseline);
 
-// Linearises the springs at the shape expected `tau_s` ahead and computes the forces of that shape.
+// Linearises the springs at the shape that is expected `tau_s` later, and computes the forces of that shape.
 void take_forces(SpringLattice& lattice, float tau_s);
 
 // Makes one substep without any tool: forces, kick, drift.

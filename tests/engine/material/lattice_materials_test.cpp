@@ -129,8 +129,8 @@ TEST(LatticeMaterials, WrongRegionsAreRefusedInALine) {
             Refusal(ErrorCode::out_of_range, "regions"));
 }
 
-// The springs step either all of a body or none of it. If one material needs springs, every other material
-// must suit them, too.
+// The spring solver advances either a whole body or no part of it. If one material of a body needs that
+// solver, every other material of the body must suit it, too.
 TEST(LatticeMaterials, WhatSpringsMustStepIsFitForSprings) {
   Material clay = named("clay", 1e5, 0.0), cork = named("cork", 1e6, 0.0);
   clay.plastic = true;

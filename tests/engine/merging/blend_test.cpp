@@ -29,8 +29,8 @@ Surface tube(double from, double to, double radius, const Vector3& shift = Vecto
   return fit_grid(u, v, points).value();
 }
 
-// Returns the smallest cosine of the angle between a normal in the blend and the normal at the start of the
-// blend on the same line of constant u.
+// Returns the smallest cosine of the angle between two normals on a line of constant u: a normal in the blend
+// and the normal at the start of the blend.
 double least_cosine(const Merged& merged) {
   const Joint& joint = merged.joints[0].joint;
   double least = 1.0;
@@ -96,8 +96,7 @@ TEST(Blend, TheLengthAskedHoldsForGapsToo) {
   EXPECT_EQ(longer.error().field, "blend");
 }
 
-// A cubic sheet is C2 at its knots and polynomial between them, so its third derivatives differ only at
-// knots.
+// A cubic sheet is C2 at its knots and polynomial between them, so its third derivatives jump only at knots.
 TEST(Blend, IsMadeWhereTheThirdDerivativesDiffer) {
   const auto sheet =
       sheet_between([](double) { return 0.0; }, [](double x) { return 0.04 + 0.004 * std::sin(200.0 * x); });

@@ -50,8 +50,8 @@ Surface ball() {
   });
 }
 
-// Returns a rod with round ends from the ball's centre to a point in the given direction. Its v runs towards
-// the ball's centre.
+// Returns a rod with round ends between the ball's centre and a point in the given direction. Its v runs
+// towards the ball's centre.
 Surface rod(const Vector3& direction) {
   const Vector3 across = direction.unitOrthogonal(), other = direction.cross(across);
   const double far = 0.06, quarter = 0.5 * pi * rod_radius, straight = far - 2 * rod_radius;
@@ -131,7 +131,8 @@ TEST_P(RodInBall, BecomesOneSurface) {
     for (std::size_t k = 1; k < knots.size(); ++k) EXPECT_GT(knots[k] - knots[k - 1], 1e-3);
     // The fitted ball and rod deviate from the exact ones by 6e-6 m; the rest is the tolerance.
     EXPECT_LT(largest_distance(merged->surface, direction, fillet), 6e-5) << fillet;
-    // Normals point outwards, and the rod adds a cylinder and a half ball minus the ball's own part.
+    // Normals point outwards. The rod adds the volume of a cylinder and of a half ball, without the part of
+    // the rod inside the ball.
     const double volume = compute_enclosed_mass(merged->surface).volume_m3;
     EXPECT_GT(volume, 4.0 / 3.0 * pi * std::pow(ball_radius, 3) + pi * rod_radius * rod_radius * 0.033);
     EXPECT_LT(volume, 4.0 / 3.0 * pi * std::pow(ball_radius, 3) + pi * rod_radius * rod_radius * 0.045);
@@ -222,7 +223,8 @@ struct Drum {
   Surface surface() const {
     const double flat = radius - rounding, arc = 0.5 * pi * rounding, side = 2.0 * (half_height - rounding);
     const double whole = 2.0 * (flat + arc) + side;
-    // The profile of the upper half, at a distance of `way` along it from the pole, as radius and height.
+    // Returns radius and height of a point on the profile of the upper half. `way` is its distance from the
+    // pole along the profile.
     const auto profile = [=, this](double way) -> Eigen::Vector2d {
       if (way < flat) return {way, half_height};
       const double turn = (way - flat) / rounding;
@@ -240,7 +242,7 @@ struct Drum {
   }
 };
 
-// A rod enters a drum from the side, or is upright on the drum beside its pole.
+// A rod enters a drum from the side, or is upright on the end face of a drum beside the drum's pole.
 TEST(IntersectionMerge, LinesLeadAwayFromACrossingBesideThePole) {
   const Drum tall{0.01, 0.03}, wide{0.03, 0.01};
   const Vector3 x(1, 0, 0), z(0, 0, 1), beside(0.012, 0, 0);

@@ -17,7 +17,7 @@ Surface ring_strip(double from, double to, int count, double seam);
 Surface sheet_between(const std::function<double(double)>& low, const std::function<double(double)>& high,
                       double warp = 0.0);
 
-// Returns a plane sheet with the domain [from, to] along v and the same length in metres.
+// Returns a plane sheet that extends from `from` to `to` along v, both as parameters and in metres.
 Surface level_sheet(double from, double to, int columns = 8);
 
 // Returns a torus about z, periodic in both directions: the control points form a tube of 8 mm about a circle

@@ -16,7 +16,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Returns a plane at height `y_m` from -0.05 to 0.05 m in x and z, facing up or down.
+// Returns a square in the plane y = `y_m`, from -0.05 to 0.05 m in x and z. Its normals point up or down.
 Surface level_plane(double y_m, bool up) {
   Surface surface;
   surface.u = surface.v = KnotVector::clamped_uniform(1, 2).value();

@@ -79,8 +79,8 @@ TEST(FitShape, TellsHowFarItIsAndStops) {
   }
 }
 
-// The fit is refused before the shape is sampled if the breaks, at each of which a fit has a knot, require
-// more control points than are allowed.
+// A fit has a knot at each break. If the breaks require more control points than are allowed, the fit is
+// refused before the shape is sampled.
 TEST(FitShape, RefusesMoreBreaksThanControlPointsAtOnce) {
   ExactShape shape = wave(0.0);
   shape.v.breaks.clear();

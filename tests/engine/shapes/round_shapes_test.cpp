@@ -105,8 +105,8 @@ double cone_distance(const Vector3& p, const ConeSize& size) {
   const Eigen::Vector2d q(std::hypot(p.x(), p.z()), p.y() + 0.5 * h);
   const Eigen::Vector2d outward(std::cos(slope), std::sin(slope));  // normal of the cone's side
   const Eigen::Vector2d down(std::sin(slope), -std::cos(slope));    // direction along the cone's side
-  // The rounded cone is the set of points within the rounding of a smaller cone of the same slope, whose
-  // corners are the centres of the roundings.
+  // The rounded cone is the set of points within the distance r of a smaller cone with the same slope. The
+  // corners of the smaller cone are the centres of the roundings.
   const Eigen::Vector2d tip(0.0, h - r / std::sin(slope));
   const double edge_x = size.radius_m - r * std::tan(0.25 * pi + 0.5 * slope);
   const Eigen::Vector2d edge(edge_x, r);

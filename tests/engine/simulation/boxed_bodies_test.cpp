@@ -1,5 +1,5 @@
-// Tests bodies whose lattice is a box of cells: they stay at rest if untouched, yield if pressed, and rest on
-// the ground.
+// Tests bodies whose lattice is a box of cells: they stay at rest if untouched, deform if pressed, and rest
+// on the ground.
 #include <gtest/gtest.h>
 
 #include <algorithm>

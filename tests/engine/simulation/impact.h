@@ -17,8 +17,8 @@ namespace spoonbill {
 // Collision of two bodies without any other influence.
 class Impact {
  public:
-  // `slowed`: both bodies share one inertia scale, with which a substep of a millisecond is stable, so that
-  // the masses of both are scaled alike. `real_time`: the inertia is not scaled, and a tick takes as many
+  // `slowed`: both bodies have one inertia scale, with which a substep of a millisecond is stable. Their
+  // masses therefore keep their ratio. `real_time`: the inertia is not scaled, and a tick takes as many
   // substeps as both bodies need.
   enum class Clock { slowed, real_time };
 

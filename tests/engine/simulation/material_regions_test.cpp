@@ -101,7 +101,7 @@ double top_at(const Simulation& simulation, double x_m) {
   return low;
 }
 
-// Returns the slip of the tool over the surface point below it after the hand has moved half a millimetre
+// Returns how far the tool slips over the surface point below it when the hand moves by half a millimetre
 // along x.
 double slip_m(Simulation& simulation, double x_m) {
   const auto press = [&](double moved_m, int ticks) {
@@ -133,7 +133,7 @@ TEST(MaterialRegions, AToolSticksToOneHalfAndSlidesOnTheOther) {
   Simulation smooth_side = simulate(scene), rough_side = simulate(scene);
   const double slid = slip_m(smooth_side, 0.02), stuck = slip_m(rough_side, 0.04);
   EXPECT_GT(slid, 0.4e-3);
-  // The bound is a tenth of the tool's movement rather than 0, because the skin yields between the fixed
+  // The bound is a tenth of the tool's movement rather than 0, because the skin deforms between the fixed
   // nodes.
   EXPECT_LT(stuck, 0.05e-3);
 }
@@ -185,7 +185,7 @@ TEST(MaterialRegions, ANewMaterialIsOfTheRestOfTheBody) {
   EXPECT_EQ(clay.lattice().materials().own().name, "clay");
 }
 
-// Materials belong to cells, so a bent body that keeps its shape also keeps its materials.
+// A body keeps its materials when its bent shape becomes its rest shape, because materials belong to cells.
 TEST(MaterialRegions, StayWhereTheyAreWhenAShapeIsKept) {
   const Material clay = small_handle().bodies[0].material;
   Simulation simulation = simulate(handle_with_regions(clay, {far_half_of(elastic("rubber", 1e5))}));
@@ -207,8 +207,8 @@ TEST(MaterialRegions, WrongOnesAreRefused) {
             "body \"other\": regions[0].along is [0.9, 0.1], must run from the lower to the higher");
 }
 
-// The reported elasticity is that of the cells that step the body: springs or hexahedra. Hexahedra achieve
-// the requested values, because they pass the patch test in any shape.
+// The reported elasticity is that of the cells with which the body is simulated: springs or hexahedra.
+// Hexahedra achieve the requested values, because they pass the patch test in any shape.
 TEST(MaterialRegions, WhatABodyAchievesIsReportedOfWhatStepsIt) {
   Simulation wood = simulate(handle_with_regions(elastic("gel", 1e4), {far_half_of(elastic("wood", 1e9))}));
   Simulation gel = simulate(handle_with_regions(elastic("gel", 1e4), {}));

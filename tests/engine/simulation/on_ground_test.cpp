@@ -205,7 +205,7 @@ double least_volume_share(const SpringLattice& lattice) {
   return least;
 }
 
-// The handle is stepped by springs at two inertia scales, or by the implicit solver.
+// The handle is simulated with springs, at two inertia scales, and with the implicit solver.
 TEST(OnGround, AHandleThatFallsComesToRestOnItsSkin) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const double youngs : {1e4, 2e5, 2e9}) {

@@ -110,8 +110,8 @@ TEST(RealTime, GivesEveryBodyItsMassAndATickMoreSubsteps) {
   EXPECT_GT(simulation.inertia_scale(), 1.0);
 }
 
-// A body falls at g / r with the inertia scale r, and at g in real time. A body that the implicit solver
-// steps falls like the others.
+// A body falls at g / r with the inertia scale r, and at g in real time. This holds for springs and for the
+// implicit solver.
 TEST(RealTime, IsThatOfAFall) {
   for (const bool real_time : {false, true}) {
     for (const bool is_stiff : {false, true}) {

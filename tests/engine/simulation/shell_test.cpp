@@ -168,8 +168,8 @@ TEST(Shell, OutlastsFastStrokes) {
   }
 }
 
-// The tool presses the ring at its seam, or a quarter of a turn from the seam; the ring must yield equally in
-// both cases.
+// The tool presses the ring at its seam, or a quarter of a turn from the seam. The ring must be dented
+// equally in both cases.
 TEST(Shell, RingGivesWayAtItsSeamAsElsewhere) {
   const auto pressed = [](double seam_turn) {
     Scene scene = clay_bowl();

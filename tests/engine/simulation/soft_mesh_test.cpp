@@ -211,7 +211,7 @@ TEST(SoftMesh, FollowsATurnOfTheHandAsARigidOneDoes) {
   simulation.write_snapshot(snapshot);
   const MeshSnapshot& mesh = snapshot.bodies.back().mesh;
   const CleanMesh made = cleaned(ball());
-  // The vertices of the given mesh come first. Those that halve edges follow.
+  // The vertices of the given mesh come first. The vertices that were added at the midpoints of edges follow.
   for (std::size_t v = 0; v < made.mesh.vertices_m.size(); ++v) {
     const Vector3 wanted = place + turn * made.mesh.vertices_m[v];
     EXPECT_LT((Vector3(mesh.x[v], mesh.y[v], mesh.z[v]) - wanted).norm(), 1e-7);

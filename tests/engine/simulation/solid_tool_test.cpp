@@ -134,7 +134,7 @@ TEST(SolidTool, WorksOnBothSidesOfAMirror) {
       const Quaternion turned(Eigen::AngleAxisd(0.2, Vector3::UnitX()));
       simulation.advance({{Vector3(0.04, 0.0045 + above_it - 1e-5 * tick, 0), turned}, false, 0.0});
     }
-    // Pressed from both sides the handle stays centred.
+    // The handle is pressed from both sides, so it stays centred.
     double middle = 0.0, most = 0.0;
     for (const double y : simulation.surface().net.y) {
       middle += y;

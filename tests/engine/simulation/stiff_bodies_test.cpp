@@ -1,4 +1,4 @@
-// Tests bodies of stiff elastic materials, which are stepped with their true stiffness.
+// Tests bodies of stiff elastic materials, which the implicit solver simulates with their true stiffness.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,7 +59,8 @@ double sunk_m(const Simulation& simulation) {
   return mean_at_press(lattice.mesh(), [&](int n, double) { return -lattice.displacement(n).y(); });
 }
 
-// Returns the static displacement of the pressed point under a force, by the static solver on the same cells.
+// Returns the static displacement of the pressed point under a force. The static solver computes it on the
+// cells of the implicit solver.
 double sinking_at_rest_m(const Scene& scene, double force_n) {
   const BodyState body = make_body_state(scene.bodies[0], scene.planes, InstructionSet::baseline).value();
   const LatticeMesh& mesh = body.implicit_solver->mesh();

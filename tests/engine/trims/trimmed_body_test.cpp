@@ -101,7 +101,7 @@ TEST(TrimmedBody, ASphereIsFeltBesideAHoleWhereItTouches) {
   const Vector3 beside = middle + Vector3(0.5 * hole_radius_m + 0.012, 0.0, 0.0);
   const Descent on_sheet = come_down(pierced, beside, 0.005);
   EXPECT_GT(on_sheet.largest_n, 0.005);
-  // The first touch is at the distance of the tool's radius, up to two steps of 0.02 mm and the sway of the
+  // The tool first touches at the distance of its radius, within two steps of 0.02 mm and the sway of the
   // sheet.
   EXPECT_NEAR(on_sheet.first_touch_m, tool_radius_m, 5e-5);
   // With the tool 8 mm from the hole's centre, the rim is 3 mm from the tool's axis.

@@ -13,8 +13,8 @@
 namespace spoonbill {
 namespace {
 
-// Converts the number of a vertex to its (u, v). For a vertex on a seam, unrolled() must then move (u, v) to
-// the side of the seam on which the triangle is.
+// Converts the index of a vertex to its parameters (u, v). For a vertex on a seam, unrolled() must then move
+// these parameters to the side of the seam on which the triangle is.
 struct Vertices {
   const Grid& grid;
   const TrimmedGrid& trimmed;
@@ -122,7 +122,8 @@ TEST(TrimmedGrid, CoversWhatIsKeptWithoutGapsWhateverTheGrid) {
 }
 
 TEST(TrimmedGrid, TakesLoopsThatLieOnGridLines) {
-  // The grid lines are at every quarter, as are the loops' sides and corners and the domain's ends.
+  // The grid lines are at multiples of a quarter in u and v. So are the corners of the loops, most of their
+  // sides and the ends of the domain.
   const Grid grid = grid_of(open_u, open_v, 9, 9);
   const std::vector<std::vector<TrimLoop>> cases = {
       {polygon_loop(open_u, open_v, rectangle(0, -1, 2, 1))},

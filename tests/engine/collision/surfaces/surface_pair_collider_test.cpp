@@ -40,8 +40,8 @@ Surface paraboloid(double a, double b, double c) {
   return make_surface(knots, knots, net).value();
 }
 
-// Returns a closed box with the given half sides: rings of four corners, and ends whose corners coincide in
-// their centre.
+// Returns a closed box with the given half sides. Each ring has four corners. The corners of the first and of
+// the last ring coincide at the centre of their end face.
 Surface box(const Vector3& half, const Vector3& centre) {
   const KnotVector around = KnotVector::periodic_uniform(1, 4).value();
   const KnotVector along = KnotVector::clamped_uniform(1, 4).value();
@@ -124,7 +124,7 @@ TEST(SurfacePair, TwoDentsAreTwoRegions) {
   const PairAnswer answer = collide(make_surface(along, across, net).value(), plane, {}, 3);
   ASSERT_EQ(answer.contacts.size(), 2u);
   for (const PairContact& contact : answer.contacts) {
-    // At its peak, a uniform quadratic basis function is 3/4 in each direction.
+    // The peak value of a uniform quadratic basis function is 3/4 in each direction.
     EXPECT_NEAR(contact.depth_m, 2.0 * 0.75 * 0.75 - 1.0, exact_m);
     EXPECT_LT((contact.normal - Vector3(0, 0, 1)).norm(), exact_normal);
     EXPECT_LT(contact.first.u1 - contact.first.u0, 0.5);
@@ -143,13 +143,14 @@ TEST(SurfacePair, ABoxInABoxLeavesByTheNearestWall) {
   const PairAnswer swapped = collide(outer, inner, query);
   ASSERT_TRUE(swapped.result.contained);
   EXPECT_LT((swapped.contacts[0].normal + Vector3(1, 0, 0)).norm(), 1e-6);
-  // Open surfaces have no inside.
+  // With a default query the surfaces count as open, and open surfaces have no inside.
   EXPECT_FALSE(collide(inner, outer, {}).result.touching);
   const Surface beside = box({0.1, 0.1, 0.1}, {0.7, 0, 0});
   EXPECT_FALSE(collide(beside, outer, query).result.touching);
 }
 
-// The inner body is 900 times smaller, slightly off the centre of a body of 80 x 80 control points.
+// The inner body is 900 times smaller than the outer one, which has 80 x 80 control points. It is slightly
+// off the centre of the outer body.
 TEST(SurfacePair, ATinyBodyInAFineOneLeavesByTheNearestWall) {
   PairQuery query;
   query.first_closed = query.second_closed = true;
@@ -162,7 +163,8 @@ TEST(SurfacePair, ATinyBodyInAFineOneLeavesByTheNearestWall) {
   const PairAnswer answer = collide(inner, outer, query);
   ASSERT_TRUE(answer.result.contained);
   EXPECT_FALSE(answer.result.overflow);
-  // The inner body leaves through the wall that is nearest by dense samples of the outer body.
+  // The inner body leaves through the nearest wall. Dense samples of the outer body give the distance of this
+  // wall.
   double nearest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 400; ++i) {
     for (int j = 0; j <= 400; ++j) {
@@ -232,8 +234,8 @@ TEST(SurfacePair, GivenSamplesAreNotEvaluatedAndTellTheSame) {
   }
 }
 
-// Every cell is in contact, so all cells together are one region, on whatever level the search has to stop
-// because its number of cell pairs is limited.
+// Every cell is in contact, so all cells form one region. This holds on any level at which the limit on the
+// number of cell pairs stops the search.
 TEST(SurfacePair, CoincidentSheetsAreOneRegionAndNothingOverflows) {
   const KnotVector knots = KnotVector::clamped_uniform(3, 40).value();
   ControlNet net(40, 40);
@@ -263,7 +265,7 @@ TEST(SurfacePair, AllocatesNothing) {
   EXPECT_EQ(allocation_count(), before);
 }
 
-// A point of one surface is moved onto a point of the other.
+// Moves one surface so that a random point of it coincides with a random point of the other surface.
 TEST(SurfacePair, NoCommonPointIsMissed) {
   Random random(77);
   std::map<std::string, int> missed;

@@ -124,7 +124,7 @@ TEST(SurfaceSelf, ALoopCrossesWhereTheClosedFormSays) {
   const bool swapped = contact.first.u0 > 0.0;
   const ParameterRange& low = swapped ? contact.second : contact.first;
   const ParameterRange& high = swapped ? contact.first : contact.second;
-  // A cell is a quarter of a knot span of 0.3 wide, and a region may extend up to one cell beyond the
+  // A knot span is 0.3 wide, and a cell is a quarter of that. A region may extend up to one cell beyond the
   // crossing.
   constexpr double cell = 0.075;
   EXPECT_LE(low.u0, -1.0);
@@ -138,7 +138,7 @@ TEST(SurfaceSelf, ALoopCrossesWhereTheClosedFormSays) {
   EXPECT_GT(contact.depth_m, 0.0);
 }
 
-// The walls are flat where they are deepest, so the depth equals their distance up to rounding.
+// The walls are flat where they overlap most, so the depth equals the distance between them up to rounding.
 TEST(SurfaceSelf, APressedTubeIsAsDeepInItselfAsItsWallsHavePassed) {
   for (const double depth : {0.05, 0.01, 1e-3}) {
     const SelfAnswer answer = collide_with_itself(pressed_tube(-10.0 * depth), true);

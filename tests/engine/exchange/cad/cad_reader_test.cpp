@@ -88,8 +88,8 @@ gp_Trsf moved(double x, double y, double z, double turn = 0.0) {
   return motion;
 }
 
-// Writes an assembly that is moved as a whole: a trolley of a deck and an axle with two wheels, one of which
-// has a name of its own.
+// Writes an assembly that is moved as a whole: a trolley with a deck and an axle. The axle has two wheels,
+// and one of them has a name of its own.
 void write_trolley(const std::filesystem::path& file) {
   opencascade::handle<TDocStd_Document> document;
   XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
@@ -255,7 +255,7 @@ TEST_F(CadReader, OtherFilesThatAFileNamesAreNotOpened) {
   EXPECT_NE(found.error().message.find("names other files"), std::string::npos) << found.error().message;
 }
 
-// OpenCASCADE gives an instance without a name a number as its name. The reader uses the name of the part
+// If an instance has no name, OpenCASCADE names it with a number. The reader uses the name of the part
 // instead.
 TEST_F(CadReader, AUseWithoutANameHasItsPartsName) {
   const auto file = folder_.path() / "trolley.step";

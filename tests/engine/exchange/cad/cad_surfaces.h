@@ -8,8 +8,8 @@
 
 namespace spoonbill {
 
-// One of the test surfaces: open sheets, clamped or not, of degrees 1 to 5; periodic tubes with and without
-// poles; and closed bodies, a merged spoon among them.
+// A test surface. The surfaces are open sheets, clamped or not, of degrees 1 to 5; periodic tubes with and
+// without poles; and closed bodies, a merged spoon among them.
 struct KnownSurface {
   CadSurface surface;
   bool closes = false;

@@ -211,7 +211,7 @@ TEST_F(IgesFile, AMatrixThatStretchesIsTold) {
             std::string::npos);
 }
 
-// In a damaged file, the matrix may be missing or an entity of another type.
+// In a damaged file, the entity that should be the matrix may be missing or may have another type.
 TEST_F(IgesFile, AMatrixThatIsNoneIsTold) {
   const FoundInIges found = read(iges_text({{128, sheet_at(0), 2}, {110, "0.,0.,0.,1.,0.,0."}}));
   EXPECT_EQ(found.refusal, "");

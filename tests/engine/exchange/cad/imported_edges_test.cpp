@@ -1,5 +1,5 @@
-// Tests faces with edges that are slightly outside the surface's domain, and with edges of which only control
-// points are outside it.
+// Tests faces whose edges are slightly outside the surface's domain, and faces whose edges are inside the
+// domain although control points of the edges are outside.
 #include <gtest/gtest.h>
 
 #include <BRepBuilderAPI_MakeEdge.hxx>
@@ -142,8 +142,8 @@ TEST_F(ImportedEdges, ACurveThatLeavesTheDomainIsCutThereAndNoted) {
   text = with_each(text, "(0.,20.000000)", "(0.,12.000000)");
   const CadModel model = read_text(text);
   ASSERT_EQ(model.surfaces.size(), 4u);
-  // The area is that below the arch x = 40 s^2 (3 - 2 s), y = 80 s (1 - s) and below y = 12, in mm, found by
-  // quadrature.
+  // The kept area is below the arch x = 40 s^2 (3 - 2 s), y = 80 s (1 - s) and also below y = 12, with x and
+  // y in mm. Quadrature gives this area.
   constexpr double area_m2 = 453.805e-6;
   int ends = 0;
   for (const CadSurface& part : model.surfaces) {

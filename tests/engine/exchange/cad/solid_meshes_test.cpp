@@ -84,8 +84,8 @@ class SolidMeshes : public testing::Test {
     const double moved_m = 1.1 * (solid.chord_error_m + import_tolerance_m);
     EXPECT_NEAR(enclosed_volume_m3(solid.mesh), whole.volume_m3, moved_m * whole.area_m2);
     EXPECT_NEAR(solid.volume_m3, whole.volume_m3, 1.1 * import_tolerance_m * whole.area_m2);
-    // With the usual chord error of 0.05 mm, the mesh of these solids has less than 1 % less area than the
-    // solid.
+    // With the usual chord error of 0.05 mm, the area of the mesh differs by less than 1 % from the area of
+    // the solid.
     if (chord_m > usual_chord_m) return;
     EXPECT_NEAR(solid.area_m2, area_of(solid.mesh), 1e-2 * solid.area_m2);
   }

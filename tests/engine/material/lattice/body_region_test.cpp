@@ -1,4 +1,4 @@
-// Tests where nodes and cells are in a body's own coordinates, against closed forms.
+// Compares the body coordinates of nodes and cells with closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -147,7 +147,8 @@ TEST(BodyRegion, CellsOfAThinRingLieBetweenItsFaces) {
   EXPECT_EQ(held, 8) << "the middles of four of 24 cells around, twice";
 }
 
-// The test includes the faces of the caps that meet on the axis, where the direction around is undefined.
+// The test includes those faces of the end caps that have a corner on the axis, where the direction around is
+// undefined.
 TEST(BodyRegion, FacesOfARoundBarAreWhereTheCylinderHasThem) {
   const LatticeMesh mesh = bar_lattice({7, 7, 41});
   const std::vector<BodyCoordinates> places = find_node_coordinates(mesh);

@@ -17,8 +17,8 @@ namespace {
 
 constexpr double fruit_radius_m = 0.036;
 
-// The shape of a fruit in units of its radius: a ball of half length `half_length` whose ends are pressed in
-// at the poles. It narrows towards its upper end.
+// The shape of a fruit in units of its radius: an ellipsoid of revolution with the half length `half_length`,
+// whose ends are pressed in at the poles. It narrows towards its upper end.
 struct Fruit {
   const char* name;
   double half_length;

@@ -23,7 +23,8 @@ Surface revolved(const std::function<MeridianPlace(double)>& meridian, double le
     points.row(static_cast<Eigen::Index>(s)) << point.radius_m, point.height_m;
   }
   const Eigen::MatrixXd control = pseudo_inverse(knots, samples).value() * points;
-  // Factor by which the circle of the control points is larger than a closed uniform cubic curve.
+  // A closed uniform cubic curve is smaller than the circle of its control points. The circle is larger by
+  // this factor.
   const double outside = 3.0 / (2.0 + std::cos(2.0 * std::numbers::pi / around));
   const double low = control(0, 1), high = control(along - 1, 1);
   ControlNet net(around, along);

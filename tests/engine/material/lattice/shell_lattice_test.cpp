@@ -234,8 +234,8 @@ TEST(ShellLattice, RingUnderPressureHasNoSeam) {
   EXPECT_EQ(out.front(), out.back());
 }
 
-// The ring is pulled open at its seam, or a quarter of a turn from the seam; it must yield equally in both
-// cases.
+// A force pulls the ring outwards at its seam, or a quarter of a turn from the seam; the opposite side is
+// fixed. The ring must give way equally in both cases.
 TEST(ShellLattice, RingDrawnAcrossItsSeamGivesWayAsElsewhere) {
   const LatticeMesh mesh = round_ring(0.02, 0.006, 0.002);
   const StaticBody body =

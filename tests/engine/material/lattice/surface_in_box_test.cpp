@@ -1,4 +1,4 @@
-// Tests which bodies in a box of cells count as thinner than two cells.
+// Tests which bodies count as thinner than two cells when their lattice is a box of cells around them.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -17,8 +17,8 @@ namespace {
 constexpr int ticks = 100000;
 
 // `whole` is the energy T + V of the springs in double precision (T kinetic, V potential), `kept` is
-// T + V - (h / 2) dV/dt. Steps h of symplectic Euler conserve `kept` if the forces are linear. T + V itself
-// oscillates by the fraction w h / 2 within a period of angular frequency w.
+// T + V - (h / 2) dV/dt. The symplectic Euler method with the step h conserves `kept` if the forces are
+// linear. T + V itself oscillates by the fraction w h / 2 within a period of angular frequency w.
 struct Energies {
   double whole = 0.0, kept = 0.0;
 };

@@ -201,8 +201,8 @@ TEST(Integration, SelfWeightOnASlippingBase) {
   }
 }
 
-// A bar of stiffness E A / L = 50 N/m is carried at its top without friction. A weight of 10 g pulls its
-// lower end down by 1.962 mm.
+// A bar of stiffness E A / L = 50 N/m hangs from contacts without friction at its top. A weight of 10 g pulls
+// its lower end down by 1.962 mm.
 TEST(Integration, HangingWeight) {
   const double length = 1.0, side = 0.02, stiffness = 50.0;
   SpringLattice lattice = block({side, length, side}, {2, 51, 2},
@@ -382,8 +382,8 @@ TEST(Integration, GelCreepsAsItsRelaxationTimeSays) {
   const double once = stretched.crept();
   stretched.relax_for(2000);
   const double all = stretched.crept();
-  // Each spring creeps once per tenth of a second, a fifth of the time constant, so that the steps of the
-  // implicit Euler method lag by a tenth.
+  // Each spring creeps once per tenth of a second, which is a fifth of the time constant. With such steps the
+  // implicit Euler method lags by a tenth.
   EXPECT_NEAR(once / all, 1.0 - std::exp(-1.0), 0.08);
   // The strain that changes the volume does not creep.
   EXPECT_NEAR(all, 0.6, 0.03);

@@ -155,8 +155,8 @@ TEST(CompositeStatics, ASandwichSinksAsTheCompositeBeamSays) {
   EXPECT_LT(sunk, 0.25 * alone);
 }
 
-// The coarse block that steps a stiff body has one cell through the thickness, made from ten cells of the
-// lattice.
+// The implicit solver simulates a stiff body as a coarse block. Here this block has one cell through the
+// thickness, made from ten cells of the lattice.
 TEST(CompositeStatics, OneCellOfABlockBendsAsItsLayersDo) {
   const Vector3 size_m(Sandwich::width_m, Sandwich::height_m, Sandwich::length_m);
   const LatticeMesh fine = box_mesh(size_m, {2, 11, 41}), block = box_mesh(size_m, {2, 2, 21});

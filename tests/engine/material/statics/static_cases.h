@@ -11,8 +11,8 @@ StaticBody body_of(const LatticeMesh& mesh, const Material& material, CellKind k
 
 StaticResult rest_of(const StaticBody& body, const StaticLoads& loads, const std::vector<FixedAxis>& held);
 
-// Visits the nodes of the face at the low or high end of an axis (0 to 2: i, j, k). The function also
-// receives the node's fraction of the face's area, for a mesh of equal cells.
+// Visits the nodes of the face at the low or high end of an axis (0 to 2: i, j, k). `visit` also receives the
+// node's fraction of the face's area, for a mesh of equal cells.
 template <class Visit>
 void visit_face(const LatticeMesh& mesh, int axis, bool high, const Visit& visit) {
   const int a = (axis + 1) % 3, b = (axis + 2) % 3;

@@ -50,8 +50,8 @@ struct Brick {
   std::array<int, 3> counts;
 };
 
-// A bar under uniaxial tension yields the exact constants with cubic cells and with cells of 1.2 : 1 : 1 and
-// 1.5 : 1.5 : 1.
+// A bar under uniaxial tension has exactly the material's constants, with cubic cells and with cells of
+// 1.2 : 1 : 1 and 1.5 : 1.5 : 1.
 TEST(StaticSolver, TensionGivesTheMaterialExactly) {
   constexpr double youngs = 2e6;
   for (const Brick& brick : {Brick{{0.004, 0.003, 0.005}, {5, 4, 6}}, Brick{{0.006, 0.003, 0.004}, {6, 4, 5}},
@@ -254,8 +254,8 @@ TEST(StaticSolver, RefusesMoreWorkThanItsLimit) {
   EXPECT_TRUE(rest(4).ok());
 }
 
-// Stops solves at different progress reports, from the first to one of the last. Some of the reports are
-// within one factorisation.
+// Cancels the computation at different progress reports, from the first to one of the last. Some of the
+// reports are made within one factorisation.
 TEST(StaticSolver, StopsWithinAFactorisation) {
   const LatticeMesh mesh = box_mesh({0.02, 0.02, 0.02}, {10, 10, 10});
   const StaticBody body = body_of(mesh, elastic_material(1e5, 0.3, 1000.0), CellKind::hexahedra);
