@@ -317,9 +317,7 @@ void SelfProximity::find(const Surface& surface, double margin_m) {
     const bool missing = missing_elements_;
     find_near_elements(margin_m + lead_cells * cell_m_);
     clear_ = nearby_.empty() && !missing_elements_;
-    // If the wider search found some pairs but missed others, the missed pairs do not matter, because they
-    // are beyond the margin.
-    missing_elements_ = missing || (nearby_.empty() && missing_elements_);
+    missing_elements_ = missing;
     if (clear_) clear_net_ = surface.net;
     return;
   }

@@ -36,7 +36,7 @@ bool in_middle(const Vector3& at) {
   return std::abs(at.x() - 0.006) < 0.003 && std::abs(at.y() - 0.006) < 0.003;
 }
 
-// Returns the mean displacement of a slice along z.
+// Returns the mean of the z displacements in slice `k`.
 double mean_displacement_m(const SpringLattice& lattice, int k) {
   double sum = 0.0;
   for (int i = 0; i < 5; ++i) {
