@@ -276,7 +276,7 @@ std::vector<std::array<int, 2>> SelfProximity::find_rings_that_can_meet() const 
   return pairs;
 }
 
-// Returns true if two rings can meet. Tests positions sampled around both ends of each ring.
+// Returns true if two rings can meet. Tests positions sampled along the two circles that bound each ring.
 bool SelfProximity::can_meet(int ring, int other) const {
   const Grid& grid = near_.levels().nested().grid;
   const int step = near_.levels().step(0), stride = std::max(1, (grid.rows() - 1) / positions_around);

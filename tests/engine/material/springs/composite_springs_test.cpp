@@ -156,7 +156,7 @@ TEST(CompositeSprings, RigidMotionsAreNotDampedFurther) {
   std::fill_n(view.fz, view.padded_count, 0.0f);
   lattice.kernels().damp_further(view);
   const double rigid = largest_force();
-  // For comparison, the nodes get random speeds of similar size.
+  // Random speeds that change the shape, about as large as those of the rigid motion above.
   shake(lattice, 0.3, 1);
   std::fill_n(view.fx, view.padded_count, 0.0f);
   std::fill_n(view.fy, view.padded_count, 0.0f);
