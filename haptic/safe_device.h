@@ -92,7 +92,8 @@ struct SafeForce {
   bool reset_proxy = false;  // requests that the proxy be moved to the device before the next tick
 };
 
-// State of the chain. Plain data, owned by the ticking thread. Forces are off initially.
+// State of the safety checks between simulation and device. Plain data, owned by the ticking thread. Forces
+// are off initially.
 struct SafetyState {
   bool engaged = false;
   int quiet_ticks = 0;

@@ -17,7 +17,7 @@
 
 namespace spoonbill {
 
-// Time without a force after which the watchdog writes zero.
+// Time without a call of set_force() after which the watchdog sets the force to zero.
 inline constexpr std::int64_t watchdog_limit_ns = 10'000'000;
 
 // A device behind the watchdog. Its Device functions are called by the haptic thread, which never waits and

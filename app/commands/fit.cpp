@@ -156,8 +156,9 @@ void add_options(OptionSet parser, const std::shared_ptr<FitOptions>& options) {
   add_parsed_option(
       parser, "--islands", "CHOICE", parse_islands,
       [options](IslandChoice islands) { options->request.islands = islands; },
-      "Parts of the scan to fit: largest (default), bridge for one closed body across the gaps, or all, each "
-      "as a body");
+      "Parts of the scan to fit: 'largest' (default), 'bridge' (one closed body across the gaps) or 'all' "
+      "(one "
+      "body for each part)");
   add_parsed_option(
       parser, "--errors", "FILE", parse_cloud_name,
       [options](const std::filesystem::path& file) { options->errors = file; },

@@ -51,8 +51,8 @@ ForeignTask cad_task(const std::filesystem::path& file, ForeignTask::Work work) 
   return task;
 }
 
-// Reads frames until the last one and returns its content. Passes every other frame to handle(); an error of
-// handle() ends the reading.
+// Reads all frames and returns the content of the last one. Passes the frames before it to handle(); an error
+// of handle() ends the reading.
 template <class Handle>
 Result<std::string> read_frames(ForeignChild& child, const Handle& handle) {
   for (;;) {

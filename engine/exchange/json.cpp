@@ -148,7 +148,8 @@ class StrictBuilder : public nlohmann::json_sax<Json> {
 
   Json root_;
   std::vector<Json*> open_;  // containers around the next value, outermost first
-  Json* slot_ = nullptr;     // value of the last field name, not yet read; null if the next value has no name
+  // Place for the value of the field name that was just read; null if the next value has no name.
+  Json* slot_ = nullptr;
   std::size_t values_ = 0;
   ErrorCode code_ = ErrorCode::malformed;
   std::string complaint_;

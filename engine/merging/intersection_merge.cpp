@@ -44,7 +44,7 @@ class LinesFromLoop {
   double turn_at(const Eigen::Vector2d& start) const;
   // Returns (u, v) at a fraction of the length of the line that begins at `start`.
   Eigen::Vector2d at(const Eigen::Vector2d& start, double fraction) const;
-  // Returns the fraction of a line's length beyond which it is a line of constant u of the body.
+  // Returns the fraction of its length from which on a line follows an isoline of constant u of the body.
   double bend_fraction() const { return bend_; }
 
  private:

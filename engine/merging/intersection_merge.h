@@ -15,7 +15,7 @@ struct IntersectionRequest {
 struct IntersectionMerge {
   Surface surface;
   double deviation_m = 0.0;  // largest distance from the patches, outside the fillet
-  // Joint of the two patches. With a fillet, the fillet is its blend, from blend_start to blend_end along v.
+  // Joint of the two patches. A fillet is stored as the joint's blend, from blend_start to blend_end along v.
   Joint corner;
   bool first_was_inward = false, second_was_inward = false;
 };

@@ -76,8 +76,8 @@ JointState joint_state(const std::vector<PreparedRow>& rows, std::size_t joint, 
 // joint, within two limits: least_gap_ratio times the gap and most_gap_ratio times the gap. No more than the
 // fraction most_cut_fraction of a patch is cut off.
 constexpr double least_gap_ratio = 10.0, most_gap_ratio = 40.0, most_cut_fraction = 0.25;
-// Largest overlap, relative to the gap, that is bridged without cutting if the patches are too short to be
-// cut.
+// Largest overlap of patches that are too short to be cut, as a fraction of the gap. It is bridged without
+// cutting.
 constexpr double most_back_fraction = 0.5;
 
 bool is_short_cut(const std::vector<PreparedRow>& rows, std::size_t joint, double cut_m) {

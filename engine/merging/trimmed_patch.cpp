@@ -155,9 +155,10 @@ using Polygons = std::vector<std::vector<Eigen::Vector2d>>;
 
 // A point of a trim counts as a corner if the cosine of the angle between its two chords is less than this.
 constexpr double corner_cosine = 0.98;
-// Distance of the outermost lines from the part's edge, and largest width that is ignored as too narrow. Both
-// are fractions of the part's extent in u.
+// Distance of the outermost lines from the part's edge, as a fraction of the part's extent in u. Anything
+// narrower than this is ignored.
 constexpr double edge_margin = 1e-7;
+
 constexpr int trim_lines_checked = 64;
 // Fraction of the longest line's length. A shorter line at an end of the part counts as a point.
 constexpr double point_fraction = 1e-3;

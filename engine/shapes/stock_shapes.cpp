@@ -90,13 +90,13 @@ class RoundedRectangle {
   }
 
  private:
-  // Returns the length of the part of a side, next to a corner, in which at() slows down. This length keeps
-  // the lines across the outline nearly straight.
+  // Returns the length of the part of a side, next to a corner, in which the points of at() lie closer
+  // together. This length keeps the lines across the outline nearly straight.
   double slowed() const { return 4.0 * rounding_; }
 
-  // Returns the position on a side, measured from its centre. Towards each end of the side, a point slows
-  // down by the fraction `slower`. It does so over the length slowed() or, if half the side is shorter, from
-  // the centre on. There the position is a cubic function of `off_centre`.
+  // Returns the position on a side, measured from its centre. Points lie closer together, by the fraction
+  // `slower`, at each end of the side: over the length slowed() or, if half the side is shorter, from the
+  // centre on. There the position is a cubic function of `off_centre`.
   double position_on_side(double half_side, double off_centre, double slower) const {
     if (!(half_side > 0.0)) return 0.0;
     if (half_side <= slowed()) {

@@ -47,9 +47,10 @@ struct ToolSnapshot {
   ToolAction action = ToolAction::push;
   int substeps = 0;  // number of substeps at rest that the tool requests
   double radius_m = 0.0;
-  std::shared_ptr<const ToolBody> body;  // body of a solid tool; a soft one is drawn as the last body
-  Pose device;                           // pose of the hand
-  Pose proxy;                            // pose at which the material stops the tool; the tool is drawn there
+  // Body of a solid tool. A soft tool is drawn as the last of the bodies instead.
+  std::shared_ptr<const ToolBody> body;
+  Pose device;  // pose of the hand
+  Pose proxy;   // pose at which the material stops the tool; the tool is drawn there
   bool button = false;
 };
 
@@ -129,8 +130,9 @@ struct Snapshot {
   std::vector<ContactSnapshot> contacts;
   Vector3 force_n = Vector3::Zero();  // force on the hand, after force scale and limit
   DeviceSnapshot device;
-  int substeps = 0;            // number of substeps of the last tick
-  int real_time_substeps = 0;  // number of substeps at rest with an inertia scale of 1
+  int substeps = 0;  // number of substeps of the last tick
+  // Number of substeps that a tick would take in real time, that is with an inertia scale of 1.
+  int real_time_substeps = 0;
   std::uint32_t flags = tick_flag_none;
 
   double time_s() const { return static_cast<double>(tick) * 1e-3; }

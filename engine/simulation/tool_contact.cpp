@@ -239,8 +239,8 @@ void ToolContact::visit_near(BodyContact& contact, const BodyState& state, const
 
 namespace {
 
-// Distance in lattice cells, beyond the tool's movement, up to which the nearest point counts as the same
-// point as in the last tick.
+// The nearest point counts as the same point as in the last tick if it has moved by at most the tool's
+// movement plus this many lattice cells.
 constexpr double same_point_cells = 0.2;
 
 int key_of(std::size_t point) {

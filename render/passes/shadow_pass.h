@@ -23,7 +23,7 @@ struct ShadowArea {
   Eigen::Vector2f used_fraction;  // fraction of the square, from the corner, that shadows can reach
   // Range of heights above the ground that the depth of the map represents. high_m is the upper end.
   float low_m = 0.0f, high_m = 0.0f;
-  Eigen::Matrix4f key_to_clip;  // maps the world to the map of the key light
+  Eigen::Matrix4f key_to_clip;  // from the world to the clip space of the key light's shadow map
   Eigen::Matrix4f sky_to_clip;  // maps the world to the map of occluders above the ground, seen from below
 };
 

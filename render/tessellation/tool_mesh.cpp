@@ -83,8 +83,8 @@ void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, ToolMesh& m
   for (const std::uint32_t corner : {a, b, c}) mesh.indices.push_back(corner);
 }
 
-// Joins `rows` rings of `around` vertices about the y axis, starting at vertex `first`. If the profile is
-// drawn to the right of the axis, the outside must be on the right of the path from ring to ring.
+// Joins `rows` rings of `around` vertices about the y axis, starting at vertex `first`. Seen with the axis
+// upright and the profile to its right, the outside must be on the right of the path from ring to ring.
 void join_rows(std::uint32_t first, int rows, ToolMesh& mesh) {
   for (int row = 0; row + 1 < rows; ++row) {
     for (int i = 0; i < around; ++i) {

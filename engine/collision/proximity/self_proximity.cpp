@@ -276,7 +276,7 @@ std::vector<std::array<int, 2>> SelfProximity::find_rings_that_can_meet() const 
   return pairs;
 }
 
-// Returns true if two rings can meet. Tests positions sampled around both ends of each ring.
+// Returns true if two rings can meet. Tests positions sampled along the two circles that bound each ring.
 bool SelfProximity::can_meet(int ring, int other) const {
   const Grid& grid = near_.levels().nested().grid;
   const int step = near_.levels().step(0), stride = std::max(1, (grid.rows() - 1) / positions_around);
@@ -317,9 +317,7 @@ void SelfProximity::find(const Surface& surface, double margin_m) {
     const bool missing = missing_elements_;
     find_near_elements(margin_m + lead_cells * cell_m_);
     clear_ = nearby_.empty() && !missing_elements_;
-    // If the wider search found some pairs but missed others, the missed pairs do not matter, because they
-    // are beyond the margin.
-    missing_elements_ = missing || (nearby_.empty() && missing_elements_);
+    missing_elements_ = missing;
     if (clear_) clear_net_ = surface.net;
     return;
   }

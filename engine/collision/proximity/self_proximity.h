@@ -85,7 +85,8 @@ class RingSeparation {
   Interval interval(int ring, int along) const;
   bool are_apart_along(const ControlNet& net, int axis_ring, int other, double reach_m);
 
-  int columns_, width_;      // number of columns of control points: in the net, and in a ring
+  int columns_;              // number of columns of control points in the net
+  int width_;                // number of those that affect a ring, which is the elements of one span of v
   std::vector<int> column_;  // indices of the control columns of each ring, width_ per ring
   std::vector<std::array<int, 2>> pairs_, near_;
   std::vector<Vector3> centres_;    // sum of the points of each control column

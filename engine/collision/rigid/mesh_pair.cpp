@@ -303,8 +303,8 @@ class ContactSearch {
     }
   }
 
-  // Joins the regions of pairs that have the same triangle of the other mesh and whose triangles of mesh `s`
-  // have a common vertex.
+  // Joins the regions of two pairs if their triangles of mesh `s` have a common vertex and their triangle of
+  // the other mesh is the same.
   void join_neighbours(int s) {
     std::vector<std::size_t> order(pairs_.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;

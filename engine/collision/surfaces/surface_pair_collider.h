@@ -103,7 +103,7 @@ class SurfacePairCollider {
   // Starting points stored by the present collide() and by the previous one.
   std::vector<Seed> seeds_, last_seeds_;
   std::size_t query_ = 0;
-  // Nearest points in the last collide() of surfaces that did not touch.
+  // Nearest points in the most recent collide() that found the surfaces apart.
   PairParameters nearest_;
   bool nearest_known_ = false;
   // True if the surfaces met in the last collide(). Affects the order of the search, not its result.

@@ -271,8 +271,9 @@ void add_loss_notes(const Content& content, CadModel& model) {
                           ", which is not applied: sizes are those of the model (--unit changes them)");
   }
   if (content.external_files > 0) {
-    model.notes.push_back("the file names " + std::to_string(content.external_files) +
-                          " others, which are not opened: their parts are missing; export all as one file");
+    model.notes.push_back("the file refers to " + std::to_string(content.external_files) +
+                          " other files, which are not opened: their parts are missing; export all as one "
+                          "file");
   }
 }
 

@@ -24,7 +24,7 @@ struct ContactPush {
   double gap_m;      // distance of the points; negative if they penetrate
   Vector3 normal;    // unit vector along which the points separate
   Vector3 relative;  // separation velocity, m/s
-  double mass_kg;    // effective mass: 1 / the sum of the compliances
+  double mass_kg;    // effective mass, which is 1 / the sum of the points' compliances (1/kg)
 
   // Returns the smallest admissible separation speed, m/s. Points with a gap may approach but must not pass
   // each other. A penetration is partly corrected, at `cap_m_per_s` at most.

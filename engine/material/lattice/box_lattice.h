@@ -24,8 +24,9 @@ namespace spoonbill {
 // lattice, which is at most the largest frequency of a single cell (Irons and Treharne 1971).
 inline constexpr double min_filled_fraction = 0.1;
 
-// Fraction of a void cell: too small to move anything, but enough to keep its nodes together. Void cells
-// follow the body as in the finite cell method (Parvizian, Duester and Rank 2007).
+// Fraction of its volume to which a void cell counts as filled: too small to affect motions, but enough to
+// keep its nodes together. Void cells follow the body as in the finite cell method (Parvizian, Duester and
+// Rank 2007).
 inline constexpr double void_fraction = 1e-3;
 
 // Builds a box of nodes over the bounds of a solid, with edges along x, y and z. Fractions of cells are

@@ -117,7 +117,8 @@ TEST(PseudoInverse, InvertsFromTheLeft) {
       const auto clamped = KnotVector::clamped_uniform(degree, controls).value();
       const auto periodic = KnotVector::periodic_uniform(degree, controls).value();
       for (const int factor : {2, 4}) {
-        // The tolerance is the condition number, up to 1e4 at degree 9, times a few units in the last place.
+        // The rounding error is the condition number, up to 1e4 at degree 9, times a few dozen units in
+        // the last place.
         EXPECT_LT(distance_from_inverse(clamped, uniform_parameters(clamped, factor * controls)), 1e-10);
         EXPECT_LT(
             distance_from_inverse(periodic, uniform_parameters_without_seam(periodic, factor * controls)),

@@ -36,7 +36,7 @@ bool in_middle(const Vector3& at) {
   return std::abs(at.x() - 0.006) < 0.003 && std::abs(at.y() - 0.006) < 0.003;
 }
 
-// Returns the mean displacement of a slice along z.
+// Returns the mean of the z displacements in slice `k`.
 double mean_displacement_m(const SpringLattice& lattice, int k) {
   double sum = 0.0;
   for (int i = 0; i < 5; ++i) {
@@ -156,7 +156,7 @@ TEST(CompositeSprings, RigidMotionsAreNotDampedFurther) {
   std::fill_n(view.fz, view.padded_count, 0.0f);
   lattice.kernels().damp_further(view);
   const double rigid = largest_force();
-  // For comparison, the nodes get random speeds of similar size.
+  // Random speeds that change the shape, about as large as those of the rigid motion above.
   shake(lattice, 0.3, 1);
   std::fill_n(view.fx, view.padded_count, 0.0f);
   std::fill_n(view.fy, view.padded_count, 0.0f);
