@@ -142,8 +142,9 @@ void add_options(OptionSet parser, const std::shared_ptr<FitOptions>& options) {
       parser, "--tolerance", "LENGTH",
       [](const std::string& text) { return parse_length(text, fit_tolerance_range_m); },
       [options](double length) { options->request.settings.tolerance_m = length; },
-      "Tolerance of the fit: control points are added only where the scan is farther from the surface; a "
-      "note reports if less than 95 % of the scan is within it. Default: none; range: " +
+      "Tolerance of the fit: control points are added only where the scan is farther than this from the "
+      "surface; a note reports if less than 95 % of the scan is within the tolerance. Default: none; "
+      "range: " +
           short_length_text(fit_tolerance_range_m.low) + " to " +
           short_length_text(fit_tolerance_range_m.high));
   add_parsed_option(

@@ -33,8 +33,8 @@ std::vector<Vector3> estimate_normals(const FitPoints& points, const Surface& su
                                       const std::vector<Vector2>& uv);
 
 // Returns true if the normals of a sheet or a tube (periodic in u) point inwards: towards the tube's axis, or
-// into the sheet's hollow side. For a nearly flat sheet, returns true if its normals do not point to +z or,
-// if it is upright, to +y or else +x.
+// into the sheet's hollow side. A nearly flat sheet has no inside: its normals should point to +z or, if the
+// sheet is upright, to +y or +x.
 bool is_inside_out(const Surface& surface);
 
 }  // namespace spoonbill

@@ -260,8 +260,8 @@ Result<CompatiblePatches> match_parameters_to(const Surface& before, const Surfa
     knots = std::move(finer).value();
   }
   return Error(ErrorCode::not_converged,
-               "the parameters of its edge cannot be matched within " + short_length_text(tolerance_m) +
-                   "; allow a larger tolerance",
+               "its edge cannot be reparameterised to match the other edge within " +
+                   short_length_text(tolerance_m) + "; allow a larger tolerance",
                "tolerance");
 }
 

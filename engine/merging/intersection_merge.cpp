@@ -87,8 +87,8 @@ class CornerLines {
   // Returns the corner line at u; nothing if the line does not cross the second patch or no ball fits.
   const std::optional<CornerLine>& at(double u);
 
-  // Returns points (u, v) of the second patch at which corner lines start on it, enough of them to resolve
-  // the loop.
+  // Returns points (u, v) on the second patch along the loop in which the patches intersect, dense enough to
+  // resolve the loop.
   std::vector<Eigen::Vector2d> loop_on_second();
 
  private:
@@ -280,7 +280,7 @@ Error goes_through(const Vector3& exit_m) {
 
 Error pokes_out(const Vector3& exit_m) {
   return Error(ErrorCode::mismatch,
-               "the first patch leaves the other again at " + position_text(exit_m) +
+               "the first patch enters the other, comes out of it again at " + position_text(exit_m) +
                    " and would lose the part outside; move it so that its end is all inside, make the end "
                    "narrower, or give the patches in the other order");
 }

@@ -1,6 +1,6 @@
-// Keeps a body in the scene during a tick. Keeps the pose of a body that nothing fixes. Restores the shape of
-// a body at the start of the tick if its lattice becomes unstable. Owned by the body. Allocates only in its
-// constructor.
+// Keeps a body in the scene during a tick. Keeps the pose of a body that nothing fixes. If the lattice of a
+// body becomes unstable, restores the shape that the body had at the start of the tick. Owned by the body.
+// Allocates only in its constructor.
 #pragma once
 
 #include <vector>

@@ -136,8 +136,8 @@ struct CommandApplier {
  private:
   void release();
   Status check_body(int body) const;
-  // Checks a tool, but not a body that has already been modelled, because checking a B-spline body takes as
-  // long as modelling it.
+  // Checks a tool. If the tool is a B-spline body that has already been modelled, does not check this body
+  // again, because that takes as long as modelling it.
   Status check_changes(const Tool& tool) const;
   void adopt_model(ToolModel model);
   void make_contacts();

@@ -28,7 +28,8 @@ float lift_m(const Snapshot& snapshot) {
   return cell > 0.0f ? lift_fraction_of_cell * cell : lift_without_lattice_m;
 }
 
-// Returns the length in metres, at the distance of a point, of `pixels` pixels times the interface scale.
+// Returns the length in metres that covers `pixels` pixels, times the interface scale, at the distance of a
+// point.
 float pixels_at(const FrameView& view, const Eigen::Vector3f& point_m, float pixels) {
   const float depth = (point_m - view.eye_m).norm();
   return pixels * view.interface_scale * depth / view.pixel_depth_ratio;

@@ -26,7 +26,7 @@ inline std::uint32_t side_end(const std::vector<TriangleCorners>& triangles, Mes
 // The edges of a triangle mesh, with the sides that share them. Immutable.
 class MeshEdges {
  public:
-  static constexpr MeshSide open = 0xffffffffU;       // marks a side on an edge of one triangle
+  static constexpr MeshSide open = 0xffffffffU;  // the missing side of an edge that only one triangle has
   static constexpr MeshSide branching = 0xfffffffeU;  // marks a side on an edge of three or more triangles
 
   // The two ends of each side must differ, and all corner indices must be less than `vertices`, the number of

@@ -156,8 +156,8 @@ inline float cell_dilation(const LatticeView& view, const FaceDiagonals& p, int 
 // Dilation below which a cell is crushed.
 constexpr float crushed_dilation = -0.7f;
 
-// Returns the derivative of a cell's pressure with respect to J, times the cell's volume at construction. If
-// the bulk stiffness is negative, the derivative is that at J = 1, where its magnitude is largest.
+// Returns dp/dJ of a cell's pressure p, times the cell's volume at construction. With a negative bulk
+// stiffness, dp/dJ varies with J; the returned value is the one at J = 1, which has the largest magnitude.
 inline float volume_tangent(const LatticeView& view, const FaceDiagonals& p, int n) {
   const float crushed = view.crushed_stiffness[n];  // read unconditionally, so that the loop vectorises
   return view.bulk_stiffness[n] + (cell_dilation(view, p, n) < crushed_dilation ? crushed : 0.0f);

@@ -69,7 +69,7 @@ Result<StaticBody> StaticBody::make(const LatticeMesh& mesh, const LatticeMateri
       return Error{ErrorCode::unsupported,
                    "material " + material.name + ": poissons_ratio is " +
                        number_text(material.poissons_ratio) +
-                       ", must be 0.25 or more for springs at rest; use hexahedra",
+                       ", must be 0.25 or more for a static study with springs; use hexahedra",
                    "poissons_ratio"};
     }
   }

@@ -312,7 +312,7 @@ TEST(IntersectionMerge, ARimThatLooksOutOfTheBallIsRefusedWhereItDoes) {
     ASSERT_FALSE(merged.ok());
     const std::string& message = merged.error().message;
     EXPECT_EQ(merged.error().code, ErrorCode::mismatch) << message;
-    EXPECT_NE(message.find("leaves the other again at (1"), std::string::npos) << message;
+    EXPECT_NE(message.find("comes out of it again at (1"), std::string::npos) << message;
   }
   // A drum whose end is fully inside the ball makes a knob.
   const auto merged =

@@ -134,8 +134,8 @@ TEST_F(CadRoundTrip, NamesAndTheirOrderAreKept) {
 }
 
 TEST_F(CadRoundTrip, LongNamesAreStillToldApart) {
-  // The letters of the name have several bytes and begin at different positions, so that a line break or a
-  // cut may be inside a letter.
+  // Most letters of the name have two bytes. Single bytes between them shift the letters, so that a line
+  // break or a cut would fall inside one.
   std::string name = "\xf0\x9f\xa5\x84 ";
   while (name.size() < 190) name += name.size() % 3 == 0 ? "a" : "\xc3\xb6";
   CadModel model;

@@ -23,8 +23,8 @@ std::size_t unbalanced_edges(const TriangleMesh& mesh) {
   return unmatched;
 }
 
-// Returns a part of a cylinder about z, through `angle` and `length_m` long, whose normals point away from
-// the axis.
+// Returns the part of a cylinder about z that spans `angle` and is `length_m` long. Its normals point away
+// from the axis.
 TriangleMesh cylinder(double radius_m, double length_m, double angle, int around, int along) {
   TriangleMesh mesh;
   for (int i = 0; i <= around; ++i) {

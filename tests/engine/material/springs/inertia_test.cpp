@@ -146,8 +146,8 @@ TEST(Inertia, DoesNotChangeTheRestShape) {
 
 // Half the substep needs a quarter of the inertia, so that the block swings twice as fast.
 TEST(Inertia, DeterminesTheTimeOfASwing) {
-  // Returns the number of ticks until the end is farthest. The search stops when the end has swung back by
-  // half.
+  // Returns the number of ticks until the bar's tip is farthest from its start. The search stops when the tip
+  // has swung back by half.
   const auto count_ticks_to_peak = [](int substeps) {
     const std::vector<double> swing = pull_end(substeps, 200, 0.0);
     std::size_t peak = 0;
