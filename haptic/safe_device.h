@@ -16,9 +16,9 @@
 // After a fault of step 1 or a vibration of step 6, the chain restarts at step 2. Only these two may change
 // the force by more than the limit of step 5.
 //
-// The order of the steps and the quiet force follow cGenericTool of CHAI3D; the other limits are properties
-// of the device. The state hash excludes the state of the chain, because the coupling (haptic/tick.h), not
-// the chain, moves the material.
+// The order of the steps and the limit of a small force follow cGenericTool of CHAI3D; the other limits are
+// properties of the device. The state hash excludes the state of the chain, because the coupling
+// (haptic/tick.h), not the chain, moves the material.
 #pragma once
 
 #include <cstdint>

@@ -128,9 +128,10 @@ class TableReader {
     if (units_.empty()) {
       const auto units = parse_header(parts, columns_, with_section_);
       if (!units) {
-        return error_at_line(ErrorCode::malformed,
-                             "names the columns '" + excerpt(line) + "'; they must be " +
-                                 expected_header(columns_, with_section_) + ", or in cm, m or in");
+        return error_at_line(ErrorCode::malformed, "names the columns '" + excerpt(line) +
+                                                       "'; they must be " +
+                                                       expected_header(columns_, with_section_) +
+                                                       ", or the same with the unit cm, m or in (inches)");
       }
       units_ = *units;
       return {};

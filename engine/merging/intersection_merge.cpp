@@ -476,8 +476,8 @@ using LineShape = std::function<Vector3(double u, const CornerLine& line, double
 struct PartShape {
   LineShape at;
   bool pole_at_start = false, pole_at_end = false;
-  // Fraction of a line's length beyond which a line that starts beside a pole follows a line of constant u of
-  // the patch.
+  // For a line that starts beside a pole: the fraction of its length beyond which it follows a curve of
+  // constant u of the patch.
   std::optional<double> bend = {};
 };
 

@@ -17,10 +17,10 @@ inline Box bounding_box(const Triangle& t) {
   return {t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])};
 }
 
-// Returns false if a plane separates the triangles by more than `slack_m`, otherwise true. Pairs nearer than
-// the slack always give true. Some pairs slightly farther apart, whose corners face each other, also give
-// true, because only these separating directions are tested: both normals, the cross products of the edges
-// and, for coplanar triangles, the in-plane directions across the edges.
+// Returns false only if a plane separates the triangles by more than `slack_m`. Pairs nearer than the slack
+// always give true. Some pairs slightly farther apart, whose corners face each other, also give true,
+// because only these separating directions are tested: both normals, the cross products of the edges and,
+// for coplanar triangles, the in-plane directions across the edges.
 bool triangles_meet(const Triangle& a, const Triangle& b, double slack_m = 0.0);
 
 // Result of intersect_line_triangle().

@@ -105,7 +105,7 @@ class MeshProximity {
   std::vector<int> pending_;  // working memory: stack of tree nodes
   std::uint32_t search_ = 0, elements_ = 0;
   double least_gap_m_ = 0.0;
-  PolishBudget budget_{0};  // surface points that the last search may still evaluate
+  PolishBudget budget_{0};  // number of surface points that the current search may still evaluate
   bool overflow_ = false;
 };
 

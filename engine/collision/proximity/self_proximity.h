@@ -160,7 +160,7 @@ class SelfProximity {
     int first = 0;
   };
   std::vector<Slot> slots_;      // one for each element
-  std::vector<NearCell> cells_;  // cells of the elements in the slots
+  std::vector<NearCell> cells_;  // cells of the stored elements; those of one element begin at Slot::first
   std::uint32_t generation_ = 0;
   int slots_used_ = 0;
   // Control net of the last search in which every two elements were farther apart than the margin plus

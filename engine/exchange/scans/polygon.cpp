@@ -38,7 +38,7 @@ bool is_ear(const std::vector<PlaneCorner>& corners, std::size_t k) {
   if (!(cross(a, b, c) > 0.0)) return false;
   for (std::size_t other = 0; other < count; ++other) {
     const Vector2& at = corners[other].at;
-    // Corners at the same position are the two ends of a bridge to a hole and do not block an ear.
+    // Corners at the same position are two copies of one end of a bridge to a hole. They do not block an ear.
     if (other == before || other == k || other == after || at == a || at == b || at == c) continue;
     if (cross(a, b, at) >= 0.0 && cross(b, c, at) >= 0.0 && cross(c, a, at) >= 0.0) return false;
   }

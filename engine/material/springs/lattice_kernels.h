@@ -15,9 +15,9 @@ inline constexpr int lattice_block = 64;  // nodes per block; fixed, because the
 inline constexpr int lattice_direction_count = 13;
 
 // Number of floats that a linearisation stores per spring. Let a be the vector from a node to its neighbour
-// at the linearisation. When the ends of the spring move apart by m, the spring's pull on the node grows by
-// transverse * m + axial * (a.m) a. Each block of nodes stores five arrays: the x, y and z components of a in
-// m, axial in N/m^3 and transverse in N/m.
+// at the linearisation. When the ends of the spring move apart by d, the spring's pull on the node grows by
+// transverse * d + axial * (a.d) a. Each block of nodes stores five arrays: the x, y and z components of a
+// (metres), axial (N/m^3) and transverse (N/m).
 inline constexpr int tangent_runs = 5;
 
 // Springs of one direction, one entry per node.

@@ -165,7 +165,8 @@ TEST(GridEvaluator, EveryPartOfAGridHasTheBitsOfTheWhole) {
   for (int repeat = 0; repeat < 300; ++repeat) expect_same_bits_in_parts(random, squeezed_sheet(random));
 }
 
-// At all samples of a parallelogram du x dv is equal, so all normals become rounding noise at the same width.
+// The cross product of du and dv is the same at all samples of a parallelogram. If it is made narrower, all
+// normals therefore become rounding noise at the same width.
 TEST(GridEvaluator, APartOfANarrowParallelogramHasTheBitsOfTheWhole) {
   Random random(24);
   const KnotVector line = KnotVector::clamped_uniform(1, 2).value();

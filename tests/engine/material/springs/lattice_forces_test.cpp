@@ -107,7 +107,8 @@ TEST(LatticeForces, RigidRotationProducesNoDamping) {
   EXPECT_LT(std::abs(power), 1e-3 * whole_damper);
 }
 
-// A block that grows evenly is resisted by its springs alone: changes of volume are not damped.
+// The even growth of a block is damped by its springs alone. The forces that oppose a change of volume have
+// no damping.
 TEST(LatticeForces, OnlySpringsAreDamped) {
   SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, elastic_material(5000.0, 0.45, 1000.0));
   for (int n = 0; n < lattice.mesh().node_count(); ++n) lattice.set_velocity(n, lattice.mesh().nodes[n]);
