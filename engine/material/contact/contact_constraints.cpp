@@ -112,10 +112,11 @@ void ContactConstraints::start(std::span<const LatticeView> lattices, ToolState&
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[c];
     const LatticeView& lattice = lattices[constraint.body];
-    // A grip lasts for many ticks, in which the inertia may change.
-    constraint.compliance = motion_.body_yields ? constraint.point.compliance(lattice) : 0.0;
+    locate(lattice, constraint, tool);
     constraint.drag_ns.setZero();
-    if (constraint.force_n > 0.0) start_push(lattice, constraint, tool, h_s);
+    if (constraint.normal.isZero(0.0)) constraint.force_n = 0.0;
+    if (!(constraint.force_n > 0.0)) continue;
+    exchange(lattice, constraint, tool, h_s * constraint.force_n * constraint.normal);
   }
 }
 
@@ -171,54 +172,46 @@ void ContactConstraints::exchange(const LatticeView& lattice, Constraint& constr
   acted_ = true;
 }
 
-std::optional<ContactPush> ContactConstraints::find_push(const LatticeView& lattice,
-                                                         const Constraint& constraint,
-                                                         const ToolState& tool) const {
-  const Vector3 position = constraint.rest_m + constraint.point.displacement_m(lattice);
-  const Vector3 from_centre = position - tool.position_m;
-  ContactPush push{0.0, constraint.direction,
-                   constraint.point.velocity_m_per_s(lattice) - tool.velocity_m_per_s,
-                   1.0 / (constraint.compliance + response_compliance_)};
+void ContactConstraints::locate(const LatticeView& lattice, Constraint& constraint,
+                                const ToolState& tool) const {
+  // A grip lasts for many ticks, in which the inertia of its lattice may change.
+  constraint.compliance = motion_.body_yields ? constraint.point.compliance(lattice) : 0.0;
+  constraint.position_m = constraint.rest_m + constraint.point.displacement_m(lattice);
+  const Vector3 from_centre = constraint.position_m - tool.position_m;
   if (constraint.kind == Kind::plane_push) {
-    push.gap_m = from_centre.dot(push.normal) - constraint.offset_m;
-    return push;
+    constraint.normal = constraint.direction;
+    constraint.gap_m = from_centre.dot(constraint.normal) - constraint.offset_m;
+  } else if (constraint.kind == Kind::sphere_push) {
+    const double distance = from_centre.norm();
+    constraint.normal = distance > 0.0 ? Vector3(from_centre / distance) : Vector3::Zero();
+    constraint.gap_m = distance - motion_.radius_m;
   }
-  const double distance = from_centre.norm();
-  if (!(distance > 0.0)) return std::nullopt;
-  push.normal = from_centre / distance;
-  push.gap_m = distance - motion_.radius_m;
-  return push;
 }
 
-// Starts the push of this substep with the force of the last substep.
-void ContactConstraints::start_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
-                                    double h) {
-  const std::optional<ContactPush> push = find_push(lattice, constraint, tool);
-  if (!push) {
-    constraint.force_n = 0.0;
-    return;
-  }
-  exchange(lattice, constraint, tool, h * constraint.force_n * push->normal);
+ContactPush ContactConstraints::find_push(const LatticeView& lattice, const Constraint& constraint,
+                                          const ToolState& tool) const {
+  return {constraint.gap_m, constraint.normal,
+          constraint.point.velocity_m_per_s(lattice) - tool.velocity_m_per_s,
+          1.0 / (constraint.compliance + response_compliance_)};
 }
 
 void ContactConstraints::solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
                                     double h, double cap) {
-  const std::optional<ContactPush> push = find_push(lattice, constraint, tool);
-  if (!push) return;
+  if (constraint.normal.isZero(0.0)) return;
+  const ContactPush push = find_push(lattice, constraint, tool);
   const ContactPace& pace = constraint.is_implicit ? stiff_body_pace : tool_pace;
-  const double started = h * constraint.force_n, pushed = push->normal_impulse(h, pace, cap, started);
+  const double started = h * constraint.force_n, pushed = push.normal_impulse(h, pace, cap, started);
   if (constraint.keeps_force) constraint.force_n = pushed / h;
   if (pushed == 0.0 && started == 0.0) return;
-  const Vector3 dragged = push->drag(constraint.friction * pushed, constraint.drag_ns);
-  const Vector3 impulse = (pushed - started) * push->normal - (dragged - constraint.drag_ns);
+  const Vector3 dragged = push.drag(constraint.friction * pushed, constraint.drag_ns);
+  const Vector3 impulse = (pushed - started) * push.normal - (dragged - constraint.drag_ns);
   if (constraint.keeps_force) constraint.drag_ns = dragged;
   exchange(lattice, constraint, tool, impulse);
 }
 
 void ContactConstraints::solve_grip(const LatticeView& lattice, Constraint& constraint, ToolState& tool,
                                     double h, double cap) {
-  const Vector3 position = constraint.rest_m + constraint.point.displacement_m(lattice);
-  const Vector3 miss = tool.position_m + motion_.orientation * constraint.direction - position;
+  const Vector3 miss = tool.position_m + motion_.orientation * constraint.direction - constraint.position_m;
   const double rate = constraint.is_implicit ? stiff_grip_correction_per_s : grip_correction_per_s;
   Vector3 target = miss * std::min(rate, max_correction / h);
   const double speed = target.norm();

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -133,9 +132,13 @@ class ContactConstraints {
     Vector3 rest_m = Vector3::Zero();
     Vector3 direction = Vector3::Zero();  // normal of a plane push, or offset of a grip in the tool's frame
     double offset_m = 0.0;                // distance of the plane from the tool's centre; plane push only
-    // Velocity change of the point per impulse, 1/kg, as of the last start(); 0 if the body does not yield.
-    double compliance = 0.0;
-    double friction = 0.0;  // friction coefficient of the body's surface; tools have none
+    // The following four values are those of the last start(); they stay the same until the tool moves.
+    Vector3 position_m = Vector3::Zero();  // position of the constrained point
+    // Unit vector from the tool to a pushed point; zero at the centre of the tool's sphere.
+    Vector3 normal = Vector3::Zero();
+    double gap_m = 0.0;       // distance of a pushed point from the tool; negative inside the tool
+    double compliance = 0.0;  // velocity change of the point per impulse, 1/kg; 0 if the body does not yield
+    double friction = 0.0;    // friction coefficient of the body's surface; tools have none
     int key = changing_point_key;
     bool is_implicit = false;  // true if an implicit solver steps the lattice
     // True if a push starts from the force of the last substep. False for grips, for changing_point_key, and
@@ -150,10 +153,10 @@ class ContactConstraints {
   void follow_hand(ToolState& tool, double h, double fraction) const;
   void solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
   void solve_grip(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h, double cap);
-  // Returns the state of a pushed point; empty at the centre of the tool's sphere, where no normal exists.
-  std::optional<ContactPush> find_push(const LatticeView& lattice, const Constraint& constraint,
-                                       const ToolState& tool) const;
-  void start_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool, double h);
+  // Computes the values of a constraint that stay the same until the tool moves.
+  void locate(const LatticeView& lattice, Constraint& constraint, const ToolState& tool) const;
+  ContactPush find_push(const LatticeView& lattice, const Constraint& constraint,
+                        const ToolState& tool) const;
   void exchange(const LatticeView& lattice, Constraint& constraint, ToolState& tool, const Vector3& impulse);
 
   std::vector<Constraint> constraints_;
