@@ -141,7 +141,7 @@ Vector3 estimate_local_normal(const PointGraph& graph, std::uint32_t node) {
 enum class SquareSide : unsigned char { none, left, right };
 
 // A cut along the shortest path between the ends. For a node near the path, `side` is the side of the path on
-// which the node is; for all other nodes it is none.
+// which the node is; for all other nodes it is SquareSide::none.
 struct Cut {
   std::vector<SquareSide> side;
   std::vector<bool> near_pole;

@@ -391,7 +391,7 @@ void ToolContact::add_pushes_between_samples(int body, const BodyState& state, d
     }
     const PatchCorners on_surface = levels.corners(cell);
     const double farthest_m = margin_m + levels.bulge(cell);
-    const bool starts_at_pole = rest[0] == rest[2];
+    const bool starts_at_pole = rest[0] == rest[2];  // samples at a pole share one embedding
     const int parts_u = count_parts(rest[2] - rest[0], rest[3] - rest[1], longest_m);
     const int parts_v = count_parts(rest[1] - rest[0], rest[3] - rest[2], longest_m);
     for (int part = 1; part < parts_u * parts_v; ++part) {

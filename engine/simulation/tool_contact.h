@@ -118,8 +118,7 @@ class ToolContact {
   // Returns whether the centre of the tool's sphere is outside the body. The sphere can push only points that
   // it reaches from outside.
   bool is_centre_outside(int body) const;
-  // Returns whether the tool is a sphere that is pushed at fixed points of the body only, not at the nearest
-  // point.
+  // Returns whether the tool is a sphere that pushes only fixed points of the body, not the nearest point.
   bool rests_on_lattice(int body, const BodyState& state) const;
   // Returns whether the tool in the hand is a B-spline. Checks the tool's kind as well, because the model may
   // belong to an earlier solid tool.

@@ -134,7 +134,7 @@ class ContactConstraints {
     double offset_m = 0.0;                // distance of the plane from the tool's centre; plane push only
     // The following four values are those of the last start(); they stay the same until the tool moves.
     Vector3 position_m = Vector3::Zero();  // position of the constrained point
-    // Unit vector from the tool to a pushed point; zero at the centre of the tool's sphere.
+    // Unit vector from the tool to a pushed point; zero at the centre of the tool's sphere, and for grips.
     Vector3 normal = Vector3::Zero();
     double gap_m = 0.0;       // distance of a pushed point from the tool; negative inside the tool
     double compliance = 0.0;  // velocity change of the point per impulse, 1/kg; 0 if the body does not yield
