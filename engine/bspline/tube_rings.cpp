@@ -1,6 +1,5 @@
 #include "engine/bspline/tube_rings.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include <numbers>
 
 #include "engine/base/assert.h"
+#include "engine/base/dense_matrices.h"
 #include "engine/bspline/basis.h"
 
 namespace spoonbill {
@@ -268,10 +268,10 @@ CrossSection principal_axes(const Ring& ring, const Vector3& axis) {
     const Vector3 d = (p - ring.centre) - axis * axis.dot(p - ring.centre);
     covariance += d * d.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
+  const SymmetricEigen eigen = decompose_symmetric(covariance);
   CrossSection section;
-  section.e1 = solver.eigenvectors().col(2);
-  const Eigen::Vector3d& spread = solver.eigenvalues();
+  section.e1 = eigen.vectors.col(2);
+  const Eigen::Vector3d& spread = eigen.values;
   if (spread[2] - spread[1] < nearly_alike * spread[2]) turn_to_sides(ring, axis, section.e1);
   // The largest component of the eigenvector is made positive, because the solver's sign is arbitrary.
   Eigen::Index largest = 0;

@@ -1,6 +1,5 @@
 #include "engine/fitting/boundary_loops.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
+#include "engine/base/dense_matrices.h"
 #include "engine/fitting/scan.h"
 
 namespace spoonbill {
@@ -82,7 +82,7 @@ double widest_gap(const PointGraph& graph, std::uint32_t node) {
   for (const std::uint32_t other : near) {
     spread += (graph.points_m[other] - mean) * (graph.points_m[other] - mean).transpose();
   }
-  const Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
+  const Eigen::Matrix3d axes = decompose_symmetric(spread).vectors;
   std::vector<double> angles;
   for (const std::uint32_t other : near) {
     const Vector3 path = graph.points_m[other] - graph.points_m[node];

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/base/assert.h"
+#include "engine/base/dense_matrices.h"
 #include "engine/fitting/fit_points.h"
 #include "engine/fitting/parameterisation.h"
 #include "engine/fitting/point_sets.h"
@@ -45,7 +46,7 @@ std::vector<Vector2> unroll(const FitPoints& points, const ShortestPaths& paths,
     const std::uint32_t before = paths.predecessor[n];
     if (before == n) continue;
     if (!points.node_normals[n].isZero()) normal[n] = points.node_normals[n];
-    back[n] = back[before] * Eigen::Quaterniond::FromTwoVectors(normal[n], normal[before]);
+    back[n] = back[before] * rotation_between(normal[n], normal[before]);
     const Vector3 step = back[before] * (graph.points_m[n] - graph.points_m[before]);
     const Vector3 flat = step - step.dot(facing) * facing;
     new_node[n] = new_node[before] + (flat.norm() > 0.0 ? Vector3(step.norm() * flat.normalized()) : flat);

@@ -1,12 +1,12 @@
 #include "engine/fitting/fit_points.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "engine/base/assert.h"
+#include "engine/base/dense_matrices.h"
 #include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/fitting/islands.h"
 #include "engine/fitting/normals.h"
@@ -60,7 +60,7 @@ bool are_collinear(const std::vector<Vector3>& points_m) {
   for (const Vector3& point : points_m) centre += point / count;
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   for (const Vector3& point : points_m) scatter += (point - centre) * (point - centre).transpose();
-  const Vector3 squares = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvalues();
+  const Vector3 squares = decompose_symmetric(scatter).values;
   return squares[1] <= 1e-12 * squares[2];
 }
 

@@ -1,12 +1,12 @@
 #include "engine/fitting/fit_quality.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <optional>
 
 #include "engine/base/assert.h"
+#include "engine/base/dense_matrices.h"
 #include "engine/bspline/piece_basis.h"
 #include "engine/fitting/fit_surface.h"
 #include "engine/fitting/point_sets.h"
@@ -299,7 +299,7 @@ double plane_distance(const Vector3& sample, const std::vector<Vector3>& points,
   for (const NearestPoints::Neighbour& near : found) {
     spread += (points[near.index] - mean) * (points[near.index] - mean).transpose();
   }
-  const Vector3 normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
+  const Vector3 normal = decompose_symmetric(spread).vectors.col(0);
   return std::abs(normal.dot(sample - mean));
 }
 

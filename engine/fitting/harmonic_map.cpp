@@ -1,6 +1,5 @@
 #include "engine/fitting/harmonic_map.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <optional>
 
 #include "engine/base/assert.h"
+#include "engine/base/dense_matrices.h"
 
 namespace spoonbill {
 namespace {
@@ -135,7 +135,7 @@ Vector3 estimate_local_normal(const PointGraph& graph, std::uint32_t node) {
     add(graph.points_m[other]);
     for (const std::uint32_t further : graph.adjacent(other)) add(graph.points_m[further]);
   }
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
+  return decompose_symmetric(spread).vectors.col(0);
 }
 
 enum class SquareSide : unsigned char { none, left, right };

@@ -1,6 +1,5 @@
 #include "engine/fitting/islands.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
+#include "engine/base/dense_matrices.h"
 #include "engine/fitting/point_sets.h"
 
 namespace spoonbill {
@@ -41,7 +41,7 @@ Vector3 normal_at(const PointGraph& graph, std::uint32_t node) {
     const Vector3 offset = graph.points_m[near] - centre;
     scatter += offset * offset.transpose();
   }
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(0);
+  return decompose_symmetric(scatter).vectors.col(0);
 }
 
 bool faces_both(const PointGraph& graph, const NodePair& pair) {

@@ -1,6 +1,5 @@
 #include "engine/fitting/normals.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "engine/base/assert.h"
+#include "engine/base/dense_matrices.h"
 #include "engine/fitting/point_sets.h"
 
 namespace spoonbill {
@@ -185,10 +185,10 @@ Vector3 estimate_normal(const PointGraph& graph, std::uint32_t node) {
     const Vector3 offset = graph.points_m[other] - centre;
     scatter += offset * offset.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(scatter);
-  const Vector3& squares = axes.eigenvalues();
+  const SymmetricEigen axes = decompose_symmetric(scatter);
+  const Vector3& squares = axes.values;
   const bool is_flat = squares[1] > 0.0 && squares[0] < most_thickness * most_thickness * squares[1];
-  return is_flat ? Vector3(axes.eigenvectors().col(0)) : Vector3::Zero();
+  return is_flat ? Vector3(axes.vectors.col(0)) : Vector3::Zero();
 }
 
 std::vector<NodePair> pairs_between(const PointGraph& graph, const std::vector<Vector3>& normals) {

@@ -1,6 +1,5 @@
 #include "engine/fitting/parameterisation.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "engine/base/dense_matrices.h"
 #include "engine/base/geometry.h"
 #include "engine/fitting/harmonic_map.h"
 #include "engine/fitting/point_sets.h"
@@ -68,9 +68,9 @@ Axes principal_axes(const PointGraph& graph) {
     const Vector3 offset = graph.points_m[n] - result.centre;
     spread += areas[n] / area * offset * offset.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
-  result.squares = solver.eigenvalues();
-  result.axes = solver.eigenvectors();
+  const SymmetricEigen eigen = decompose_symmetric(spread);
+  result.squares = eigen.values;
+  result.axes = eigen.vectors;
   return result;
 }
 
@@ -298,13 +298,13 @@ std::optional<Axis> find_round_axis(const std::vector<Vector3>& points_m) {
   for (const Vector3& point : points_m) {
     spread += (point - axis.centre) * (point - axis.centre).transpose() / count;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread);
-  const Vector3& squares = solver.eigenvalues();
+  const SymmetricEigen eigen = decompose_symmetric(spread);
+  const Vector3& squares = eigen.values;
   const bool flat = squares[2] - squares[1] < axis_roundness * squares[2];
   const bool slender = squares[1] - squares[0] < axis_roundness * squares[1];
   if (flat == slender) return {};
-  axis.along = solver.eigenvectors().col(flat ? 0 : 2);
-  axis.first = solver.eigenvectors().col(1);
+  axis.along = eigen.vectors.col(flat ? 0 : 2);
+  axis.first = eigen.vectors.col(1);
   return axis;
 }
 

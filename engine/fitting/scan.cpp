@@ -1,6 +1,5 @@
 #include "engine/fitting/scan.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
+#include "engine/base/dense_matrices.h"
 #include "engine/base/geometry.h"
 #include "engine/fitting/point_sets.h"
 
@@ -171,10 +171,10 @@ bool is_on_plane(const Vector3& point, const std::vector<Vector3>& points_m,
     const Vector3 offset = points_m[near.index] - mean;
     scatter += offset * offset.transpose() / static_cast<double>(found.size());
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(scatter);
-  const double along = flatness * std::sqrt(axes.eigenvalues()[1]);
-  return std::sqrt(std::max(0.0, axes.eigenvalues()[0])) < along &&
-         std::abs(axes.eigenvectors().col(0).dot(point - mean)) < 2.0 * along;
+  const SymmetricEigen axes = decompose_symmetric(scatter);
+  const double along = flatness * std::sqrt(axes.values[1]);
+  return std::sqrt(std::max(0.0, axes.values[0])) < along &&
+         std::abs(axes.vectors.col(0).dot(point - mean)) < 2.0 * along;
 }
 
 // Clears the outlier flag of a point that is on a plane, if at least two thirds of its neighbours are on
@@ -309,7 +309,7 @@ class RingPlane {
       distances.push_back(offset.norm());
     }
     radius = median(std::move(distances));
-    normal_ = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
+    normal_ = decompose_symmetric(spread).vectors.col(0);
   }
 
   // Returns true if the surface goes on flat around the ring: at least half of the vertices of the second

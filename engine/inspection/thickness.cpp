@@ -1,11 +1,11 @@
 #include "engine/inspection/thickness.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "engine/base/assert.h"
+#include "engine/base/dense_matrices.h"
 
 namespace spoonbill {
 namespace {
@@ -92,7 +92,7 @@ SurfaceExit ThicknessSearch::refine_exit(const LineExit& exit, const Vector3& fr
     }
     Eigen::Matrix3d jacobian;
     jacobian << -direction, point.du, point.dv;
-    const Eigen::Vector3d move = Eigen::PartialPivLU<Eigen::Matrix3d>(jacobian).solve(miss);
+    const Eigen::Vector3d move = solve_linear(jacobian, miss);
     if (!move.allFinite()) break;
     unknown -= move;
     unknown.y() = clamp_to_domain(surface_->u, unknown.y());

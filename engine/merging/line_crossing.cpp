@@ -1,11 +1,11 @@
 #include "engine/merging/line_crossing.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "engine/base/assert.h"
+#include "engine/base/dense_matrices.h"
 #include "engine/base/geometry.h"
 #include "engine/bspline/grid.h"
 #include "engine/collision/meshes/triangle.h"
@@ -101,7 +101,7 @@ std::optional<LineCrossing> CrossingFinder::polish(const Curve& curve, double al
     if (residual.norm() <= converged_fraction * reach) return LineCrossing{along, u, v, there.position_m};
     Eigen::Matrix3d slopes;
     slopes << on_curve.derivative, -there.du, -there.dv;
-    const Vector3 moved = slopes.partialPivLu().solve(-residual);
+    const Vector3 moved = solve_linear(slopes, -residual);
     if (!moved.allFinite()) return std::nullopt;
     along += moved.x();
     u = other_.u.is_periodic() ? u + moved.y()
@@ -207,7 +207,7 @@ class Corner {
       slopes.col(0) = (residual({at.v + dv, at.other_u, at.other_v}, radius_m) - current) / dv;
       slopes.col(1) = (residual({at.v, at.other_u + du_other, at.other_v}, radius_m) - current) / du_other;
       slopes.col(2) = (residual({at.v, at.other_u, at.other_v + dv_other}, radius_m) - current) / dv_other;
-      const Vector3 moved = slopes.partialPivLu().solve(-current);
+      const Vector3 moved = solve_linear(slopes, -current);
       if (!moved.allFinite()) return std::nullopt;
       at = {at.v + moved.x(), at.other_u + moved.y(), at.other_v + moved.z()};
       cross_poles(at);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "engine/base/assert.h"
+#include "engine/base/dense_matrices.h"
 #include "engine/bspline/basis.h"
 #include "engine/bspline/change_knots.h"
 #include "engine/bspline/grid.h"
@@ -177,7 +178,7 @@ Eigen::Matrix3d rotation_towards(const RingFrame& a, const RingFrame& b) {
   if (nowhere || (cosine < 0.0 && within)) return Eigen::Matrix3d::Identity();
   constexpr double same_direction_cosine = -0.999;
   if (cosine > same_direction_cosine) {
-    return Eigen::Quaterniond::FromTwoVectors(inward_b, a.outward).toRotationMatrix();
+    return rotation_between(inward_b, a.outward).toRotationMatrix();
   }
   const Vector3 axis = offset.cross(a.outward);
   if (!(axis.norm() > 1e-6 * offset.norm())) return Eigen::Matrix3d::Identity();

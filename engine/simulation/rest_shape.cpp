@@ -1,11 +1,11 @@
 #include "engine/simulation/rest_shape.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "engine/base/assert.h"
+#include "engine/base/dense_matrices.h"
 #include "engine/material/lattice/body_coordinates.h"
 #include "engine/simulation/body_state.h"
 
@@ -39,7 +39,7 @@ double principal_strain(const CellCorners& rest, const CellCorners& bent, const 
   const Eigen::Matrix3d gradient =
       (trilinear_jacobian(bent, at.x(), at.y(), at.z()) - jacobian) * jacobian.inverse();
   const Eigen::Matrix3d strain = 0.5 * (gradient + gradient.transpose() + gradient.transpose() * gradient);
-  const Vector3 principal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(strain).eigenvalues();
+  const Vector3 principal = decompose_symmetric(strain).values;
   return principal[std::abs(principal[0]) > std::abs(principal[2]) ? 0 : 2];
 }
 

@@ -2,7 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
+
+#include "engine/base/dense_matrices.h"
 
 namespace spoonbill {
 namespace {
@@ -68,11 +69,10 @@ Eigen::Matrix3d spin_map(const Eigen::Matrix3d& stretch) {
 }  // namespace
 
 Eigen::Matrix3d nearest_turn(const Eigen::Matrix3d& change) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(Eigen::Matrix3d::Identity() + change,
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d left = svd.matrixU();
-  if ((left * svd.matrixV().transpose()).determinant() < 0.0) left.col(2) *= -1.0;
-  const Eigen::Quaterniond near(Eigen::Matrix3d(left * svd.matrixV().transpose()));
+  const SingularValues parts = decompose_singular(Eigen::Matrix3d::Identity() + change);
+  Eigen::Matrix3d left = parts.left;
+  if ((left * parts.right.transpose()).determinant() < 0.0) left.col(2) *= -1.0;
+  const Eigen::Quaterniond near(Eigen::Matrix3d(left * parts.right.transpose()));
   // The quaternion `near` has the rounding errors of numbers near 1. A small rotation w with [w] S + S [w] =
   // S - S^T corrects them. The skew part of S = R^T F is computed from small numbers alone.
   const Eigen::Matrix3d turn = turn_from(near);

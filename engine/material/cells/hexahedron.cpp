@@ -1,11 +1,11 @@
 #include "engine/material/cells/hexahedron.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
 
 #include "engine/base/assert.h"
+#include "engine/base/dense_matrices.h"
 
 namespace spoonbill {
 namespace {
@@ -142,7 +142,8 @@ CellMatrix hexahedron_stiffness(const CellCorners& corners, std::span<const Hexa
       add_point(corners, at_centre, at, weight, elasticity, sums);
     });
   }
-  const CellMatrix stiffness = sums.outer - sums.mixed * sums.inner.ldlt().solve(sums.mixed.transpose());
+  const CellMatrix stiffness =
+      sums.outer - sums.mixed * solve_symmetric<inner_count, 24>(sums.inner, sums.mixed.transpose());
   return 0.5 * (stiffness + stiffness.transpose());
 }
 

@@ -1,12 +1,11 @@
 #include "engine/material/implicit/implicit_body.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "engine/base/assert.h"
+#include "engine/base/dense_matrices.h"
 
 namespace spoonbill {
 
@@ -376,7 +375,7 @@ ImplicitBody::RigidMotion ImplicitBody::rigid_motion() const {
   }
   // A body stretched to a line has no inertia about that line; the small term keeps the tensor regular.
   inertia.diagonal().array() += 1e-9 * inertia.trace();
-  motion.spin_rad_per_s = inertia.ldlt().solve(moment);
+  motion.spin_rad_per_s = solve_symmetric<3, 1>(inertia, moment);
   return motion;
 }
 
