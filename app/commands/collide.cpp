@@ -180,7 +180,7 @@ Result<CollisionAnswer> collide_mesh(const SignedDistance& mesh, const Pose& mes
   answer.distance_m = std::max(-result.nearest.depth_m, 0.0);
   if (!result.found) return answer;
 
-  for (const ToolContactRegion& region : collider.find_contact_regions(surface, tool)) {
+  for (const ToolContactRegion& region : collider.find_contact_regions(tool)) {
     answer.contacts.push_back(make_contact(tool, region.deepest, mesh_is_a));
     ContactSide& side = mesh_is_a ? answer.contacts.back().b : answer.contacts.back().a;
     side.parameters->range = region.range;

@@ -155,14 +155,19 @@ Vector3 position(const PiecewiseSurface& surface, double u, double v) {
   PieceBasis::Values bu, bv;
   surface.u->evaluate_values(whole.u.into_domain(u), bu);
   surface.v->evaluate_values(whole.v.into_domain(v), bv);
+  return position(surface, bu, bv);
+}
+
+Vector3 position(const PiecewiseSurface& surface, const PieceBasis::Values& u, const PieceBasis::Values& v) {
+  const Surface& whole = *surface.surface;
   const double* const controls[3] = {whole.net.x.data(), whole.net.y.data(), whole.net.z.data()};
   Vector3 point = Vector3::Zero();
   for (int i = 0; i <= surface.u->degree(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
-      const double* const row = controls[axis] + bu.controls[i] * whole.net.columns;
+      const double* const row = controls[axis] + u.controls[i] * whole.net.columns;
       double value = 0.0;
-      for (int j = 0; j <= surface.v->degree(); ++j) value += bv.value[0][j] * row[bv.controls[j]];
-      point[axis] += bu.value[0][i] * value;
+      for (int j = 0; j <= surface.v->degree(); ++j) value += v.value[0][j] * row[v.controls[j]];
+      point[axis] += u.value[0][i] * value;
     }
   }
   return point;

@@ -55,6 +55,8 @@ struct PiecewiseSurface {
 // Returns the same as the function of this name for a Surface, except for rounding.
 SurfacePoint evaluate(const PiecewiseSurface& surface, double u, double v);
 Vector3 position(const PiecewiseSurface& surface, double u, double v);
+// Returns the position at the parameters u and v, given the results of evaluate_values() there.
+Vector3 position(const PiecewiseSurface& surface, const PieceBasis::Values& u, const PieceBasis::Values& v);
 // Returns true if u or v is at an end of the domain of an open direction.
 bool is_on_edge(const PiecewiseSurface& surface, double u, double v);
 // Returns the unit normal of the surface at u, v. `at` must be the result of evaluate() at u, v.

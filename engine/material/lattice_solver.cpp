@@ -132,15 +132,14 @@ void add_weights(const SpringLattice& lattice, const LatticeView& view, const Ve
 }
 
 void linearise(const SpringLattice& lattice, const LatticeView& view, Linearised stored) {
-  lattice.kernels().look_ahead(view, lattice.damping_time_s());
-  lattice.kernels().linearise_springs(view, stored);
+  lattice.kernels().linearise_springs(view, lattice.damping_time_s(), stored);
 }
 
 // Linearises the springs and performs one step of the power iteration that tracks the fastest frequency as
 // the lattice deforms.
 void linearise_and_follow(SpringLattice& lattice, const LatticeView& view, Linearised stored) {
-  lattice.kernels().look_ahead(view, lattice.damping_time_s());
-  const float square = lattice.kernels().linearise_with_power_step(view, stored, lattice.free_mass());
+  const float square = lattice.kernels().linearise_with_power_step(view, lattice.damping_time_s(), stored,
+                                                                   lattice.free_mass());
   if (square > 0.0f && std::isfinite(square)) lattice.set_fastest_square(static_cast<double>(square));
 }
 
@@ -171,7 +170,7 @@ void compute_forces(const SpringLattice& lattice, const LatticeView& view, float
   const LatticeKernels& kernels = lattice.kernels();
   const float limit = static_cast<float>(linear_cells) * lattice.cell_size_m();
   const bool linear = moved_square <= limit * limit;
-  if (!linear) kernels.linearise_springs(view, Linearised::tangents);
+  if (!linear) linearise(lattice, view, Linearised::tangents);
   kernels.start_forces(view);
   if (linear && moved_square > 0.0f) kernels.spring_forces(view);
   kernels.volume_forces(view);

@@ -1,11 +1,12 @@
 #include "engine/simulation/body_hold.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "engine/base/assert.h"
+#include "engine/base/dense_matrices.h"
 
 namespace spoonbill {
 namespace {
@@ -56,13 +57,18 @@ Vector3 find_spin(const SpringLattice& lattice, const MassCentre& centre) {
   if (!(size > 0.0)) return Vector3::Zero();
   // The added term keeps the tensor invertible for a rod, which does not resist a spin about its axis.
   inertia += 1e-9 * size * Eigen::Matrix3d::Identity();
-  return inertia.ldlt().solve(momentum);
+  return solve_symmetric<3, 1>(inertia, momentum);
 }
 
 }  // namespace
 
-BodyHold::BodyHold(int nodes) : displacements_m_(static_cast<std::size_t>(nodes), Vector3::Zero()) {
-  SPOONBILL_ASSERT(nodes > 0);
+BodyHold::BodyHold(const SpringLattice& lattice) {
+  const auto nodes = static_cast<std::size_t>(lattice.mesh().node_count());
+  for (std::vector<float>& displacements : displacements_m_) displacements.assign(nodes, 0.0f);
+  const Vector3 centre = find_mass_centre(lattice).rest_m;
+  for (const Vector3& node : lattice.mesh().nodes) {
+    rest_radius_m_ = std::max(rest_radius_m_, (node - centre).norm());
+  }
 }
 
 BodyHold::MeanPose BodyHold::measure(const SpringLattice& lattice) {
@@ -76,24 +82,75 @@ BodyHold::MeanPose BodyHold::measure(const SpringLattice& lattice) {
   MeanPose pose;
   pose.centre_m = centre.position_m;
   if (!moments.allFinite()) return pose;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> parts(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const double sign = (parts.matrixU() * parts.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-  const Vector3 extents = parts.singularValues();
+  const SingularValues parts = decompose_singular(moments);
+  const double sign = (parts.left * parts.right.transpose()).determinant() < 0.0 ? -1.0 : 1.0;
+  const Vector3 extents = parts.values;
   pose.has_turn = extents[1] + sign * extents[2] > least_second_extent * extents[0];
-  pose.turn = parts.matrixU() * Vector3(1.0, 1.0, sign).asDiagonal() * parts.matrixV().transpose();
+  pose.turn = parts.left * Vector3(1.0, 1.0, sign).asDiagonal() * parts.right.transpose();
   return pose;
 }
 
 void BodyHold::begin(const SpringLattice& lattice) {
-  SPOONBILL_ASSERT(displacements_m_.size() == static_cast<std::size_t>(lattice.mesh().node_count()));
-  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
-    displacements_m_[static_cast<std::size_t>(n)] = lattice.displacement(n);
+  const auto nodes = static_cast<std::size_t>(lattice.mesh().node_count());
+  for (int axis = 0; axis < 3; ++axis) {
+    SPOONBILL_ASSERT(displacements_m_[axis].size() == nodes);
+    std::copy_n(lattice.displacements(axis), nodes, displacements_m_[axis].begin());
   }
   if (!lattice.has_fixed_nodes()) pose_ = measure(lattice);
 }
 
+namespace {
+
+// Smallest and largest value of a field, and whether the sum of its values is finite. A sum is not finite if
+// a value is not finite or if very large values overflow it.
+struct FieldRange {
+  float low, high;
+  bool has_finite_sum;
+};
+
+FieldRange find_range(const float* field, int count) {
+  using Lanes = float __attribute__((vector_size(16)));
+  constexpr int lane_count = 4;
+  const Lanes first = Lanes{} + field[0];
+  Lanes low = first, high = first, sum = {};
+  int i = 0;
+  for (; i + lane_count <= count; i += lane_count) {
+    Lanes values;
+    std::memcpy(&values, field + i, sizeof values);
+    low = values < low ? values : low;
+    high = values > high ? values : high;
+    sum += values;
+  }
+  for (; i < count; ++i) {
+    const Lanes value = Lanes{} + field[i];
+    low = value < low ? value : low;
+    high = value > high ? value : high;
+    sum += value;
+  }
+  return {std::min({low[0], low[1], low[2], low[3]}), std::max({high[0], high[1], high[2], high[3]}),
+          std::isfinite(sum[0] + sum[1] + sum[2] + sum[3])};
+}
+
+}  // namespace
+
+bool BodyHold::is_displaced_little(const SpringLattice& lattice, double reach_m) const {
+  const int nodes = lattice.mesh().node_count();
+  Vector3 spread_m;
+  for (int axis = 0; axis < 3; ++axis) {
+    const FieldRange moves = find_range(lattice.displacements(axis), nodes);
+    const FieldRange velocities = find_range(lattice.velocities(axis), nodes);
+    if (!moves.has_finite_sum || !velocities.has_finite_sum) return false;
+    spread_m[axis] = static_cast<double>(moves.high) - static_cast<double>(moves.low);
+  }
+  // The displacement of the centre of mass is a mean of the nodes' displacements. It therefore differs from
+  // each of them by no more than the diagonal of their box.
+  constexpr double rounding = 1e-6;
+  return rest_radius_m_ + spread_m.norm() < (1.0 - rounding) * reach_m;
+}
+
 bool BodyHold::limit(SpringLattice& lattice, ImplicitSolver* solver, double reach_m) const {
   SPOONBILL_ASSERT_DEBUG(reach_m > 0.0);
+  if (is_displaced_little(lattice, reach_m)) return false;
   const Vector3 centre = find_mass_centre(lattice).position_m;
   bool follows = centre.allFinite();
   for (int n = 0; n < lattice.mesh().node_count() && follows; ++n) {
@@ -102,7 +159,8 @@ bool BodyHold::limit(SpringLattice& lattice, ImplicitSolver* solver, double reac
   }
   if (follows) return false;
   for (int n = 0; n < lattice.mesh().node_count(); ++n) {
-    lattice.set_displacement(n, displacements_m_[static_cast<std::size_t>(n)]);
+    const auto at = static_cast<std::size_t>(n);
+    lattice.set_displacement(n, {displacements_m_[0][at], displacements_m_[1][at], displacements_m_[2][at]});
     lattice.set_velocity(n, Vector3::Zero());
   }
   if (solver != nullptr) solver->adopt_shape(lattice);

@@ -1,8 +1,9 @@
 // Keeps a body in the scene during a tick. Keeps the pose of a body that nothing fixes. If the lattice of a
 // body becomes unstable, restores the shape that the body had at the start of the tick. Owned by the body.
-// Allocates only in its constructor.
+// Allocates only when it is made.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "engine/base/geometry.h"
@@ -13,7 +14,10 @@ namespace spoonbill {
 
 class BodyHold {
  public:
-  explicit BodyHold(int nodes);
+  // For no body.
+  BodyHold() = default;
+  // For a body with this lattice, whose masses and rest positions must not change.
+  explicit BodyHold(const SpringLattice& lattice);
 
   // Stores the displacements and the mean pose at the start of a tick.
   void begin(const SpringLattice& lattice);
@@ -36,8 +40,12 @@ class BodyHold {
     bool has_turn = false;  // false if the body extends in one direction only
   };
   static MeanPose measure(const SpringLattice& lattice);
+  // Returns true if all velocities are finite and the displacements differ so little that no node can be
+  // farther than `reach_m` from the centre of mass. This is the usual case and takes little time.
+  bool is_displaced_little(const SpringLattice& lattice, double reach_m) const;
 
-  std::vector<Vector3> displacements_m_;
+  std::array<std::vector<float>, 3> displacements_m_;  // at the start of the tick, by axis
+  double rest_radius_m_ = 0.0;  // largest distance of a node from the centre of mass in the rest shape
   MeanPose pose_;
 };
 

@@ -244,9 +244,9 @@ int BodyMapping::find_twin(int row, int column) const {
 
 void BodyMapping::embed(const SpringLattice& lattice) {
   const Grid& grid = nested_->grid;
-  const auto columns = static_cast<std::size_t>(grid.columns());
-  const auto stride = static_cast<std::size_t>(refit_.front().sample_stride());
-  const std::size_t samples = static_cast<std::size_t>(grid.rows()) * columns;
+  columns_ = static_cast<std::size_t>(grid.columns());
+  stride_ = static_cast<std::size_t>(refit_.front().sample_stride());
+  const std::size_t samples = static_cast<std::size_t>(grid.rows()) * columns_;
   embedding_.reserve(samples);
   for (int i = 0; i < grid.rows(); ++i) {
     for (int j = 0; j < grid.columns(); ++j) {
@@ -260,6 +260,8 @@ void BodyMapping::embed(const SpringLattice& lattice) {
           lattice.mesh(), evaluate(rest_, grid.u.parameters[i], grid.v.parameters[j]).position_m));
     }
   }
+  embedded_rest_m_.reserve(samples);
+  for (const EmbeddedPoint& point : embedding_) embedded_rest_m_.push_back(point.rest_m(lattice));
   cell_weights_.assign(samples, CellWeights{});
   for (std::size_t s = 0; s < samples; ++s) {
     const EmbeddedPoint& point = embedding_[s];
@@ -268,16 +270,17 @@ void BodyMapping::embed(const SpringLattice& lattice) {
   }
   node_moves_.assign(4 * static_cast<std::size_t>(lattice.mesh().node_count()), 0.0f);
   for (int axis = 0; axis < 3; ++axis) {
-    sample_[axis].assign(static_cast<std::size_t>(grid.rows()) * stride, 0.0f);
+    sample_[axis].assign(static_cast<std::size_t>(grid.rows()) * stride_, 0.0f);
     control_[axis].assign(rest_.net.size(), 0.0f);
   }
   base_moves_.assign(4 * samples, 0.0f);
   sample_displacements(lattice);
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t s = 0; s < samples; ++s) {
-      base_moves_[4 * s + axis] = sample_[axis][s / columns * stride + s % columns];
+      base_moves_[4 * s + axis] = sample_[axis][s / columns_ * stride_ + s % columns_];
     }
   }
+  sample_displacements(lattice);
 }
 
 void BodyMapping::sample_displacements(const SpringLattice& lattice) {
@@ -290,7 +293,7 @@ void BodyMapping::sample_displacements(const SpringLattice& lattice) {
   const Grid& grid = nested_->grid;
   std::size_t s = 0;
   for (int i = 0; i < grid.rows(); ++i) {
-    const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(i) * refit_.front().sample_stride();
+    const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(static_cast<std::size_t>(i) * stride_);
     float *const x_row = sample_[0].data() + first, *const y_row = sample_[1].data() + first,
                  *const z_row = sample_[2].data() + first;
     for (int j = 0; j < grid.columns(); ++j, ++s) {
@@ -323,13 +326,11 @@ void BodyMapping::update(const SpringLattice& lattice) {
 
 void BodyMapping::measure_residual() {
   const Grid& grid = nested_->grid;
-  const auto columns = static_cast<std::size_t>(grid.columns());
-  const auto stride = static_cast<std::size_t>(refit_.front().sample_stride());
   evaluator_.front().points(control_[0].data(), control_[1].data(), control_[2].data(), followed_);
   double largest = 0.0, sum = 0.0;
   std::size_t worst = 0;
   for (std::size_t s = 0; s < embedding_.size(); ++s) {
-    const std::size_t from = s / columns * stride + s % columns;
+    const std::size_t from = s / columns_ * stride_ + s % columns_;
     const Vector3 residual_m(static_cast<double>(sample_[0][from] - followed_.x[s]),
                              static_cast<double>(sample_[1][from] - followed_.y[s]),
                              static_cast<double>(sample_[2][from] - followed_.z[s]));
@@ -339,7 +340,7 @@ void BodyMapping::measure_residual() {
     worst = s;
   }
   residual_ = {std::sqrt(largest), std::sqrt(sum / static_cast<double>(embedding_.size())),
-               grid.u.parameters[worst / columns], grid.v.parameters[worst % columns]};
+               grid.u.parameters[worst / columns_], grid.v.parameters[worst % columns_]};
 }
 
 Result<BodyMapping> BodyMapping::refine_at(double u, double v, const SpringLattice& lattice,

@@ -67,6 +67,15 @@ class BodyMapping {
   // the embeddings of the samples around the point.
   const EmbeddedPoint& sample(int index) const { return embedding_[index]; }
   EmbeddedPoint at(double u, double v) const;
+  // Positions of a sample as a point of the lattice, m: in the undeformed lattice, and at the last update().
+  // They differ from the position on current() by what the control net cannot reproduce.
+  const Vector3& embedded_rest_m(int index) const { return embedded_rest_m_[index]; }
+  Vector3 embedded_m(int index) const {
+    const std::size_t from = static_cast<std::size_t>(index) / columns_ * stride_ + index % columns_;
+    const float* const base = base_moves_.data() + 4 * static_cast<std::size_t>(index);
+    const Vector3 base_m(base[0], base[1], base[2]);
+    return embedded_rest_m_[index] + base_m + Vector3(sample_[0][from], sample_[1][from], sample_[2][from]);
+  }
 
  private:
   BodyMapping(Surface rest, Surface current, InstructionSet set)
@@ -88,10 +97,14 @@ class BodyMapping {
   // Shared pointer, because colliders keep the grid's address when the mapping is moved.
   std::shared_ptr<NestedGrid> nested_;
   std::vector<EmbeddedPoint> embedding_;
+  std::vector<Vector3> embedded_rest_m_;
   std::vector<CellWeights> cell_weights_;  // for each sample, the same weights as in embedding_
   AlignedVector<float> node_moves_;        // displacements of the nodes: x, y, z and 0 for each
   AlignedVector<float> base_moves_;        // displacements of the samples at make(): x, y, z and 0 for each
-  AlignedVector<float> sample_[3];         // displacements of the samples by axis, in the layout of the refit
+  // Displacements of the samples since make() by axis. Each of the grid's rows has stride_ values, of which
+  // the first columns_ are used.
+  AlignedVector<float> sample_[3];
+  std::size_t columns_ = 0, stride_ = 0;
   std::vector<float> control_[3];
   bool first_pole_ = true, last_pole_ = true;    // whether v starts with a pole, and whether it ends with one
   std::vector<NetEdge> collapsed_edges_;         // edges whose control points are kept exactly together

@@ -31,8 +31,7 @@ struct BodyState {
   Smoothing smoothing;
   std::vector<std::uint8_t> fixed, touched;            // one byte per node: 1 if fixed, 1 if touched
   std::optional<ImplicitSolver> implicit_solver = {};  // empty: the body uses the spring solver
-  // Placeholder for one node, which make_body_state() replaces.
-  BodyHold hold = BodyHold(1);
+  BodyHold hold = {};
   BodyLoads loads = {};
   BodySupports supports = {};
   double shell_thickness_m = 0.0;                // 0 for a solid
@@ -46,6 +45,10 @@ struct BodyState {
     fixed = std::move(nodes);
     lattice.fix_nodes(fixed);
     if (implicit_solver) implicit_solver->fix_nodes(fixed);
+  }
+  void set_lattice(SpringLattice other) {
+    lattice = std::move(other);
+    hold = BodyHold(lattice);
   }
   void set_implicit_solver(std::optional<ImplicitSolver> solver) {
     implicit_solver = std::move(solver);

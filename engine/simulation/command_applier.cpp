@@ -111,7 +111,7 @@ Status CommandApplier::operator()(const SetMaterial& command) {
       lattice.value(), body.implicit_solver ? body.implicit_solver->rest_m() : body.lattice.positions(),
       state.set);
   if (!solver.ok()) return solver.error();
-  body.lattice = std::move(lattice).value();
+  body.set_lattice(std::move(lattice).value());
   body.set_implicit_solver(std::move(solver).value());
   state.scene.bodies[index].material = command.material;
   update_inertia(state);
@@ -144,7 +144,7 @@ Status CommandApplier::operator()(const KeepShape&) {
   for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) {
     state.bodies[b].smoothing = Smoothing(lattices[b].mesh());
     state.bodies[b].supports.rebase(state.bodies[b].lattice, lattices[b]);
-    state.bodies[b].lattice = std::move(lattices[b]);
+    state.bodies[b].set_lattice(std::move(lattices[b]));
     state.bodies[b].set_implicit_solver(std::move(solvers[b]));
   }
   update_inertia(state);

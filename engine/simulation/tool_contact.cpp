@@ -30,6 +30,20 @@ Vector3 push_direction_at(const ToolShape& tool, const Vector3& point_m) {
   return distance > 0.0 ? Vector3(from_centre / distance) : Vector3::Zero();
 }
 
+// Returns an upper bound, m, of how far a point of the body approaches the tool in this tick. `reach_m` is
+// the largest movement of the tool. The nodes may become twice as fast as they are, and start_cells is an
+// allowance, in lattice cells, for nodes that are set in motion. Contacts set an implicitly stepped lattice
+// in motion more strongly, because they only estimate its mass.
+double find_approach_m(const BodyState& body, double reach_m) {
+  using Values = Eigen::Map<const Eigen::ArrayXf>;
+  const double start_cells = body.lattice.moved_by_solver() ? 0.1 : 0.01;
+  const int nodes = body.lattice.mesh().node_count();
+  const Values vx(body.lattice.velocities(0), nodes), vy(body.lattice.velocities(1), nodes),
+      vz(body.lattice.velocities(2), nodes);
+  const double speed = std::sqrt(static_cast<double>((vx * vx + vy * vy + vz * vz).maxCoeff()));
+  return reach_m + 2.0 * tick_s * speed + start_cells * static_cast<double>(body.lattice.cell_size_m());
+}
+
 bool is_inside(const CollisionResult& collision) {
   return collision.found && collision.nearest.depth_m >= 0.0;
 }
@@ -343,8 +357,6 @@ void ToolContact::add_shell_pushes(int body, const BodyState& state, const ToolH
 
 namespace {
 
-// Gap beyond the tool's movement, in lattice cells, up to which points between samples are pushed.
-constexpr double between_margin_cells = 0.1;
 // Largest depth, in lattice cells, to which a sphere may reach between pushed points.
 constexpr double largest_reach_cells = 0.005;
 // Largest number of parts into which the side of a patch between samples is divided.
@@ -359,6 +371,16 @@ struct PatchPoint {
            s * ((1.0 - t) * corners[2] + t * corners[3]);
   }
 };
+
+// Returns true if no point of the patch is within the distance of the tool.
+bool is_beyond(const ToolShape& tool, const PatchCorners& corners, double distance_m) {
+  const Vector3 centre = PatchPoint{0.5, 0.5}.position(corners);
+  double radius_square = 0.0;
+  for (const Vector3& corner : corners) {
+    radius_square = std::max(radius_square, (corner - centre).squaredNorm());
+  }
+  return tool.is_beyond(centre, std::sqrt(radius_square), distance_m);
+}
 
 // Returns the number of parts into which sides are to be divided, given two opposite sides of a patch.
 int count_parts(const Vector3& one_side, const Vector3& other_side, double longest_m) {
@@ -379,18 +401,17 @@ void ToolContact::add_pushes_between_samples(int body, const BodyState& state, d
   const auto &u = grid.u.parameters, &v = grid.v.parameters;
   const int columns = grid.columns(), sample_count = grid.rows() * columns;
   const double cell_m = static_cast<double>(state.lattice.cell_size_m());
-  const double margin_m = between_margin_cells * cell_m + reach_m;
+  const double margin_m = find_approach_m(state, reach_m);
   const double longest_m = std::sqrt(8.0 * shape_.radius_m * largest_reach_cells * cell_m);
   for (const LevelCell& cell : contacts_[body].collider.finest_cells()) {
     const int first = cell.i * columns + cell.j;
     const std::array<int, 4> samples{first, first + 1, first + columns, first + columns + 1};
     PatchCorners rest, corners;
-    for (std::size_t c = 0; c < corners.size(); ++c) {
-      rest[c] = mapping.sample(samples[c]).rest_m(state.lattice);
-      corners[c] = mapping.sample(samples[c]).position_m(state.lattice);
-    }
-    const PatchCorners on_surface = levels.corners(cell);
+    for (std::size_t c = 0; c < corners.size(); ++c) corners[c] = mapping.embedded_m(samples[c]);
     const double farthest_m = margin_m + levels.bulge(cell);
+    if (is_beyond(shape_, corners, farthest_m)) continue;
+    for (std::size_t c = 0; c < corners.size(); ++c) rest[c] = mapping.embedded_rest_m(samples[c]);
+    const PatchCorners on_surface = levels.corners(cell);
     const bool starts_at_pole = rest[0] == rest[2];  // samples at a pole share one embedding
     const int parts_u = count_parts(rest[2] - rest[0], rest[3] - rest[1], longest_m);
     const int parts_v = count_parts(rest[1] - rest[0], rest[3] - rest[2], longest_m);
@@ -417,7 +438,9 @@ void ToolContact::add_pushes_between_samples(int body, const BodyState& state, d
 void ToolContact::add_sphere_pushes(int body, const BodyState& state, const ToolHold& hold) {
   BodyContact& contact = contacts_[body];
   if (is_small(state) || is_centre_outside(body)) {
+    const double margin_m = find_approach_m(state, hold.reach_m);
     for (const NearSample& sample : contact.collider.near_samples()) {
+      if (shape_.distance(state.mapping().embedded_m(sample.index)) > margin_m) continue;
       overflow_ |=
           !constraints_.add_push(body, state.lattice, state.mapping().sample(sample.index), sample.index);
     }

@@ -105,7 +105,7 @@ CollisionResult SurfaceCollider::collide(const Surface& surface, const ToolShape
   SPOONBILL_ASSERT(!tool.is_solid() || tool.distance_field != nullptr);
   CollisionResult result;
   moved_ |= levels_.begin(surface, samples);
-  find_nearest(surface, tool, margin_m, Proof::deepest, result);
+  find_nearest(tool, margin_m, Proof::deepest, result);
   collect_near_samples(tool, margin_m, result);
   result.nearest = contact_at(surface, best_);
   const double inside = closed ? depth_inside(tool, result.nearest) : 0.0;
@@ -114,19 +114,19 @@ CollisionResult SurfaceCollider::collide(const Surface& surface, const ToolShape
   return result;
 }
 
-void SurfaceCollider::find_nearest(const Surface& surface, const ToolShape& tool, double margin, Proof proof,
+void SurfaceCollider::find_nearest(const ToolShape& tool, double margin, Proof proof,
                                    CollisionResult& result) {
   ++query_;
   near_.clear();
-  offer_last(surface, tool);
+  offer_last(tool);
   proof_ = proof;
   tolerance_ = search_tolerance(tool);
   cuts_left_ = surface_cut_limit;
   descend(tool, margin, result);
-  if (trimmed_) offer_trim_loops(surface, tool);
-  polish(surface, tool);
+  if (trimmed_) offer_trim_loops(tool);
+  polish(tool);
   result.samples_evaluated = levels_.samples_evaluated();
-  for (const LevelCell& cell : finest_) search_between_samples(surface, tool, cell, result.overflow);
+  for (const LevelCell& cell : finest_) search_between_samples(tool, cell, result.overflow);
   result.cuts = surface_cut_limit - cuts_left_;
   last_ = best_;
 }
@@ -134,7 +134,7 @@ void SurfaceCollider::find_nearest(const Surface& surface, const ToolShape& tool
 Clearance SurfaceCollider::clearance(const Surface& surface, const ToolShape& tool) {
   CollisionResult result;
   moved_ |= levels_.begin(surface);
-  find_nearest(surface, tool, 0.0, Proof::clearance, result);
+  find_nearest(tool, 0.0, Proof::clearance, result);
   const bool touching = best_.distance_m <= touch_tolerance_m;
   return {touching ? 0.0 : clearance_fraction * best_.distance_m, contact_at(surface, best_),
           result.overflow};
@@ -193,10 +193,10 @@ void SurfaceCollider::offer_coarsest(const ToolShape& tool, double margin) {
 
 // Starts from the nearest point of the last query. This point is usually still almost the nearest, so that
 // the search can skip most cells.
-void SurfaceCollider::offer_last(const Surface& surface, const ToolShape& tool) {
+void SurfaceCollider::offer_last(const ToolShape& tool) {
   best_ = {};
   best_.distance_m = std::numeric_limits<double>::infinity();
-  if (has_last_) offer(tool, last_.u, last_.v, position(surface, last_.u, last_.v));
+  if (has_last_) offer(tool, last_.u, last_.v, position(levels_.pieces(), last_.u, last_.v));
   has_last_ = true;
 }
 
@@ -279,9 +279,8 @@ double SurfaceCollider::enough() const {
 }
 
 // Searches a cell of the finest level for a nearer point between its samples, by branch and bound.
-void SurfaceCollider::search_between_samples(const Surface& surface, const ToolShape& tool,
-                                             const LevelCell& cell, bool& overflow) {
-  if (is_cut(cell)) return search_trimmed_cell(surface, tool, cell);
+void SurfaceCollider::search_between_samples(const ToolShape& tool, const LevelCell& cell, bool& overflow) {
+  if (is_cut(cell)) return search_trimmed_cell(tool, cell);
   patches_.clear();
   patches_.push_back(whole_patch(cell));
   while (!patches_.empty()) {
@@ -293,12 +292,11 @@ void SurfaceCollider::search_between_samples(const Surface& surface, const ToolS
       overflow = true;
       continue;
     }
-    const double u = 0.5 * (patch.u0 + patch.u1), v = 0.5 * (patch.v0 + patch.v1);
-    const Vector3 centre = position(surface, u, v);
+    const PatchCentre centre = find_centre(patch);
     const double before = best_.distance_m;
-    offer(tool, u, v, centre);
-    if (best_.distance_m < before) polish(surface, tool);
-    cut(surface, patch, centre);
+    offer(tool, centre.u, centre.v, centre.position_m);
+    if (best_.distance_m < before) polish(tool);
+    cut(patch, centre);
   }
 }
 
@@ -319,11 +317,29 @@ bool SurfaceCollider::can_cut(const Patch& patch) const {
   return patch.depth < deepest_patch && patches_.size() + 4 <= patch_capacity && cuts_left_ > 0;
 }
 
-void SurfaceCollider::cut(const Surface& surface, const Patch& patch, const Vector3& centre) {
+SurfaceCollider::PatchCentre SurfaceCollider::find_centre(const Patch& patch) const {
+  const PiecewiseSurface pieces = levels_.pieces();
+  PatchCentre centre;
+  centre.u = 0.5 * (patch.u0 + patch.u1);
+  centre.v = 0.5 * (patch.v0 + patch.v1);
+  pieces.u->evaluate_values(centre.u, centre.basis_u);
+  pieces.v->evaluate_values(centre.v, centre.basis_v);
+  centre.position_m = position(pieces, centre.basis_u, centre.basis_v);
+  return centre;
+}
+
+void SurfaceCollider::cut(const Patch& patch, const PatchCentre& at) {
   --cuts_left_;
-  const double u = 0.5 * (patch.u0 + patch.u1), v = 0.5 * (patch.v0 + patch.v1);
-  const Vector3 low_u = position(surface, patch.u0, v), high_u = position(surface, patch.u1, v),
-                low_v = position(surface, u, patch.v0), high_v = position(surface, u, patch.v1);
+  const PiecewiseSurface pieces = levels_.pieces();
+  PieceBasis::Values u0, u1, v0, v1;
+  pieces.u->evaluate_values(patch.u0, u0);
+  pieces.u->evaluate_values(patch.u1, u1);
+  pieces.v->evaluate_values(patch.v0, v0);
+  pieces.v->evaluate_values(patch.v1, v1);
+  const Vector3 low_u = position(pieces, u0, at.basis_v), high_u = position(pieces, u1, at.basis_v),
+                low_v = position(pieces, at.basis_u, v0), high_v = position(pieces, at.basis_u, v1);
+  const double u = at.u, v = at.v;
+  const Vector3& centre = at.position_m;
   const auto& [p00, p01, p10, p11] = patch.corners;
   const int eu = patch.element_u, ev = patch.element_v, depth = patch.depth + 1;
   patches_.push_back({patch.u0, u, patch.v0, v, {p00, low_u, low_v, centre}, eu, ev, depth});
@@ -332,13 +348,13 @@ void SurfaceCollider::cut(const Surface& surface, const Patch& patch, const Vect
   patches_.push_back({u, patch.u1, v, patch.v1, {centre, high_v, high_u, p11}, eu, ev, depth});
 }
 
-void SurfaceCollider::polish(const Surface& surface, const ToolShape& tool) {
+void SurfaceCollider::polish(const ToolShape& tool) {
   const SurfaceSpot before = best_;
   if (tool.is_solid()) {
-    best_ = polish_on_solid(surface, tool, best_);
+    best_ = polish_on_solid(levels_.surface(), tool, best_);
     if (trimmed_ && !trimmed_->contains(best_.u, best_.v)) best_ = before;
   } else {
-    polish_analytic(surface, tool);
+    polish_analytic(tool);
   }
   // If Newton's method ended in another region, the previous point is restored.
   if (region_ >= 0 && region_at(best_.u, best_.v) != region_) best_ = before;
@@ -346,9 +362,10 @@ void SurfaceCollider::polish(const Surface& surface, const ToolShape& tool) {
 
 // Improves the parameters of the best point by Newton's method. A step that does not decrease the distance is
 // halved. Where the curvature has the wrong sign, the step follows the gradient.
-void SurfaceCollider::polish_analytic(const Surface& surface, const ToolShape& tool) {
+void SurfaceCollider::polish_analytic(const ToolShape& tool) {
+  const Surface& surface = levels_.surface();
   const bool sphere = tool.kind == ToolShape::Kind::sphere;
-  SurfacePoint at = evaluate(surface, best_.u, best_.v);
+  SurfacePoint at = evaluate(levels_.pieces(), best_.u, best_.v);
   for (int step = 0; step < 20; ++step) {
     const Vector3 towards = sphere ? Vector3(at.position_m - tool.centre_m) : tool.normal;
     const double gu = towards.dot(at.du), gv = towards.dot(at.dv);
@@ -370,7 +387,7 @@ void SurfaceCollider::polish_analytic(const Surface& surface, const ToolShape& t
     const double before = best_.distance_m;
     for (int half = 0; half < tries && best_.distance_m >= before; ++half, move_u *= 0.5, move_v *= 0.5) {
       const double u = surface.u.into_domain(best_.u + move_u), v = surface.v.into_domain(best_.v + move_v);
-      at = evaluate(surface, u, v);
+      at = evaluate(levels_.pieces(), u, v);
       offer(tool, u, v, at.position_m);
     }
     if (!(best_.distance_m < before - least_gain_m)) return;
@@ -389,26 +406,25 @@ Eigen::Vector2d point_on(const TrimmedArea::Edge& edge, double fraction) {
 
 }  // namespace
 
-void SurfaceCollider::offer_trim_loops(const Surface& surface, const ToolShape& tool) {
+void SurfaceCollider::offer_trim_loops(const ToolShape& tool) {
   TrimEdges nearest;
   for (const LevelCell& cell : finest_) {
     if (!is_cut(cell)) continue;
     const Patch patch = whole_patch(cell);
     if (lower_bound(tool, patch.corners, bulge(patch), best_.distance_m) >= best_.distance_m) continue;
-    offer_trim_edges(surface, tool, cell, nearest);
+    offer_trim_edges(tool, cell, nearest);
   }
-  minimise_on_edges(surface, tool, nearest);
+  minimise_on_edges(tool, nearest);
 }
 
 // Compares the best point with the start and the midpoint of each trim loop edge in the cell.
-void SurfaceCollider::offer_trim_edges(const Surface& surface, const ToolShape& tool, const LevelCell& cell,
-                                       TrimEdges& nearest) {
+void SurfaceCollider::offer_trim_edges(const ToolShape& tool, const LevelCell& cell, TrimEdges& nearest) {
   const std::span<const TrimmedArea::Edge> edges = trimmed_->edges(cell);
   for (std::size_t e = 0; e < edges.size(); ++e) {
     for (const double fraction : {0.0, 0.5}) {
       const Eigen::Vector2d at = point_on(edges[e], fraction);
       const double before = best_.distance_m;
-      update_best(tool, at.x(), at.y(), position(surface, at.x(), at.y()));
+      update_best(tool, at.x(), at.y(), position(levels_.pieces(), at.x(), at.y()));
       if (!(best_.distance_m < before)) continue;
       const bool meets_last = fraction == 0.0 && e > 0 && edges[e - 1].to == edges[e].from;
       nearest = {&edges[e], meets_last ? &edges[e - 1] : nullptr};
@@ -418,13 +434,12 @@ void SurfaceCollider::offer_trim_edges(const Surface& surface, const ToolShape& 
 
 // Minimises the distance along the nearest trim loop edge, and along the edge that meets it at the nearest
 // point.
-void SurfaceCollider::minimise_on_edges(const Surface& surface, const ToolShape& tool,
-                                        const TrimEdges& nearest) {
+void SurfaceCollider::minimise_on_edges(const ToolShape& tool, const TrimEdges& nearest) {
   for (const TrimmedArea::Edge* edge : {nearest.first, nearest.second}) {
     if (edge == nullptr) continue;
     const auto distance = [&](double fraction) {
       const Eigen::Vector2d at = point_on(*edge, fraction);
-      const Vector3 point = position(surface, at.x(), at.y());
+      const Vector3 point = position(levels_.pieces(), at.x(), at.y());
       update_best(tool, at.x(), at.y(), point);
       return tool.distance(point);
     };
@@ -452,21 +467,20 @@ void SurfaceCollider::minimise_on_edges(const Surface& surface, const ToolShape&
 // Searches a cell that trim loops cross. The result is not proven to be the nearest. Newton's method starts
 // from the cell's centre if the centre is not trimmed away and is nearer than all corners, samples and loop
 // points compared before.
-void SurfaceCollider::search_trimmed_cell(const Surface& surface, const ToolShape& tool,
-                                          const LevelCell& cell) {
+void SurfaceCollider::search_trimmed_cell(const ToolShape& tool, const LevelCell& cell) {
   const Patch patch = whole_patch(cell);
   const double needed = enough();
   if (lower_bound(tool, patch.corners, bulge(patch), needed) >= needed) return;
   const double u = 0.5 * (patch.u0 + patch.u1), v = 0.5 * (patch.v0 + patch.v1);
   const double before = best_.distance_m;
-  offer(tool, u, v, position(surface, u, v));
-  if (best_.distance_m < before) polish(surface, tool);
+  offer(tool, u, v, position(levels_.pieces(), u, v));
+  if (best_.distance_m < before) polish(tool);
 }
 
-bool SurfaceCollider::touches_trimmed_cell(const Surface& surface, const ToolShape& tool,
-                                           const LevelCell& cell) {
+bool SurfaceCollider::touches_trimmed_cell(const ToolShape& tool, const LevelCell& cell) {
   const auto touches_at = [&](double u, double v) {
-    return tool.distance_within(position(surface, u, v), 2.0 * touch_tolerance_m) <= touch_tolerance_m;
+    return tool.distance_within(position(levels_.pieces(), u, v), 2.0 * touch_tolerance_m) <=
+           touch_tolerance_m;
   };
   const Patch patch = whole_patch(cell);
   if (lower_bound(tool, patch.corners, bulge(patch), 0.0) > 0.0) return false;
@@ -522,8 +536,8 @@ int SurfaceCollider::region_at(double u, double v) const {
 
 // Returns true if the tool touches the surface in a cell. Cuts patches until a corner touches the tool or no
 // patch can touch it.
-bool SurfaceCollider::touches(const Surface& surface, const ToolShape& tool, const LevelCell& cell) {
-  if (is_cut(cell)) return touches_trimmed_cell(surface, tool, cell);
+bool SurfaceCollider::touches(const ToolShape& tool, const LevelCell& cell) {
+  if (is_cut(cell)) return touches_trimmed_cell(tool, cell);
   patches_.clear();
   patches_.push_back(whole_patch(cell));
   while (!patches_.empty()) {
@@ -537,15 +551,15 @@ bool SurfaceCollider::touches(const Surface& surface, const ToolShape& tool, con
       regions_overflow_ = true;
       continue;
     }
-    cut(surface, patch, position(surface, 0.5 * (patch.u0 + patch.u1), 0.5 * (patch.v0 + patch.v1)));
+    cut(patch, find_centre(patch));
   }
   return false;
 }
 
-void SurfaceCollider::find_touched_cells(const Surface& surface, const ToolShape& tool) {
+void SurfaceCollider::find_touched_cells(const ToolShape& tool) {
   touched_.clear();
   for (const LevelCell& cell : finest_) {
-    if (!touches(surface, tool, cell)) continue;
+    if (!touches(tool, cell)) continue;
     const int index = finest_index(cell.i, cell.j);
     touched_index_[index] = static_cast<int>(touched_.size());
     touched_at_[index] = query_;
@@ -574,7 +588,7 @@ void SurfaceCollider::join_neighbours(int first, int region) {
   }
 }
 
-void SurfaceCollider::add_region(const Surface& surface, const ToolShape& tool, int begin, int end) {
+void SurfaceCollider::add_region(const ToolShape& tool, int begin, int end) {
   const Grid& grid = levels_.nested().grid;
   const LevelCell& first = touched_[grouped_[begin]].cell;
   CellRange along_u{first.i, first.i}, along_v{first.j, first.j};
@@ -591,29 +605,27 @@ void SurfaceCollider::add_region(const Surface& surface, const ToolShape& tool, 
   }
   TrimEdges nearest_edges;
   for (int k = begin; k < end; ++k) {
-    if (is_cut(touched_[grouped_[k]].cell))
-      offer_trim_edges(surface, tool, touched_[grouped_[k]].cell, nearest_edges);
+    if (is_cut(touched_[grouped_[k]].cell)) offer_trim_edges(tool, touched_[grouped_[k]].cell, nearest_edges);
   }
-  minimise_on_edges(surface, tool, nearest_edges);
+  minimise_on_edges(tool, nearest_edges);
   region_ = touched_[grouped_[begin]].region;
-  polish(surface, tool);
+  polish(tool);
   for (int k = begin; k < end; ++k) {
-    search_between_samples(surface, tool, touched_[grouped_[k]].cell, regions_overflow_);
+    search_between_samples(tool, touched_[grouped_[k]].cell, regions_overflow_);
   }
   region_ = -1;
   const ParameterRange range{along_u.start(grid.u), along_u.end(grid.u), along_v.start(grid.v),
                              along_v.end(grid.v)};
-  regions_.push_back({range, contact_at(surface, best_)});
+  regions_.push_back({range, contact_at(levels_.surface(), best_)});
 }
 
-const std::vector<ToolContactRegion>& SurfaceCollider::find_contact_regions(const Surface& surface,
-                                                                            const ToolShape& tool) {
+const std::vector<ToolContactRegion>& SurfaceCollider::find_contact_regions(const ToolShape& tool) {
   regions_.clear();
   grouped_.clear();
   regions_overflow_ = false;
   proof_ = Proof::deepest;
   cuts_left_ = region_cut_capacity;
-  find_touched_cells(surface, tool);
+  find_touched_cells(tool);
   for (int k = 0; k < static_cast<int>(touched_.size()); ++k) {
     if (touched_[k].region >= 0) continue;
     if (regions_.size() == tool_region_capacity) {
@@ -622,7 +634,7 @@ const std::vector<ToolContactRegion>& SurfaceCollider::find_contact_regions(cons
     }
     const int begin = static_cast<int>(grouped_.size());
     join_neighbours(k, static_cast<int>(regions_.size()));
-    add_region(surface, tool, begin, static_cast<int>(grouped_.size()));
+    add_region(tool, begin, static_cast<int>(grouped_.size()));
   }
   std::sort(regions_.begin(), regions_.end(), [](const ToolContactRegion& a, const ToolContactRegion& b) {
     return std::tie(b.deepest.depth_m, a.deepest.u, a.deepest.v) <

@@ -96,8 +96,9 @@ class SurfaceCollider {
                           const PlanarPoints& samples = {});
 
   // Finds every region of the surface that the tool touches, deepest first. Must be called after collide()
-  // with the same surface and tool. The result is valid until the next call of a member function.
-  const std::vector<ToolContactRegion>& find_contact_regions(const Surface& surface, const ToolShape& tool);
+  // with the same tool; the surface must not have changed. The result is valid until the next call of a
+  // member function.
+  const std::vector<ToolContactRegion>& find_contact_regions(const ToolShape& tool);
   // Returns true if the last find_contact_regions() exceeded a capacity, so that regions or parts of them may
   // be missing.
   bool regions_overflow() const { return regions_overflow_; }
@@ -123,25 +124,30 @@ class SurfaceCollider {
     PatchCorners corners;
     int element_u, element_v, depth;
   };
+  // Parameters and position of a patch's centre, with the values of the basis functions there.
+  struct PatchCentre {
+    double u, v;
+    PieceBasis::Values basis_u, basis_v;
+    Vector3 position_m;
+  };
 
   // Goal of a search: the deepest contact within the tolerance, or a guaranteed clearance.
   enum class Proof { deepest, clearance };
 
   // The private functions below must be called after SurfaceLevels::begin().
-  void find_nearest(const Surface& surface, const ToolShape& tool, double margin, Proof proof,
-                    CollisionResult& result);
-  void offer_last(const Surface& surface, const ToolShape& tool);
+  void find_nearest(const ToolShape& tool, double margin, Proof proof, CollisionResult& result);
+  void offer_last(const ToolShape& tool);
   void offer_coarsest(const ToolShape& tool, double margin);
   void descend(const ToolShape& tool, double margin, CollisionResult& result);
   void collect_near_samples(const ToolShape& tool, double margin, CollisionResult& result);
   void visit_cell(const ToolShape& tool, const LevelCell& cell, double reach, CollisionResult& result);
   double enough() const;
-  void search_between_samples(const Surface& surface, const ToolShape& tool, const LevelCell& cell,
-                              bool& overflow);
+  void search_between_samples(const ToolShape& tool, const LevelCell& cell, bool& overflow);
   Patch whole_patch(const LevelCell& cell);
   double bulge(const Patch& patch);
   bool can_cut(const Patch& patch) const;
-  void cut(const Surface& surface, const Patch& patch, const Vector3& centre);
+  PatchCentre find_centre(const Patch& patch) const;
+  void cut(const Patch& patch, const PatchCentre& at);
   void offer(const ToolShape& tool, double u, double v, const Vector3& point);
   void update_best(const ToolShape& tool, double u, double v, const Vector3& point);
   bool is_trimmed_away(const LevelCell& cell) const { return trimmed_ && trimmed_->is_trimmed_away(cell); }
@@ -151,24 +157,23 @@ class SurfaceCollider {
     const TrimmedArea::Edge* first = nullptr;
     const TrimmedArea::Edge* second = nullptr;
   };
-  void offer_trim_loops(const Surface& surface, const ToolShape& tool);
-  void offer_trim_edges(const Surface& surface, const ToolShape& tool, const LevelCell& cell,
-                        TrimEdges& nearest);
-  void minimise_on_edges(const Surface& surface, const ToolShape& tool, const TrimEdges& nearest);
-  void search_trimmed_cell(const Surface& surface, const ToolShape& tool, const LevelCell& cell);
-  bool touches_trimmed_cell(const Surface& surface, const ToolShape& tool, const LevelCell& cell);
-  void polish(const Surface& surface, const ToolShape& tool);
-  void polish_analytic(const Surface& surface, const ToolShape& tool);
+  void offer_trim_loops(const ToolShape& tool);
+  void offer_trim_edges(const ToolShape& tool, const LevelCell& cell, TrimEdges& nearest);
+  void minimise_on_edges(const ToolShape& tool, const TrimEdges& nearest);
+  void search_trimmed_cell(const ToolShape& tool, const LevelCell& cell);
+  bool touches_trimmed_cell(const ToolShape& tool, const LevelCell& cell);
+  void polish(const ToolShape& tool);
+  void polish_analytic(const ToolShape& tool);
   double depth_inside(const ToolShape& tool, const SurfaceContact& nearest) const;
   double reach(double margin) const;
 
   void reserve_regions();
   int finest_index(int i, int j) const;
   int region_at(double u, double v) const;
-  bool touches(const Surface& surface, const ToolShape& tool, const LevelCell& cell);
-  void find_touched_cells(const Surface& surface, const ToolShape& tool);
+  bool touches(const ToolShape& tool, const LevelCell& cell);
+  void find_touched_cells(const ToolShape& tool);
   void join_neighbours(int first, int region);
-  void add_region(const Surface& surface, const ToolShape& tool, int begin, int end);
+  void add_region(const ToolShape& tool, int begin, int end);
 
   SurfaceLevels levels_;
   std::shared_ptr<const TrimmedLevels> trimmed_;  // null if the surface is not trimmed

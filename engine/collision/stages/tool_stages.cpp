@@ -106,7 +106,7 @@ void ToolStages::add_contacts(const Surface& surface, const ToolShape& tool, con
                            collider_->levels().sample(sample.index), sample.distance_m};
     append(StageContact{contact_at(surface, spot)}, stages.contacts, stages);
   }
-  const std::vector<ToolContactRegion>& regions = collider_->find_contact_regions(surface, tool);
+  const std::vector<ToolContactRegion>& regions = collider_->find_contact_regions(tool);
   for (const ToolContactRegion& region : regions) {
     append(StageContact{region.deepest, true}, stages.contacts, stages);
   }

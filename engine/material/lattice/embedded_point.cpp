@@ -20,7 +20,8 @@ Vector3 embedded_sum(const EmbeddedPoint& point, const float* x, const float* y,
 
 bool EmbeddedPoint::add(const EmbeddedPoint& other, float fraction) {
   for (int i = 0; i < other.count; ++i) {
-    int at = 0;
+    // Points in the same cell have the same nodes in the same order.
+    int at = i < count && node[i] == other.node[i] ? i : 0;
     while (at < count && node[at] != other.node[i]) ++at;
     if (at == capacity) return false;
     if (at == count) {

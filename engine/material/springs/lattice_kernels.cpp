@@ -74,7 +74,7 @@ template <Springs springs>
 inline void linearise_block(const LatticeView& view, const SpringArrays& s, int start,
                             float* __restrict tangent, BlockForces& near) {
   const int o = s.offset;
-  const float *wx = view.ahead_x + start, *wy = view.ahead_y + start, *wz = view.ahead_z + start;
+  const float *wx = view.reference_x + start, *wy = view.reference_y + start, *wz = view.reference_z + start;
   const float *rx = s.rest_x + start, *ry = s.rest_y + start, *rz = s.rest_z + start;
   const float *k = s.stiffness + start, *rest = s.rest_length + start, *q = s.square_difference + start;
   float* __restrict far_x = view.spring_x + start + o;
@@ -195,13 +195,18 @@ void linearise_all(const LatticeView& view, Tangents& tangents, bool powers) {
   });
 }
 
+void extrapolate(float* __restrict to, const float* __restrict d, const float* __restrict v, float tau,
+                 int count) {
+  for (int i = 0; i < count; ++i) to[i] = d[i] + tau * v[i];
+}
+
 // Linearises all springs. If `powers` is true, also sets the forces to the product of the springs'
 // derivative and the power vector.
-void linearise(const LatticeView& view, Linearised stored, bool powers) {
+void linearise(const LatticeView& view, float tau, Linearised stored, bool powers) {
   const int count = view.padded_count;
-  set_to(view.reference_x, view.ahead_x, count);
-  set_to(view.reference_y, view.ahead_y, count);
-  set_to(view.reference_z, view.ahead_z, count);
+  extrapolate(view.reference_x, view.dx, view.vx, tau, count);
+  extrapolate(view.reference_y, view.dy, view.vy, tau, count);
+  extrapolate(view.reference_z, view.dz, view.vz, tau, count);
   clear(view.moved_x, view.moved_y, view.moved_z, count);
   clear(view.spring_x, view.spring_y, view.spring_z, count);
   if (powers) clear(view.fx, view.fy, view.fz, count);
@@ -218,8 +223,8 @@ void linearise(const LatticeView& view, Linearised stored, bool powers) {
   }
 }
 
-void linearise_springs(const LatticeView& view, Linearised stored) {
-  linearise(view, stored, false);
+void linearise_springs(const LatticeView& view, float tau, Linearised stored) {
+  linearise(view, tau, stored, false);
 }
 
 void start_forces(const LatticeView& view) {
@@ -306,10 +311,10 @@ inline float find_norm_scale(const float* x, const float* y, const float* z, int
   return __builtin_bit_cast(float, inverse << exponent_bits);
 }
 
-// Returns sqrt(sum m (x^2 + y^2 + z^2)) with the masses m. The sum is scaled, because squares of the
-// accelerations of fast lattices would overflow.
-inline float mass_norm(const float* mass, const float* x, const float* y, const float* z, int count) {
-  const float scale = find_norm_scale(x, y, z, count);
+// Returns sqrt(sum m (x^2 + y^2 + z^2)) with the masses m. The components are multiplied by `scale` before
+// they are squared.
+inline float scaled_mass_norm(const float* mass, const float* x, const float* y, const float* z, int count,
+                              float scale) {
   alignas(64) float lanes[16] = {};
   for (int start = 0; start < count; start += 16) {
     for (int l = 0; l < 16; ++l) {
@@ -320,6 +325,14 @@ inline float mass_norm(const float* mass, const float* x, const float* y, const 
   }
   for (int l = 1; l < 16; ++l) lanes[0] += lanes[l];
   return __builtin_sqrtf(lanes[0]) / scale;
+}
+
+// Returns sqrt(sum m (x^2 + y^2 + z^2)) with the masses m. If the squares overflow or underflow, as those of
+// the accelerations of fast lattices do, the sum is scaled.
+inline float mass_norm(const float* mass, const float* x, const float* y, const float* z, int count) {
+  const float norm = scaled_mass_norm(mass, x, y, z, count, 1.0f);
+  if (norm > 1e-10f && norm < 1e18f) return norm;
+  return scaled_mass_norm(mass, x, y, z, count, find_norm_scale(x, y, z, count));
 }
 
 inline void update_power_vector(float* __restrict w, const float* __restrict f, const float* __restrict noise,
@@ -362,15 +375,14 @@ float power_step(const LatticeView& view, const float* mass) {
   return finish_power_step(view, mass);
 }
 
-float linearise_with_power_step(const LatticeView& view, Linearised stored, const float* mass) {
-  linearise(view, stored, true);
+float linearise_with_power_step(const LatticeView& view, float tau, Linearised stored, const float* mass) {
+  linearise(view, tau, stored, true);
   return finish_power_step(view, mass);
 }
 
 }  // namespace
 
 const LatticeKernels lattice_kernels = {
-    look_ahead,
     linearise_springs,
     start_forces,
     spring_forces,

@@ -75,11 +75,9 @@ struct LatticeView {
   float *dx = nullptr, *dy = nullptr, *dz = nullptr;  // displacement from the rest shape, m
   float *vx = nullptr, *vy = nullptr, *vz = nullptr;  // m/s
   float *fx = nullptr, *fy = nullptr, *fz = nullptr;  // N
-  // Node displacements extrapolated by the damping time tau at the present velocity: d + tau v, m. Spring
-  // forces evaluated there are damped: f(x + tau v) is f(x) + tau df/dt to first order, as in a Kelvin-Voigt
-  // element.
-  float *ahead_x = nullptr, *ahead_y = nullptr, *ahead_z = nullptr;
-  // Extrapolated displacements at the linearisation, m.
+  // Node displacements at the linearisation, extrapolated by the damping time tau at the velocity: d + tau v,
+  // m. Spring forces evaluated there are damped: f(x + tau v) is f(x) + tau df/dt to first order, as in a
+  // Kelvin-Voigt element.
   float *reference_x = nullptr, *reference_y = nullptr, *reference_z = nullptr;
   // Change of the extrapolated displacements since the linearisation, m.
   float *moved_x = nullptr, *moved_y = nullptr, *moved_z = nullptr;
@@ -129,7 +127,7 @@ struct Drift {
 // Results of one drift.
 struct Drifted {
   float speed_square = 0.0f;  // largest squared ratio of speed to cap
-  float moved_square = 0.0f;  // largest squared change of `ahead` since the linearisation, m^2
+  float moved_square = 0.0f;  // largest squared change of d + tau v since the linearisation, m^2
 };
 
 // Results that a linearisation stores: only the spring forces, which suffice if no further substep uses the
@@ -137,17 +135,15 @@ struct Drifted {
 enum class Linearised { forces, tangents };
 
 struct LatticeKernels {
-  // Extrapolates all nodes by the damping time tau.
-  void (*look_ahead)(const LatticeView&, float tau_s);
-  // Linearises the springs at the present extrapolated positions: the force F = k (L - L0) s n of every
-  // spring with the direction n, and its derivative. s depends on the strain e = L / L0 - 1 and the
-  // stiffening b:
+  // Linearises the springs at the positions extrapolated by the damping time tau: computes the force
+  // F = k (L - L0) s n of every spring with the direction n, and its derivative. s depends on the strain
+  // e = L / L0 - 1 and the stiffening b:
   // s = 1 + b e^2, at most 2, for b > 0; s = (1 - b e^2)^(-1/2) for b < 0; and s = 1 for b = 0. The force
   // of a softening spring still grows with its length.
   //
   // Eq. 7 of Pungotra et al. 2013 damps the whole velocity, rotations included. Here rotations are not
   // damped, because the extrapolation of a rotating body is the same body rotated further.
-  void (*linearise_springs)(const LatticeView&, Linearised stored);
+  void (*linearise_springs)(const LatticeView&, float tau_s, Linearised stored);
   // Sets the forces to the spring forces of the linearisation.
   void (*start_forces)(const LatticeView&);
   // Adds the first-order change of the spring forces since the linearisation. This function, damp_further()
@@ -162,9 +158,9 @@ struct LatticeKernels {
   // rest volume also pushes back with crushed_stiffness, because springs cannot tell an inverted cell from a
   // regular one.
   void (*volume_forces)(const LatticeView&);
-  // Adds the damping of springs beyond the damping time of look_ahead(). A spring with the further damping c,
-  // the direction n at the linearisation and the end velocities v and v' exerts the force c ((v' - v).n) n on
-  // its first end and the opposite force on the other.
+  // Adds the damping of springs beyond the damping time of the linearisation. A spring with the further
+  // damping c, the direction n at the linearisation and the end velocities v and v' exerts the force
+  // c ((v' - v).n) n on its first end and the opposite force on the other.
   void (*damp_further)(const LatticeView&);
   // Sets v = v * decay + h f / m, after adding the forces of each seam pair. The decay does not apply to the
   // new impulse h f / m, so that drag does not change the equilibrium of a body at rest.
@@ -196,7 +192,7 @@ struct LatticeKernels {
   // of `mass`, an estimate of the square of the largest angular frequency. Overwrites the forces.
   float (*power_step)(const LatticeView&, const float* mass);
   // Performs linearise_springs() and then power_step() in one pass over the springs, with the same results.
-  float (*linearise_with_power_step)(const LatticeView&, Linearised stored, const float* mass);
+  float (*linearise_with_power_step)(const LatticeView&, float tau_s, Linearised stored, const float* mass);
 };
 
 namespace kernels_baseline {
@@ -220,7 +216,6 @@ namespace spoonbill::SPOONBILL_KERNELS {
 void join_seam(const LatticeView& view, float* field);
 void join_seam_forces(const LatticeView& view);
 
-void look_ahead(const LatticeView& view, float tau_s);
 void kick(const LatticeView& view, float h_s, float decay);
 Drifted drift(const LatticeView& view, const Drift& drift);
 void momentum(const LatticeView& view, const float* mass, float sum[4]);

@@ -32,12 +32,6 @@ void join_seam_forces(const LatticeView& view) {
   join_seam(view, view.fz);
 }
 
-void look_ahead(const LatticeView& view, float tau) {
-  for (int i = 0; i < view.padded_count; ++i) view.ahead_x[i] = view.dx[i] + tau * view.vx[i];
-  for (int i = 0; i < view.padded_count; ++i) view.ahead_y[i] = view.dy[i] + tau * view.vy[i];
-  for (int i = 0; i < view.padded_count; ++i) view.ahead_z[i] = view.dz[i] + tau * view.vz[i];
-}
-
 void kick(const LatticeView& view, float h, float decay) {
   join_seam_forces(view);
   for (int i = 0; i < view.padded_count; i += block) {
@@ -51,15 +45,13 @@ void kick(const LatticeView& view, float h, float decay) {
 
 namespace {
 
-// Moves a block of nodes along one axis, extrapolates the displacements and adds the squares of their changes
-// since the linearisation to `squares`.
+// Moves a block of nodes along one axis, and adds the squares of the changes of d + tau v since the
+// linearisation to `squares`.
 inline void drift_along(float* __restrict d, const float* __restrict v, const float* __restrict reference,
-                        float* __restrict ahead, float* __restrict moved, float* __restrict squares, float h,
-                        float tau) {
+                        float* __restrict moved, float* __restrict squares, float h, float tau) {
   for (int l = 0; l < block; ++l) {
     d[l] += h * v[l];
-    ahead[l] = d[l] + tau * v[l];
-    moved[l] = ahead[l] - reference[l];
+    moved[l] = d[l] + tau * v[l] - reference[l];
     squares[l] += moved[l] * moved[l];
   }
 }
@@ -111,12 +103,12 @@ Drifted drift(const LatticeView& view, const Drift& drift) {
       cap_speeds(view.vz + i, ratio, drift.mean_z);
     }
     for (int l = 0; l < block; ++l) squares[l] = 0.0f;
-    drift_along(view.dx + i, view.vx + i, view.reference_x + i, view.ahead_x + i, view.moved_x + i, squares,
-                drift.h_s, drift.tau_s);
-    drift_along(view.dy + i, view.vy + i, view.reference_y + i, view.ahead_y + i, view.moved_y + i, squares,
-                drift.h_s, drift.tau_s);
-    drift_along(view.dz + i, view.vz + i, view.reference_z + i, view.ahead_z + i, view.moved_z + i, squares,
-                drift.h_s, drift.tau_s);
+    drift_along(view.dx + i, view.vx + i, view.reference_x + i, view.moved_x + i, squares, drift.h_s,
+                drift.tau_s);
+    drift_along(view.dy + i, view.vy + i, view.reference_y + i, view.moved_y + i, squares, drift.h_s,
+                drift.tau_s);
+    drift_along(view.dz + i, view.vz + i, view.reference_z + i, view.moved_z + i, squares, drift.h_s,
+                drift.tau_s);
     drifted.speed_square = max(drifted.speed_square, fastest);
     drifted.moved_square = max(drifted.moved_square, largest_value(squares));
   }

@@ -160,7 +160,7 @@ void SpringLattice::allocate(const LatticeMesh& mesh) {
                     &power_noise_}) {
     a->assign(size, 0.0f);
   }
-  for (auto* vector : {&ahead_, &reference_, &moved_, &spring_force_}) {
+  for (auto* vector : {&reference_, &moved_, &spring_force_}) {
     for (Floats& a : *vector) a.assign(size, 0.0f);
   }
   std::fill(inverse_volume_.begin(), inverse_volume_.end(), 1.0f);
@@ -183,8 +183,7 @@ SpringLattice::RestMode SpringLattice::measure_fastest_mode() {
     power_y_[n] = hashed_noise(static_cast<std::uint32_t>(3 * representative + 2));
     power_z_[n] = hashed_noise(static_cast<std::uint32_t>(3 * representative + 3));
   }
-  kernels_->look_ahead(lattice, 0.0f);
-  kernels_->linearise_springs(lattice, Linearised::tangents);
+  kernels_->linearise_springs(lattice, 0.0f, Linearised::tangents);
   for (int step = 0; step < frequency_steps; ++step) {
     fastest_square_ = kernels_->power_step(lattice, node_mass_.data());
   }
@@ -294,9 +293,6 @@ LatticeView SpringLattice::view() {
   v.fx = fx_.data();
   v.fy = fy_.data();
   v.fz = fz_.data();
-  v.ahead_x = ahead_[0].data();
-  v.ahead_y = ahead_[1].data();
-  v.ahead_z = ahead_[2].data();
   v.reference_x = reference_[0].data();
   v.reference_y = reference_[1].data();
   v.reference_z = reference_[2].data();

@@ -97,6 +97,8 @@ class SpringLattice {
 
   // Displacements from the rest shape along one axis, m, one per node.
   const float* displacements(int axis) const { return (axis == 0 ? dx_ : axis == 1 ? dy_ : dz_).data(); }
+  // Velocities along one axis, m/s, one per node.
+  const float* velocities(int axis) const { return (axis == 0 ? vx_ : axis == 1 ? vy_ : vz_).data(); }
   Vector3 displacement(int node) const { return {dx_[node], dy_[node], dz_[node]}; }
   Vector3 position(int node) const { return mesh_.nodes[node] + displacement(node); }
   // Deformed positions of all nodes, m.
@@ -200,7 +202,7 @@ class SpringLattice {
   int offset_[lattice_direction_count] = {};
 
   Floats dx_, dy_, dz_, vx_, vy_, vz_, fx_, fy_, fz_;
-  Floats ahead_[3], reference_[3], moved_[3], spring_force_[3];
+  Floats reference_[3], moved_[3], spring_force_[3];
   Floats node_mass_, free_mass_, inverse_mass_, free_node_;
   std::vector<std::uint8_t> active_block_, free_block_;
   Floats applied_[3];
@@ -226,19 +228,17 @@ inline void set_velocity(const LatticeView& view, int n, const Vector3& velocity
   view.vz[n] = static_cast<float>(velocity.z());
 }
 
-// Sets a node's displacement and its extrapolated displacement, as drift() does. `tau` is the damping time.
-// Returns the squared change of the extrapolated displacement since the linearisation, m^2.
+// Sets a node's displacement and its change since the linearisation, as drift() does. `tau` is the damping
+// time. Returns the squared change of the extrapolated displacement, m^2.
 inline float set_node_displacement(const LatticeView& view, int n, const Vector3& displacement, float tau) {
   float* const d[3] = {view.dx, view.dy, view.dz};
-  float* const ahead[3] = {view.ahead_x, view.ahead_y, view.ahead_z};
   float* const moved[3] = {view.moved_x, view.moved_y, view.moved_z};
   const float* const v[3] = {view.vx, view.vy, view.vz};
   const float* const reference[3] = {view.reference_x, view.reference_y, view.reference_z};
   float square = 0.0f;
   for (int axis = 0; axis < 3; ++axis) {
     d[axis][n] = static_cast<float>(displacement[axis]);
-    ahead[axis][n] = d[axis][n] + tau * v[axis][n];
-    moved[axis][n] = ahead[axis][n] - reference[axis][n];
+    moved[axis][n] = d[axis][n] + tau * v[axis][n] - reference[axis][n];
     square += moved[axis][n] * moved[axis][n];
   }
   return square;

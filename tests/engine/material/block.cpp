@@ -25,8 +25,7 @@ SpringLattice block(const Vector3& size_m, std::array<int, 3> counts, const Mate
 void take_forces(SpringLattice& lattice, float tau_s) {
   const LatticeView view = lattice.view();
   const LatticeKernels& kernels = lattice.kernels();
-  kernels.look_ahead(view, tau_s);
-  kernels.linearise_springs(view, Linearised::tangents);
+  kernels.linearise_springs(view, tau_s, Linearised::tangents);
   kernels.start_forces(view);
   kernels.volume_forces(view);
 }

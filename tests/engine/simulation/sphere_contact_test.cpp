@@ -68,5 +68,23 @@ TEST(SphereContact, PushesOutASphereThatStartsInside) {
   EXPECT_GT(distance_m(simulation.surface(), centre), 0.9 * sphere_m);
 }
 
+// A body that is about to fall onto the sphere in this tick meets it at once, not a tick later.
+TEST(SphereContact, StopsAFallingBodyAtItsSurface) {
+  Scene scene = pebble(20);
+  scene.planes.clear();
+  scene.sculpting.real_time = true;
+  scene.sculpting.drag_per_s = 0.0;
+  scene.sculpting.gravity_m_per_s2 = {0.0, -9.81, 0.0};
+  Simulation simulation = simulate(scene);
+  // The sphere is so far below that the body falls 0.5 mm per tick when it arrives.
+  const Vector3 centre(0.0, -0.03, 0.0);
+  double force_n = 0.0;
+  for (int tick = 0; tick < 200 && !(force_n > 0.0); ++tick) {
+    force_n = simulation.advance({{centre, Quaternion::Identity()}, false, 0.0}).force_n.norm();
+  }
+  EXPECT_GT(force_n, 0.0);
+  EXPECT_NEAR(distance_m(simulation.surface(), centre), sphere_m, 1e-4);
+}
+
 }  // namespace
 }  // namespace spoonbill

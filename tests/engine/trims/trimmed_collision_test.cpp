@@ -147,7 +147,7 @@ TEST(TrimmedCollision, RegionsAreOfWhatIsThere) {
   SurfaceCollider trimmed(nested, shared_area_of(surface, {hole(surface)}));
   const ToolShape tool = ToolShape::sphere({0.05, 0.05, 0.0}, 0.0125);
   ASSERT_TRUE(trimmed.collide(surface, tool, 0.0, false).found);
-  const auto& regions = trimmed.find_contact_regions(surface, tool);
+  const auto& regions = trimmed.find_contact_regions(tool);
   ASSERT_EQ(regions.size(), 1u) << "a ring about the hole";
   EXPECT_NEAR(regions[0].deepest.depth_m, 0.0005, sagitta_m + 1e-9);
   EXPECT_NEAR(std::hypot(regions[0].deepest.point_m.x() - 0.05, regions[0].deepest.point_m.y() - 0.05),

@@ -21,7 +21,7 @@ struct Asked {
 
   Regions regions(const Surface& surface, const ToolShape& tool) {
     result = collider.collide(surface, tool, 0.0, false);
-    return collider.find_contact_regions(surface, tool);
+    return collider.find_contact_regions(tool);
   }
 
   NestedGrid nested;

@@ -142,8 +142,7 @@ TEST(CompositeSprings, RigidMotionsAreNotDampedFurther) {
     lattice.set_velocity(n, velocity + spin.cross(lattice.position(n)));
   }
   const LatticeView view = lattice.view();
-  lattice.kernels().look_ahead(view, 0.0f);
-  lattice.kernels().linearise_springs(view, Linearised::tangents);
+  lattice.kernels().linearise_springs(view, 0.0f, Linearised::tangents);
   const auto largest_force = [&] {
     double largest = 0.0;
     for (int n = 0; n < lattice.mesh().node_count(); ++n) {

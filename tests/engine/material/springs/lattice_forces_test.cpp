@@ -33,7 +33,6 @@ TEST(LatticeForces, VolumeForceIsTheGradientOfItsEnergy) {
   SpringLattice lattice = block({1e-3, 1.1e-3, 0.9e-3}, {2, 2, 2}, elastic_material(5000.0, 0.45, 1000.0));
   displace_at_random(lattice, 1e-4, 7);
   const LatticeView view = lattice.view();
-  lattice.kernels().look_ahead(view, 0.0f);
   lattice.kernels().start_forces(view);  // sets forces to 0, because the springs were linearised at rest
   lattice.kernels().volume_forces(view);
   const float* force[3] = {view.fx, view.fy, view.fz};
@@ -113,8 +112,7 @@ TEST(LatticeForces, OnlySpringsAreDamped) {
   SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, elastic_material(5000.0, 0.45, 1000.0));
   for (int n = 0; n < lattice.mesh().node_count(); ++n) lattice.set_velocity(n, lattice.mesh().nodes[n]);
   const LatticeView view = lattice.view();
-  lattice.kernels().look_ahead(view, 1e-3f);
-  lattice.kernels().linearise_springs(view, Linearised::tangents);
+  lattice.kernels().linearise_springs(view, 1e-3f, Linearised::tangents);
   lattice.kernels().start_forces(view);
   const std::vector<float> of_springs(view.fx, view.fx + view.padded_count);
   EXPECT_GT(of_springs[0], 0.0f);
@@ -145,7 +143,6 @@ TEST(LatticeForces, PowerStepsAlongWithALinearisation) {
       SpringLattice lattice = at_rest;
       displace_at_random(lattice, 2e-4, 5);
       const LatticeView view = lattice.view();
-      lattice.kernels().look_ahead(view, 0.0f);
       std::vector<float> out = {step(lattice, view)};
       for (const float* field : {view.spring_x, view.spring_y, view.spring_z, view.power_x, view.power_y,
                                  view.power_z, view.reference_x, view.moved_x}) {
@@ -157,14 +154,15 @@ TEST(LatticeForces, PowerStepsAlongWithALinearisation) {
       return out;
     };
     const auto one_by_one = followed([](SpringLattice& lattice, const LatticeView& view) {
-      lattice.kernels().linearise_springs(view, Linearised::tangents);
+      lattice.kernels().linearise_springs(view, 0.0f, Linearised::tangents);
       return lattice.kernels().power_step(view, lattice.free_mass());
     });
     const auto at_once = followed([](SpringLattice& lattice, const LatticeView& view) {
-      return lattice.kernels().linearise_with_power_step(view, Linearised::tangents, lattice.free_mass());
+      return lattice.kernels().linearise_with_power_step(view, 0.0f, Linearised::tangents,
+                                                         lattice.free_mass());
     });
     const auto forgetting = followed([](SpringLattice& lattice, const LatticeView& view) {
-      return lattice.kernels().linearise_with_power_step(view, Linearised::forces, lattice.free_mass());
+      return lattice.kernels().linearise_with_power_step(view, 0.0f, Linearised::forces, lattice.free_mass());
     });
     EXPECT_GT(one_by_one[0], 0.0f);
     EXPECT_EQ(one_by_one, at_once);
@@ -195,7 +193,7 @@ TEST(LatticeForces, LinearisedSpringsFollowToFirstOrder) {
     lattice.kernels().start_forces(view);
     lattice.kernels().spring_forces(view);
     const std::vector<float> linear(view.fx, view.fx + lattice.mesh().node_count());
-    lattice.kernels().linearise_springs(view, Linearised::tangents);
+    lattice.kernels().linearise_springs(view, 0.0f, Linearised::tangents);
     lattice.kernels().start_forces(view);
     double sum = 0.0, magnitude = 0.0;
     for (int n = 0; n < lattice.mesh().node_count(); ++n) {
