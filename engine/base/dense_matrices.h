@@ -1,6 +1,5 @@
-// Decompositions of small dense matrices, and what Eigen builds on them. Eigen's templates for them take
-// longer to compile than the rest of most of their users, so they are compiled once, here. Any thread may
-// call these functions.
+// Decompositions of small dense matrices, and functions that need them. Eigen's templates for these are slow
+// to compile, so they are compiled only once, in dense_matrices.cpp. Any thread may call these functions.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,13 +22,15 @@ struct SingularValues {
 };
 SingularValues decompose_singular(const Eigen::Matrix3d& matrix);
 
-// Returns the solution of matrix * x = right_side. The components are not finite if the matrix is singular.
+// Returns the solution x of matrix * x = right_side. If the matrix is singular, the components are very large
+// or not finite.
 Vector3 solve_linear(const Eigen::Matrix3d& matrix, const Vector3& right_side);
-// The same for a symmetric matrix and for each column of `right_sides`. Defined for the sizes that the source
-// lists.
+// Returns the solution X of matrix * X = right_sides for a symmetric matrix. If the matrix is singular, the
+// result is finite but need not be a solution. Instantiated only for the sizes in dense_matrices.cpp.
 template <int size, int columns>
 Eigen::Matrix<double, size, columns> solve_symmetric(const Eigen::Matrix<double, size, size>& matrix,
                                                      const Eigen::Matrix<double, size, columns>& right_sides);
+
 // Returns the rotation by the smallest angle that turns the direction of `from` to that of `to`; the identity
 // if one of them is zero.
 Quaternion rotation_between(const Vector3& from, const Vector3& to);

@@ -64,6 +64,7 @@ Vector3 find_spin(const SpringLattice& lattice, const MassCentre& centre) {
 
 BodyHold::BodyHold(const SpringLattice& lattice) {
   const auto nodes = static_cast<std::size_t>(lattice.mesh().node_count());
+  SPOONBILL_ASSERT(nodes > 0);
   for (std::vector<float>& displacements : displacements_m_) displacements.assign(nodes, 0.0f);
   const Vector3 centre = find_mass_centre(lattice).rest_m;
   for (const Vector3& node : lattice.mesh().nodes) {
@@ -133,7 +134,7 @@ FieldRange find_range(const float* field, int count) {
 
 }  // namespace
 
-bool BodyHold::is_displaced_little(const SpringLattice& lattice, double reach_m) const {
+bool BodyHold::is_surely_in_reach(const SpringLattice& lattice, double reach_m) const {
   const int nodes = lattice.mesh().node_count();
   Vector3 spread_m;
   for (int axis = 0; axis < 3; ++axis) {
@@ -150,7 +151,7 @@ bool BodyHold::is_displaced_little(const SpringLattice& lattice, double reach_m)
 
 bool BodyHold::limit(SpringLattice& lattice, ImplicitSolver* solver, double reach_m) const {
   SPOONBILL_ASSERT_DEBUG(reach_m > 0.0);
-  if (is_displaced_little(lattice, reach_m)) return false;
+  if (is_surely_in_reach(lattice, reach_m)) return false;
   const Vector3 centre = find_mass_centre(lattice).position_m;
   bool follows = centre.allFinite();
   for (int n = 0; n < lattice.mesh().node_count() && follows; ++n) {

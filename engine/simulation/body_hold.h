@@ -14,9 +14,10 @@ namespace spoonbill {
 
 class BodyHold {
  public:
-  // For no body.
+  // Makes a placeholder, which must be replaced before begin() is called.
   BodyHold() = default;
-  // For a body with this lattice, whose masses and rest positions must not change.
+  // Makes the hold of a body with this lattice. If its masses or rest positions change, a new hold must be
+  // made.
   explicit BodyHold(const SpringLattice& lattice);
 
   // Stores the displacements and the mean pose at the start of a tick.
@@ -42,7 +43,7 @@ class BodyHold {
   static MeanPose measure(const SpringLattice& lattice);
   // Returns true if all velocities are finite and the displacements differ so little that no node can be
   // farther than `reach_m` from the centre of mass. This is the usual case and takes little time.
-  bool is_displaced_little(const SpringLattice& lattice, double reach_m) const;
+  bool is_surely_in_reach(const SpringLattice& lattice, double reach_m) const;
 
   std::array<std::vector<float>, 3> displacements_m_;  // at the start of the tick, by axis
   double rest_radius_m_ = 0.0;  // largest distance of a node from the centre of mass in the rest shape

@@ -280,7 +280,7 @@ void BodyMapping::embed(const SpringLattice& lattice) {
       base_moves_[4 * s + axis] = sample_[axis][s / columns_ * stride_ + s % columns_];
     }
   }
-  sample_displacements(lattice);
+  sample_displacements(lattice);  // sets the displacements since make() to zero
 }
 
 void BodyMapping::sample_displacements(const SpringLattice& lattice) {

@@ -67,8 +67,9 @@ class BodyMapping {
   // the embeddings of the samples around the point.
   const EmbeddedPoint& sample(int index) const { return embedding_[index]; }
   EmbeddedPoint at(double u, double v) const;
-  // Positions of a sample as a point of the lattice, m: in the undeformed lattice, and at the last update().
-  // They differ from the position on current() by what the control net cannot reproduce.
+  // embedded_rest_m() returns the position of a sample's embedded point in the undeformed lattice, m.
+  // embedded_m() returns its position at the last make() or update(), m. This position differs from that of
+  // the sample on current() by what the control net cannot reproduce.
   const Vector3& embedded_rest_m(int index) const { return embedded_rest_m_[index]; }
   Vector3 embedded_m(int index) const {
     const std::size_t from = static_cast<std::size_t>(index) / columns_ * stride_ + index % columns_;

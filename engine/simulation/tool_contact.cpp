@@ -13,8 +13,9 @@ namespace {
 
 constexpr int constraint_capacity = 2048;
 
-// Gap below which a constraint is added for a sample, in lattice cells. It is the largest distance that the
-// refit may leave between the surface used for collision and the lattice.
+// Gap, in lattice cells, up to which the surface is searched for points near the tool. It is the largest
+// distance that the refit may leave between the surface used for collision and the lattice. Of the points
+// found, spheres push only those within find_approach_m().
 constexpr double tool_margin_cells = 0.5;
 
 double find_margin_m(const BodyState& body) {
@@ -30,10 +31,11 @@ Vector3 push_direction_at(const ToolShape& tool, const Vector3& point_m) {
   return distance > 0.0 ? Vector3(from_centre / distance) : Vector3::Zero();
 }
 
-// Returns an upper bound, m, of how far a point of the body approaches the tool in this tick. `reach_m` is
-// the largest movement of the tool. The nodes may become twice as fast as they are, and start_cells is an
-// allowance, in lattice cells, for nodes that are set in motion. Contacts set an implicitly stepped lattice
-// in motion more strongly, because they only estimate its mass.
+// Returns an estimate, m, of how far a point of the body and the tool approach each other in this tick.
+// `reach_m` is the largest movement of the tool. The nodes may become twice as fast as they are, and
+// start_cells is an allowance, in lattice cells, for nodes that are set in motion. Contacts set an implicitly
+// stepped lattice in motion more strongly, because they only estimate its mass. Points that approach by more
+// are pushed in the next tick.
 double find_approach_m(const BodyState& body, double reach_m) {
   using Values = Eigen::Map<const Eigen::ArrayXf>;
   const double start_cells = body.lattice.moved_by_solver() ? 0.1 : 0.01;
@@ -62,7 +64,7 @@ ToolContact::ToolContact(std::span<const BodyState> bodies, const ToolModel& mod
     : constraints_(constraint_capacity) {
   contacts_.reserve(bodies.size());
   for (const BodyState& body : bodies) {
-    contacts_.push_back({SurfaceCollider(body.mapping().nested(), body.trim), nullptr, {}, {}});
+    contacts_.push_back({SurfaceCollider(body.mapping().nested(), body.trim), nullptr, {}, 0.0, {}});
     if (!model.surface) continue;
     contacts_.back().proximity = std::make_unique<SurfaceProximity>(body.mapping().nested(), *model.nested);
   }
@@ -115,6 +117,7 @@ void ToolContact::push(std::span<const BodyState> bodies, const ToolHold& hold) 
   constraints_.clear();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (contacts_[b].collision.found) {
+      contacts_[b].approach_m = find_approach_m(bodies[b], hold.reach_m);
       add_pushes(static_cast<int>(b), bodies[b], hold);
     } else {
       contacts_[b].points.fill({});
@@ -125,7 +128,7 @@ void ToolContact::push(std::span<const BodyState> bodies, const ToolHold& hold) 
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const int body = static_cast<int>(b);
     if (contacts_[b].collision.found && rests_on_lattice(body, bodies[b])) {
-      add_pushes_between_samples(body, bodies[b], hold.reach_m);
+      add_pushes_between_samples(body, bodies[b]);
     }
   }
 }
@@ -372,7 +375,8 @@ struct PatchPoint {
   }
 };
 
-// Returns true if no point of the patch is within the distance of the tool.
+// Returns true only if every point of the patch is farther than `distance_m` from the tool. May return false
+// for a patch that is a little farther.
 bool is_beyond(const ToolShape& tool, const PatchCorners& corners, double distance_m) {
   const Vector3 centre = PatchPoint{0.5, 0.5}.position(corners);
   double radius_square = 0.0;
@@ -394,14 +398,14 @@ int count_parts(const Vector3& one_side, const Vector3& other_side, double longe
 // the lattice as if every point were pushed, unless this needs more than most_parts parts per side of a
 // patch. A sphere of radius R reaches d^2 / (8 R) between points that are d apart. The points are fixed
 // because a push at the nearest point would move, and its force would depend on its path.
-void ToolContact::add_pushes_between_samples(int body, const BodyState& state, double reach_m) {
+void ToolContact::add_pushes_between_samples(int body, const BodyState& state) {
   const BodyMapping& mapping = state.mapping();
   SurfaceLevels& levels = contacts_[body].collider.levels();
   const Grid& grid = mapping.nested().grid;
   const auto &u = grid.u.parameters, &v = grid.v.parameters;
   const int columns = grid.columns(), sample_count = grid.rows() * columns;
   const double cell_m = static_cast<double>(state.lattice.cell_size_m());
-  const double margin_m = find_approach_m(state, reach_m);
+  const double margin_m = contacts_[body].approach_m;
   const double longest_m = std::sqrt(8.0 * shape_.radius_m * largest_reach_cells * cell_m);
   for (const LevelCell& cell : contacts_[body].collider.finest_cells()) {
     const int first = cell.i * columns + cell.j;
@@ -438,9 +442,8 @@ void ToolContact::add_pushes_between_samples(int body, const BodyState& state, d
 void ToolContact::add_sphere_pushes(int body, const BodyState& state, const ToolHold& hold) {
   BodyContact& contact = contacts_[body];
   if (is_small(state) || is_centre_outside(body)) {
-    const double margin_m = find_approach_m(state, hold.reach_m);
     for (const NearSample& sample : contact.collider.near_samples()) {
-      if (shape_.distance(state.mapping().embedded_m(sample.index)) > margin_m) continue;
+      if (shape_.distance(state.mapping().embedded_m(sample.index)) > contact.approach_m) continue;
       overflow_ |=
           !constraints_.add_push(body, state.lattice, state.mapping().sample(sample.index), sample.index);
     }

@@ -90,6 +90,7 @@ class ToolContact {
     SurfaceCollider collider;
     std::unique_ptr<SurfaceProximity> proximity;  // only for B-spline tools
     CollisionResult collision;
+    double approach_m = 0.0;  // how far a point of the body and the tool may approach each other in this tick
     // The nearest point may jump between places where the tool is equally deep. Each place stays constrained
     // while it pushes; otherwise the force would ripple. points[i] has the key nearest_point_key - i.
     std::array<ContactPoint, 8> points;
@@ -124,7 +125,7 @@ class ToolContact {
   // belong to an earlier solid tool.
   bool is_surface() const { return is_solid_ && placed_ != nullptr; }
   void add_pushes(int body, const BodyState& state, const ToolHold& hold);
-  void add_pushes_between_samples(int body, const BodyState& state, double reach_m);
+  void add_pushes_between_samples(int body, const BodyState& state);
   void add_sphere_pushes(int body, const BodyState& state, const ToolHold& hold);
   // Returns the gap between the tool and the point (u, v) of the body's surface, or of the far face of a
   // shell, given the tool's distance to the surface.

@@ -96,8 +96,8 @@ class SurfaceCollider {
                           const PlanarPoints& samples = {});
 
   // Finds every region of the surface that the tool touches, deepest first. Must be called after collide()
-  // with the same tool; the surface must not have changed. The result is valid until the next call of a
-  // member function.
+  // with the same tool. The surface given to collide() must still exist and must not have changed. The result
+  // is valid until the next call of a member function.
   const std::vector<ToolContactRegion>& find_contact_regions(const ToolShape& tool);
   // Returns true if the last find_contact_regions() exceeded a capacity, so that regions or parts of them may
   // be missing.

@@ -75,8 +75,8 @@ struct LatticeView {
   float *dx = nullptr, *dy = nullptr, *dz = nullptr;  // displacement from the rest shape, m
   float *vx = nullptr, *vy = nullptr, *vz = nullptr;  // m/s
   float *fx = nullptr, *fy = nullptr, *fz = nullptr;  // N
-  // Node displacements at the linearisation, extrapolated by the damping time tau at the velocity: d + tau v,
-  // m. Spring forces evaluated there are damped: f(x + tau v) is f(x) + tau df/dt to first order, as in a
+  // Extrapolated node displacements d + tau v at the last linearisation, m, where tau is the damping time.
+  // Spring forces evaluated there are damped: f(x + tau v) is f(x) + tau df/dt to first order, as in a
   // Kelvin-Voigt element.
   float *reference_x = nullptr, *reference_y = nullptr, *reference_z = nullptr;
   // Change of the extrapolated displacements since the linearisation, m.

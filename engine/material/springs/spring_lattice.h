@@ -228,8 +228,8 @@ inline void set_velocity(const LatticeView& view, int n, const Vector3& velocity
   view.vz[n] = static_cast<float>(velocity.z());
 }
 
-// Sets a node's displacement and its change since the linearisation, as drift() does. `tau` is the damping
-// time. Returns the squared change of the extrapolated displacement, m^2.
+// Sets a node's displacement, and the change of its extrapolated displacement since the linearisation, as
+// drift() does. `tau` is the damping time. Returns the square of that change, m^2.
 inline float set_node_displacement(const LatticeView& view, int n, const Vector3& displacement, float tau) {
   float* const d[3] = {view.dx, view.dy, view.dz};
   float* const moved[3] = {view.moved_x, view.moved_y, view.moved_z};

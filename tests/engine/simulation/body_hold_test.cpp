@@ -40,7 +40,6 @@ TEST(BodyHold, RestoresABodyWithANodeOutOfReach) {
 }
 
 TEST(BodyHold, RestoresABodyThatIsNotFinite) {
-  const double infinity = std::numeric_limits<double>::infinity();
   const double not_a_number = std::numeric_limits<double>::quiet_NaN();
   for (const double value : {infinity, -infinity, not_a_number}) {
     EXPECT_TRUE(is_restored(first_move, {0.0, value, 0.0})) << value;
