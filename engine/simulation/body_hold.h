@@ -14,8 +14,6 @@ namespace spoonbill {
 
 class BodyHold {
  public:
-  // Makes a placeholder, which must be replaced before begin() is called.
-  BodyHold() = default;
   // Makes the hold of a body with this lattice. If its masses or rest positions change, a new hold must be
   // made.
   explicit BodyHold(const SpringLattice& lattice);

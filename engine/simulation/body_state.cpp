@@ -96,7 +96,6 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
                   std::vector<std::uint8_t>(mesh->nodes.size(), 0)};
   state.shell_thickness_m = body.shell_thickness_m.value_or(0.0);
   state.trim = std::move(trim).value();
-  state.hold = BodyHold(state.lattice);
   state.loads = std::move(loads).value();
   state.supports = std::move(supports).value();
   state.fix_nodes_behind(planes);

@@ -31,7 +31,7 @@ struct BodyState {
   Smoothing smoothing;
   std::vector<std::uint8_t> fixed, touched;            // one byte per node: 1 if fixed, 1 if touched
   std::optional<ImplicitSolver> implicit_solver = {};  // empty: the body uses the spring solver
-  BodyHold hold = {};
+  BodyHold hold = BodyHold(lattice);
   BodyLoads loads = {};
   BodySupports supports = {};
   double shell_thickness_m = 0.0;                // 0 for a solid
