@@ -165,16 +165,20 @@ SurfacePair nearest_pair(const PiecewiseSurface& first, const PiecewiseSurface& 
   return {{at[0], at[1], at[2], at[3]}, a.position_m, b.position_m};
 }
 
-NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point, double u, double v,
-                           PolishBudget* budget) {
+namespace {
+
+SurfacePoint evaluate_within(PolishBudget* budget, const PiecewiseSurface& surface, double u, double v) {
+  if (budget != nullptr) --budget->evaluations_left;
+  return evaluate(surface, u, v);
+}
+
+// Searches for the nearest point downhill from u, v. Ends at a pole if the nearest point is beyond it.
+NearestPoint descend_to_nearest(const PiecewiseSurface& surface, const Vector3& point, double u, double v,
+                                PolishBudget* budget) {
   Problem<2> problem;
   problem.knots = {&surface.u->knots(), &surface.v->knots()};
   problem.parameters = {problem.knots[0]->into_domain(u), problem.knots[1]->into_domain(v)};
-  const auto evaluate_at = [&](const Vector2& parameters) {
-    if (budget != nullptr) --budget->evaluations_left;
-    return evaluate(surface, parameters[0], parameters[1]);
-  };
-  SurfacePoint at = evaluate_at(problem.parameters);
+  SurfacePoint at = evaluate_within(budget, surface, problem.parameters[0], problem.parameters[1]);
   double distance = (at.position_m - point).norm(), damping = least_damping;
   for (int steps = 0; steps < max_polish_steps && distance > least_polish_gain_m; ++steps) {
     const Vector3 difference = at.position_m - point;
@@ -184,7 +188,7 @@ NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point
     problem.speed << at.du.norm(), at.dv.norm();
     const double before = distance;
     const auto offer = [&](const Vector2& next) {
-      const SurfacePoint there = evaluate_at(next);
+      const SurfacePoint there = evaluate_within(budget, surface, next[0], next[1]);
       const double next_distance = (there.position_m - point).norm();
       if (!(next_distance < distance)) return false;
       problem.parameters = next;
@@ -198,6 +202,77 @@ NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point
   return {problem.parameters[0], problem.parameters[1], at};
 }
 
+// Sine of an angle that is far above the error of a search that has converged, and the error of positions.
+constexpr double oblique_sine = 1e-3, position_error_m = 1e-9;
+
+// Returns true if the vector from `point` to the surface is not perpendicular to the surface, so that another
+// point of the surface is nearer, unless the point found is on the border.
+bool is_oblique(const PiecewiseSurface& surface, const NearestPoint& found, const Vector3& point) {
+  const Vector3 difference = found.at.position_m - point;
+  const double most = oblique_sine * difference.norm() + position_error_m;
+  if (!is_on_edge(surface, found.u, found.v)) {
+    return std::abs(difference.dot(found.at.du)) > most * found.at.du.norm() ||
+           std::abs(difference.dot(found.at.dv)) > most * found.at.dv.norm();
+  }
+  return difference.cross(unit_normal(surface, found.at, found.u, found.v)).norm() > most;
+}
+
+// Number of directions from a pole that are tried.
+constexpr int pole_directions = 8;
+// Largest distance of a start from a pole, in domain lengths.
+constexpr double largest_pole_distance = 0.25;
+// An edge is a pole if its length is below this fraction of the distance to the opposite edge, both estimated
+// from the tangents at a point of the edge. Rounding to single precision makes the fraction about 1e-6.
+constexpr double pole_fraction = 1e-4;
+
+// Sets u and v to a start of a search: beside the pole at one end of u (if `of_u`) or of v, in the direction
+// from the pole to `point`. Returns false if this end is no pole or no direction leads nearer to `point`.
+bool start_beside_pole(const PiecewiseSurface& surface, const Vector3& point, bool of_u, bool at_end,
+                       PolishBudget* budget, double& u, double& v) {
+  const KnotVector &outward = of_u ? surface.u->knots() : surface.v->knots(),
+                   &around = of_u ? surface.v->knots() : surface.u->knots();
+  if (outward.is_periodic()) return false;
+  const double end = at_end ? outward.domain_end() : outward.domain_start(), inward = at_end ? -1.0 : 1.0;
+  const double length = outward.domain_end() - outward.domain_start(),
+               around_length = around.domain_end() - around.domain_start();
+  double best = 0.0, best_around = 0.0, best_step = 0.0;
+  for (int k = 0; k < pole_directions; ++k) {
+    const double angle = around.parameter_at((k + 0.5) / pole_directions);
+    const SurfacePoint pole = evaluate_within(budget, surface, of_u ? end : angle, of_u ? angle : end);
+    const Vector3 leaving = inward * (of_u ? pole.du : pole.dv), wanted = point - pole.position_m;
+    const double speed = leaving.norm(), edge_m = around_length * (of_u ? pole.dv : pole.du).norm();
+    if (!(edge_m < pole_fraction * length * speed)) return false;
+    const double reached = wanted.dot(leaving) / speed;
+    if (!(reached > best)) continue;
+    best = reached;
+    best_around = angle;
+    best_step = reached / speed;
+  }
+  if (!(best > 0.0)) return false;
+  const double start = end + inward * std::min(best_step, largest_pole_distance * length);
+  u = of_u ? start : best_around;
+  v = of_u ? best_around : start;
+  return true;
+}
+
+}  // namespace
+
+NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point, double u, double v,
+                           PolishBudget* budget) {
+  NearestPoint found = descend_to_nearest(surface, point, u, v, budget);
+  if (!is_oblique(surface, found, point)) return found;
+  for (const bool of_u : {true, false}) {
+    for (const bool at_end : {false, true}) {
+      if (is_spent(budget) || !start_beside_pole(surface, point, of_u, at_end, budget, u, v)) continue;
+      const NearestPoint beyond = descend_to_nearest(surface, point, u, v, budget);
+      const bool is_nearer =
+          (beyond.at.position_m - point).squaredNorm() < (found.at.position_m - point).squaredNorm();
+      if (is_nearer) found = beyond;
+    }
+  }
+  return found;
+}
+
 namespace {
 
 // A point of the first surface, the point of the second surface nearest to it, and the depth of the first
@@ -209,12 +284,6 @@ struct DepthPoint {
   double depth;
 };
 
-// Returns true if the angle between the difference and the normal is above a tolerance, which is larger than
-// the error of Newton's method.
-bool is_oblique(const Vector3& difference, const Vector3& normal) {
-  return difference.cross(normal).norm() > 1e-6 * difference.norm();
-}
-
 DepthPoint evaluate_depth(const PiecewiseSurface& first, const PiecewiseSurface& second,
                           const PairParameters& from, double outside, PolishBudget* budget = nullptr) {
   DepthPoint result;
@@ -224,10 +293,12 @@ DepthPoint evaluate_depth(const PiecewiseSurface& first, const PiecewiseSurface&
   result.b = nearest.at;
   result.normal = outside * unit_normal(second, nearest.at, nearest.u, nearest.v);
   const Vector3 difference = result.a.position_m - nearest.at.position_m;
+  const double height = difference.dot(result.normal);
   // Beyond an edge of the second surface the difference is oblique, and the point is not behind the surface.
-  const bool is_behind = difference.dot(result.normal) < 0.0 &&
-                         !(is_on_edge(second, nearest.u, nearest.v) && is_oblique(difference, result.normal));
-  result.depth = is_behind ? difference.norm() : -difference.norm();
+  const bool is_beyond =
+      is_on_edge(second, nearest.u, nearest.v) && is_oblique(second, nearest, result.a.position_m);
+  // If the search for the nearest point has stopped early, the distance could be far more than the depth.
+  result.depth = height < 0.0 && !is_beyond ? -height : -difference.norm();
   return result;
 }
 
