@@ -5,6 +5,11 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/base/assert.h"
 
 namespace spoonbill {
 
@@ -22,23 +27,30 @@ Vector3 solve_linear(const Eigen::Matrix3d& matrix, const Vector3& right_side) {
   return matrix.partialPivLu().solve(right_side);
 }
 
-template <int size, int columns>
-Eigen::Matrix<double, size, columns> solve_symmetric(
-    const Eigen::Matrix<double, size, size>& matrix,
-    const Eigen::Matrix<double, size, columns>& right_sides) {
-  return matrix.ldlt().solve(right_sides);
+SmallMatrix solve_symmetric(const SmallMatrix& matrix, const SmallMatrix& right_sides) {
+  SPOONBILL_ASSERT_DEBUG(matrix.rows() == matrix.cols() && matrix.rows() == right_sides.rows());
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 15, 15>;
+  return Eigen::LDLT<Square>(matrix).solve(right_sides);
 }
-template Eigen::Matrix<double, 3, 1> solve_symmetric(const Eigen::Matrix3d&, const Vector3&);
-template Eigen::Matrix<double, 6, 1> solve_symmetric(const Eigen::Matrix<double, 6, 6>&,
-                                                     const Eigen::Matrix<double, 6, 1>&);
-template Eigen::Matrix<double, 9, 24> solve_symmetric(const Eigen::Matrix<double, 9, 9>&,
-                                                      const Eigen::Matrix<double, 9, 24>&);
-template Eigen::Matrix<double, 15, 1> solve_symmetric(const Eigen::Matrix<double, 15, 15>&,
-                                                      const Eigen::Matrix<double, 15, 1>&);
+
+namespace {
+
+// Two vectors count as opposite if twice the cosine of half their angle is at most this. The angle is then
+// less than 1e-6 short of half a turn.
+constexpr double least_twice_w = 1e-6;
+
+}  // namespace
 
 Quaternion rotation_between(const Vector3& from, const Vector3& to) {
   if (from.isZero(0.0) || to.isZero(0.0)) return Quaternion::Identity();
-  return Quaternion::FromTwoVectors(from, to);
+  const Vector3 start = from.normalized(), end = to.normalized();
+  const double twice_w = std::sqrt(2.0 * (1.0 + std::max(-1.0, start.dot(end))));
+  // If the vectors are opposite, start x end is only a rounding error. Any perpendicular axis will do.
+  if (!(twice_w > least_twice_w)) {
+    return Quaternion(Eigen::AngleAxisd(std::numbers::pi, start.unitOrthogonal()));
+  }
+  const Vector3 axis = start.cross(end) / twice_w;
+  return Quaternion(0.5 * twice_w, axis.x(), axis.y(), axis.z()).normalized();
 }
 
 }  // namespace spoonbill

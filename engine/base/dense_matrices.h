@@ -25,11 +25,11 @@ SingularValues decompose_singular(const Eigen::Matrix3d& matrix);
 // Returns the solution x of matrix * x = right_side. If the matrix is singular, the components are very large
 // or not finite.
 Vector3 solve_linear(const Eigen::Matrix3d& matrix, const Vector3& right_side);
-// Returns the solution X of matrix * X = right_sides for a symmetric matrix. If the matrix is singular, the
-// result is finite but need not be a solution. Instantiated only for the sizes in dense_matrices.cpp.
-template <int size, int columns>
-Eigen::Matrix<double, size, columns> solve_symmetric(const Eigen::Matrix<double, size, size>& matrix,
-                                                     const Eigen::Matrix<double, size, columns>& right_sides);
+// A matrix with up to 15 rows and 24 columns. It never allocates.
+using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 15, 24>;
+// Returns the solution X of matrix * X = right_sides for a symmetric matrix with up to 15 rows. If the matrix
+// is singular, the result is finite but need not be a solution.
+SmallMatrix solve_symmetric(const SmallMatrix& matrix, const SmallMatrix& right_sides);
 
 // Returns the rotation by the smallest angle that turns the direction of `from` to that of `to`; the identity
 // if one of them is zero.

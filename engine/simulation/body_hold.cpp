@@ -57,7 +57,7 @@ Vector3 find_spin(const SpringLattice& lattice, const MassCentre& centre) {
   if (!(size > 0.0)) return Vector3::Zero();
   // The added term keeps the tensor invertible for a rod, which does not resist a spin about its axis.
   inertia += 1e-9 * size * Eigen::Matrix3d::Identity();
-  return solve_symmetric<3, 1>(inertia, momentum);
+  return solve_symmetric(inertia, momentum);
 }
 
 }  // namespace

@@ -117,12 +117,14 @@ CellResponse CorotatedCell::respond(const CellMoves& moves, Tangent kind) const 
   for (int c = 0; c < 8; ++c) {
     turns.middleCols<3>(3 * c) = by_turn * cross_matrix(gradients_.row(c).transpose());
   }
-  const CellMatrix followed = CellMatrix::Identity() + cross_matrices(rotated_back) * turns;
+  // Eigen's template for large products takes seconds to compile, lazyProduct() does not.
+  const CellMatrix followed = CellMatrix::Identity() + cross_matrices(rotated_back).lazyProduct(turns);
   const CellVector force = followed.transpose() * plain_force;
-  CellMatrix tangent = followed.transpose() * stiffness_ * followed;
+  CellMatrix tangent = followed.transpose().lazyProduct(CellMatrix(stiffness_.lazyProduct(followed)));
   if (kind == Tangent::stressed) {
-    const CellMatrix stress_part = turns.transpose() * (cross_matrices(plain_force).transpose() * followed) +
-                                   cross_matrices(force) * turns;
+    const Turns torques = cross_matrices(plain_force).transpose().lazyProduct(followed);
+    const CellMatrix stress_part =
+        turns.transpose().lazyProduct(torques) + cross_matrices(force).lazyProduct(turns);
     tangent -= 0.5 * (stress_part + stress_part.transpose());
   }
   CellResponse response;

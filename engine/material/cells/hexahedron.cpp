@@ -10,11 +10,11 @@
 namespace spoonbill {
 namespace {
 
-constexpr int inner_count = 9;  // three displacements for each of three quadratic modes
-using InnerMatrix = Eigen::Matrix<double, inner_count, inner_count>;
-using MixedMatrix = Eigen::Matrix<double, 24, inner_count>;
-using Elasticity = Eigen::Matrix<double, 6, 6>;
-using StrainRows = Eigen::Matrix<double, 6, 3>;
+// The shape functions of a cell: one for each corner, then three internal quadratic modes.
+constexpr int corner_count = 8, function_count = 11;
+constexpr int corner_moves = 3 * corner_count, all_moves = 3 * function_count;
+using FunctionGradients = Eigen::Matrix<double, function_count, 3>;
+using WholeStiffness = Eigen::Matrix<double, all_moves, all_moves>;
 
 // Returns the natural coordinates of a corner, each -1 or 1, along i, j, k.
 Vector3 natural(int corner) {
@@ -41,22 +41,14 @@ Eigen::Matrix3d jacobian(const CellCorners& corners, const CellGradients& gradie
   return sum;
 }
 
-// Returns the matrix from a displacement to the engineering strains xx, yy, zz, xy, yz, zx. The displacement
-// is the coefficient of a shape function with the gradient `g`.
-StrainRows strain_rows(const Vector3& g) {
-  StrainRows rows;
-  rows << g.x(), 0, 0, 0, g.y(), 0, 0, 0, g.z(), g.y(), g.x(), 0, 0, g.z(), g.y(), g.z(), 0, g.x();
-  return rows;
-}
+// Lame's parameters of an isotropic material, Pa.
+struct LameParameters {
+  double lambda, shear;
+};
 
-Elasticity isotropic_elasticity(double youngs_modulus_pa, double poissons_ratio) {
+LameParameters lame_parameters(double youngs_modulus_pa, double poissons_ratio) {
   const double shear = youngs_modulus_pa / (2.0 * (1.0 + poissons_ratio));
-  const double lambda = 2.0 * shear * poissons_ratio / (1.0 - 2.0 * poissons_ratio);
-  Elasticity d = Elasticity::Zero();
-  d.topLeftCorner<3, 3>().setConstant(lambda);
-  d.diagonal().head<3>().array() += 2.0 * shear;
-  d.diagonal().tail<3>().setConstant(shear);
-  return d;
+  return {2.0 * shear * poissons_ratio / (1.0 - 2.0 * poissons_ratio), shear};
 }
 
 struct CentreJacobian {
@@ -64,15 +56,16 @@ struct CentreJacobian {
   double determinant;
 };
 
-// Returns the gradients of the internal modes 1 - r^2, 1 - s^2 and 1 - t^2 in the natural coordinates r, s,
-// t. They are scaled so that each has zero mean over the cell.
-std::array<Vector3, 3> inner_gradients(const Vector3& at, const CentreJacobian& centre, double determinant) {
-  std::array<Vector3, 3> gradients;
+// Returns the gradients of all shape functions at a point. The internal modes are 1 - r^2, 1 - s^2 and 1 -
+// t^2 in the natural coordinates r, s, t. Their gradients are scaled so that each has zero mean over the
+// cell.
+FunctionGradients gradients_at(const Vector3& at, const CellGradients& natural, const Eigen::Matrix3d& here,
+                               double determinant, const CentreJacobian& centre) {
+  FunctionGradients gradients;
+  gradients.topRows<corner_count>() = natural * here.inverse().transpose();
   for (int mode = 0; mode < 3; ++mode) {
-    Vector3 natural_gradient = Vector3::Zero();
-    natural_gradient[mode] = -2.0 * at[mode];
-    gradients[static_cast<std::size_t>(mode)] =
-        centre.determinant / determinant * (centre.inverse * natural_gradient);
+    gradients.row(corner_count + mode) =
+        -2.0 * at[mode] * centre.determinant / determinant * centre.inverse.col(mode).transpose();
   }
   return gradients;
 }
@@ -94,12 +87,6 @@ CellMatrix hexahedron_stiffness(const CellCorners& corners, double youngs_modulu
 
 namespace {
 
-struct Sums {
-  CellMatrix outer = CellMatrix::Zero();
-  MixedMatrix mixed = MixedMatrix::Zero();
-  InnerMatrix inner = InnerMatrix::Zero();
-};
-
 // Calls visit(point, weight) for the Gauss points of a part. Both are in natural coordinates.
 template <class Visit>
 void visit_points(const Vector3& low, const Vector3& high, const Visit& visit) {
@@ -109,23 +96,19 @@ void visit_points(const Vector3& low, const Vector3& high, const Visit& visit) {
   }
 }
 
-void add_point(const CellCorners& corners, const CentreJacobian& at_centre, const Vector3& at, double weight,
-               const Elasticity& elasticity, Sums& sums) {
-  const CellGradients natural = natural_gradients(at);
-  const Eigen::Matrix3d here = jacobian(corners, natural);
-  const double determinant = here.determinant(), volume = weight * determinant;
-  const CellGradients gradients = natural * here.inverse().transpose();
-  const std::array<Vector3, 3> inner_gradient = inner_gradients(at, at_centre, determinant);
-  Eigen::Matrix<double, 6, 24> strain;
-  for (int c = 0; c < 8; ++c) strain.middleCols<3>(3 * c) = strain_rows(gradients.row(c).transpose());
-  Eigen::Matrix<double, 6, inner_count> inner_strain;
-  for (int m = 0; m < 3; ++m) {
-    inner_strain.middleCols<3>(3 * m) = strain_rows(inner_gradient[static_cast<std::size_t>(m)]);
+// Adds the stiffness of a Gauss point. The block of two functions with the gradients a and b is
+// lambda a b^T + shear (b a^T + (a . b) 1), times the volume.
+void add_point(const FunctionGradients& gradients, double volume, const LameParameters& material,
+               WholeStiffness& stiffness) {
+  for (int row = 0; row < function_count; ++row) {
+    const Vector3 a = volume * gradients.row(row).transpose();
+    for (int column = 0; column < function_count; ++column) {
+      const Vector3 b = gradients.row(column).transpose();
+      Eigen::Matrix3d block = material.lambda * a * b.transpose() + material.shear * b * a.transpose();
+      block.diagonal().array() += material.shear * a.dot(b);
+      stiffness.block<3, 3>(3 * row, 3 * column) += block;
+    }
   }
-  const Eigen::Matrix<double, 6, inner_count> inner_stress = volume * elasticity * inner_strain;
-  sums.outer += volume * strain.transpose() * elasticity * strain;
-  sums.mixed += strain.transpose() * inner_stress;
-  sums.inner += inner_strain.transpose() * inner_stress;
 }
 
 }  // namespace
@@ -135,15 +118,23 @@ CellMatrix hexahedron_stiffness(const CellCorners& corners, std::span<const Hexa
   SPOONBILL_ASSERT_DEBUG(smallest_jacobian_ratio(corners) > 0.0);
   const Eigen::Matrix3d centre = jacobian(corners, natural_gradients(Vector3::Zero()));
   const CentreJacobian at_centre{centre.inverse(), centre.determinant()};
-  Sums sums;
+  WholeStiffness whole = WholeStiffness::Zero();
   for (const HexahedronPart& part : parts) {
-    const Elasticity elasticity = isotropic_elasticity(part.youngs_modulus_pa, part.poissons_ratio);
+    const LameParameters material = lame_parameters(part.youngs_modulus_pa, part.poissons_ratio);
     visit_points(part.low, part.high, [&](const Vector3& at, double weight) {
-      add_point(corners, at_centre, at, weight, elasticity, sums);
+      const CellGradients natural = natural_gradients(at);
+      const Eigen::Matrix3d here = jacobian(corners, natural);
+      const double determinant = here.determinant();
+      add_point(gradients_at(at, natural, here, determinant, at_centre), weight * determinant, material,
+                whole);
     });
   }
+  const auto outer = whole.topLeftCorner<corner_moves, corner_moves>();
+  const SmallMatrix inner_to_outer = whole.bottomLeftCorner<all_moves - corner_moves, corner_moves>();
+  const SmallMatrix inner = whole.bottomRightCorner<all_moves - corner_moves, all_moves - corner_moves>();
+  // Eigen's template for large products takes seconds to compile, lazyProduct() does not.
   const CellMatrix stiffness =
-      sums.outer - sums.mixed * solve_symmetric<inner_count, 24>(sums.inner, sums.mixed.transpose());
+      outer - inner_to_outer.transpose().lazyProduct(solve_symmetric(inner, inner_to_outer));
   return 0.5 * (stiffness + stiffness.transpose());
 }
 
@@ -167,7 +158,8 @@ AchievedElasticity achieved_elasticity(const CellCorners& corners, const CellMat
       stretches(3 * c + axis, axis) = corners[static_cast<std::size_t>(c)][axis];
     }
   }
-  return compute_elasticity(stretches.transpose() * stiffness * stretches / cell_volume(corners));
+  const Eigen::Matrix<double, 24, 3> forces = stiffness.lazyProduct(stretches);
+  return compute_elasticity(stretches.transpose() * forces / cell_volume(corners));
 }
 
 }  // namespace spoonbill

@@ -112,7 +112,7 @@ Stiffnesses nearest_admissible(const ComponentMatrix& matrix, const Components& 
     Eigen::Matrix<double, component_count, component_count> normal =
         matrix * weight.asDiagonal() * matrix.transpose();
     normal.diagonal().array() += 1e-11 * normal.trace() / component_count;
-    const Components multiplier = solve_symmetric<component_count, 1>(normal, target - matrix * from);
+    const Components multiplier = solve_symmetric(normal, target - matrix * from);
     result = from + weight.cwiseProduct(matrix.transpose() * multiplier);
     bool settled = true;
     for (int s = 0; s < cell_spring_count; ++s) {
@@ -201,7 +201,8 @@ double modulus_along(const Vector3& direction, const CellCorners& corners, const
       if (row < 3 && column < 3) stiffness(row, column) += bulk_stiffness_pa;
     }
   }
-  return 1.0 / tension.dot(solve_symmetric<6, 1>(stiffness, tension));
+  const Eigen::Matrix<double, 6, 1> strain = solve_symmetric(stiffness, tension);
+  return 1.0 / tension.dot(strain);
 }
 
 CellSprings material_springs(const CellCorners& corners, double youngs_modulus_pa, double poissons_ratio) {

@@ -375,7 +375,7 @@ ImplicitBody::RigidMotion ImplicitBody::rigid_motion() const {
   }
   // A body stretched to a line has no inertia about that line; the small term keeps the tensor regular.
   inertia.diagonal().array() += 1e-9 * inertia.trace();
-  motion.spin_rad_per_s = solve_symmetric<3, 1>(inertia, moment);
+  motion.spin_rad_per_s = solve_symmetric(inertia, moment);
   return motion;
 }
 

@@ -53,7 +53,8 @@ const float* data_or_null(const AlignedVector<float>& values) {
   return values.empty() ? nullptr : values.data();
 }
 
-constexpr int frequency_steps = 300;
+// Numbers of steps of the power iteration: from noise, and from the mode of another spring weight.
+constexpr int frequency_steps = 120, further_frequency_steps = 20;
 
 // Volume stiffness K_v that a crushed cell gets in addition, divided by its shear modulus. A material with
 // Poisson's ratio 0.45 has this ratio.
@@ -111,7 +112,8 @@ Result<SpringLattice> SpringLattice::make(const LatticeMesh& mesh, const Lattice
   lattice.kernels_->measure_rest_volumes(lattice.view());
   lattice.fix_nodes(std::vector<std::uint8_t>(static_cast<std::size_t>(mesh.node_count()), 0));
   lattice.set_damping(sum);
-  lattice.rest_modes_.push_back(lattice.measure_fastest_mode());
+  lattice.start_power_iteration();
+  lattice.rest_modes_.push_back(lattice.measure_fastest_mode(frequency_steps));
   return lattice;
 }
 
@@ -174,17 +176,21 @@ void SpringLattice::allocate(const LatticeMesh& mesh) {
   }
 }
 
-// Measures the square of the largest angular frequency by power iteration at the present shape.
-SpringLattice::RestMode SpringLattice::measure_fastest_mode() {
-  const LatticeView lattice = view();
+// Starts the power iteration with noise, which contains every mode.
+void SpringLattice::start_power_iteration() {
   for (int n = 0; n < mesh_.node_count(); ++n) {
     const int representative = mesh_.joined(n);
     power_x_[n] = hashed_noise(static_cast<std::uint32_t>(3 * representative + 1));
     power_y_[n] = hashed_noise(static_cast<std::uint32_t>(3 * representative + 2));
     power_z_[n] = hashed_noise(static_cast<std::uint32_t>(3 * representative + 3));
   }
+}
+
+// Measures the square of the largest angular frequency by steps of the power iteration at the present shape.
+SpringLattice::RestMode SpringLattice::measure_fastest_mode(int steps) {
+  const LatticeView lattice = view();
   kernels_->linearise_springs(lattice, 0.0f, Linearised::tangents);
-  for (int step = 0; step < frequency_steps; ++step) {
+  for (int step = 0; step < steps; ++step) {
     fastest_square_ = kernels_->power_step(lattice, node_mass_.data());
   }
   return {spring_weight_, fastest_square_, power_x_, power_y_, power_z_};
@@ -209,13 +215,15 @@ SpringLattice SpringLattice::at_rest() const {
 }
 
 // Returns the mode for springs of this weight (see LatticeView::spring_weight). It is measured only once.
+// Modes of different weights are similar, so the measurement starts from the first.
 const SpringLattice::RestMode& SpringLattice::find_rest_mode(float weight) {
   for (const RestMode& mode : rest_modes_) {
     if (mode.spring_weight == weight) return mode;
   }
   SpringLattice copy = at_rest();
+  copy.adopt_mode(rest_modes_.front());
   copy.spring_weight_ = weight;
-  return rest_modes_.emplace_back(copy.measure_fastest_mode());
+  return rest_modes_.emplace_back(copy.measure_fastest_mode(further_frequency_steps));
 }
 
 // Sets the mode that is tracked, scaled to the present inertia.

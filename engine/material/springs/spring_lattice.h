@@ -174,7 +174,8 @@ class SpringLattice {
   void store_stiffening(const Assembly& sum);
   void store_flow_and_creep(const Assembly& sum);
   void set_damping(const Assembly& sum);
-  RestMode measure_fastest_mode();
+  void start_power_iteration();
+  RestMode measure_fastest_mode(int steps);
   const RestMode& find_rest_mode(float weight);
   void adopt_mode(const RestMode& mode);
   SpringLattice at_rest() const;
