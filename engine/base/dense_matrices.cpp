@@ -35,8 +35,8 @@ SmallMatrix solve_symmetric(const SmallMatrix& matrix, const SmallMatrix& right_
 
 namespace {
 
-// Two vectors count as opposite if twice the cosine of half their angle is at most this. The angle is then
-// less than 1e-6 short of half a turn.
+// Two vectors count as opposite if twice the cosine of half the angle between them is at most this. The angle
+// is then less than 1e-6 short of half a turn.
 constexpr double least_twice_w = 1e-6;
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "engine/base/assert.h"
 
@@ -205,53 +207,88 @@ NearestPoint descend_to_nearest(const PiecewiseSurface& surface, const Vector3& 
 // Sine of an angle that is far above the error of a search that has converged, and the error of positions.
 constexpr double oblique_sine = 1e-3, position_error_m = 1e-9;
 
-// Returns true if the vector from `point` to the surface is not perpendicular to the surface, so that another
-// point of the surface is nearer, unless the point found is on the border.
+// Returns true if the vector from the point found to `point` is not perpendicular to the surface. The search
+// has then ended early, at a crease, or on the border of the surface.
 bool is_oblique(const PiecewiseSurface& surface, const NearestPoint& found, const Vector3& point) {
   const Vector3 difference = found.at.position_m - point;
-  const double most = oblique_sine * difference.norm() + position_error_m;
-  if (!is_on_edge(surface, found.u, found.v)) {
-    return std::abs(difference.dot(found.at.du)) > most * found.at.du.norm() ||
-           std::abs(difference.dot(found.at.dv)) > most * found.at.dv.norm();
+  const double most_m = oblique_sine * difference.norm() + position_error_m;
+  // On an edge that is a pole, one of the tangents is only a rounding error.
+  if (is_on_edge(surface, found.u, found.v)) {
+    return difference.cross(unit_normal(surface, found.at, found.u, found.v)).norm() > most_m;
   }
-  return difference.cross(unit_normal(surface, found.at, found.u, found.v)).norm() > most;
+  return std::abs(difference.dot(found.at.du)) > most_m * found.at.du.norm() ||
+         std::abs(difference.dot(found.at.dv)) > most_m * found.at.dv.norm();
+}
+
+// An end of a direction of a surface.
+struct SurfaceEnd {
+  bool of_u, at_end;
+};
+
+// Returns the point at an end of one direction, at a fraction of the domain of the other.
+SurfacePoint evaluate_end(const PiecewiseSurface& surface, const SurfaceEnd& side, double fraction,
+                          PolishBudget* budget) {
+  const KnotVector &u = surface.u->knots(), &v = surface.v->knots();
+  const double end = side.at_end ? 1.0 : 0.0;
+  return evaluate_within(budget, surface, u.parameter_at(side.of_u ? end : fraction),
+                         v.parameter_at(side.of_u ? fraction : end));
+}
+
+double domain_length(const KnotVector& knots) {
+  return knots.domain_end() - knots.domain_start();
+}
+
+// An edge is a pole if its length is below this fraction of the distance to the opposite edge, both estimated
+// from the tangents at a point of the edge. Rounding to single precision makes the fraction about 1e-6.
+constexpr double pole_fraction = 1e-4;
+
+// Returns the end whose edge is the pole nearest to `from_m`; nothing if the surface has no pole.
+std::optional<SurfaceEnd> find_nearest_pole(const PiecewiseSurface& surface, const Vector3& from_m,
+                                            PolishBudget* budget) {
+  const KnotVector &u = surface.u->knots(), &v = surface.v->knots();
+  std::optional<SurfaceEnd> nearest;
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const SurfaceEnd& side : {SurfaceEnd{false, false}, {false, true}, {true, false}, {true, true}}) {
+    if ((side.of_u ? u : v).is_periodic() || is_spent(budget)) continue;
+    const SurfacePoint at = evaluate_end(surface, side, 0.5, budget);
+    const double across_u_m = domain_length(u) * at.du.norm(), across_v_m = domain_length(v) * at.dv.norm();
+    const bool is_pole =
+        side.of_u ? across_v_m < pole_fraction * across_u_m : across_u_m < pole_fraction * across_v_m;
+    const double distance_m = (at.position_m - from_m).norm();
+    if (!is_pole || !(distance_m < nearest_m)) continue;
+    nearest = side;
+    nearest_m = distance_m;
+  }
+  return nearest;
 }
 
 // Number of directions from a pole that are tried.
 constexpr int pole_directions = 8;
 // Largest distance of a start from a pole, in domain lengths.
 constexpr double largest_pole_distance = 0.25;
-// An edge is a pole if its length is below this fraction of the distance to the opposite edge, both estimated
-// from the tangents at a point of the edge. Rounding to single precision makes the fraction about 1e-6.
-constexpr double pole_fraction = 1e-4;
 
-// Sets u and v to a start of a search: beside the pole at one end of u (if `of_u`) or of v, in the direction
-// from the pole to `point`. Returns false if this end is no pole or no direction leads nearer to `point`.
-bool start_beside_pole(const PiecewiseSurface& surface, const Vector3& point, bool of_u, bool at_end,
+// Sets u and v to a start of a search beside the pole at this end, in the direction from the pole to `point`.
+// Returns false if no direction leads nearer to `point`.
+bool start_beside_pole(const PiecewiseSurface& surface, const Vector3& point, const SurfaceEnd& side,
                        PolishBudget* budget, double& u, double& v) {
-  const KnotVector &outward = of_u ? surface.u->knots() : surface.v->knots(),
-                   &around = of_u ? surface.v->knots() : surface.u->knots();
-  if (outward.is_periodic()) return false;
-  const double end = at_end ? outward.domain_end() : outward.domain_start(), inward = at_end ? -1.0 : 1.0;
-  const double length = outward.domain_end() - outward.domain_start(),
-               around_length = around.domain_end() - around.domain_start();
-  double best = 0.0, best_around = 0.0, best_step = 0.0;
-  for (int k = 0; k < pole_directions; ++k) {
-    const double angle = around.parameter_at((k + 0.5) / pole_directions);
-    const SurfacePoint pole = evaluate_within(budget, surface, of_u ? end : angle, of_u ? angle : end);
-    const Vector3 leaving = inward * (of_u ? pole.du : pole.dv), wanted = point - pole.position_m;
-    const double speed = leaving.norm(), edge_m = around_length * (of_u ? pole.dv : pole.du).norm();
-    if (!(edge_m < pole_fraction * length * speed)) return false;
-    const double reached = wanted.dot(leaving) / speed;
-    if (!(reached > best)) continue;
-    best = reached;
-    best_around = angle;
-    best_step = reached / speed;
+  double best_m = 0.0, best_fraction = 0.0, best_step = 0.0;
+  for (int k = 0; k < pole_directions && !is_spent(budget); ++k) {
+    const double fraction = (k + 0.5) / pole_directions;
+    const SurfacePoint pole = evaluate_end(surface, side, fraction, budget);
+    const Vector3 leaving = (side.at_end ? -1.0 : 1.0) * (side.of_u ? pole.du : pole.dv);
+    const double speed = leaving.norm(),
+                 reached_m = speed > 0.0 ? (point - pole.position_m).dot(leaving) / speed : 0.0;
+    if (!(reached_m > best_m)) continue;
+    best_m = reached_m;
+    best_fraction = fraction;
+    best_step = reached_m / speed;
   }
-  if (!(best > 0.0)) return false;
-  const double start = end + inward * std::min(best_step, largest_pole_distance * length);
-  u = of_u ? start : best_around;
-  v = of_u ? best_around : start;
+  if (!(best_m > 0.0)) return false;
+  const KnotVector &u_knots = surface.u->knots(), &v_knots = surface.v->knots();
+  const double most = largest_pole_distance * domain_length(side.of_u ? u_knots : v_knots);
+  const double step = (side.at_end ? -1.0 : 1.0) * std::min(best_step, most), end = side.at_end ? 1.0 : 0.0;
+  u = side.of_u ? u_knots.parameter_at(end) + step : u_knots.parameter_at(best_fraction);
+  v = side.of_u ? v_knots.parameter_at(best_fraction) : v_knots.parameter_at(end) + step;
   return true;
 }
 
@@ -259,18 +296,14 @@ bool start_beside_pole(const PiecewiseSurface& surface, const Vector3& point, bo
 
 NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point, double u, double v,
                            PolishBudget* budget) {
-  NearestPoint found = descend_to_nearest(surface, point, u, v, budget);
-  if (!is_oblique(surface, found, point)) return found;
-  for (const bool of_u : {true, false}) {
-    for (const bool at_end : {false, true}) {
-      if (is_spent(budget) || !start_beside_pole(surface, point, of_u, at_end, budget, u, v)) continue;
-      const NearestPoint beyond = descend_to_nearest(surface, point, u, v, budget);
-      const bool is_nearer =
-          (beyond.at.position_m - point).squaredNorm() < (found.at.position_m - point).squaredNorm();
-      if (is_nearer) found = beyond;
-    }
-  }
-  return found;
+  const NearestPoint found = descend_to_nearest(surface, point, u, v, budget);
+  if (is_spent(budget) || !is_oblique(surface, found, point)) return found;
+  const std::optional<SurfaceEnd> pole = find_nearest_pole(surface, found.at.position_m, budget);
+  if (!pole || !start_beside_pole(surface, point, *pole, budget, u, v)) return found;
+  const NearestPoint beyond = descend_to_nearest(surface, point, u, v, budget);
+  const bool is_nearer =
+      (beyond.at.position_m - point).squaredNorm() < (found.at.position_m - point).squaredNorm();
+  return is_nearer ? beyond : found;
 }
 
 namespace {
@@ -297,7 +330,7 @@ DepthPoint evaluate_depth(const PiecewiseSurface& first, const PiecewiseSurface&
   // Beyond an edge of the second surface the difference is oblique, and the point is not behind the surface.
   const bool is_beyond =
       is_on_edge(second, nearest.u, nearest.v) && is_oblique(second, nearest, result.a.position_m);
-  // If the search for the nearest point has stopped early, the distance could be far more than the depth.
+  // If the search for the nearest point has ended early, the distance could be far more than the depth.
   result.depth = height < 0.0 && !is_beyond ? -height : -difference.norm();
   return result;
 }

@@ -48,8 +48,9 @@ struct NearestPoint {
   double u, v;
   SurfacePoint at;
 };
-// Finds the locally nearest point of a surface, starting from the parameters u, v. A search that ends beside
-// a pole continues on its other side. Without a budget, only the number of steps is limited.
+// Finds the locally nearest point of a surface, starting from the parameters u, v. If the search ends early,
+// as at a pole, it starts once more beside the nearest pole. Without a budget, only the number of steps is
+// limited.
 NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point, double u, double v,
                            PolishBudget* budget = nullptr);
 

@@ -117,7 +117,7 @@ CellResponse CorotatedCell::respond(const CellMoves& moves, Tangent kind) const 
   for (int c = 0; c < 8; ++c) {
     turns.middleCols<3>(3 * c) = by_turn * cross_matrix(gradients_.row(c).transpose());
   }
-  // Eigen's template for large products takes seconds to compile, lazyProduct() does not.
+  // Eigen's template for large products takes seconds to compile; lazyProduct() does not.
   const CellMatrix followed = CellMatrix::Identity() + cross_matrices(rotated_back).lazyProduct(turns);
   const CellVector force = followed.transpose() * plain_force;
   CellMatrix tangent = followed.transpose().lazyProduct(CellMatrix(stiffness_.lazyProduct(followed)));

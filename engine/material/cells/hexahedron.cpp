@@ -130,11 +130,11 @@ CellMatrix hexahedron_stiffness(const CellCorners& corners, std::span<const Hexa
     });
   }
   const auto outer = whole.topLeftCorner<corner_moves, corner_moves>();
-  const SmallMatrix inner_to_outer = whole.bottomLeftCorner<all_moves - corner_moves, corner_moves>();
+  const SmallMatrix outer_to_inner = whole.bottomLeftCorner<all_moves - corner_moves, corner_moves>();
   const SmallMatrix inner = whole.bottomRightCorner<all_moves - corner_moves, all_moves - corner_moves>();
-  // Eigen's template for large products takes seconds to compile, lazyProduct() does not.
+  // Eigen's template for large products takes seconds to compile; lazyProduct() does not.
   const CellMatrix stiffness =
-      outer - inner_to_outer.transpose().lazyProduct(solve_symmetric(inner, inner_to_outer));
+      outer - outer_to_inner.transpose().lazyProduct(solve_symmetric(inner, outer_to_inner));
   return 0.5 * (stiffness + stiffness.transpose());
 }
 

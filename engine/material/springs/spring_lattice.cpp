@@ -53,8 +53,8 @@ const float* data_or_null(const AlignedVector<float>& values) {
   return values.empty() ? nullptr : values.data();
 }
 
-// Numbers of steps of the power iteration: from noise, and from the mode of another spring weight.
-constexpr int frequency_steps = 120, further_frequency_steps = 20;
+// Numbers of steps of the power iteration: from noise, and from noise with the mode of another spring weight.
+constexpr int frequency_steps = 120, further_frequency_steps = 40;
 
 // Volume stiffness K_v that a crushed cell gets in addition, divided by its shear modulus. A material with
 // Poisson's ratio 0.45 has this ratio.
@@ -214,15 +214,32 @@ SpringLattice SpringLattice::at_rest() const {
   return copy;
 }
 
+// Adds a mode to the vector of the power iteration, with the norm that the vector has.
+void SpringLattice::add_to_power_vector(const RestMode& mode) {
+  double present = 0.0, added = 0.0;
+  for (int n = 0; n < mesh_.node_count(); ++n) {
+    present += Vector3(power_x_[n], power_y_[n], power_z_[n]).squaredNorm();
+    added += Vector3(mode.power_x[n], mode.power_y[n], mode.power_z[n]).squaredNorm();
+  }
+  const auto factor = static_cast<float>(added > 0.0 ? std::sqrt(present / added) : 0.0);
+  for (int n = 0; n < mesh_.node_count(); ++n) {
+    power_x_[n] += factor * mode.power_x[n];
+    power_y_[n] += factor * mode.power_y[n];
+    power_z_[n] += factor * mode.power_z[n];
+  }
+}
+
 // Returns the mode for springs of this weight (see LatticeView::spring_weight). It is measured only once.
-// Modes of different weights are similar, so the measurement starts from the first.
+// It usually resembles the first mode, from which the measurement starts. It may also be in another region of
+// the body, so noise is added.
 const SpringLattice::RestMode& SpringLattice::find_rest_mode(float weight) {
   for (const RestMode& mode : rest_modes_) {
     if (mode.spring_weight == weight) return mode;
   }
   SpringLattice copy = at_rest();
-  copy.adopt_mode(rest_modes_.front());
   copy.spring_weight_ = weight;
+  copy.start_power_iteration();
+  copy.add_to_power_vector(rest_modes_.front());
   return rest_modes_.emplace_back(copy.measure_fastest_mode(further_frequency_steps));
 }
 

@@ -175,6 +175,7 @@ class SpringLattice {
   void store_flow_and_creep(const Assembly& sum);
   void set_damping(const Assembly& sum);
   void start_power_iteration();
+  void add_to_power_vector(const RestMode& mode);
   RestMode measure_fastest_mode(int steps);
   const RestMode& find_rest_mode(float weight);
   void adopt_mode(const RestMode& mode);

@@ -82,6 +82,22 @@ TEST(CompositeSprings, InSeriesEachHalfStretchesByItsOwnModulus) {
   EXPECT_NEAR(strain_between(lattice, 15, 21) / (20.0 / 1.2e4), 1.0, 0.01);
 }
 
+// With the same damping, the fastest mode can be in another region than without. 1000 ticks track the mode at
+// rest; the inertia scale must have anticipated the result.
+TEST(CompositeSprings, InertiaScaleIsThatOfTheFastestRegion) {
+  constexpr double step_s = 1e-3;
+  for (const double modulus_pa : {5e5, 1e6, 1.5e6, 2e6, 3e6, 5e6}) {
+    Material first = elastic_material(1e6, 0.49, 1000.0), second = elastic_material(modulus_pa, 0.25, 1000.0);
+    first.damping_time_s = second.damping_time_s = damping_time_range_s.high;
+    SpringLattice lattice =
+        make_composite_springs(long_bar(), composite(long_bar(), first, second, in_far_half));
+    lattice.set_inertia(lattice.find_inertia_scale(step_s), step_s);
+    RelaxSettings settings;
+    for (; settings.tick < 1000; ++settings.tick) relax(std::array{RelaxedLattice{&lattice}}, settings, {});
+    EXPECT_NEAR(lattice.stable_step_s(rest_stability_fraction) / step_s, 1.0, 0.03) << modulus_pa;
+  }
+}
+
 // A bar in which a quarter of the section is ten times as stiff, with the same Poisson's ratio everywhere,
 // has the mean modulus weighted by area.
 TEST(CompositeSprings, InParallelABarStretchesAsVoigtSays) {
