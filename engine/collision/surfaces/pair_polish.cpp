@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "engine/base/assert.h"
+#include "engine/bspline/collapsed_edges.h"
 
 namespace spoonbill {
 
@@ -174,7 +175,8 @@ SurfacePoint evaluate_within(PolishBudget* budget, const PiecewiseSurface& surfa
   return evaluate(surface, u, v);
 }
 
-// Searches for the nearest point downhill from u, v. Ends at a pole if the nearest point is beyond it.
+// Searches for the nearest point downhill from u, v. Ends at a pole or beside it if the nearest point is
+// beyond.
 NearestPoint descend_to_nearest(const PiecewiseSurface& surface, const Vector3& point, double u, double v,
                                 PolishBudget* budget) {
   Problem<2> problem;
@@ -238,24 +240,17 @@ double domain_length(const KnotVector& knots) {
   return knots.domain_end() - knots.domain_start();
 }
 
-// An edge is a pole if its length is below this fraction of the distance to the opposite edge, both estimated
-// from the tangents at a point of the edge. Rounding to single precision makes the fraction about 1e-6.
-constexpr double pole_fraction = 1e-4;
-
 // Returns the end whose edge is the pole nearest to `from_m`; nothing if the surface has no pole.
-std::optional<SurfaceEnd> find_nearest_pole(const PiecewiseSurface& surface, const Vector3& from_m,
-                                            PolishBudget* budget) {
-  const KnotVector &u = surface.u->knots(), &v = surface.v->knots();
+std::optional<SurfaceEnd> find_nearest_pole(const PiecewiseSurface& surface, const Vector3& from_m) {
+  const ControlNet& net = surface.surface->net;
   std::optional<SurfaceEnd> nearest;
   double nearest_m = std::numeric_limits<double>::infinity();
   for (const SurfaceEnd& side : {SurfaceEnd{false, false}, {false, true}, {true, false}, {true, true}}) {
-    if ((side.of_u ? u : v).is_periodic() || is_spent(budget)) continue;
-    const SurfacePoint at = evaluate_end(surface, side, 0.5, budget);
-    const double across_u_m = domain_length(u) * at.du.norm(), across_v_m = domain_length(v) * at.dv.norm();
-    const bool is_pole =
-        side.of_u ? across_v_m < pole_fraction * across_u_m : across_u_m < pole_fraction * across_v_m;
-    const double distance_m = (at.position_m - from_m).norm();
-    if (!is_pole || !(distance_m < nearest_m)) continue;
+    const NetEdge edge = find_edge(net, side.of_u, side.at_end);
+    const Vector3 corner_m(net.x[edge.first], net.y[edge.first], net.z[edge.first]);
+    const double distance_m = (corner_m - from_m).norm();
+    const KnotVector& knots = side.of_u ? surface.surface->u : surface.surface->v;
+    if (!(distance_m < nearest_m) || !knots.is_clamped(side.at_end) || !is_collapsed(net, edge)) continue;
     nearest = side;
     nearest_m = distance_m;
   }
@@ -298,7 +293,7 @@ NearestPoint nearest_point(const PiecewiseSurface& surface, const Vector3& point
                            PolishBudget* budget) {
   const NearestPoint found = descend_to_nearest(surface, point, u, v, budget);
   if (is_spent(budget) || !is_oblique(surface, found, point)) return found;
-  const std::optional<SurfaceEnd> pole = find_nearest_pole(surface, found.at.position_m, budget);
+  const std::optional<SurfaceEnd> pole = find_nearest_pole(surface, found.at.position_m);
   if (!pole || !start_beside_pole(surface, point, *pole, budget, u, v)) return found;
   const NearestPoint beyond = descend_to_nearest(surface, point, u, v, budget);
   const bool is_nearer =

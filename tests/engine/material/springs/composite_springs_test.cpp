@@ -82,8 +82,8 @@ TEST(CompositeSprings, InSeriesEachHalfStretchesByItsOwnModulus) {
   EXPECT_NEAR(strain_between(lattice, 15, 21) / (20.0 / 1.2e4), 1.0, 0.01);
 }
 
-// With the same damping, the fastest mode can be in another region than without. 1000 ticks track the mode at
-// rest; the inertia scale must have anticipated the result.
+// The fastest mode of a damped body can be in another region than that of the undamped body. The inertia
+// scale must agree with the mode that 1000 ticks at rest have tracked.
 TEST(CompositeSprings, InertiaScaleIsThatOfTheFastestRegion) {
   constexpr double step_s = 1e-3;
   for (const double modulus_pa : {5e5, 1e6, 1.5e6, 2e6, 3e6, 5e6}) {
