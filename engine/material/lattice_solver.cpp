@@ -187,6 +187,7 @@ struct Relaxation {
   std::array<Drifted, lattice_capacity> drifted{};
   std::array<double, lattice_capacity> drag_per_s{};
   double time_s = 0.0;  // duration of the tick, s
+  MovingFrame frame;    // frame of the soft tool, if there is one
 
   std::size_t count() const { return lattices.size(); }
   bool has_springs(std::size_t at) const { return lattices[at].implicit_solver == nullptr; }
@@ -303,12 +304,22 @@ void solve_with_solvers(const Relaxation& relaxation, BodyContacts& between, std
   }
 }
 
+bool is_soft(const TouchingTool& tool) {
+  return tool.motion.carried.body >= 0;
+}
+
+// Returns the tool that is soft; null if there is none. At most one tool is soft.
+const TouchingTool* find_soft_tool(std::span<const TouchingTool> tools) {
+  const auto found = std::find_if(tools.begin(), tools.end(), is_soft);
+  return found == tools.end() ? nullptr : &*found;
+}
+
 // Solves the contacts of a tool. Contacts with spring-stepped lattices are solved in each substep, contacts
 // with implicitly stepped lattices once a tick.
 void solve_tool(const Relaxation& relaxation, const TouchingTool& tool, const Substep& substep,
                 std::span<const float> caps) {
   const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
-  const bool with_springs = tool.motion.carried.body >= 0 || touches(relaxation, tool, true);
+  const bool with_springs = is_soft(tool) || touches(relaxation, tool, true);
   if (!with_springs && substep.index > 0) return;
   const double h = with_springs ? static_cast<double>(substep.h) : relaxation.time_s;
   tool.contacts->start(views, *tool.state, h, static_cast<double>(substep.index) / substep.count);
@@ -320,60 +331,46 @@ void solve_tool(const Relaxation& relaxation, const TouchingTool& tool, const Su
       tool.contacts->pass(views, *tool.state, {h, MovedBy::springs, is_reversed, caps});
     }
   }
-  tool.contacts->finish(*tool.state, h);
+  if (!is_soft(tool)) tool.contacts->finish(*tool.state, h);
 }
 
-void solve_contacts(const Relaxation& relaxation, const Substep& substep, std::span<const TouchingTool> tools,
+// Moves the lattice of a soft tool with the tool, in the frame of which it has moved already.
+void move_soft_tool(Relaxation& relaxation, const TouchingTool& tool, double h) {
+  const CarriedNodes& carried = tool.motion.carried;
+  const auto at = static_cast<std::size_t>(carried.body);
+  const SpringLattice& lattice = relaxation.lattice(at);
+  const LatticeView& view = relaxation.view[at];
+  shift_nodes(view, lattice.mesh().node_count(), h * tool.state->velocity_m_per_s);
+  for (const int n : carried.nodes) {
+    const Vector3& rest = lattice.mesh().nodes[static_cast<std::size_t>(n)];
+    const Vector3 moved = tool.state->position_m + tool.motion.orientation * rest - rest;
+    const float square = set_node_displacement(view, n, moved, lattice.damping_time_s());
+    relaxation.drifted[at].moved_square = std::max(relaxation.drifted[at].moved_square, square);
+  }
+}
+
+void solve_contacts(Relaxation& relaxation, const Substep& substep, std::span<const TouchingTool> tools,
                     BodyContacts* between, GroundContacts* ground) {
   const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
   std::array<float, lattice_capacity> push_caps{};
   for (std::size_t at = 0; at < relaxation.count(); ++at) push_caps[at] = 0.5f * relaxation.cap[at];
+  const auto h = static_cast<double>(substep.h);
   for (const TouchingTool& tool : tools) solve_tool(relaxation, tool, substep, push_caps);
+  const TouchingTool* const soft = find_soft_tool(tools);
+  if (soft) relaxation.frame = soft->contacts->frame(*soft->state);
   if (between) {
     if (substep.index == 0) solve_with_solvers(relaxation, *between, push_caps);
-    const auto h = static_cast<double>(substep.h);
     between->start(views, h);
     between->pass(views, {h, MovedBy::springs, false, push_caps});
+  }
+  if (soft) {
+    soft->contacts->adopt(relaxation.frame, *soft->state);
+    soft->contacts->finish(*soft->state, h);
   }
   if (!ground) return;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) continue;
-    ground->solve(static_cast<int>(at), relaxation.view[at], static_cast<double>(substep.h),
-                  static_cast<double>(push_caps[at]));
-  }
-}
-
-// Passes the forces on the nodes fixed to a tool (CarriedNodes) to the tool's contacts. Gives these nodes the
-// tool's velocity, because the kick has set their velocities to zero.
-void collect_carried_forces(const Relaxation& relaxation, std::span<const TouchingTool> tools) {
-  for (const TouchingTool& tool : tools) {
-    const CarriedNodes& carried = tool.motion.carried;
-    if (carried.body < 0) continue;
-    const LatticeView& view = relaxation.view[static_cast<std::size_t>(carried.body)];
-    Vector3 force = Vector3::Zero();
-    for (const int n : carried.nodes) {
-      force += Vector3(view.fx[n], view.fy[n], view.fz[n]);
-      set_velocity(view, n, tool.state->velocity_m_per_s);
-    }
-    tool.contacts->set_carried_force(force);
-  }
-}
-
-// Moves the nodes fixed to a tool (CarriedNodes) to the tool's present pose.
-void move_carried_nodes(Relaxation& relaxation, std::span<const TouchingTool> tools) {
-  for (const TouchingTool& tool : tools) {
-    const CarriedNodes& carried = tool.motion.carried;
-    if (carried.body < 0) continue;
-    const auto at = static_cast<std::size_t>(carried.body);
-    const SpringLattice& lattice = relaxation.lattice(at);
-    const LatticeView& view = relaxation.view[at];
-    for (const int n : carried.nodes) {
-      const Vector3& rest = lattice.mesh().nodes[static_cast<std::size_t>(n)];
-      const Vector3 moved = tool.state->position_m + tool.motion.orientation * rest - rest;
-      set_velocity(view, n, tool.state->velocity_m_per_s);
-      const float square = set_node_displacement(view, n, moved, lattice.damping_time_s());
-      relaxation.drifted[at].moved_square = std::max(relaxation.drifted[at].moved_square, square);
-    }
+    ground->solve(static_cast<int>(at), relaxation.view[at], h, static_cast<double>(push_caps[at]));
   }
 }
 
@@ -400,17 +397,8 @@ bool begin_supports(Relaxation& relaxation) {
   return limited;
 }
 
-bool is_carried(std::size_t at, std::span<const TouchingTool> tools) {
-  return std::any_of(tools.begin(), tools.end(), [&](const TouchingTool& tool) {
-    return tool.motion.carried.body == static_cast<int>(at);
-  });
-}
-
 // Returns the velocity of the frame in which the speeds of a lattice's nodes are capped, m/s.
-Vector3 frame_velocity(const Relaxation& relaxation, std::size_t at, std::span<const TouchingTool> tools) {
-  for (const TouchingTool& tool : tools) {
-    if (tool.motion.carried.body == static_cast<int>(at)) return tool.state->velocity_m_per_s;
-  }
+Vector3 frame_velocity(const Relaxation& relaxation, std::size_t at) {
   const SpringLattice& lattice = relaxation.lattice(at);
   if (lattice.has_fixed_nodes()) {
     return common_support_velocity(relaxation.lattices[at].supports, lattice, relaxation.time_s);
@@ -444,18 +432,18 @@ void drift_with_solver(const LatticeView& view, float h) {
 }
 
 // Moves the nodes of all lattices. Returns true if a node reached the speed cap.
-bool drift(Relaxation& relaxation, float h, std::span<const TouchingTool> tools) {
+bool drift(Relaxation& relaxation, float h) {
   bool capped = false;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) {
       drift_with_solver(relaxation.view[at], h);
       continue;
     }
-    const Vector3 frame = frame_velocity(relaxation, at, tools);
+    const Vector3 frame = frame_velocity(relaxation, at);
     relaxation.drifted[at] = drift(relaxation.lattice(at), relaxation.view[at], h, relaxation.cap[at], frame);
     if (!(relaxation.drifted[at].speed_square > 1.0f)) continue;
     capped = true;
-    if (!relaxation.lattice(at).has_fixed_nodes() && !is_carried(at, tools)) {
+    if (!relaxation.lattice(at).has_fixed_nodes()) {
       restore_momentum(relaxation.lattice(at), relaxation.view[at], frame);
     }
   }
@@ -598,7 +586,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   SPOONBILL_ASSERT(!lattices.empty() && lattices.size() <= static_cast<std::size_t>(lattice_capacity));
   SPOONBILL_ASSERT(settings.substeps >= 1 && settings.time_s > 0.0);
   SPOONBILL_ASSERT(settings.drag_per_s >= 0.0);
-  Relaxation relaxation{lattices, {}, {}, {}, {}, settings.time_s};
+  Relaxation relaxation{lattices, {}, {}, {}, {}, settings.time_s, {}};
   const bool flows = settings.tick % 2 == 1;
   for (std::size_t at = 0; at < lattices.size(); ++at) relaxation.view[at] = lattices[at].lattice->view();
   const Substeps substeps = begin_springs(relaxation, settings, !flows);
@@ -613,14 +601,15 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   report.speed_capped = begin_supports(relaxation);
   begin_implicit_steps(relaxation, between, ground);
   for (const TouchingTool& tool : tools) tool.contacts->begin(tool.motion, settings.time_s);
+  const TouchingTool* const soft = find_soft_tool(tools);
+  if (soft) relaxation.view[static_cast<std::size_t>(soft->motion.carried.body)].frame = &relaxation.frame;
   if (substeps.slowed) stabilise_strained_nodes(relaxation, h);
   for (int s = 0; s < substeps.count; ++s) {
     const Substep substep{s, substeps.count, h};
     kick(relaxation, substep);
-    collect_carried_forces(relaxation, tools);
     solve_contacts(relaxation, substep, tools, between, ground);
-    report.speed_capped |= drift(relaxation, h, tools);
-    move_carried_nodes(relaxation, tools);
+    report.speed_capped |= drift(relaxation, h);
+    if (soft) move_soft_tool(relaxation, *soft, static_cast<double>(h));
     move_supported_nodes(relaxation, static_cast<double>(s + 1) / substeps.count);
   }
   end_implicit_steps(relaxation, ground);

@@ -41,7 +41,7 @@ inline constexpr double stability_fraction = 0.85;
 // Distance in cells that defines the speed cap: a node moves at most this far in the longest of three times.
 // They are the substep, the damping time (by which damping extrapolates the node's motion), and 2 / w, the
 // longest undamped step that is stable for the lattice, whose fastest angular frequency is w. Speeds are
-// relative to the tool or support that carries the whole body, or to the mean velocity of a body without
+// relative to the soft tool or support that carries the whole body, or to the mean velocity of a body without
 // fixed nodes.
 //
 // Waves cross a cell in about 2 / w, so nodes stay below about a tenth of the wave speed. An impact strains

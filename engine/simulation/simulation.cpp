@@ -239,6 +239,7 @@ Reaction Simulation::advance(const ToolInput& input) {
   find_contacts_between(s, hold);
   for (BodyState& body : s.scene_bodies()) body.hold.begin(body.lattice);
   relax_bodies(s, {tools.data(), both ? std::size_t{2} : std::size_t{1}});
+  if (s.tool_is_soft()) turn_soft_tool(s, tools[0].motion.orientation);
   if (const auto reform = find_kernel(s.scene.tool.action).reform) {
     reform(s, s.tool);
     if (both) reform(s, s.mirrored);
@@ -316,9 +317,6 @@ void add_to_hash(const HeldTool& held, StateHash& hash) {
   for (int c = 0; c < 4; ++c) hash.add(held.hand.orientation.coeffs()[c]);
   const std::uint64_t lifted = held.contact.lifted() ? std::uint64_t{1} << 32 : 0;
   const std::uint64_t hovered = held.contact.hovered() ? std::uint64_t{1} << 33 : 0;
-  if (held.touched) {
-    for (int axis = 0; axis < 3; ++axis) hash.add(held.touch_m[axis]);
-  }
   held.contact.visit_state([&](const double* data, std::size_t count) { hash.add(data, count); });
   hash.add(lifted | hovered | static_cast<std::uint64_t>(held.contact.constraints().count()));
 }

@@ -24,10 +24,6 @@ struct HeldTool {
   Pose hand{};  // pose of the hand in the last tick
   ToolState state{};
   bool placed = false;
-  // touch_m is the position of the hand when a soft tool last began to touch a body. touched is true while
-  // the soft tool touches a body.
-  Vector3 touch_m = Vector3::Zero();
-  bool touched = false;
 
   void place(const Pose& pose) {
     hand = pose;
@@ -112,6 +108,10 @@ ToolHold make_mirrored_hold(const Symmetry& symmetry, const ToolInput& input);
 
 // Finds the contact of a tool and its motion from the last tick's pose to the pose of `hold`.
 TouchingTool touch(Simulation::State& state, HeldTool& held, ToolHold hold, double coupling_n_per_m);
+
+// Turns a soft tool about its proxy from the orientation in the last tick to that of the hand. Call after the
+// bodies have moved.
+void turn_soft_tool(Simulation::State& state, const Quaternion& last);
 
 // Computes the proxy, the force and the touching state of the tool in the user's hand, not of its mirror
 // image. Call after the bodies have moved.

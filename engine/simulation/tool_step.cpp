@@ -112,7 +112,7 @@ TouchingTool touch(Simulation::State& s, HeldTool& held, ToolHold hold, double c
   }
   ToolMotion motion = make_motion(s, held.hand, hand, coupling_n_per_m);
   if (s.tool_is_soft()) {
-    motion.coupling_n_per_m = 0.0;
+    motion.orientation = held.hand.orientation;  // turn_soft_tool() turns the tool after it has moved
     motion.carried = {static_cast<int>(s.bodies.size()) - 1, s.model.gripped};
   }
   held.hand = hand;
@@ -132,8 +132,8 @@ ToolHold make_mirrored_hold(const Symmetry& symmetry, const ToolInput& input) {
 
 namespace {
 
-// Returns the mean force of all bodies on the tool over the tick. With a soft tool, its own lattice is one of
-// these bodies: it pulls on the nodes that the hand holds.
+// Returns the mean force on the tool over the tick. The contacts of a soft tool push its own lattice, which
+// is the last of the stepped bodies.
 Vector3 compute_force(const Simulation::State& s) {
   Vector3 impulse = Vector3::Zero();
   for (std::size_t b = 0; b < s.stepped_count(); ++b) {
@@ -142,43 +142,36 @@ Vector3 compute_force(const Simulation::State& s) {
   return impulse / tick_s;
 }
 
-// Updates the touching state of the soft tool and returns it. The tool touches from the first contact that
-// acts until it is no longer near any body.
-bool update_soft_touch(Simulation::State& s) {
-  HeldTool& held = s.tool;
+bool is_touching(const Simulation::State& s) {
+  if (!s.tool_is_soft()) return s.tool.contact.constraints().acted();
   const int tool = static_cast<int>(s.bodies.size()) - 1;
-  bool acted = false;
-  for (int body = 0; body < tool; ++body) acted |= s.between.acted(tool, body);
-  if (acted && !held.touched) held.touch_m = held.hand.position_m;
-  held.touched = std::isfinite(s.tool_gap_m) && (acted || held.touched);
-  return held.touched;
-}
-
-// Computes the reaction of a soft tool, whose own softness replaces the coupling spring. The force on the
-// hand is limited to the force of a coupling spring that is stretched by the hand's travel since the touch
-// began. The proxy is where this spring would hold the tool.
-void react_with_soft_tool(Simulation::State& s, double coupling_n_per_m) {
-  s.reaction.touching = update_soft_touch(s);
-  Vector3 force = s.reaction.touching ? compute_force(s) : Vector3::Zero();
-  const double size = force.norm();
-  if (coupling_n_per_m > 0.0 && size > 0.0) {
-    const double travel = std::max(0.0, force.dot(s.tool.touch_m - s.tool.hand.position_m) / size);
-    force *= std::min(1.0, coupling_n_per_m * travel / size);
-    s.reaction.proxy.position_m += force / coupling_n_per_m;
+  for (int body = 0; body < tool; ++body) {
+    if (s.between.acted(tool, body)) return true;
   }
-  s.reaction.force_n = force;
+  return false;
 }
 
 }  // namespace
 
+void turn_soft_tool(Simulation::State& s, const Quaternion& last) {
+  const Quaternion& orientation = s.tool.hand.orientation;
+  if (orientation.coeffs() == last.coeffs()) return;
+  const Vector3& centre = s.tool.state.position_m;
+  const Eigen::Matrix3d turn = (orientation * last.conjugate()).toRotationMatrix();
+  SpringLattice& lattice = s.bodies.back().lattice;
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    const Vector3& rest = lattice.mesh().nodes[static_cast<std::size_t>(n)];
+    const Vector3 turned =
+        lattice.is_fixed(n) ? Vector3(orientation * rest) : Vector3(turn * (lattice.position(n) - centre));
+    lattice.set_displacement(n, centre + turned - rest);
+    lattice.set_velocity(n, turn * lattice.velocity(n));
+  }
+}
+
 void react(Simulation::State& s, const ToolInput& input) {
   s.reaction.proxy = {s.tool.state.position_m, input.pose.orientation};
-  if (s.tool_is_soft()) {
-    react_with_soft_tool(s, input.coupling_n_per_m);
-  } else {
-    s.reaction.touching = s.tool.contact.constraints().acted();
-    s.reaction.force_n = compute_force(s);
-  }
+  s.reaction.touching = is_touching(s);
+  s.reaction.force_n = compute_force(s);
 }
 
 }  // namespace spoonbill

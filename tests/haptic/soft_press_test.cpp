@@ -58,6 +58,30 @@ TEST(SoftPress, BothGiveWayStayApartAndComeBack) {
   EXPECT_LT(farthest, 0.3e-3) << "elastic";
 }
 
+// The hand is not quite still, because the force moves it. The inertia of the tool must not turn its motion
+// into a force, and must not hold the hand back when it lets go.
+TEST(SoftPress, FeelsSteadyAndIsLetGoAtOnce) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  const Script script = read_script(scripts / "soft-press.script.json").value();
+  const Document document = read_document(script.model_file).value();
+  Simulation simulation = Simulation::make(document.scene, best_instruction_set()).value();
+  VirtualDevice device = VirtualDevice::make(script.hand, script.start).value();
+  CouplingState coupling;
+  // The script holds the tool from 1.8 s to 2.2 s, and lifts it from 2.2 s to 2.8 s.
+  double least = 1e30, most = 0.0, in_the_air = 0.0;
+  for (std::uint64_t t = 0; t < script.tick_count(); ++t) {
+    device.set_target(script.target_at(t));
+    const TickResult result = tick(simulation, coupling, device.specification(), *device.read());
+    device.set_force(result.force_n);
+    const double force = result.force_n.norm();
+    if (t >= 1950 && t < 2200) least = std::min(least, force), most = std::max(most, force);
+    if (t >= 2600) in_the_air = std::max(in_the_air, force);
+  }
+  EXPECT_GT(least, 0.5);
+  EXPECT_LT(most - least, 0.02 * most);
+  EXPECT_LT(in_the_air, 1e-3);
+}
+
 // The bundled soft egg is a mesh. It is dented and recovers its shape.
 TEST(SoftPress, AMeshGivesWayTooAndComesBack) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;

@@ -45,6 +45,11 @@ double mutual_compliance(const BodyPoint& first, const BodyPoint& second) {
   return sum;
 }
 
+// Returns the relative velocity change of two lattices' frames per impulse between the lattices, 1/kg.
+double mutual_frame_compliance(const LatticeView& first, const LatticeView& second) {
+  return first.frame == second.frame ? 0.0 : frame_compliance(first) + frame_compliance(second);
+}
+
 double mutual_friction(const BodyPoint& first, const BodyPoint& second) {
   return std::min(first.point.friction(*first.lattice), second.point.friction(*second.lattice));
 }
@@ -120,7 +125,7 @@ void BodyContacts::pass(std::span<const LatticeView> lattices, const ContactPass
   const std::span<const float> caps = pass.push_speed_caps_m_per_s;
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[pass.is_reversed ? count_ - 1 - c : c];
-    if (constraint.moved_by != pass.moved_by || constraint.compliance == 0.0) continue;
+    if (constraint.moved_by != pass.moved_by) continue;
     const auto cap = static_cast<double>(std::min(caps[constraint.first_body], caps[constraint.second_body]));
     solve(lattices, constraint, pass.h_s, cap);
   }
@@ -140,11 +145,13 @@ void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& cons
                          double cap) {
   const LatticeView& first = lattices[constraint.first_body];
   const LatticeView& second = lattices[constraint.second_body];
+  const double compliance = constraint.compliance + mutual_frame_compliance(first, second);
+  if (compliance == 0.0) return;
   const Vector3 apart = constraint.first.displacement_m(first) - constraint.second.displacement_m(second);
   const Vector3 relative =
       constraint.first.velocity_m_per_s(first) - constraint.second.velocity_m_per_s(second);
   const ContactPush state{constraint.base_m + constraint.normal.dot(apart), constraint.normal, relative,
-                          1.0 / constraint.compliance};
+                          1.0 / compliance};
   const double started = h * constraint.force_n, pushed = state.normal_impulse(h, body_pace, cap, started);
   constraint.passed_force_n = constraint.force_n;
   if (constraint.keeps_force()) constraint.force_n = pushed / h;

@@ -88,7 +88,7 @@ class BodyContacts {
     int first_body = 0, second_body = 0;
     EmbeddedPoint first, second;
     Vector3 normal = Vector3::UnitY();
-    double compliance = 0.0;  // relative velocity change of the points per impulse, 1/kg
+    double compliance = 0.0;  // relative velocity change of the points per impulse, 1/kg, without frames
     double base_m = 0.0;      // gap minus the part due to displacements since rest
     double friction = 0.0;    // the smaller coefficient of the two surfaces
     MovedBy moved_by = MovedBy::springs;

@@ -94,7 +94,6 @@ void ContactConstraints::begin(const ToolMotion& motion, double time_s) {
   SPOONBILL_ASSERT(motion.radius_m >= 0.0 && motion.coupling_n_per_m >= 0.0);
   motion_ = motion;
   hand_velocity_ = (motion.end_m - motion.start_m) / time_s;
-  carried_force_.setZero();
   const bool coupled = motion.coupling_n_per_m > 0.0;
   tool_compliance_ = coupled ? coupling_frequency * coupling_frequency / motion.coupling_n_per_m : 0.0;
   tool_impulse_.fill(Vector3::Zero());
@@ -108,7 +107,6 @@ void ContactConstraints::start(std::span<const LatticeView> lattices, ToolState&
   const double damped = 1.0 + h_s * coupling_frequency;
   response_compliance_ = tool_compliance_ / (damped * damped);
   follow_hand(tool, h_s, fraction);
-  if (motion_.carried.body >= 0) tool_impulse_[motion_.carried.body] += h_s * carried_force_;
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[c];
     const LatticeView& lattice = lattices[constraint.body];

@@ -27,7 +27,7 @@ struct ToolState {
 };
 
 // Nodes of a soft tool's lattice that are fixed to the tool and move rigidly with it. Their rest positions
-// are in the tool's frame. Used only for tools without a coupling spring.
+// are in the tool's frame.
 struct CarriedNodes {
   int body = -1;  // index of the lattice; -1 for none
   std::span<const int> nodes;
@@ -87,8 +87,13 @@ class ContactConstraints {
   void begin(const ToolMotion& motion, double time_s);
 
   const ToolMotion& motion() const { return motion_; }
-  // Sets the force in N that the nodes fixed to the tool (CarriedNodes) exert on it in the coming substep.
-  void set_carried_force(const Vector3& force_n) { carried_force_ = force_n; }
+  // frame() returns the frame of a soft tool's lattice. Call it after start(), and adopt() the frame after
+  // all contacts of the lattice are solved and before finish().
+  MovingFrame frame(const ToolState& tool) const { return {tool.velocity_m_per_s, response_compliance_}; }
+  void adopt(const MovingFrame& frame, ToolState& tool) {
+    tool.velocity_m_per_s = frame.velocity_m_per_s;
+    tool_impulse_[motion_.carried.body] += frame.impulse_ns;
+  }
 
   // start(), pass() and finish() are the parts of a substep of h_s, after the kick and before the drift of
   // the lattices. start() changes the tool's velocity so that it follows the hand, and pushes with the forces
@@ -164,7 +169,6 @@ class ContactConstraints {
   int count_ = 0;
   ToolMotion motion_;
   Vector3 hand_velocity_ = Vector3::Zero();  // m/s
-  Vector3 carried_force_ = Vector3::Zero();
   double tool_compliance_ = 0.0;  // 1 / mass of the tool, 1/kg; 0 if the hand holds the tool rigidly
   // Velocity change of the tool at the end of a substep per impulse, 1/kg. It includes the response of the
   // coupling spring and its damper.

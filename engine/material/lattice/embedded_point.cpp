@@ -92,7 +92,8 @@ Vector3 EmbeddedPoint::displacement_m(const LatticeView& lattice) const {
 }
 
 Vector3 EmbeddedPoint::velocity_m_per_s(const LatticeView& lattice) const {
-  return embedded_sum(*this, lattice.vx, lattice.vy, lattice.vz);
+  const Vector3 relative = embedded_sum(*this, lattice.vx, lattice.vy, lattice.vz);
+  return lattice.frame ? Vector3(lattice.frame->velocity_m_per_s + relative) : relative;
 }
 
 void EmbeddedPoint::push(const LatticeView& lattice, const Vector3& impulse) const {
@@ -103,6 +104,9 @@ void EmbeddedPoint::push(const LatticeView& lattice, const Vector3& impulse) con
     lattice.vy[n] += static_cast<float>(fraction * impulse.y());
     lattice.vz[n] += static_cast<float>(fraction * impulse.z());
   }
+  if (!lattice.frame) return;
+  lattice.frame->velocity_m_per_s += lattice.frame->compliance * impulse;
+  lattice.frame->impulse_ns += impulse;
 }
 
 void EmbeddedPoint::mark(std::uint8_t* touched) const {

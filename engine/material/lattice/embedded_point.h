@@ -7,6 +7,21 @@
 
 namespace spoonbill {
 
+// The frame of a soft tool, which moves with the tool's proxy. The velocities of the tool's lattice are
+// relative to it, so that the lattice's inertia, which may be thousands of times the real one, resists a
+// change of shape but not the motion of the hand. A push on the lattice also pushes the frame. The kinetic
+// energy of frame and lattice is the sum of both, so that contacts do not generate energy.
+struct MovingFrame {
+  Vector3 velocity_m_per_s = Vector3::Zero();
+  double compliance = 0.0;  // velocity change of the frame per impulse, 1/kg; 0 if the hand holds it rigidly
+  Vector3 impulse_ns = Vector3::Zero();  // sum of all pushes on the lattice
+};
+
+// Returns the velocity change of a lattice's frame per impulse, 1/kg; 0 without a frame.
+inline double frame_compliance(const LatticeView& lattice) {
+  return lattice.frame ? lattice.frame->compliance : 0.0;
+}
+
 // A weighted sum of nodes. Weights sum to 1; some may be slightly negative where the surface bulges out of
 // its cells.
 struct EmbeddedPoint {
@@ -25,15 +40,17 @@ struct EmbeddedPoint {
   Vector3 rest_m(const SpringLattice& lattice) const;
   // Position in the deformed lattice, m.
   Vector3 position_m(const SpringLattice& lattice) const;
-  // Velocity change of the point per impulse, 1/kg; 0 if all of its nodes are fixed.
+  // Velocity change of the point per impulse, 1/kg, relative to the lattice's frame; 0 if all of its nodes
+  // are fixed.
   double compliance(const SpringLattice& lattice) const;
   double compliance(const LatticeView& lattice) const;
   // Returns the weighted mean of the nodes' friction coefficients, limited to the range of these
   // coefficients.
   double friction(const SpringLattice& lattice) const;
   Vector3 displacement_m(const LatticeView& lattice) const;
+  // Velocity in the world frame.
   Vector3 velocity_m_per_s(const LatticeView& lattice) const;
-  // Distributes an impulse, N s, to the nodes.
+  // Distributes an impulse, N s, to the nodes. Also pushes the lattice's frame.
   void push(const LatticeView& lattice, const Vector3& impulse) const;
   // Calls visit(node, part) for each node and its part of an impulse.
   template <class Visit>

@@ -67,13 +67,15 @@ struct CreepRule {
   float time_s = 0.0f;
 };
 
+struct MovingFrame;  // see engine/material/lattice/embedded_point.h
+
 // View of arrays that a SpringLattice owns.
 struct LatticeView {
   int padded_count = 0;         // number of nodes including padding, a whole number of blocks
   float stiffening = 0.0f;      // see linearise_springs(); the largest value where springs differ
   bool volume_softens = false;  // true if any K_v is negative, see volume_forces()
   float *dx = nullptr, *dy = nullptr, *dz = nullptr;  // displacement from the rest shape, m
-  float *vx = nullptr, *vy = nullptr, *vz = nullptr;  // m/s
+  float *vx = nullptr, *vy = nullptr, *vz = nullptr;  // m/s, relative to `frame` if there is one
   float *fx = nullptr, *fy = nullptr, *fz = nullptr;  // N
   // Extrapolated node displacements d + tau v at the last linearisation, m, where tau is the damping time.
   // Spring forces evaluated there are damped: f(x + tau v) is f(x) + tau df/dt to first order, as in a
@@ -113,6 +115,7 @@ struct LatticeView {
   float* power_z = nullptr;
   // Added to the vector of the power iteration at each step, so that no mode vanishes from it.
   const float* power_noise = nullptr;
+  MovingFrame* frame = nullptr;  // frame of a soft tool; null for other lattices
 };
 
 // Parameters of one drift of the nodes.

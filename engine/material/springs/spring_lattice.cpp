@@ -785,4 +785,17 @@ void SpringLattice::apply_reforming(const Reforming& next) {
   }
 }
 
+void shift_nodes(const LatticeView& view, int count, const Vector3& shift_m) {
+  const float x = static_cast<float>(shift_m.x()), y = static_cast<float>(shift_m.y()),
+              z = static_cast<float>(shift_m.z());
+  for (int n = 0; n < count; ++n) {
+    view.dx[n] += x;
+    view.dy[n] += y;
+    view.dz[n] += z;
+    view.reference_x[n] += x;
+    view.reference_y[n] += y;
+    view.reference_z[n] += z;
+  }
+}
+
 }  // namespace spoonbill

@@ -230,6 +230,9 @@ inline void set_velocity(const LatticeView& view, int n, const Vector3& velocity
   view.vz[n] = static_cast<float>(velocity.z());
 }
 
+// Moves the first `count` nodes rigidly by `shift_m`. The linearisation moves with them.
+void shift_nodes(const LatticeView& view, int count, const Vector3& shift_m);
+
 // Sets a node's displacement, and the change of its extrapolated displacement since the linearisation, as
 // drift() does. `tau` is the damping time. Returns the square of that change, m^2.
 inline float set_node_displacement(const LatticeView& view, int n, const Vector3& displacement, float tau) {

@@ -202,19 +202,46 @@ TEST(SoftMesh, GivesWayAndReturns) {
   EXPECT_LT(bent(0.02), 0.05e-3f) << "elastic";
 }
 
-TEST(SoftMesh, FollowsATurnOfTheHandAsARigidOneDoes) {
-  Simulation simulation = simulate(held_soft_handle(soft_tool(ball(), flesh(300))));
-  const Quaternion turn(Eigen::AngleAxisd(0.6, Vector3(1, 2, -1).normalized()));
-  const Vector3 place(0.03, 0.04, 0.01);
-  simulation.advance({{place, turn}, false, 0.0});
+// Returns the largest distance of a soft ball's vertices from those of a rigid ball at `pose`.
+double distance_from_rigid_ball(const Simulation& simulation, const Pose& pose) {
   Snapshot snapshot;
   simulation.write_snapshot(snapshot);
   const MeshSnapshot& mesh = snapshot.bodies.back().mesh;
   const CleanMesh made = cleaned(ball());
+  double farthest = 0.0;
   // The vertices of the given mesh come first. The vertices that were added at the midpoints of edges follow.
   for (std::size_t v = 0; v < made.mesh.vertices_m.size(); ++v) {
-    const Vector3 wanted = place + turn * made.mesh.vertices_m[v];
-    EXPECT_LT((Vector3(mesh.x[v], mesh.y[v], mesh.z[v]) - wanted).norm(), 1e-7);
+    const Vector3 rigid = pose.position_m + pose.orientation * made.mesh.vertices_m[v];
+    farthest = std::max(farthest, (Vector3(mesh.x[v], mesh.y[v], mesh.z[v]) - rigid).norm());
+  }
+  return farthest;
+}
+
+TEST(SoftMesh, AppearsInTheHandsPose) {
+  Simulation simulation = simulate(held_soft_handle(soft_tool(ball(), flesh(300))));
+  const Pose pose{Vector3(0.03, 0.04, 0.01),
+                  Quaternion(Eigen::AngleAxisd(0.6, Vector3(1, 2, -1).normalized()))};
+  simulation.advance({pose, false, 0.0});
+  EXPECT_LT(distance_from_rigid_ball(simulation, pose), 1e-7);
+}
+
+// The ball is shaken at 5 m/s^2 and turned back and forth at up to 6 rad/s. The tolerance is the rounding of
+// positions in single precision, added over the ticks.
+TEST(SoftMesh, FollowsTheHandAsARigidOneDoes) {
+  for (const double coupling_n_per_m : {0.0, 1000.0}) {
+    Simulation simulation = simulate(held_soft_handle(soft_tool(ball(), flesh(300))));
+    const Vector3 axis = Vector3(1, 2, -1).normalized();
+    Pose pose{Vector3(0.03, 0.04, 0.01), Quaternion::Identity()};
+    for (int tick = 0; tick < 600; ++tick) {
+      const double phase = 30.0 * 1e-3 * tick;
+      pose.position_m.x() = 0.03 + 5.0 / (30.0 * 30.0) * std::sin(phase);
+      pose.orientation = Eigen::AngleAxisd(0.2 * std::sin(phase), axis);
+      simulation.advance({pose, false, coupling_n_per_m});
+      if (tick % 20 != 0) continue;
+      Snapshot snapshot;
+      simulation.write_snapshot(snapshot);
+      EXPECT_LT(distance_from_rigid_ball(simulation, snapshot.tool.proxy), 1e-6) << tick;
+    }
   }
 }
 
