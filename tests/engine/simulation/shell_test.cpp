@@ -193,7 +193,8 @@ TEST(Shell, RingGivesWayAtItsSeamAsElsewhere) {
   EXPECT_NEAR(at_seam, elsewhere, 2e-4);
 }
 
-// A pillow of jelly falls into the bowl, or onto its outside with inverted gravity, and stays on it.
+// A pillow of jelly falls into the bowl, or onto its outside with inverted gravity, and stays on it. Friction
+// keeps it on the outside, from which it would slide otherwise.
 TEST(Shell, BearsAnotherBody) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const bool upside_down : {false, true}) {
@@ -209,6 +210,7 @@ TEST(Shell, BearsAnotherBody) {
     }
     for (double& y : pillow.net.y) y += floor_m + sign * 0.0045;
     scene.bodies.push_back({"pillow", pillow, shell_material(1e4), {300, {}}});
+    for (Body& body : scene.bodies) body.material.friction = 0.5;
     scene.sculpting.gravity_m_per_s2 = {0.0, -9.81 * sign, 0.0};
     scene.sculpting.drag_per_s = 20.0;
     Simulation simulation = simulate(scene);
