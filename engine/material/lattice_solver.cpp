@@ -187,7 +187,9 @@ struct Relaxation {
   std::array<Drifted, lattice_capacity> drifted{};
   std::array<double, lattice_capacity> drag_per_s{};
   double time_s = 0.0;  // duration of the tick, s
-  MovingFrame frame;    // frame of the soft tool, if there is one
+  // Frame of the soft tool, if there is one, and the position at which it has moved the tool's lattice.
+  MovingFrame frame;
+  Vector3 frame_m = Vector3::Zero();
 
   std::size_t count() const { return lattices.size(); }
   bool has_springs(std::size_t at) const { return lattices[at].implicit_solver == nullptr; }
@@ -334,13 +336,16 @@ void solve_tool(const Relaxation& relaxation, const TouchingTool& tool, const Su
   if (!is_soft(tool)) tool.contacts->finish(*tool.state, h);
 }
 
-// Moves the lattice of a soft tool with the tool, in the frame of which it has moved already.
-void move_soft_tool(Relaxation& relaxation, const TouchingTool& tool, double h) {
+// Moves the lattice of a soft tool by the motion of its frame in the substep. Call after the drift, which
+// moves the free nodes within the frame. The nodes that the hand holds are set exactly, so that rounding does
+// not add up.
+void move_soft_tool(Relaxation& relaxation, const TouchingTool& tool) {
   const CarriedNodes& carried = tool.motion.carried;
   const auto at = static_cast<std::size_t>(carried.body);
   const SpringLattice& lattice = relaxation.lattice(at);
   const LatticeView& view = relaxation.view[at];
-  shift_nodes(view, lattice.mesh().node_count(), h * tool.state->velocity_m_per_s);
+  shift_nodes(view, lattice.mesh().node_count(), tool.state->position_m - relaxation.frame_m);
+  relaxation.frame_m = tool.state->position_m;
   for (const int n : carried.nodes) {
     const Vector3& rest = lattice.mesh().nodes[static_cast<std::size_t>(n)];
     const Vector3 moved = tool.state->position_m + tool.motion.orientation * rest - rest;
@@ -361,7 +366,9 @@ void solve_contacts(Relaxation& relaxation, const Substep& substep, std::span<co
   if (between) {
     if (substep.index == 0) solve_with_solvers(relaxation, *between, push_caps);
     between->start(views, h);
-    between->pass(views, {h, MovedBy::springs, false, push_caps});
+    for (const bool is_reversed : {false, true}) {
+      between->pass(views, {h, MovedBy::springs, is_reversed, push_caps});
+    }
   }
   if (soft) {
     soft->contacts->adopt(relaxation.frame, *soft->state);
@@ -397,8 +404,9 @@ bool begin_supports(Relaxation& relaxation) {
   return limited;
 }
 
-// Returns the velocity of the frame in which the speeds of a lattice's nodes are capped, m/s.
-Vector3 frame_velocity(const Relaxation& relaxation, std::size_t at) {
+// Returns the velocity relative to which the speeds of a lattice's nodes are capped, m/s. It is zero for a
+// soft tool, whose velocities are relative to the tool already.
+Vector3 find_mean_velocity(const Relaxation& relaxation, std::size_t at) {
   const SpringLattice& lattice = relaxation.lattice(at);
   if (lattice.has_fixed_nodes()) {
     return common_support_velocity(relaxation.lattices[at].supports, lattice, relaxation.time_s);
@@ -439,12 +447,12 @@ bool drift(Relaxation& relaxation, float h) {
       drift_with_solver(relaxation.view[at], h);
       continue;
     }
-    const Vector3 frame = frame_velocity(relaxation, at);
-    relaxation.drifted[at] = drift(relaxation.lattice(at), relaxation.view[at], h, relaxation.cap[at], frame);
+    const Vector3 mean = find_mean_velocity(relaxation, at);
+    relaxation.drifted[at] = drift(relaxation.lattice(at), relaxation.view[at], h, relaxation.cap[at], mean);
     if (!(relaxation.drifted[at].speed_square > 1.0f)) continue;
     capped = true;
     if (!relaxation.lattice(at).has_fixed_nodes()) {
-      restore_momentum(relaxation.lattice(at), relaxation.view[at], frame);
+      restore_momentum(relaxation.lattice(at), relaxation.view[at], mean);
     }
   }
   return capped;
@@ -586,7 +594,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   SPOONBILL_ASSERT(!lattices.empty() && lattices.size() <= static_cast<std::size_t>(lattice_capacity));
   SPOONBILL_ASSERT(settings.substeps >= 1 && settings.time_s > 0.0);
   SPOONBILL_ASSERT(settings.drag_per_s >= 0.0);
-  Relaxation relaxation{lattices, {}, {}, {}, {}, settings.time_s, {}};
+  Relaxation relaxation{lattices, {}, {}, {}, {}, settings.time_s, {}, Vector3::Zero()};
   const bool flows = settings.tick % 2 == 1;
   for (std::size_t at = 0; at < lattices.size(); ++at) relaxation.view[at] = lattices[at].lattice->view();
   const Substeps substeps = begin_springs(relaxation, settings, !flows);
@@ -602,14 +610,17 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   begin_implicit_steps(relaxation, between, ground);
   for (const TouchingTool& tool : tools) tool.contacts->begin(tool.motion, settings.time_s);
   const TouchingTool* const soft = find_soft_tool(tools);
-  if (soft) relaxation.view[static_cast<std::size_t>(soft->motion.carried.body)].frame = &relaxation.frame;
+  if (soft) {
+    relaxation.view[static_cast<std::size_t>(soft->motion.carried.body)].frame = &relaxation.frame;
+    relaxation.frame_m = soft->state->position_m;
+  }
   if (substeps.slowed) stabilise_strained_nodes(relaxation, h);
   for (int s = 0; s < substeps.count; ++s) {
     const Substep substep{s, substeps.count, h};
     kick(relaxation, substep);
     solve_contacts(relaxation, substep, tools, between, ground);
     report.speed_capped |= drift(relaxation, h);
-    if (soft) move_soft_tool(relaxation, *soft, static_cast<double>(h));
+    if (soft) move_soft_tool(relaxation, *soft);
     move_supported_nodes(relaxation, static_cast<double>(s + 1) / substeps.count);
   }
   end_implicit_steps(relaxation, ground);

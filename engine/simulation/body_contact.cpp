@@ -13,6 +13,14 @@ namespace {
 // points is far smaller.
 constexpr double lateral_tolerance = 0.2, rounding_m = 1e-6;
 
+// A point between samples gets a contact only if it is deeper than the samples around it by this fraction of
+// a cell. Such points differ from tick to tick, so that their pushes would shake bodies at rest.
+constexpr double least_lead_cells = 0.02;
+
+// Largest correction of a gap for what the control net does not reproduce, in cells. A larger one would let
+// the drawn surfaces overlap visibly where a net is too coarse for its lattice.
+constexpr double largest_fit_error_cells = 0.02;
+
 }  // namespace
 
 double far_face_offset_m(double thickness_m, const Vector3& normal, const Vector3& push) {
@@ -44,18 +52,52 @@ bool resolve_shell_gap(const ShellOrSolid& of, const ShellOrSolid& other, double
   return near.gap_m <= margin_m;
 }
 
+namespace {
+
+// A point of a surface as contacts use it. `fit_error_m` is the displacement of the embedded point minus that
+// of the point on the surface, whose control net does not reproduce every displacement of its lattice; it is
+// limited (see largest_fit_error_cells). Gaps measured on surfaces are corrected by it, so that a push
+// changes the gap that caused it. Without the correction, bodies would never come to rest on each other.
+struct SkinPoint {
+  BodyPoint point;
+  Vector3 fit_error_m;
+};
+
+SkinPoint find_skin_point(const IndexedBody& body, double u, double v, const EmbeddedPoint& embedding) {
+  const BodyMapping& mapping = body.state->mapping();
+  const SpringLattice& lattice = body.state->lattice;
+  const Vector3 of_surface = position(mapping.current(), u, v) - position(mapping.rest(), u, v);
+  const Vector3 error_m = embedding.displacement_m(lattice) - of_surface;
+  const double most_m = largest_fit_error_cells * static_cast<double>(lattice.cell_size_m());
+  const double size_m = error_m.norm();
+  return {{body.index, &lattice, embedding}, (size_m > most_m ? most_m / size_m : 1.0) * error_m};
+}
+
+SkinPoint find_skin_point(const IndexedBody& body, double u, double v) {
+  return find_skin_point(body, u, v, body.state->mapping().at(u, v));
+}
+
+std::pair<double, double> find_sample_parameters(const BodyMapping& mapping, int sample) {
+  const Grid& grid = mapping.nested().grid;
+  return {grid.u.parameters[sample / grid.columns()], grid.v.parameters[sample % grid.columns()]};
+}
+
+}  // namespace
+
 EmbeddedPoint find_embedding(const BodyMapping& mapping, const NearPoint& near) {
   return near.sample >= 0 ? mapping.sample(near.sample) : mapping.at(near.u, near.v);
 }
 
 bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::vector<NearPoint>& points,
                      BodyContacts& contacts) {
+  const double least_lead_m = least_lead_cells * static_cast<double>(from.state->lattice.cell_size_m());
   bool complete = true;
   for (const NearPoint& near : points) {
-    complete &=
-        contacts.add({from.index, &from.state->lattice, find_embedding(from.state->mapping(), near)},
-                     {to.index, &to.state->lattice, to.state->mapping().at(near.other_u, near.other_v)},
-                     near.normal, near.gap_m, near.sample);
+    if (near.sample < 0 && near.lead_m < least_lead_m) continue;
+    const SkinPoint own = find_skin_point(from, near.u, near.v, find_embedding(from.state->mapping(), near)),
+                    other = find_skin_point(to, near.other_u, near.other_v);
+    const double gap_m = near.gap_m + near.normal.dot(own.fit_error_m - other.fit_error_m);
+    complete &= contacts.add(own.point, other.point, near.normal, gap_m, near.sample);
   }
   return complete;
 }
@@ -75,14 +117,16 @@ bool add_contacts_of(const IndexedBody& first, const IndexedBody& second, const 
   const MeshMapping& mesh = *second.state->mesh();
   bool complete = true;
   for (const SampleNearMesh& near : proximity.surface_samples()) {
-    complete &= contacts.add({first.index, &first.state->lattice, surface.sample(near.sample)},
-                             {second.index, &second.state->lattice, mesh.at(near.mesh.on)}, near.mesh.normal,
-                             near.mesh.gap_m, near.sample);
+    const auto [u, v] = find_sample_parameters(surface, near.sample);
+    const SkinPoint own = find_skin_point(first, u, v, surface.sample(near.sample));
+    complete &=
+        contacts.add(own.point, {second.index, &second.state->lattice, mesh.at(near.mesh.on)},
+                     near.mesh.normal, near.mesh.gap_m + near.mesh.normal.dot(own.fit_error_m), near.sample);
   }
   for (const VertexNearSurface& near : proximity.mesh_vertices()) {
-    complete &= contacts.add({second.index, &second.state->lattice, mesh.vertex(near.vertex)},
-                             {first.index, &first.state->lattice, surface.at(near.u, near.v)}, near.normal,
-                             near.gap_m, near.vertex);
+    const SkinPoint other = find_skin_point(first, near.u, near.v);
+    complete &= contacts.add({second.index, &second.state->lattice, mesh.vertex(near.vertex)}, other.point,
+                             near.normal, near.gap_m - near.normal.dot(other.fit_error_m), near.vertex);
   }
   return complete;
 }

@@ -41,14 +41,11 @@ struct ShellOrSolid {
 // of a shell and touches neither face. Allocates nothing.
 bool resolve_shell_gap(const ShellOrSolid& of, const ShellOrSolid& other, double margin_m, NearPoint& near);
 
-// Largest penetration of two bodies pressed together at up to 60 mm/s, in lattice cells of the coarser body.
-// Control nets follow a dent one cell wide only in part. The penetration that this causes disappears as soon
-// as the bodies come to rest.
-inline constexpr double body_depth_limit_cells = 0.03;
-
-// Largest penetration of a body pressed onto itself, in lattice cells. It is twice the limit for two bodies,
-// because the control nets of both sides follow a dent only in part.
-inline constexpr double self_depth_limit_cells = 2.0 * body_depth_limit_cells;
+// Largest penetration of two bodies pressed together at up to 60 mm/s, or of a body pressed onto itself, in
+// lattice cells of the coarser body. Control nets follow a dent one cell wide only in part, and contacts act
+// between points that the lattices move. At rest, the drawn surfaces overlap by up to 0.02 cells of each body
+// for this reason, and by another 0.02 between samples.
+inline constexpr double body_depth_limit_cells = 0.06;
 
 // Gap below which a constraint is added for a point, in lattice cells of the coarser body. It is about the
 // movement in one tick.

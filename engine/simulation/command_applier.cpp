@@ -62,7 +62,7 @@ Status CommandApplier::operator()(const SetTool& command) {
   }
   state.scene.tool = tool;
   update_inertia(state);
-  if (state.tool_is_soft()) state.tool.placed = false;
+  if (state.tool_is_soft()) state.tool.lattice_placed = false;
   release();
   return {};
 }

@@ -24,12 +24,14 @@ struct HeldTool {
   Pose hand{};  // pose of the hand in the last tick
   ToolState state{};
   bool placed = false;
+  bool lattice_placed = false;  // true if the lattice of the present soft tool is at the proxy
 
   void place(const Pose& pose) {
     hand = pose;
     state.position_m = pose.position_m;
     state.velocity_m_per_s.setZero();
     placed = true;
+    lattice_placed = false;
   }
 };
 

@@ -78,7 +78,7 @@ ToolMotion make_motion(const Simulation::State& s, const Pose& from, const Pose&
   return motion;
 }
 
-// Moves a soft tool to the hand, undeformed and at rest.
+// Moves a soft tool to the pose, undeformed and at rest in its frame.
 void place_soft_tool(BodyState& tool, const Pose& pose) {
   for (int n = 0; n < tool.lattice.mesh().node_count(); ++n) {
     const Vector3& rest = tool.lattice.mesh().nodes[n];
@@ -100,12 +100,13 @@ double measure_reach(const Simulation::State& s, const HeldTool& held, const Pos
 
 TouchingTool touch(Simulation::State& s, HeldTool& held, ToolHold hold, double coupling_n_per_m) {
   const Pose hand = hold.pose;
-  const bool appears = !held.placed;
-  if (appears) held.place(hand);
+  if (!held.placed) held.place(hand);
   hold.pose.position_m = held.state.position_m;
   hold.reach_m = measure_reach(s, held, hand);
   if (s.tool_is_soft()) {
-    if (appears) place_soft_tool(s.bodies.back(), hand);
+    if (!held.lattice_placed)
+      place_soft_tool(s.bodies.back(), {held.state.position_m, held.hand.orientation});
+    held.lattice_placed = true;
     held.contact.prepare_soft();
   } else {
     held.contact.prepare(s.scene_bodies(), s.scene.tool, s.model, hold);

@@ -330,7 +330,7 @@ void SelfProximity::find(const Surface& surface, double margin_m) {
   near_.compute_nearest(levels, 1.0, margin_m);
   const auto keep = [&](const NearPoint& near) { return is_contact(near); };
   near_.keep_if(keep);
-  near_.add_between_samples(levels, 1.0);
+  near_.add_between_samples(near_, 1.0);
   near_.keep_if(keep);
 }
 

@@ -151,9 +151,25 @@ bool NearPoints::is_local_deepest(const NearPoint& near) const {
   return true;
 }
 
+double NearPoints::smallest_gap_around(double u, double v) const {
+  const auto cell = [](const std::vector<double>& parameters, double value) {
+    const auto upper = std::upper_bound(parameters.begin(), parameters.end(), value);
+    return static_cast<int>(std::clamp<std::ptrdiff_t>(upper - parameters.begin() - 1, 0,
+                                                       static_cast<std::ptrdiff_t>(parameters.size()) - 2));
+  };
+  const Grid& grid = levels_.nested().grid;
+  const int row = cell(grid.u.parameters, u), column = cell(grid.v.parameters, v);
+  double smallest = infinity;
+  for (int corner = 0; corner < 4; ++corner) {
+    const int sample = (row + (corner >> 1)) * grid.columns() + column + (corner & 1);
+    if (indexed_at_[sample] == generation_) smallest = std::min(smallest, near_[index_[sample]].gap_m);
+  }
+  return smallest;
+}
+
 // Starts a search on the exact surfaces from each sample that is deeper than its neighbours. deepest_pair()
 // can also start at points in front of the other surface, where the depth is negative.
-void NearPoints::add_between_samples(const SurfaceLevels& other, double outside) {
+void NearPoints::add_between_samples(const NearPoints& other, double outside) {
   SPOONBILL_ASSERT(std::abs(outside) == 1.0);
   const std::size_t samples = near_.size();
   for (std::size_t s = 0; s < samples; ++s) {
@@ -165,10 +181,13 @@ void NearPoints::add_between_samples(const SurfaceLevels& other, double outside)
       return;
     }
     const DeepestPair deepest =
-        deepest_pair(levels_.pieces(), other.pieces(), {near.u, near.v, near.other_u, near.other_v}, outside,
-                     infinity, &budget_);
+        deepest_pair(levels_.pieces(), other.levels().pieces(), {near.u, near.v, near.other_u, near.other_v},
+                     outside, infinity, &budget_);
     const PairParameters& at = deepest.pair.at;
-    near_.push_back({-1, at.u, at.v, at.s, at.t, deepest.pair.first_m, deepest.normal, -deepest.depth_m});
+    const double gap_m = -deepest.depth_m;
+    const double around_m = std::min(near.gap_m, other.smallest_gap_around(at.s, at.t));
+    near_.push_back(
+        {-1, at.u, at.v, at.s, at.t, deepest.pair.first_m, deepest.normal, gap_m, around_m - gap_m});
     least_gap_m_ = std::min(least_gap_m_, -deepest.depth_m);
   }
 }
@@ -193,8 +212,8 @@ void SurfaceProximity::find(const Surface& first, const Surface& second, double 
   missing_cells_ = cells_.overflow();
   first_.compute_nearest(second_.levels(), second_outside, margin_m);
   second_.compute_nearest(first_.levels(), 1.0, margin_m);
-  first_.add_between_samples(second_.levels(), second_outside);
-  second_.add_between_samples(first_.levels(), 1.0);
+  first_.add_between_samples(second_, second_outside);
+  second_.add_between_samples(first_, 1.0);
 }
 
 double SurfaceProximity::least_gap_m() const {

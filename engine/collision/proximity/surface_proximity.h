@@ -27,6 +27,9 @@ struct NearPoint {
   Vector3 point_m = Vector3::Zero();
   Vector3 normal = Vector3::UnitY();  // unit outward normal of the other surface
   double gap_m = 0.0;                 // distance along the normal; negative inside the other body
+  // For a point between samples: how much smaller its gap is than those of the samples around it on both
+  // surfaces.
+  double lead_m = 0.0;
 };
 
 // Collects the points of one surface that are near another surface. Call the functions in the order of their
@@ -51,8 +54,11 @@ class NearPoints {
   // beyond the margin. `outside` is -1 if the other surface's du x dv points inward, else 1.
   void compute_nearest(const SurfaceLevels& other, double outside, double margin_m);
   // Adds the locally nearest points between samples, where the surfaces may be nearer to each other than at
-  // any sample.
-  void add_between_samples(const SurfaceLevels& other, double outside);
+  // any sample. `other` holds the points of the other surface, which may be this one.
+  void add_between_samples(const NearPoints& other, double outside);
+  // Returns the smallest gap of the samples at the corners of the grid cell that contains (u, v); infinite if
+  // no corner is near the other surface.
+  double smallest_gap_around(double u, double v) const;
 
   // Removes the points for which keep(point) returns false. `keep` may modify the point.
   template <class Keep>

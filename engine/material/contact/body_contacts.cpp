@@ -15,14 +15,6 @@ namespace {
 // correction suffices; a faster one would shake bodies at rest.
 constexpr ContactPace body_pace{0.5, 400.0};
 
-Vector3 current_displacement(const BodyPoint& side) {
-  Vector3 sum = Vector3::Zero();
-  for (int i = 0; i < side.point.count; ++i) {
-    sum += static_cast<double>(side.point.weight[i]) * side.lattice->displacement(side.point.node[i]);
-  }
-  return sum;
-}
-
 // Returns the relative velocity change of two points per impulse between them, 1/kg. Within one body, the
 // impulses overlap in the nodes that both points use.
 double mutual_compliance(const BodyPoint& first, const BodyPoint& second) {
@@ -64,7 +56,9 @@ BodyContacts::BodyContacts(int capacity)
 void BodyContacts::clear() {
   kept_.clear();
   for (int c = 0; c < count_; ++c) {
-    if (constraints_[c].force_n > 0.0) kept_.add(constraints_[c].key(), constraints_[c].force_n);
+    const Constraint& constraint = constraints_[c];
+    if (constraint.sample >= 0 && !constraint.force_n.isZero(0.0))
+      kept_.add(constraint.key(), constraint.force_n);
   }
   kept_.sort();
   count_ = 0;
@@ -81,7 +75,8 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
   SPOONBILL_ASSERT_DEBUG(std::abs(normal.squaredNorm() - 1.0) < 1e-5);
   if (count_ == static_cast<int>(constraints_.size())) return false;
   const bool by_solvers = first.lattice->moved_by_solver() && second.lattice->moved_by_solver();
-  const double moved = normal.dot(current_displacement(first) - current_displacement(second));
+  const double moved =
+      normal.dot(first.point.displacement_m(*first.lattice) - second.point.displacement_m(*second.lattice));
   Constraint& added = constraints_[count_++];
   added = {.first_body = first.body,
            .second_body = second.body,
@@ -93,7 +88,8 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
            .friction = mutual_friction(first, second),
            .moved_by = by_solvers ? MovedBy::solvers : MovedBy::springs,
            .sample = sample};
-  if (added.keeps_force() && added.compliance > 0.0) added.force_n = kept_.find(added.key());
+  if (sample >= 0) added.force_n = kept_.find(added.key(), Vector3::Zero());
+  if (added.force_n.dot(normal) < 0.0) added.force_n.setZero();
   return true;
 }
 
@@ -109,8 +105,8 @@ bool BodyContacts::has_constraint_between_solvers() const {
 void BodyContacts::start(std::span<const LatticeView> lattices, double h_s) {
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[c];
-    if (constraint.moved_by != MovedBy::springs || !(constraint.force_n > 0.0)) continue;
-    push(lattices, constraint, h_s * constraint.force_n * constraint.normal);
+    if (constraint.moved_by != MovedBy::springs || constraint.force_n.isZero(0.0)) continue;
+    push(lattices, constraint, h_s * constraint.force_n);
   }
 }
 
@@ -135,8 +131,8 @@ void BodyContacts::shorten_solver_pass(double fraction) {
   SPOONBILL_ASSERT_DEBUG(fraction >= 0.0 && fraction <= 1.0);
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[c];
-    if (constraint.moved_by != MovedBy::solvers || !constraint.keeps_force()) continue;
-    const double before = constraint.passed_force_n;
+    if (constraint.moved_by != MovedBy::solvers) continue;
+    const Vector3& before = constraint.passed_force_n;
     constraint.force_n = before + fraction * (constraint.force_n - before);
   }
 }
@@ -152,12 +148,15 @@ void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& cons
       constraint.first.velocity_m_per_s(first) - constraint.second.velocity_m_per_s(second);
   const ContactPush state{constraint.base_m + constraint.normal.dot(apart), constraint.normal, relative,
                           1.0 / compliance};
-  const double started = h * constraint.force_n, pushed = state.normal_impulse(h, body_pace, cap, started);
+  const Vector3 started = h * constraint.force_n;
+  const double started_push = started.dot(constraint.normal);
+  const double pushed = state.normal_impulse(h, body_pace, cap, started_push);
   constraint.passed_force_n = constraint.force_n;
-  if (constraint.keeps_force()) constraint.force_n = pushed / h;
-  if (pushed == 0.0 && started == 0.0) return;
-  push(lattices, constraint,
-       (pushed - started) * constraint.normal - state.drag(constraint.friction * pushed));
+  if (pushed == 0.0 && started.isZero(0.0)) return;
+  const Vector3 drag = state.drag(constraint.friction * pushed, started_push * constraint.normal - started);
+  const Vector3 impulse = pushed * constraint.normal - drag;
+  constraint.force_n = impulse / h;
+  push(lattices, constraint, impulse - started);
 }
 
 bool BodyContacts::acted(int body) const {

@@ -20,7 +20,7 @@ struct BodyPoint {
 
 // Contacts between two deformable bodies, or of a body with itself: velocity constraints between points of
 // their surfaces, which are solved after the contacts of tools. Impulses are equal and opposite, so momentum
-// is conserved.
+// is conserved. A push on the lattice of a soft tool also acts on its frame (see MovingFrame).
 //
 // Stores the contacts of one tick, and their forces in the last tick. Has one owner, on one thread. Allocates
 // only in its constructor.
@@ -34,10 +34,11 @@ class BodyContacts {
   void forget();
   // Adds a constraint that keeps the first point on one side of the second: the side to which the unit vector
   // `normal` points. `gap_m` is the present distance of the first point beyond the second along `normal`,
-  // negative for a penetration. Both points may be of the same body and share nodes. Returns false when full.
-  // `sample` is the number of the first point among the samples or vertices of its body; the push then starts
-  // from the force of the last substep. For a point that differs in every tick, `sample` is -1, and the push
-  // starts from zero.
+  // negative for a penetration. It must be the distance of the points that the lattices move: with another
+  // gap, contacts would generate energy. Both points may be of the same body and share nodes. Returns false
+  // when full. `sample` is the number of the first point among the samples or vertices of its body; push and
+  // friction then start from the force of the last tick. For a point that differs in every tick, `sample` is
+  // -1, and the force starts from zero.
   bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m, int sample);
 
   // Starts a tick: marks all constraints as not having acted.
@@ -50,8 +51,8 @@ class BodyContacts {
   void visit_known_impulses(int body, double time_s, const Visit& visit) const {
     for (int c = 0; c < count_; ++c) {
       const Constraint& constraint = constraints_[static_cast<std::size_t>(c)];
-      if (constraint.moved_by != MovedBy::solvers || !(constraint.force_n > 0.0)) continue;
-      const Vector3 impulse = time_s * constraint.force_n * constraint.normal;
+      if (constraint.moved_by != MovedBy::solvers || constraint.force_n.isZero(0.0)) continue;
+      const Vector3 impulse = time_s * constraint.force_n;
       if (constraint.first_body == body) constraint.first.visit_shares(impulse, visit);
       if (constraint.second_body == body) constraint.second.visit_shares(-impulse, visit);
     }
@@ -80,7 +81,7 @@ class BodyContacts {
   // Calls `visit` with the state on which the next tick depends.
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
-    for (int c = 0; c < count_; ++c) visit(&constraints_[static_cast<std::size_t>(c)].force_n, 1);
+    for (int c = 0; c < count_; ++c) visit(constraints_[static_cast<std::size_t>(c)].force_n.data(), 3);
   }
 
  private:
@@ -93,18 +94,17 @@ class BodyContacts {
     double friction = 0.0;    // the smaller coefficient of the two surfaces
     MovedBy moved_by = MovedBy::springs;
     int sample = -1;
-    double force_n = 0.0;         // push in the last substep; 0 for a push that starts from zero
-    double passed_force_n = 0.0;  // `force_n` before the last pass()
+    Vector3 force_n = Vector3::Zero();  // force on the first point in the last substep: push and friction
+    Vector3 passed_force_n = Vector3::Zero();  // `force_n` before the last pass()
     bool acted = false;
 
     ContactKey key() const { return {first_body, second_body, sample}; }
-    bool keeps_force() const { return sample >= 0; }
   };
   void solve(std::span<const LatticeView> lattices, Constraint& constraint, double h, double cap);
   void push(std::span<const LatticeView> lattices, Constraint& constraint, const Vector3& impulse);
 
   std::vector<Constraint> constraints_;
-  KeptForces kept_;  // forces of the last tick
+  KeptForces<Vector3> kept_;  // forces of the last tick
   int count_ = 0;
 };
 

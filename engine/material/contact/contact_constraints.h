@@ -37,7 +37,7 @@ struct CarriedNodes {
 struct ToolMotion {
   Vector3 start_m = Vector3::Zero();
   Vector3 end_m = Vector3::Zero();
-  Quaternion orientation = Quaternion::Identity();
+  Quaternion orientation = Quaternion::Identity();  // of a soft tool: that at the start of the tick
   double radius_m = 0.0;
   // Stiffness of the critically damped spring between hand and tool; 0 couples them rigidly.
   double coupling_n_per_m = 0.0;
@@ -87,8 +87,9 @@ class ContactConstraints {
   void begin(const ToolMotion& motion, double time_s);
 
   const ToolMotion& motion() const { return motion_; }
-  // frame() returns the frame of a soft tool's lattice. Call it after start(), and adopt() the frame after
-  // all contacts of the lattice are solved and before finish().
+  // frame() returns the frame of a soft tool's lattice. adopt() gives the tool the velocity of the frame, and
+  // adds the pushes on the frame to tool_impulse(). Call frame() after start(), and adopt() after all
+  // contacts of the lattice are solved and before finish().
   MovingFrame frame(const ToolState& tool) const { return {tool.velocity_m_per_s, response_compliance_}; }
   void adopt(const MovingFrame& frame, ToolState& tool) {
     tool.velocity_m_per_s = frame.velocity_m_per_s;
@@ -115,7 +116,8 @@ class ContactConstraints {
 
   int count() const { return count_; }
   bool has_constraint_on(int body) const;
-  // Returns the sum of the impulses of a body on the tool since begin(), N s.
+  // Returns the sum of the impulses of a body on the tool since begin(), N s. The impulses of all bodies on a
+  // soft tool have the index of the tool's own lattice.
   const Vector3& tool_impulse(int body) const { return tool_impulse_[body]; }
   bool acted() const { return acted_; }
   // Sets to 1 the bytes in `touched` of the nodes of a body on which a constraint has acted.
@@ -165,7 +167,7 @@ class ContactConstraints {
   void exchange(const LatticeView& lattice, Constraint& constraint, ToolState& tool, const Vector3& impulse);
 
   std::vector<Constraint> constraints_;
-  KeptForces kept_;  // forces of the last tick
+  KeptForces<double> kept_;  // forces of the last tick
   int count_ = 0;
   ToolMotion motion_;
   Vector3 hand_velocity_ = Vector3::Zero();  // m/s

@@ -16,30 +16,31 @@ struct ContactKey {
   auto operator<=>(const ContactKey&) const = default;
 };
 
-// Forces of contacts. Call add() for all forces, then sort(), then find(). Has one owner, on one thread.
-// Allocates only in its constructor.
+// Forces of contacts, N: numbers along the contacts' normals, or vectors. Call add() for all forces, then
+// sort(), then find(). Has one owner, on one thread. Allocates only in its constructor.
+template <class Force>
 class KeptForces {
  public:
   explicit KeptForces(std::size_t capacity) { forces_.reserve(capacity); }
 
   void clear() { forces_.clear(); }
-  void add(const ContactKey& key, double force_n) { forces_.push_back({key, force_n}); }
+  void add(const ContactKey& key, const Force& force_n) { forces_.push_back({key, force_n}); }
   void sort() {
-    std::sort(forces_.begin(), forces_.end(), [](const Force& a, const Force& b) { return a.key < b.key; });
+    std::sort(forces_.begin(), forces_.end(), [](const Kept& a, const Kept& b) { return a.key < b.key; });
   }
-  // Returns the force of a contact in N, or 0 if it did not push.
-  double find(const ContactKey& key) const {
+  // Returns the force of a contact, or `none` if it did not push.
+  Force find(const ContactKey& key, const Force& none) const {
     const auto at = std::lower_bound(forces_.begin(), forces_.end(), key,
-                                     [](const Force& force, const ContactKey& k) { return force.key < k; });
-    return at != forces_.end() && at->key == key ? at->force_n : 0.0;
+                                     [](const Kept& kept, const ContactKey& k) { return kept.key < k; });
+    return at != forces_.end() && at->key == key ? at->force_n : none;
   }
 
  private:
-  struct Force {
+  struct Kept {
     ContactKey key;
-    double force_n;
+    Force force_n;
   };
-  std::vector<Force> forces_;
+  std::vector<Kept> forces_;
 };
 
 }  // namespace spoonbill

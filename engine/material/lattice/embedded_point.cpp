@@ -87,6 +87,12 @@ double EmbeddedPoint::friction(const SpringLattice& lattice) const {
   return std::clamp(sum, least, most);
 }
 
+Vector3 EmbeddedPoint::displacement_m(const SpringLattice& lattice) const {
+  Vector3 sum = Vector3::Zero();
+  for (int i = 0; i < count; ++i) sum += static_cast<double>(weight[i]) * lattice.displacement(node[i]);
+  return sum;
+}
+
 Vector3 EmbeddedPoint::displacement_m(const LatticeView& lattice) const {
   return embedded_sum(*this, lattice.dx, lattice.dy, lattice.dz);
 }

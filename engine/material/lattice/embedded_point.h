@@ -10,7 +10,8 @@ namespace spoonbill {
 // The frame of a soft tool, which moves with the tool's proxy. The velocities of the tool's lattice are
 // relative to it, so that the lattice's inertia, which may be thousands of times the real one, resists a
 // change of shape but not the motion of the hand. A push on the lattice also pushes the frame. The kinetic
-// energy of frame and lattice is the sum of both, so that contacts do not generate energy.
+// energy is that of the frame plus that of the lattice's motion relative to it, so that contacts do not
+// generate energy. Like all tools, a soft tool has no weight in the hand.
 struct MovingFrame {
   Vector3 velocity_m_per_s = Vector3::Zero();
   double compliance = 0.0;  // velocity change of the frame per impulse, 1/kg; 0 if the hand holds it rigidly
@@ -47,6 +48,7 @@ struct EmbeddedPoint {
   // Returns the weighted mean of the nodes' friction coefficients, limited to the range of these
   // coefficients.
   double friction(const SpringLattice& lattice) const;
+  Vector3 displacement_m(const SpringLattice& lattice) const;
   Vector3 displacement_m(const LatticeView& lattice) const;
   // Velocity in the world frame.
   Vector3 velocity_m_per_s(const LatticeView& lattice) const;

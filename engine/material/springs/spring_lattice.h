@@ -103,6 +103,7 @@ class SpringLattice {
   Vector3 position(int node) const { return mesh_.nodes[node] + displacement(node); }
   // Deformed positions of all nodes, m.
   std::vector<Vector3> positions() const;
+  // Velocities of a soft tool's lattice are relative to the tool (see MovingFrame).
   Vector3 velocity(int node) const { return {vx_[node], vy_[node], vz_[node]}; }
   // Sets the displacement of a node and of its twin at the seam, m.
   void set_displacement(int node, const Vector3& d);

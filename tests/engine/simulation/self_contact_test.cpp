@@ -171,7 +171,7 @@ TEST(SelfContact, HoldsTheArmsOfAHairpinApart) {
     if (tick % 10 == 0) deepest = std::max(deepest, bar.depth_m());
   }
   EXPECT_GT(touching, 100);
-  EXPECT_LT(deepest, self_depth_limit_cells * bar.cell_m());
+  EXPECT_LT(deepest, body_depth_limit_cells * bar.cell_m());
 }
 
 // Only the contact acts on the body. Its ends collide and separate again.
@@ -215,7 +215,7 @@ TEST(SelfContact, PassesAPushOnWithinOneBody) {
   EXPECT_EQ(allocations, 0u);
   EXPECT_GT(before, 0.0);
   EXPECT_GT(after, 10.0 * before) << "the held lower arm stops it, not the bend alone";
-  EXPECT_LT(deepest, self_depth_limit_cells * cell);
+  EXPECT_LT(deepest, body_depth_limit_cells * cell);
 }
 
 }  // namespace

@@ -16,8 +16,9 @@
 namespace spoonbill {
 namespace {
 
-// Largest allowed penetration of a surface and a mesh, in cells of the coarser of their two lattices.
-constexpr double mesh_depth_limit_cells = 0.02;
+// Largest allowed penetration of a surface and a mesh, in cells of the coarser of their two lattices. Most of
+// it is what the control net of the surface does not reproduce; a mesh follows its lattice exactly.
+constexpr double mesh_depth_limit_cells = 0.035;
 
 SoftTool flesh(int nodes, double grip_m = 0.001) {
   return {silicone(), {nodes, {}}, {Vector3(0, grip_m, 0), -Vector3::UnitY()}};
@@ -243,6 +244,32 @@ TEST(SoftMesh, FollowsTheHandAsARigidOneDoes) {
       EXPECT_LT(distance_from_rigid_ball(simulation, snapshot.tool.proxy), 1e-6) << tick;
     }
   }
+}
+
+// The body holds the tool away from the hand. A change of the tool must not push it into the body.
+TEST(SoftMesh, StaysWhereItIsWhenTheToolChanges) {
+  Simulation simulation = simulate(held_soft_handle(soft_tool(ball(), flesh(300))));
+  const auto press = [&](int ticks, double coupling_n_per_m) {
+    for (int tick = 0; tick < ticks; ++tick) {
+      simulation.advance({{Vector3(0.018, 0.0065, 0.0), Quaternion::Identity()}, false, coupling_n_per_m});
+    }
+  };
+  const auto proxy = [&] {
+    Snapshot snapshot;
+    simulation.write_snapshot(snapshot);
+    return snapshot.tool.proxy;
+  };
+  for (int tick = 0; tick < 200; ++tick) {
+    simulation.advance({{Vector3(0.018, 0.0095 - 1.5e-5 * tick, 0.0), Quaternion::Identity()}, false, 100.0});
+  }
+  press(200, 100.0);
+  const double held_m = proxy().position_m.y();
+  ASSERT_GT(held_m, 0.0072);
+  Tool tool = simulation.scene().tool;
+  tool.substeps += 1;
+  ASSERT_TRUE(simulation.apply(SetTool{tool}).ok());
+  press(1, 100.0);
+  EXPECT_NEAR(proxy().position_m.y(), held_m, 1e-4);
 }
 
 TEST(SoftMesh, IsExchangedHashedAndLeftOutOfUndo) {
