@@ -150,16 +150,16 @@ float speed_cap(const SpringLattice& lattice, float h) {
          std::max({h, longest, lattice.damping_time_s()});
 }
 
-// Limits the nodes' speeds relative to the velocity `frame` and moves the nodes.
+// Limits the nodes' speeds relative to the velocity `mean` and moves the nodes.
 Drifted drift(const SpringLattice& lattice, const LatticeView& view, float h, float cap,
-              const Vector3& frame) {
+              const Vector3& mean) {
   Drift drift;
   drift.h_s = h;
   drift.cap_m_per_s = cap;
   drift.tau_s = lattice.damping_time_s();
-  drift.mean_x = static_cast<float>(frame.x());
-  drift.mean_y = static_cast<float>(frame.y());
-  drift.mean_z = static_cast<float>(frame.z());
+  drift.mean_x = static_cast<float>(mean.x());
+  drift.mean_y = static_cast<float>(mean.y());
+  drift.mean_z = static_cast<float>(mean.z());
   return lattice.kernels().drift(view, drift);
 }
 

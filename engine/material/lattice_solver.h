@@ -95,9 +95,8 @@ struct TouchingTool {
 // lattices have implicit solvers, a tick takes one substep.
 //
 // In each substep the tools act in their order, then bodies on each other, then the ground. A soft tool moves
-// after the bodies have acted on it. A tool that
-// touches only implicitly stepped lattices acts once, at the start of the tick. The caller must flush
-// denormals for speed (see DenormalsFlushed).
+// after the bodies have acted on it. A tool that touches only implicitly stepped lattices acts once, at the
+// start of the tick. The caller must flush denormals for speed (see DenormalsFlushed).
 RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,
                   std::span<const TouchingTool> tools, BodyContacts* between = nullptr,
                   GroundContacts* ground = nullptr);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/base/assert.h"
 
@@ -54,8 +55,8 @@ bool resolve_shell_gap(const ShellOrSolid& of, const ShellOrSolid& other, double
 
 namespace {
 
-// A point of a surface as contacts use it. `fit_error_m` is the displacement of the embedded point minus that
-// of the point on the surface, whose control net does not reproduce every displacement of its lattice; it is
+// A point of a surface as contacts use it. `fit_error_m` is the position of the embedded point minus that of
+// the point on the surface, whose control net does not reproduce every displacement of its lattice; it is
 // limited (see largest_fit_error_cells). Gaps measured on surfaces are corrected by it, so that a push
 // changes the gap that caused it. Without the correction, bodies would never come to rest on each other.
 struct SkinPoint {
@@ -63,18 +64,35 @@ struct SkinPoint {
   Vector3 fit_error_m;
 };
 
-SkinPoint find_skin_point(const IndexedBody& body, double u, double v, const EmbeddedPoint& embedding) {
-  const BodyMapping& mapping = body.state->mapping();
+SkinPoint make_skin_point(const IndexedBody& body, const EmbeddedPoint& embedding, const Vector3& error_m) {
   const SpringLattice& lattice = body.state->lattice;
-  const Vector3 of_surface = position(mapping.current(), u, v) - position(mapping.rest(), u, v);
-  const Vector3 error_m = embedding.displacement_m(lattice) - of_surface;
   const double most_m = largest_fit_error_cells * static_cast<double>(lattice.cell_size_m());
   const double size_m = error_m.norm();
   return {{body.index, &lattice, embedding}, (size_m > most_m ? most_m / size_m : 1.0) * error_m};
 }
 
+// `point_m` is the position of the sample on the surface.
+SkinPoint find_skin_sample(const IndexedBody& body, int sample, const Vector3& point_m) {
+  const EmbeddedPoint& embedding = body.state->mapping().sample(sample);
+  return make_skin_point(body, embedding, embedding.position_m(body.state->lattice) - point_m);
+}
+
+// Between samples, the embedded point is beside the surface even in the rest shape, because its embedding is
+// a blend of those of the samples around it. This offset along the normal is not an error, and turns with the
+// surface.
 SkinPoint find_skin_point(const IndexedBody& body, double u, double v) {
-  return find_skin_point(body, u, v, body.state->mapping().at(u, v));
+  const BodyMapping& mapping = body.state->mapping();
+  const SpringLattice& lattice = body.state->lattice;
+  const EmbeddedPoint embedding = mapping.at(u, v);
+  const Vector3 rest_offset_m = embedding.rest_m(lattice) - position(mapping.rest(), u, v);
+  const Vector3 offset_m = embedding.position_m(lattice) - position(mapping.current(), u, v);
+  const double height_m = rest_offset_m.dot(unit_normal(mapping.rest(), u, v));
+  return make_skin_point(body, embedding, offset_m - height_m * unit_normal(mapping.current(), u, v));
+}
+
+SkinPoint find_own_skin_point(const IndexedBody& body, const NearPoint& near) {
+  return near.sample >= 0 ? find_skin_sample(body, near.sample, near.point_m)
+                          : find_skin_point(body, near.u, near.v);
 }
 
 std::pair<double, double> find_sample_parameters(const BodyMapping& mapping, int sample) {
@@ -94,7 +112,7 @@ bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::
   bool complete = true;
   for (const NearPoint& near : points) {
     if (near.sample < 0 && near.lead_m < least_lead_m) continue;
-    const SkinPoint own = find_skin_point(from, near.u, near.v, find_embedding(from.state->mapping(), near)),
+    const SkinPoint own = find_own_skin_point(from, near),
                     other = find_skin_point(to, near.other_u, near.other_v);
     const double gap_m = near.gap_m + near.normal.dot(own.fit_error_m - other.fit_error_m);
     complete &= contacts.add(own.point, other.point, near.normal, gap_m, near.sample);
@@ -118,7 +136,7 @@ bool add_contacts_of(const IndexedBody& first, const IndexedBody& second, const 
   bool complete = true;
   for (const SampleNearMesh& near : proximity.surface_samples()) {
     const auto [u, v] = find_sample_parameters(surface, near.sample);
-    const SkinPoint own = find_skin_point(first, u, v, surface.sample(near.sample));
+    const SkinPoint own = find_skin_sample(first, near.sample, position(surface.current(), u, v));
     complete &=
         contacts.add(own.point, {second.index, &second.state->lattice, mesh.at(near.mesh.on)},
                      near.mesh.normal, near.mesh.gap_m + near.mesh.normal.dot(own.fit_error_m), near.sample);

@@ -54,6 +54,8 @@ Status CommandApplier::operator()(const SetTool& command) {
   const Tool& tool = command.tool;
   if (Status status = check_changes(tool); !status.ok()) return status;
   if (Status status = check_tool_and_symmetry(tool, state.scene.symmetry); !status.ok()) return status;
+  const bool stays_soft =
+      state.tool_is_soft() && tool.kind == ToolKind::solid && tool.body == state.scene.tool.body;
   if (tool.kind == ToolKind::solid && tool.body != state.retired_bodies.back()) {
     Result<ToolModel> model = make_tool_model(tool, state.set);
     if (!model.ok()) return model.error();
@@ -62,7 +64,7 @@ Status CommandApplier::operator()(const SetTool& command) {
   }
   state.scene.tool = tool;
   update_inertia(state);
-  if (state.tool_is_soft()) state.tool.lattice_placed = false;
+  if (!stays_soft) state.tool.lattice_placed = false;
   release();
   return {};
 }

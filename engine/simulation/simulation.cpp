@@ -399,8 +399,9 @@ void write_symmetry(const Simulation::State& s, Snapshot& snapshot) {
 void Simulation::write_snapshot(Snapshot& snapshot) const {
   const State& s = *state_;
   snapshot.tick = s.tick;
-  // A soft tool has no position before the first tick.
-  const std::size_t drawn = s.tool.lattice_placed ? s.stepped_count() : s.scene.bodies.size();
+  // A soft tool has no position before the first tick after it appears.
+  const std::size_t drawn =
+      s.tool.placed && s.tool.lattice_placed ? s.stepped_count() : s.scene.bodies.size();
   write_bodies({s.bodies.data(), drawn}, s.scene, snapshot.bodies);
   snapshot.tool.kind = s.scene.tool.kind;
   snapshot.tool.action = s.scene.tool.action;

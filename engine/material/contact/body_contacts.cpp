@@ -46,6 +46,16 @@ double mutual_friction(const BodyPoint& first, const BodyPoint& second) {
   return std::min(first.point.friction(*first.lattice), second.point.friction(*second.lattice));
 }
 
+// Limits a contact force of the last tick to what push and friction allow with the present normal. A force
+// that pulls or is not a number becomes zero.
+Vector3 limit_to_cone(const Vector3& force_n, const Vector3& normal, double friction) {
+  const double push_n = force_n.dot(normal);
+  if (!(push_n > 0.0) || !force_n.allFinite()) return Vector3::Zero();
+  const Vector3 drag_n = force_n - push_n * normal;
+  const double most_n = friction * push_n, size_n = drag_n.norm();
+  return push_n * normal + (size_n > most_n ? most_n / size_n : 1.0) * drag_n;
+}
+
 }  // namespace
 
 BodyContacts::BodyContacts(int capacity)
@@ -88,8 +98,9 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
            .friction = mutual_friction(first, second),
            .moved_by = by_solvers ? MovedBy::solvers : MovedBy::springs,
            .sample = sample};
-  if (sample >= 0) added.force_n = kept_.find(added.key(), Vector3::Zero());
-  if (added.force_n.dot(normal) < 0.0) added.force_n.setZero();
+  if (sample >= 0) {
+    added.force_n = limit_to_cone(kept_.find(added.key(), Vector3::Zero()), normal, added.friction);
+  }
   return true;
 }
 
@@ -142,7 +153,10 @@ void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& cons
   const LatticeView& first = lattices[constraint.first_body];
   const LatticeView& second = lattices[constraint.second_body];
   const double compliance = constraint.compliance + mutual_frame_compliance(first, second);
-  if (compliance == 0.0) return;
+  if (compliance == 0.0) {
+    constraint.force_n.setZero();
+    return;
+  }
   const Vector3 apart = constraint.first.displacement_m(first) - constraint.second.displacement_m(second);
   const Vector3 relative =
       constraint.first.velocity_m_per_s(first) - constraint.second.velocity_m_per_s(second);

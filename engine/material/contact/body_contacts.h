@@ -34,8 +34,8 @@ class BodyContacts {
   void forget();
   // Adds a constraint that keeps the first point on one side of the second: the side to which the unit vector
   // `normal` points. `gap_m` is the present distance of the first point beyond the second along `normal`,
-  // negative for a penetration. It must be the distance of the points that the lattices move: with another
-  // gap, contacts would generate energy. Both points may be of the same body and share nodes. Returns false
+  // negative for a penetration. It should be the distance of the points that the lattices move: with other
+  // gaps, contacts generate energy. Both points may be of the same body and share nodes. Returns false
   // when full. `sample` is the number of the first point among the samples or vertices of its body; push and
   // friction then start from the force of the last tick. For a point that differs in every tick, `sample` is
   // -1, and the force starts from zero.
@@ -58,9 +58,9 @@ class BodyContacts {
     }
   }
 
-  // Pushes with the forces of the last substep. Leaves out the constraints between two implicitly stepped
-  // lattices, whose solvers already include the impulses of visit_known_impulses(). Call after the kick of a
-  // substep of h_s.
+  // Acts with the forces of the last substep, friction included. Leaves out the constraints between two
+  // implicitly stepped lattices, whose solvers already include the impulses of visit_known_impulses(). Call
+  // after the kick of a substep of h_s.
   void start(std::span<const LatticeView> lattices, double h_s);
   // Solves each constraint of the kind pass.moved_by once. Call after start() and before the drift of a
   // substep of h_s. A reversed pass solves the last constraint first.
