@@ -310,7 +310,7 @@ bool is_soft(const TouchingTool& tool) {
   return tool.motion.carried.body >= 0;
 }
 
-// Returns the tool that is soft; null if there is none. At most one tool is soft.
+// Returns the soft tool, or null if all tools are rigid. At most one tool is soft.
 const TouchingTool* find_soft_tool(std::span<const TouchingTool> tools) {
   const auto found = std::find_if(tools.begin(), tools.end(), is_soft);
   return found == tools.end() ? nullptr : &*found;

@@ -164,9 +164,7 @@ std::optional<SurfaceSpot> find_deepest(const std::vector<SampleNearMesh>& sampl
                                           return one.mesh.gap_m < other.mesh.gap_m;
                                         });
   if (deepest == samples.end()) return std::nullopt;
-  const Grid& grid = mapping.nested().grid;
-  const double u = grid.u.parameters[deepest->sample / grid.columns()],
-               v = grid.v.parameters[deepest->sample % grid.columns()];
+  const auto [u, v] = find_sample_parameters(mapping, deepest->sample);
   return SurfaceSpot{u, v, evaluate(mapping.current(), u, v).position_m, deepest->mesh.gap_m};
 }
 
@@ -186,11 +184,10 @@ void drop_trimmed_points(SurfaceProximity& proximity, const BodyState& first, co
 
 void drop_trimmed_points(MeshProximity& proximity, const BodyState& body) {
   if (!body.trim) return;
-  const Grid& grid = body.mapping().nested().grid;
   proximity.keep_if(
       [&](const SampleNearMesh& near) {
-        return is_untrimmed(body, grid.u.parameters[near.sample / grid.columns()],
-                            grid.v.parameters[near.sample % grid.columns()]);
+        const auto [u, v] = find_sample_parameters(body.mapping(), near.sample);
+        return is_untrimmed(body, u, v);
       },
       [&](const VertexNearSurface& near) { return is_untrimmed(body, near.u, near.v); });
 }
@@ -214,11 +211,9 @@ void find_near_points(MeshProximity& proximity, const BodyState& first, const Bo
   proximity.find(surface, mesh, margin + thickness);
   drop_trimmed_points(proximity, first);
   if (!(thickness > 0.0)) return;
-  const Grid& grid = first.mapping().nested().grid;
   proximity.keep_if(
       [&](SampleNearMesh& near) {
-        const double u = grid.u.parameters[near.sample / grid.columns()],
-                     v = grid.v.parameters[near.sample % grid.columns()];
+        const auto [u, v] = find_sample_parameters(first.mapping(), near.sample);
         near.mesh.gap_m -= far_face_offset_m(thickness, unit_normal(surface, u, v), near.mesh.normal);
         return near.mesh.gap_m <= margin;
       },

@@ -353,14 +353,8 @@ Result<BodyMapping> BodyMapping::refine_at(double u, double v, const SpringLatti
 }
 
 EmbeddedPoint BodyMapping::at(double u, double v) const {
-  const auto cell = [](const std::vector<double>& parameters, double value) {
-    const auto upper = std::upper_bound(parameters.begin(), parameters.end(), value);
-    const auto at = std::clamp<std::ptrdiff_t>(upper - parameters.begin() - 1, 0,
-                                               static_cast<std::ptrdiff_t>(parameters.size()) - 2);
-    return static_cast<int>(at);
-  };
   const Grid& grid = nested_->grid;
-  const int i = cell(grid.u.parameters, u), j = cell(grid.v.parameters, v);
+  const int i = grid.u.find_cell(u), j = grid.v.find_cell(v);
   const double a = (u - grid.u.parameters[i]) / (grid.u.parameters[i + 1] - grid.u.parameters[i]);
   const double b = (v - grid.v.parameters[j]) / (grid.v.parameters[j + 1] - grid.v.parameters[j]);
   const int first = i * grid.columns() + j;

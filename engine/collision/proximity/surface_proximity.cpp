@@ -152,13 +152,8 @@ bool NearPoints::is_local_deepest(const NearPoint& near) const {
 }
 
 double NearPoints::smallest_gap_around(double u, double v) const {
-  const auto cell = [](const std::vector<double>& parameters, double value) {
-    const auto upper = std::upper_bound(parameters.begin(), parameters.end(), value);
-    return static_cast<int>(std::clamp<std::ptrdiff_t>(upper - parameters.begin() - 1, 0,
-                                                       static_cast<std::ptrdiff_t>(parameters.size()) - 2));
-  };
   const Grid& grid = levels_.nested().grid;
-  const int row = cell(grid.u.parameters, u), column = cell(grid.v.parameters, v);
+  const int row = grid.u.find_cell(u), column = grid.v.find_cell(v);
   double smallest = infinity;
   for (int corner = 0; corner < 4; ++corner) {
     const int sample = (row + (corner >> 1)) * grid.columns() + column + (corner & 1);
