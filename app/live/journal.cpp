@@ -9,6 +9,7 @@
 
 #include "app/files/content_hash.h"
 #include "app/files/conversion.h"
+#include "app/session/session.h"
 #include "engine/exchange/json.h"
 
 namespace spoonbill {

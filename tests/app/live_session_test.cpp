@@ -53,20 +53,22 @@ void wait_ticks(LiveSession& live, std::uint64_t ticks) {
   EXPECT_TRUE(wait_for(live, [&](const LiveFrame& frame) { return frame.snapshot.tick >= from + ticks; }));
 }
 
-// Presses the end of the handle down and releases it.
-void stroke(Live& live) {
-  live.aim(at(0.05, 0.0));
-  ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.facts.in_stroke; }));
-  wait_ticks(*live, 60);
-  live.aim(at(0.05, 0.03));
-  ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return !frame.facts.in_stroke; }));
-}
-
 double tip_height_m(const LiveFrame& frame) {
   const LatticeSnapshot& lattice = frame.snapshot.bodies[0].lattice;
   double lowest = 1.0;
   for (const float y : lattice.y) lowest = std::min(lowest, static_cast<double>(y));
   return lowest;
+}
+
+// Presses the end of the handle down by more than a millimetre, for 60 ticks at least, and releases it.
+void stroke(Live& live) {
+  const double before = tip_height_m(live->frame());
+  live.aim(at(0.05, 0.0));
+  ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.facts.in_stroke; }));
+  wait_ticks(*live, 60);
+  ASSERT_TRUE(wait_for(*live, [&](const LiveFrame& frame) { return tip_height_m(frame) < before - 1e-3; }));
+  live.aim(at(0.05, 0.03));
+  ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return !frame.facts.in_stroke; }));
 }
 
 TEST(LiveSession, AStrokeIsUndoneAndRedone) {
