@@ -162,8 +162,23 @@ double NearPoints::smallest_gap_around(double u, double v) const {
   return smallest;
 }
 
+double NearPoints::find_spacing_m(int sample) {
+  const Grid& grid = levels_.nested().grid;
+  const int row = sample / grid.columns(), column = sample % grid.columns();
+  const Vector3 here = levels_.sample(sample);
+  double square = 0.0;
+  for (int i = std::max(0, row - 1); i <= std::min(row + 1, grid.rows() - 1); ++i) {
+    for (int j = std::max(0, column - 1); j <= std::min(column + 1, grid.columns() - 1); ++j) {
+      square = std::max(square, (levels_.sample(i * grid.columns() + j) - here).squaredNorm());
+    }
+  }
+  return std::sqrt(square);
+}
+
 // Starts a search on the exact surfaces from each sample that is deeper than its neighbours. deepest_pair()
-// can also start at points in front of the other surface, where the depth is negative.
+// can also start at points in front of the other surface, where the depth is negative. A search that ends
+// beyond the neighbours has found another place, such as a pair of points far from each other whose
+// connection is normal to both surfaces.
 void NearPoints::add_between_samples(const NearPoints& other, double outside) {
   SPOONBILL_ASSERT(std::abs(outside) == 1.0);
   const std::size_t samples = near_.size();
@@ -178,6 +193,7 @@ void NearPoints::add_between_samples(const NearPoints& other, double outside) {
     const DeepestPair deepest =
         deepest_pair(levels_.pieces(), other.levels().pieces(), {near.u, near.v, near.other_u, near.other_v},
                      outside, infinity, &budget_);
+    if ((deepest.pair.first_m - near.point_m).norm() > find_spacing_m(near.sample)) continue;
     const PairParameters& at = deepest.pair.at;
     const double gap_m = -deepest.depth_m;
     const double around_m =

@@ -88,6 +88,8 @@ class NearPoints {
 
  private:
   bool is_local_deepest(const NearPoint& near) const;
+  // Returns the largest distance of a sample of the grid from the samples around it, m.
+  double find_spacing_m(int sample);
 
   SurfaceLevels levels_;
   std::vector<int> index_;                 // for each sample, its index in near_
