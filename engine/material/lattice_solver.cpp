@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "engine/base/assert.h"
 #include "engine/material/springs/spring_lattice.h"
@@ -101,6 +102,7 @@ constexpr std::uint64_t creep_pause = 8;
 struct Substeps {
   int count;
   bool slowed;
+  int slowed_lattice = -1;
 };
 
 Substeps choose_substeps(const SpringLattice& lattice, const RelaxSettings& settings) {
@@ -192,7 +194,10 @@ struct Relaxation {
   Vector3 frame_m = Vector3::Zero();
 
   std::size_t count() const { return lattices.size(); }
-  bool has_springs(std::size_t at) const { return lattices[at].implicit_solver == nullptr; }
+  // A lattice is moved by an implicit solver, by a prescribed motion, or by its springs.
+  bool has_solver(std::size_t at) const { return lattices[at].implicit_solver != nullptr; }
+  bool is_rigid(std::size_t at) const { return lattices[at].rigid_motion != nullptr; }
+  bool has_springs(std::size_t at) const { return !has_solver(at) && !is_rigid(at); }
   SpringLattice& lattice(std::size_t at) const { return *lattices[at].lattice; }
 };
 
@@ -231,10 +236,10 @@ void kick(Relaxation& relaxation, const Substep& substep) {
 }
 
 // Returns true if the tool has a constraint on a lattice of the given kind: one stepped explicitly by its
-// springs if `springs` is true, otherwise one stepped by an implicit solver.
+// springs, or rigid, if `springs` is true, otherwise one stepped by an implicit solver.
 bool touches(const Relaxation& relaxation, const TouchingTool& tool, bool springs) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
-    if (relaxation.has_springs(at) == springs && tool.contacts->has_constraint_on(static_cast<int>(at))) {
+    if (relaxation.has_solver(at) != springs && tool.contacts->has_constraint_on(static_cast<int>(at))) {
       return true;
     }
   }
@@ -262,7 +267,7 @@ struct Response {
 Response find_response(const Relaxation& relaxation) {
   Response found;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
-    if (relaxation.has_springs(at)) continue;
+    if (!relaxation.has_solver(at)) continue;
     const auto response = relaxation.lattices[at].implicit_solver->find_response(relaxation.lattice(at));
     found.responds[at] = response.work_j > 0.0;
     found.assumed_work_j += response.assumed_work_j;
@@ -354,11 +359,17 @@ void move_soft_tool(Relaxation& relaxation, const TouchingTool& tool) {
   }
 }
 
+// Returns the largest speed with which contacts may correct an overlap of each lattice.
+std::array<float, lattice_capacity> find_push_caps(const Relaxation& relaxation) {
+  std::array<float, lattice_capacity> caps{};
+  for (std::size_t at = 0; at < relaxation.count(); ++at) caps[at] = 0.5f * relaxation.cap[at];
+  return caps;
+}
+
 void solve_contacts(Relaxation& relaxation, const Substep& substep, std::span<const TouchingTool> tools,
                     BodyContacts* between, GroundContacts* ground) {
   const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
-  std::array<float, lattice_capacity> push_caps{};
-  for (std::size_t at = 0; at < relaxation.count(); ++at) push_caps[at] = 0.5f * relaxation.cap[at];
+  const std::array<float, lattice_capacity> push_caps = find_push_caps(relaxation);
   const auto h = static_cast<double>(substep.h);
   for (const TouchingTool& tool : tools) solve_tool(relaxation, tool, substep, push_caps);
   const TouchingTool* const soft = find_soft_tool(tools);
@@ -387,6 +398,40 @@ void move_supported_nodes(Relaxation& relaxation, double fraction) {
     const float square = move_supported_nodes(relaxation.lattices[at].supports, relaxation.view[at], fraction,
                                               relaxation.lattice(at).damping_time_s());
     relaxation.drifted[at].moved_square = std::max(relaxation.drifted[at].moved_square, square);
+  }
+}
+
+// Returns the displacement of a node of a rigid body whose rest position is `rest_m`.
+Vector3 rigid_displacement(const Pose& pose, const Vector3& rest_m) {
+  return pose.position_m + pose.orientation * rest_m - rest_m;
+}
+
+// Sets the velocities of the nodes of rigid bodies for the tick.
+void begin_rigid_motions(const Relaxation& relaxation) {
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    if (!relaxation.is_rigid(at)) continue;
+    const RigidMotion& motion = *relaxation.lattices[at].rigid_motion;
+    const std::vector<Vector3>& nodes = relaxation.lattice(at).mesh().nodes;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      const Vector3 moved =
+          rigid_displacement(motion.end, nodes[n]) - rigid_displacement(motion.start, nodes[n]);
+      set_velocity(relaxation.view[at], static_cast<int>(n), moved / relaxation.time_s);
+    }
+  }
+}
+
+// Moves the nodes of rigid bodies to `fraction` of their motion in the tick. They move along straight lines,
+// as their velocities say.
+void move_rigid_bodies(const Relaxation& relaxation, double fraction) {
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    if (!relaxation.is_rigid(at) || !relaxation.lattices[at].rigid_motion->moves) continue;
+    const RigidMotion& motion = *relaxation.lattices[at].rigid_motion;
+    const std::vector<Vector3>& nodes = relaxation.lattice(at).mesh().nodes;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      const Vector3 start = rigid_displacement(motion.start, nodes[n]);
+      const Vector3 end = rigid_displacement(motion.end, nodes[n]);
+      set_node_displacement(relaxation.view[at], static_cast<int>(n), start + fraction * (end - start), 0.0f);
+    }
   }
 }
 
@@ -439,18 +484,17 @@ void drift_with_solver(const LatticeView& view, float h) {
   }
 }
 
-// Moves the nodes of all lattices. Returns true if a node reached the speed cap.
-bool drift(Relaxation& relaxation, float h) {
-  bool capped = false;
+// Moves the nodes of all lattices. Returns the index of a lattice of which a node reached the speed cap, or
+// -1.
+int drift(Relaxation& relaxation, float h) {
+  int capped = -1;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
-    if (!relaxation.has_springs(at)) {
-      drift_with_solver(relaxation.view[at], h);
-      continue;
-    }
+    if (relaxation.has_solver(at)) drift_with_solver(relaxation.view[at], h);
+    if (!relaxation.has_springs(at)) continue;
     const Vector3 mean = find_mean_velocity(relaxation, at);
     relaxation.drifted[at] = drift(relaxation.lattice(at), relaxation.view[at], h, relaxation.cap[at], mean);
     if (!(relaxation.drifted[at].speed_square > 1.0f)) continue;
-    capped = true;
+    capped = static_cast<int>(at);
     if (!relaxation.lattice(at).has_fixed_nodes()) {
       restore_momentum(relaxation.lattice(at), relaxation.view[at], mean);
     }
@@ -463,7 +507,9 @@ Substeps choose_substeps(const Relaxation& relaxation, const RelaxSettings& sett
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) continue;
     const Substeps required = choose_substeps(relaxation.lattice(at), settings);
-    most = {std::max(most.count, required.count), most.slowed || required.slowed};
+    if (required.slowed) most.slowed_lattice = static_cast<int>(at);
+    most.count = std::max(most.count, required.count);
+    most.slowed = most.slowed || required.slowed;
   }
   return most;
 }
@@ -476,6 +522,15 @@ void stabilise_strained_nodes(Relaxation& relaxation, float h) {
         lattice.stabilise_strained_nodes(h, static_cast<float>(stability_fraction));
     // The velocities have changed, and the linearisation depends on them.
     linearise(lattice, relaxation.view[at], Linearised::tangents);
+  }
+}
+
+// Moves overlapping bodies apart. Call after everything else has moved them in the substep.
+void separate_bodies(const Relaxation& relaxation, BodyContacts& between, float h) {
+  between.separate({relaxation.view.data(), relaxation.count()}, static_cast<double>(h),
+                   find_push_caps(relaxation));
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    if (relaxation.has_springs(at)) join_seam_positions(relaxation.view[at]);
   }
 }
 
@@ -543,7 +598,7 @@ void choose_drag(Relaxation& relaxation, const RelaxSettings& settings) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     double& drag = relaxation.drag_per_s[at];
     drag = settings.drag_per_s;
-    if (!settings.is_critically_damped) continue;
+    if (!settings.is_critically_damped || relaxation.is_rigid(at)) continue;
     const double quotient = relaxation.has_springs(at)
                                 ? rayleigh_quotient(relaxation.lattice(at), relaxation.view[at])
                                 : relaxation.lattices[at].implicit_solver->rayleigh_quotient();
@@ -602,11 +657,14 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   RelaxReport report;
   report.substeps = substeps.count;
   report.nodes_slowed = substeps.slowed;
+  report.at_fault = substeps.slowed_lattice;
   const float h = static_cast<float>(settings.time_s / substeps.count);
   for (std::size_t at = 0; at < lattices.size(); ++at) {
-    relaxation.cap[at] = speed_cap(relaxation.lattice(at), h);
+    relaxation.cap[at] = relaxation.is_rigid(at) ? std::numeric_limits<float>::infinity()
+                                                 : speed_cap(relaxation.lattice(at), h);
   }
   report.speed_capped = begin_supports(relaxation);
+  begin_rigid_motions(relaxation);
   begin_implicit_steps(relaxation, between, ground);
   for (const TouchingTool& tool : tools) tool.contacts->begin(tool.motion, settings.time_s);
   const TouchingTool* const soft = find_soft_tool(tools);
@@ -619,9 +677,14 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     const Substep substep{s, substeps.count, h};
     kick(relaxation, substep);
     solve_contacts(relaxation, substep, tools, between, ground);
-    report.speed_capped |= drift(relaxation, h);
+    if (const int capped = drift(relaxation, h); capped >= 0) {
+      report.speed_capped = true;
+      report.at_fault = capped;
+    }
     if (soft) move_soft_tool(relaxation, *soft);
     move_supported_nodes(relaxation, static_cast<double>(s + 1) / substeps.count);
+    move_rigid_bodies(relaxation, static_cast<double>(s + 1) / substeps.count);
+    if (between) separate_bodies(relaxation, *between, h);
   }
   end_implicit_steps(relaxation, ground);
   if (flows) flow(relaxation);

@@ -64,6 +64,13 @@ struct RelaxSettings {
   bool is_critically_damped = false;  // true if each body is critically damped, see critical_damping_per_s()
 };
 
+// Prescribed motion of a rigid body through a tick. The poses map the rest position of a node to its
+// position.
+struct RigidMotion {
+  Pose start, end;
+  bool moves = false;  // false if both poses are the same
+};
+
 // A lattice that relax() advances, with its solver, supports and gravity. Pointers must stay valid during the
 // call.
 struct RelaxedLattice {
@@ -72,6 +79,9 @@ struct RelaxedLattice {
   // Implicit solver that advances the lattice; null if the lattice is advanced explicitly by its springs.
   ImplicitSolver* implicit_solver = nullptr;
   std::span<SupportedNodes> supports = {};
+  // Motion of a rigid body; null for a deformable body. The lattice of a rigid body is the frame to which its
+  // surface is attached (rigid_frame()). All of its nodes are fixed, and they follow the motion.
+  const RigidMotion* rigid_motion = nullptr;
 };
 
 // Results of relax() for one tick.
@@ -79,6 +89,7 @@ struct RelaxReport {
   int substeps = 0;           // number of substeps in the tick
   bool nodes_slowed = false;  // true if strain required more substeps than the ceiling allows
   bool speed_capped = false;
+  int at_fault = -1;  // index of a lattice that was slowed or capped, or -1
 };
 
 // A tool that acts on the lattices: the motion that the hand prescribes, its state and its contacts in the

@@ -11,9 +11,14 @@ namespace {
 
 // Pace of contacts between bodies. The surfaces are fitted to the samples in each tick, so they may move
 // slightly more or less than the constrained points. Closing at most half of a gap in a substep leaves a
-// margin for this difference. A push starts from the force of the last substep, so a moderate rate of
-// correction suffices; a faster one would shake bodies at rest.
-constexpr ContactPace body_pace{0.5, 400.0};
+// margin for this difference. An overlap is corrected by separate(), which leaves velocities alone.
+constexpr ContactPace body_pace{0.5, 0.0};
+// Pace of contacts that separate() cannot correct, because no point is moved by springs.
+constexpr ContactPace solver_pace{0.5, 400.0};
+
+// Rate at which separate() corrects an overlap. Points that push the same nodes correct together, so the part
+// of an overlap that is corrected in a substep must be small.
+constexpr double separation_per_s = 600.0, max_separation = 0.1;
 
 // Returns the relative velocity change of two points per impulse between them, 1/kg. Within one body, the
 // impulses overlap in the nodes that both points use.
@@ -61,6 +66,7 @@ Vector3 limit_to_cone(const Vector3& force_n, const Vector3& normal, double fric
 BodyContacts::BodyContacts(int capacity)
     : constraints_(static_cast<std::size_t>(capacity)), kept_(constraints_.size()) {
   SPOONBILL_ASSERT(capacity >= 0);
+  impulse_ns_.fill(Vector3::Zero());
 }
 
 void BodyContacts::clear() {
@@ -84,16 +90,29 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
   SPOONBILL_ASSERT_DEBUG(first.lattice != nullptr && second.lattice != nullptr);
   SPOONBILL_ASSERT_DEBUG(std::abs(normal.squaredNorm() - 1.0) < 1e-5);
   if (count_ == static_cast<int>(constraints_.size())) return false;
-  const bool by_solvers = first.lattice->moved_by_solver() && second.lattice->moved_by_solver();
+  // A rigid body next to an implicitly stepped one counts as such a one.
+  const auto has_springs = [](const BodyPoint& point) {
+    return !point.lattice->moved_by_solver() && !point.lattice->mesh().is_frame;
+  };
+  const bool by_solvers = !has_springs(first) && !has_springs(second);
   const double moved =
       normal.dot(first.point.displacement_m(*first.lattice) - second.point.displacement_m(*second.lattice));
+  const bool separates_first = !first.lattice->moved_by_solver();
+  const bool separates_second = !second.lattice->moved_by_solver();
+  const double compliance = mutual_compliance(first, second);
   Constraint& added = constraints_[count_++];
   added = {.first_body = first.body,
            .second_body = second.body,
            .first = first.point,
            .second = second.point,
            .normal = normal,
-           .compliance = mutual_compliance(first, second),
+           .compliance = compliance,
+           .separation_compliance = separates_first && separates_second ? compliance
+                                    : separates_first  ? first.point.compliance(*first.lattice)
+                                    : separates_second ? second.point.compliance(*second.lattice)
+                                                       : 0.0,
+           .separates_first = separates_first,
+           .separates_second = separates_second,
            .base_m = gap_m - moved,
            .friction = mutual_friction(first, second),
            .moved_by = by_solvers ? MovedBy::solvers : MovedBy::springs,
@@ -106,6 +125,19 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
 
 void BodyContacts::begin() {
   for (int c = 0; c < count_; ++c) constraints_[c].acted = false;
+  impulse_ns_.fill(Vector3::Zero());
+}
+
+Vector3 BodyContacts::impulse_ns(int body, double time_s) const {
+  SPOONBILL_ASSERT(body >= 0 && body < lattice_capacity);
+  Vector3 sum = impulse_ns_[static_cast<std::size_t>(body)];
+  for (int c = 0; c < count_; ++c) {
+    const Constraint& constraint = constraints_[c];
+    if (constraint.moved_by != MovedBy::solvers) continue;
+    if (constraint.first_body == body) sum += time_s * constraint.force_n;
+    if (constraint.second_body == body) sum -= time_s * constraint.force_n;
+  }
+  return sum;
 }
 
 bool BodyContacts::has_constraint_between_solvers() const {
@@ -125,6 +157,10 @@ void BodyContacts::push(std::span<const LatticeView> lattices, Constraint& const
                         const Vector3& impulse) {
   constraint.first.push(lattices[constraint.first_body], impulse);
   constraint.second.push(lattices[constraint.second_body], -impulse);
+  if (constraint.moved_by == MovedBy::springs) {
+    impulse_ns_[static_cast<std::size_t>(constraint.first_body)] += impulse;
+    impulse_ns_[static_cast<std::size_t>(constraint.second_body)] -= impulse;
+  }
   constraint.acted = true;
 }
 
@@ -135,6 +171,26 @@ void BodyContacts::pass(std::span<const LatticeView> lattices, const ContactPass
     if (constraint.moved_by != pass.moved_by) continue;
     const auto cap = static_cast<double>(std::min(caps[constraint.first_body], caps[constraint.second_body]));
     solve(lattices, constraint, pass.h_s, cap);
+  }
+}
+
+void BodyContacts::separate(std::span<const LatticeView> lattices, double h_s,
+                            std::span<const float> caps_m_per_s) {
+  const double part = std::min(max_separation, separation_per_s * h_s);
+  for (int c = 0; c < count_; ++c) {
+    const Constraint& constraint = constraints_[c];
+    if (!(constraint.separation_compliance > 0.0)) continue;
+    const auto first = static_cast<std::size_t>(constraint.first_body);
+    const auto second = static_cast<std::size_t>(constraint.second_body);
+    const Vector3 apart =
+        constraint.first.displacement_m(lattices[first]) - constraint.second.displacement_m(lattices[second]);
+    const double gap_m = constraint.base_m + constraint.normal.dot(apart);
+    if (!(gap_m < 0.0)) continue;
+    const double cap = static_cast<double>(std::min(caps_m_per_s[first], caps_m_per_s[second]));
+    const double speed = std::min(-gap_m * part / h_s, cap);
+    const Vector3 impulse = speed / constraint.separation_compliance * constraint.normal;
+    if (constraint.separates_first) constraint.first.shift(lattices[first], impulse, h_s);
+    if (constraint.separates_second) constraint.second.shift(lattices[second], -impulse, h_s);
   }
 }
 
@@ -164,7 +220,8 @@ void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& cons
                           1.0 / compliance};
   const Vector3 started = h * constraint.force_n;
   const double started_push = started.dot(constraint.normal);
-  const double pushed = state.normal_impulse(h, body_pace, cap, started_push);
+  const ContactPace& pace = constraint.separation_compliance > 0.0 ? body_pace : solver_pace;
+  const double pushed = state.normal_impulse(h, pace, cap, started_push);
   constraint.passed_force_n = constraint.force_n;
   if (pushed == 0.0 && started.isZero(0.0)) return;
   const Vector3 drag = state.drag(constraint.friction * pushed, started_push * constraint.normal - started);

@@ -1,9 +1,11 @@
 // Contacts of bodies with each other and with themselves.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
+#include "engine/material/contact/contact_constraints.h"
 #include "engine/material/contact/contact_push.h"
 #include "engine/material/contact/kept_forces.h"
 #include "engine/material/lattice/embedded_point.h"
@@ -11,14 +13,15 @@
 
 namespace spoonbill {
 
-// A point of a body. `body` is the index of the body's lattice in the views passed to pass().
+// A point of a body. `body` is the index of the body's lattice in the views passed to pass(). A point without
+// nodes stands still.
 struct BodyPoint {
   int body = 0;
   const SpringLattice* lattice = nullptr;
   EmbeddedPoint point;
 };
 
-// Contacts between two deformable bodies, or of a body with itself: velocity constraints between points of
+// Contacts between two bodies, or of a body with itself: velocity constraints between points of
 // their surfaces, which are solved after the contacts of tools. Impulses are equal and opposite, so momentum
 // is conserved. A push on the lattice of a soft tool also acts on its frame (see MovingFrame).
 //
@@ -65,6 +68,11 @@ class BodyContacts {
   // Solves each constraint of the kind pass.moved_by once. Call after start() and before the drift of a
   // substep of h_s. A reversed pass solves the last constraint first.
   void pass(std::span<const LatticeView> lattices, const ContactPass& pass);
+  // Moves the points of overlapping contacts apart, by a part of the overlap and at most by the distance that
+  // the caps allow in a substep of h_s. Velocities do not change, so that the correction adds no kinetic
+  // energy and does not shake bodies at rest. Implicitly stepped lattices stay where they are. Call after the
+  // drift.
+  void separate(std::span<const LatticeView> lattices, double h_s, std::span<const float> caps_m_per_s);
   // Multiplies by `fraction` the changes that the last pass() with MovedBy::solvers made to the forces. The
   // caller must scale the impulses on the nodes in the same way.
   void shorten_solver_pass(double fraction);
@@ -72,6 +80,9 @@ class BodyContacts {
   bool has_constraint_between_solvers() const;
 
   int count() const { return count_; }
+  // Returns the impulse of all constraints on a body since begin(), N s, for a tick of `time_s`. Constraints
+  // of a body with itself have no effect on it.
+  Vector3 impulse_ns(int body, double time_s) const;
   // Returns whether any constraint of a body, or between two bodies, has acted since begin().
   bool acted(int body) const;
   bool acted(int body, int other) const;
@@ -90,8 +101,12 @@ class BodyContacts {
     EmbeddedPoint first, second;
     Vector3 normal = Vector3::UnitY();
     double compliance = 0.0;  // relative velocity change of the points per impulse, 1/kg, without frames
-    double base_m = 0.0;      // gap minus the part due to displacements since rest
-    double friction = 0.0;    // the smaller coefficient of the two surfaces
+    // The same for a change of position that separate() makes, 1/kg. It is 0 if separate() can move neither
+    // point; push() then corrects the overlap by velocities.
+    double separation_compliance = 0.0;
+    bool separates_first = false, separates_second = false;  // whether separate() moves the points
+    double base_m = 0.0;    // gap minus the part due to displacements since rest
+    double friction = 0.0;  // the smaller coefficient of the two surfaces
     MovedBy moved_by = MovedBy::springs;
     int sample = -1;
     Vector3 force_n = Vector3::Zero();  // force on the first point in the last substep: push and friction
@@ -105,6 +120,8 @@ class BodyContacts {
 
   std::vector<Constraint> constraints_;
   KeptForces<Vector3> kept_;  // forces of the last tick
+  // Impulses on each body since begin() of the constraints that substeps solve, N s.
+  std::array<Vector3, lattice_capacity> impulse_ns_;
   int count_ = 0;
 };
 

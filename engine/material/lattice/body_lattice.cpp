@@ -486,7 +486,29 @@ Result<LatticeMesh> solid_lattice(const Surface& surface, const LatticeRequest& 
   return about ? about : along;
 }
 
+Result<LatticeMesh> rigid_frame(const Surface& surface) {
+  Box box;
+  for (int i = 0; i < surface.net.rows; ++i) {
+    for (int j = 0; j < surface.net.columns; ++j) box.include(surface.net.point(i, j));
+  }
+  if (!(box.size() > 0.0)) {
+    return Error{ErrorCode::degenerate, "all control points coincide; give the surface an extent",
+                 "control_points_mm"};
+  }
+  // A flat surface needs a cell that is not flat.
+  const Vector3 extent = box.extent().cwiseMax(0.1 * box.size());
+  LatticeMesh frame = box_mesh(extent, {2, 2, 2});
+  for (Vector3& node : frame.nodes) node += box.centre() - 0.5 * extent;
+  frame.is_frame = true;
+  frame.node_locations.assign(frame.nodes.size(), NodeLocation::outside_body);
+  return frame;
+}
+
 Result<LatticeMesh> make_body_lattice(const Body& body, const FeatureMapWatch& watch) {
+  if (body.kind == BodyKind::fixed) {
+    const Status closed = body.shell_thickness_m ? Status() : check_closed(body.surface);
+    return closed.ok() ? rigid_frame(body.surface) : closed.error();
+  }
   if (body.shell_thickness_m) return shell_lattice(body.surface, *body.shell_thickness_m, body.lattice);
   return solid_lattice(body.surface, body.lattice, watch);
 }

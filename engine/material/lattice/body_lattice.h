@@ -11,9 +11,16 @@
 
 namespace spoonbill {
 
-// Returns the lattice of a body of a scene at rest, solid or shell. Fails if solid_lattice() or
-// shell_lattice() fails. If the body requests a feature map, `watch` receives the progress of
-// order_by_feature_map().
+// Returns the frame of a rigid body: a single cell around its surface, whose nodes move with the body's pose.
+// Points of the body are attached to the frame like points of a deformable body to its lattice. A trilinear
+// cell reproduces every rigid motion exactly, so they move rigidly. The frame's nodes count as outside the
+// body. Fails if all control points coincide.
+Result<LatticeMesh> rigid_frame(const Surface& surface);
+
+// Returns the lattice of a body of a scene at rest, solid or shell, or the frame of a fixed body, which must
+// also be a closed solid or a shell. Fails if
+// solid_lattice() or shell_lattice() fails. If the body requests a feature map, `watch` receives the progress
+// of order_by_feature_map().
 Result<LatticeMesh> make_body_lattice(const Body& body, const FeatureMapWatch& watch = {});
 
 // Returns the lattice of a closed body: that of tube_lattice() if the body is a tube and no cell folds,

@@ -102,6 +102,21 @@ Vector3 EmbeddedPoint::velocity_m_per_s(const LatticeView& lattice) const {
   return lattice.frame ? Vector3(lattice.frame->velocity_m_per_s + relative) : relative;
 }
 
+void EmbeddedPoint::shift(const LatticeView& lattice, const Vector3& impulse, double time_s) const {
+  for (int i = 0; i < count; ++i) {
+    const int n = node[i];
+    const Vector3 by = time_s * static_cast<double>(weight[i] * lattice.inverse_mass[n]) * impulse;
+    const float x = static_cast<float>(by.x()), y = static_cast<float>(by.y()),
+                z = static_cast<float>(by.z());
+    lattice.dx[n] += x;
+    lattice.dy[n] += y;
+    lattice.dz[n] += z;
+    lattice.moved_x[n] += x;
+    lattice.moved_y[n] += y;
+    lattice.moved_z[n] += z;
+  }
+}
+
 void EmbeddedPoint::push(const LatticeView& lattice, const Vector3& impulse) const {
   for (int i = 0; i < count; ++i) {
     const int n = node[i];

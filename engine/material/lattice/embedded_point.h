@@ -54,6 +54,10 @@ struct EmbeddedPoint {
   Vector3 velocity_m_per_s(const LatticeView& lattice) const;
   // Distributes an impulse, N s, to the nodes. Also pushes the lattice's frame.
   void push(const LatticeView& lattice, const Vector3& impulse) const;
+  // Moves the nodes in the direction of an impulse, without changing velocities: each by its part of the
+  // impulse times its inverse mass times `time_s`. The second nodes of seam pairs stay behind (see
+  // join_seam_positions()).
+  void shift(const LatticeView& lattice, const Vector3& impulse, double time_s) const;
   // Calls visit(node, part) for each node and its part of an impulse.
   template <class Visit>
   void visit_shares(const Vector3& impulse, const Visit& visit) const {

@@ -44,6 +44,8 @@ struct LatticeMesh {
   bool closed = false;
   // True for a thin shell. j then runs through the thickness, from the surface against its normals.
   bool thin = false;
+  // True for the frame of a rigid body (rigid_frame()): a single cell, whose nodes move with the body's pose.
+  bool is_frame = false;
   std::vector<Vector3> nodes;  // m
   // Fraction of each cell that belongs to the body, by cell_index(); empty if all are 1.
   std::vector<double> cell_fractions;

@@ -119,7 +119,10 @@ Result<SpringLattice> SpringLattice::make(const LatticeMesh& mesh, const Lattice
 
 void SpringLattice::allocate(const LatticeMesh& mesh) {
   mesh_ = mesh;
-  cell_size_ = static_cast<float>(mesh.mean_edge());
+  // The frame of a rigid body has a single cell. Searches for contacts need a length like that of the cells
+  // of deformable bodies.
+  constexpr double frame_fraction = 1.0 / 16.0;
+  cell_size_ = static_cast<float>((mesh.is_frame ? frame_fraction : 1.0) * mesh.mean_edge());
   const int row = mesh.count[1], layer = mesh.count[0] * mesh.count[1];
   int reach = 0;
   for (int d = 0; d < lattice_direction_count; ++d) {
@@ -782,6 +785,12 @@ void SpringLattice::apply_reforming(const Reforming& next) {
   }
   for (std::size_t c = 0; c < next.cell_count; ++c) {
     rest_volume_sum_[next.cells[c].first] = next.cells[c].rest_volume_sum;
+  }
+}
+
+void join_seam_positions(const LatticeView& view) {
+  for (float* const field : {view.dx, view.dy, view.dz, view.moved_x, view.moved_y, view.moved_z}) {
+    for (int s = 0; s < view.seam_count; ++s) field[view.seam[2 * s + 1]] = field[view.seam[2 * s]];
   }
 }
 

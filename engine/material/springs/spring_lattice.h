@@ -234,6 +234,9 @@ inline void set_velocity(const LatticeView& view, int n, const Vector3& velocity
 // Moves the first `count` nodes rigidly by `shift_m`. The linearisation moves with them.
 void shift_nodes(const LatticeView& view, int count, const Vector3& shift_m);
 
+// Moves the second node of each seam pair to the first.
+void join_seam_positions(const LatticeView& view);
+
 // Sets a node's displacement, and the change of its extrapolated displacement since the linearisation, as
 // drift() does. `tau` is the damping time. Returns the square of that change, m^2.
 inline float set_node_displacement(const LatticeView& view, int n, const Vector3& displacement, float tau) {
