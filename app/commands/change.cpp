@@ -97,6 +97,7 @@ Status change(const ChangeOptions& options, Console& console) {
   const double deviation_m = result->deviation_m;
   std::vector<std::string> notes;
   replace_body(bodies, index, std::move(result).value(), notes);
+  if (const std::string note = drop_unfit_trial(document->scene); !note.empty()) notes.push_back(note);
   // Ctrl+C takes effect only when the file is complete.
   const InterruptWatch until_written;
   if (Status written = write_document(document.value(), options.out, options.how); !written) return written;

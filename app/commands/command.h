@@ -24,6 +24,7 @@ CommandEntry add_new(OptionSet root);
 CommandEntry add_fit(OptionSet root);
 CommandEntry add_merge(OptionSet root);
 CommandEntry add_change(OptionSet root);
+CommandEntry add_add(OptionSet root);
 CommandEntry add_info(OptionSet root);
 CommandEntry add_check(OptionSet root);
 CommandEntry add_sample(OptionSet root);
@@ -33,6 +34,7 @@ CommandEntry add_edit(OptionSet root);
 CommandEntry add_record(OptionSet root);
 CommandEntry add_replay(OptionSet root);
 CommandEntry add_rest(OptionSet root);
+CommandEntry add_try(OptionSet root);
 // Internal commands that the program runs as child processes; --help does not list them.
 CommandEntry add_read_mesh(OptionSet root);
 CommandEntry add_read_points(OptionSet root);

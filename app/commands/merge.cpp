@@ -304,6 +304,7 @@ Document merged_document(const Document& first, const std::vector<Body>& patches
   }
   adapt_thickness(body, patches[0].surface, notes);
   document.scene.bodies = {std::move(body)};
+  if (const std::string note = drop_unfit_trial(document.scene); !note.empty()) notes.push_back(note);
   return document;
 }
 

@@ -218,6 +218,20 @@ Result<double> parse_length(std::string_view text, Range<double> range_m) {
   return *length;
 }
 
+Result<double> parse_angle_deg(std::string_view text, Range<double> range_deg) {
+  const auto angle = parse_leading_number(text);
+  const bool has_unit = angle && (angle->rest == "deg" || (angle->number == 0.0 && angle->rest.empty()));
+  if (!has_unit) {
+    return Error{ErrorCode::malformed, "'" + excerpt(text) + "' is not an angle with a unit, like 10deg"};
+  }
+  if (!range_deg.contains(angle->number)) {
+    return Error{ErrorCode::out_of_range, "'" + excerpt(text) + "' must be from " +
+                                              number_text(range_deg.low) + "deg to " +
+                                              number_text(range_deg.high) + "deg"};
+  }
+  return angle->number;
+}
+
 Result<std::vector<double>> parse_lengths(std::string_view text, std::size_t count, Range<double> range_m) {
   const Error malformed{ErrorCode::malformed, "'" + excerpt(text) + "' is not " + std::to_string(count) +
                                                   " lengths with a unit, like " +

@@ -22,6 +22,9 @@ struct Extent {
   int height = 0;
 };
 
+// Width and height of pictures, in pixels.
+inline constexpr Range<int> picture_size_range{64, 7680};
+
 // Parses "1280x720", both numbers within the range. The error message shows `example`.
 Result<Extent> parse_extent(std::string_view text, Range<int> range, const char* example);
 
@@ -31,6 +34,9 @@ Result<Pose> parse_pose(std::string_view text);
 
 // Parses a length within the range, with a unit unless it is 0: "5mm", "0.2in", "2inch".
 Result<double> parse_length(std::string_view text, Range<double> range_m);
+
+// Parses an angle within the range, in degrees, with its unit unless it is 0: "10deg".
+Result<double> parse_angle_deg(std::string_view text, Range<double> range_deg);
 
 // Parses `count` lengths within the range: "60x40x20mm", "6cmx40mmx20mm". The last length must have a unit. A
 // length without a unit has the unit of the next length that has one.

@@ -24,8 +24,6 @@
 namespace spoonbill {
 namespace {
 
-constexpr Range<int> picture_size_range{64, 7680};
-
 struct ReplayOptions {
   OutputOptions how;
   std::filesystem::path recording;

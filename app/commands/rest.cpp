@@ -21,10 +21,6 @@ struct RestOptions {
   bool json = false;
 };
 
-Json components_json(const Vector3& vector) {
-  return Json::array({vector.x(), vector.y(), vector.z()});
-}
-
 void add_elastic_note(const Material& material, FactSheet& facts) {
   if (is_linear_elastic(material)) return;
   facts.add("  Material", material.name + ", treated as elastic", "", nullptr);
@@ -92,6 +88,11 @@ Status rest(const RestOptions& options, Console& console) {
   std::vector<Surface> bent;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
+    if (body.kind == BodyKind::fixed) {
+      facts.add("Body", body.name + ", fixed", "", nullptr);
+      bent.push_back(body.surface);
+      continue;
+    }
     const auto shape =
         CancellableJob(console, "Bending " + body.name, options.out).run([&](const Progress& progress) {
           return compute_rest_shape(scene, static_cast<int>(b), progress);

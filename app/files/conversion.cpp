@@ -362,9 +362,10 @@ Result<ConversionReport> convert_document(const ConversionRequest& request) {
   auto document = read_document(request.in);
   if (!document) return document.error();
   if (Status chosen = select_bodies(request, document->scene.bodies); !chosen) return chosen.error();
+  ConversionReport report;
+  if (const std::string note = drop_unfit_trial(document->scene); !note.empty()) report.notes.push_back(note);
   if (Status written = write_document(document.value(), request.out, request.how); !written)
     return written.error();
-  ConversionReport report;
   report.unit_in = report.unit_out = millimetre.name;
   report.surfaces = model_from_bodies(std::move(document->scene.bodies)).surfaces;
   return report;

@@ -28,7 +28,6 @@ PanelModel make_panel_model(const SessionFacts& facts, const Snapshot& snapshot,
   model.material = facts.material;
   model.region_count = facts.region_count;
   model.mass_kg = facts.mass_kg;
-  model.inertia_scale = snapshot.bodies.front().material.inertia_scale;
   for (std::size_t b = 0; b < snapshot.bodies.size(); ++b) {
     const double residual_m = snapshot.bodies[b].residual.largest_m;
     if (residual_m <= model.residual_m) continue;
@@ -37,6 +36,8 @@ PanelModel make_panel_model(const SessionFacts& facts, const Snapshot& snapshot,
   }
   model.plane_count = static_cast<int>(snapshot.planes.size());
   for (const BodySnapshot& body : snapshot.bodies) {
+    if (body.is_rigid) continue;
+    if (model.node_count == 0) model.inertia_scale = body.material.inertia_scale;
     const auto& fixed = body.lattice.fixed;
     model.fixed_node_count += static_cast<int>(std::count(fixed.begin(), fixed.end(), std::uint8_t{1}));
     model.node_count += static_cast<int>(fixed.size());

@@ -18,15 +18,11 @@ constexpr double least_curvature_per_m = 1e-3;
 
 constexpr const char* no_walls = "unknown: no two walls face each other";
 
-Json position_json(const Vector3& vector) {
-  return Json::array({vector.x(), vector.y(), vector.z()});
-}
-
 Json curvature_json(const CurvatureExtreme& place) {
   return {{"per_m", place.curvature_per_m},
           {"u", place.u},
           {"v", place.v},
-          {"point_m", position_json(place.position_m)}};
+          {"point_m", components_json(place.position_m)}};
 }
 
 // Returns the radius of curvature in metres; null if the curvature is negative or counts as flat.
@@ -61,10 +57,10 @@ void add_thickness(FactSheet& facts, const SurfaceCheck& check, Json& json) {
   json["smallest_thickness_m"] = thin.thickness_m;
   json["thinnest"] = {{"u", thin.u},
                       {"v", thin.v},
-                      {"point_m", position_json(thin.position_m)},
+                      {"point_m", components_json(thin.position_m)},
                       {"opposite_u", thin.opposite_u},
                       {"opposite_v", thin.opposite_v},
-                      {"opposite_m", position_json(thin.opposite_m)}};
+                      {"opposite_m", components_json(thin.opposite_m)}};
 }
 
 std::string names_text(const std::vector<std::string>& names) {
@@ -86,7 +82,7 @@ void add_mass(FactSheet& facts, const Body& body, double volume_m3, const Vector
   json["volume_m3"] = volume_m3;
   json["mass_kg"] = mass.mass_kg();
   json["materials"] = mass.mix.materials;
-  json["centre_of_mass_m"] = position_json(mass.centre_m);
+  json["centre_of_mass_m"] = components_json(mass.centre_m);
 }
 
 void add_content(FactSheet& facts, const Body& body, CheckedAs as, const TrimmedArea& area,
@@ -113,13 +109,13 @@ void add_faults(const SurfaceCheck& check, Json& json) {
                                           {"other_u", meeting.other_u},
                                           {"other_v", meeting.other_v},
                                           {"depth_m", meeting.depth_m},
-                                          {"point_m", position_json(meeting.position_m)}});
+                                          {"point_m", components_json(meeting.position_m)}});
   }
   json["self_intersections_complete"] = check.self_intersections_complete;
   json["degenerate"] = Json::array();
   for (const SurfaceDefect& spot : check.surface_defects) {
     json["degenerate"].push_back(
-        {{"u", spot.u}, {"v", spot.v}, {"folds", spot.folds}, {"point_m", position_json(spot.position_m)}});
+        {{"u", spot.u}, {"v", spot.v}, {"folds", spot.folds}, {"point_m", components_json(spot.position_m)}});
   }
 }
 
@@ -181,7 +177,7 @@ void add_self_meetings(const SolidCheck& check, Json& json) {
   json["self_intersections"] = Json::array();
   for (const SolidSelfIntersection& meeting : check.self_intersections) {
     json["self_intersections"].push_back(
-        {{"depth_m", meeting.depth_m}, {"point_m", position_json(meeting.position_m)}});
+        {{"depth_m", meeting.depth_m}, {"point_m", components_json(meeting.position_m)}});
   }
   json["self_intersections_complete"] = check.self_intersections_complete;
 }
@@ -203,8 +199,8 @@ void add_solid_thickness(FactSheet& facts, const CadSolid& solid, const SolidChe
             nullptr);
   json["smallest_thickness_m"] = thin.thickness_m;
   json["thickness_error_m"] = error_m;
-  json["thinnest"] = {{"point_m", position_json(thin.position_m)},
-                      {"opposite_m", position_json(thin.opposite_m)}};
+  json["thinnest"] = {{"point_m", components_json(thin.position_m)},
+                      {"opposite_m", components_json(thin.opposite_m)}};
 }
 
 // Returns one line for each reason why the body is not sound; none if the body is sound.
@@ -272,7 +268,7 @@ Json add_meeting_facts(FactSheet& facts, const BodyOverlap& meeting, const Body&
           {"b", second.name},
           {"contained", meeting.contained},
           {"depth_m", meeting.depth_m},
-          {"point_m", position_json(meeting.position_m)}};
+          {"point_m", components_json(meeting.position_m)}};
 }
 
 Json add_solid_check_facts(FactSheet& facts, const CadSolid& solid, const SolidCheck& check,
@@ -296,7 +292,7 @@ Json add_solid_check_facts(FactSheet& facts, const CadSolid& solid, const SolidC
   json["volume_m3"] = solid.volume_m3;
   add_solid_mass(facts, solid, bodies, json);
   facts.add("  Centre of mass", position_text(solid.centre_m), "", nullptr);
-  json["centre_of_mass_m"] = position_json(solid.centre_m);
+  json["centre_of_mass_m"] = components_json(solid.centre_m);
   add_solid_thickness(facts, solid, check, json);
   add_self_meetings(check, json);
   return json;

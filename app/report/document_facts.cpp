@@ -92,12 +92,6 @@ std::string material_text(const Material& material) {
          number_text(material.poissons_ratio) + ", density " + density_text(material.density_kg_per_m3);
 }
 
-std::string decimals_text(double value, int decimals) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
-  return text.data();
-}
-
 void add_trim_facts(FactSheet& facts, const Body& body, Json& json) {
   const auto trim = make_trimmed_area(body);
   if (!trim || !trim.value()) return;
@@ -167,6 +161,14 @@ Json quality_json(const CellQuality& quality) {
 std::string three_text(const double (&values)[3], double scale, int decimals) {
   return decimals_text(scale * values[0], decimals) + " / " + decimals_text(scale * values[1], decimals) +
          " / " + decimals_text(scale * values[2], decimals);
+}
+
+Json add_fixed_body(FactSheet& facts, const std::string& suffix, const std::optional<BodyMass>& mass) {
+  facts.add("Kind" + suffix, "fixed: rigid, without a lattice", "", nullptr);
+  if (mass) facts.add("Mass" + suffix, grams_text(mass->mass_kg()), "", nullptr);
+  Json json = {{"kind", "fixed"}};
+  if (mass) json["mass_kg"] = mass->mass_kg();
+  return json;
 }
 
 Json add_simulated_body(FactSheet& facts, const std::string& suffix, const BodySnapshot& body,
@@ -314,18 +316,20 @@ void add_cell_facts(FactSheet& facts, const Simulation& simulation,
   Json list = Json::array();
   std::size_t mapped = 0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (bodies[b].kind == BodyKind::fixed) continue;
     const bool has_map = bodies[b].lattice.feature_map && mapped < maps.size();
     const FeatureMapReport* map = has_map ? &maps[mapped++] : nullptr;
     const std::string suffix = bodies.size() == 1 ? "" : " of " + bodies[b].name;
     list.push_back(add_body_cells(facts, suffix, simulation.lattice(static_cast<int>(b)).mesh(), map));
   }
-  facts.add("", "", "cells", bodies.size() == 1 ? list.front() : list);
+  facts.add("", "", "cells", bodies.size() == 1 && !list.empty() ? list.front() : list);
 }
 
 void add_elasticity_facts(FactSheet& facts, const Simulation& simulation) {
   Json all = Json::array();
   const std::vector<Body>& bodies = simulation.scene().bodies;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (bodies[b].kind == BodyKind::fixed) continue;
     const LatticeReport& report = simulation.report(static_cast<int>(b));
     const std::string suffix = bodies.size() == 1 ? "" : " of " + bodies[b].name;
     facts.add("Achieved E" + suffix, three_text(report.youngs_modulus_ratio, 100.0, 1) + " % along x, y, z",
@@ -349,7 +353,9 @@ void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot, const std:
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const std::string suffix = bodies.size() == 1 ? "" : " of " + bodies[b].name;
     const std::optional<BodyMass> mass = compute_body_mass(bodies[b]);
-    list.push_back(add_simulated_body(facts, suffix, snapshot.bodies[b], mass));
+    list.push_back(bodies[b].kind == BodyKind::fixed
+                       ? add_fixed_body(facts, suffix, mass)
+                       : add_simulated_body(facts, suffix, snapshot.bodies[b], mass));
     is_whole = is_whole && mass;
     mass_kg += mass ? mass->mass_kg() : 0.0;
     lattice_mass_kg += snapshot.bodies[b].material.lattice_mass_kg;

@@ -6,6 +6,10 @@
 
 namespace spoonbill {
 
+Json components_json(const Vector3& vector) {
+  return Json::array({vector.x(), vector.y(), vector.z()});
+}
+
 void FactSheet::add(const std::string& label, const std::string& text, const std::string& field, Json value) {
   if (!label.empty()) lines_.emplace_back(label, text);
   if (!field.empty()) json_[field] = std::move(value);

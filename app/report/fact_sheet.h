@@ -6,9 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/geometry.h"
 #include "engine/exchange/json.h"
 
 namespace spoonbill {
+
+// Returns the three components of a vector as a list.
+Json components_json(const Vector3& vector);
 
 class FactSheet {
  public:

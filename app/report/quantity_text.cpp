@@ -40,6 +40,12 @@ std::string percent_range_text(const Range<double>& fractions) {
 
 }  // namespace
 
+std::string decimals_text(double value, int decimals) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  return text.data();
+}
+
 std::string modulus_text(double pascals) {
   constexpr std::array<std::pair<double, const char*>, 3> units = {
       {{1e9, "GPa"}, {1e6, "MPa"}, {1e3, "kPa"}}};

@@ -17,15 +17,16 @@ struct Closing;
 enum class Closedness;
 struct MaterialRegion;
 
-std::string modulus_text(double pascals);           // "1.20 MPa"
-std::string millimetres_text(double metres);        // "8.0 mm"
-std::string size_text(const Vector3& size_m);       // "100.0 x 12.0 x 5.0 mm"
-std::string area_text(double square_metres);        // "7.54 cm²"
-std::string volume_text(double cubic_metres);       // "48.0 cm³"
-std::string grams_text(double kilograms);           // "34.2 g"
-std::string density_text(double kilograms_per_m3);  // "1.80 g/cm³"
-std::string newtons_text(double newtons);           // "1.23 N"
-std::string percent_text(double fraction);          // "12 %", "0.081 %"
+std::string decimals_text(double value, int decimals);  // "1.230" with 3 decimals
+std::string modulus_text(double pascals);               // "1.20 MPa"
+std::string millimetres_text(double metres);            // "8.0 mm"
+std::string size_text(const Vector3& size_m);           // "100.0 x 12.0 x 5.0 mm"
+std::string area_text(double square_metres);            // "7.54 cm²"
+std::string volume_text(double cubic_metres);           // "48.0 cm³"
+std::string grams_text(double kilograms);               // "34.2 g"
+std::string density_text(double kilograms_per_m3);      // "1.80 g/cm³"
+std::string newtons_text(double newtons);               // "1.23 N"
+std::string percent_text(double fraction);              // "12 %", "0.081 %"
 // Returns a text that says how much slower a body with this inertia scale responds than the real body: "real
 // time", "1.4 times slower", "31 times slower".
 std::string slowness_text(double inertia_scale);

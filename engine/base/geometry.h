@@ -41,6 +41,7 @@ using Quaternion = Eigen::Quaterniond;
 struct Pose {
   Vector3 position_m = Vector3::Zero();
   Quaternion orientation = Quaternion::Identity();
+  friend bool operator==(const Pose&, const Pose&) = default;
 };
 
 // Range of every coordinate in files, in commands and in the panel.

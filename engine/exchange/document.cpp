@@ -40,6 +40,11 @@ void read_loads_and_supports(FieldReader& reader, Body& body) {
             [&](FieldReader& item) { body.supports.push_back(read_support(item)); });
 }
 
+BodyKind read_kind(FieldReader& reader) {
+  if (!reader.has("kind")) return BodyKind::deformable;
+  return static_cast<BodyKind>(reader.choose("kind", body_kind_names));
+}
+
 // Reads a body. The fields "trims" and "solid" are unknown in version 1.
 std::optional<Body> read_body(FieldReader reader, int version) {
   std::string name = reader.text("name");
@@ -51,11 +56,16 @@ std::optional<Body> read_body(FieldReader reader, int version) {
   FieldReader material_reader = reader.inner("material");
   Material material = read_fields<Material>(material_reader);
   material_reader.finish();
-  FieldReader lattice_reader = reader.inner("lattice");
-  const LatticeRequest lattice = read_lattice_request(lattice_reader);
-  lattice_reader.finish();
+  const BodyKind kind = read_kind(reader);
+  LatticeRequest lattice;
+  if (kind == BodyKind::deformable || reader.has("lattice")) {
+    FieldReader lattice_reader = reader.inner("lattice");
+    lattice = read_lattice_request(lattice_reader);
+    lattice_reader.finish();
+  }
   if (!surface || !reader.status().ok()) return std::nullopt;
   Body body{std::move(name), *std::move(surface), std::move(material), lattice};
+  body.kind = kind;
   read_loads_and_supports(reader, body);
   if (reader.has("shell_thickness_mm")) {
     body.shell_thickness_m = reader.length_m("shell_thickness_mm", shell_thickness_range_m);
@@ -63,6 +73,10 @@ std::optional<Body> read_body(FieldReader reader, int version) {
   body.regions = read_material_regions(reader);
   body.trims = std::move(trims);
   if (version > 1 && reader.has("solid")) body.solid = reader.text("solid");
+  if (const Status status = check_kind(body); !status.ok()) {
+    reader.refuse(status.error().field, "must be missing, because the body is fixed; or make it deformable",
+                  status.error().code);
+  }
   reader.finish();
   if (!reader.status().ok()) return std::nullopt;
   return body;
@@ -119,6 +133,14 @@ std::optional<Ground> read_ground(FieldReader& reader) {
   return ground;
 }
 
+std::optional<TrialPlan> read_trial(FieldReader& reader) {
+  if (!reader.has("trial")) return std::nullopt;
+  FieldReader trial_reader = reader.inner("trial");
+  TrialPlan plan = read_fields<TrialPlan>(trial_reader);
+  trial_reader.finish();
+  return plan;
+}
+
 // Returns true if the symmetry differs from the default. A default symmetry is not written.
 bool is_not_default(const Symmetry& symmetry) {
   const Symmetry standard;
@@ -128,10 +150,11 @@ bool is_not_default(const Symmetry& symmetry) {
 Json body_to_json(const Body& body) {
   Json json;
   json["name"] = body.name;
+  if (body.kind != BodyKind::deformable) json["kind"] = body_kind_names[static_cast<std::size_t>(body.kind)];
   json["surface"] = surface_to_json(body.surface);
   add_trims(body.trims, json["surface"]);
   add_fields(body.material, json["material"]);
-  add_lattice_request(body.lattice, json["lattice"]);
+  if (body.kind == BodyKind::deformable) add_lattice_request(body.lattice, json["lattice"]);
   for (const Load& load : body.loads) json["loads"].push_back(load_to_json(load));
   for (const Support& support : body.supports) json["supports"].push_back(support_to_json(support));
   if (body.shell_thickness_m) json["shell_thickness_mm"] = length_to_json(*body.shell_thickness_m);
@@ -183,6 +206,14 @@ void read_content(FieldReader& reader, SetSymmetry& command) {
 void read_content(FieldReader& reader, RefineKnots& command) {
   command.body = read_body_index(reader);
 }
+void read_content(FieldReader& reader, TurnBody& command) {
+  read_fields(reader, command);
+  command.body = read_body_index(reader);
+}
+void read_content(FieldReader& reader, LowerBody& command) {
+  read_fields(reader, command);
+  command.body = read_body_index(reader);
+}
 
 template <class CommandWithoutFields>
 void add_content(const CommandWithoutFields&, Json&) {}
@@ -205,6 +236,14 @@ void add_content(const SetSymmetry& command, Json& json) {
 void add_content(const RefineKnots& command, Json& json) {
   add_body_index(command.body, json);
 }
+void add_content(const TurnBody& command, Json& json) {
+  add_fields(command, json);
+  add_body_index(command.body, json);
+}
+void add_content(const LowerBody& command, Json& json) {
+  add_fields(command, json);
+  add_body_index(command.body, json);
+}
 
 // Reads a document of any version, after its fields have been converted to the current ones.
 Result<Document> read_current_fields(const Json& json, const std::string& source) {
@@ -221,13 +260,14 @@ Result<Document> read_current_fields(const Json& json, const std::string& source
   sculpting_reader.finish();
   const Symmetry symmetry = read_symmetry(reader);
   const std::optional<Ground> ground = read_ground(reader);
+  std::optional<TrialPlan> trial = read_trial(reader);
   Json view = reader.has("view") ? reader.object("view") : Json::object();
   reader.ignore("view");
   reader.finish();
   if (!bodies || !reader.status().ok()) return reader.status().error();
-  return Document{std::move(name),
-                  Scene{*std::move(bodies), std::move(planes), tool, sculpting, symmetry, ground},
-                  std::move(view)};
+  Scene scene{*std::move(bodies), std::move(planes), tool, sculpting, symmetry, ground, std::move(trial)};
+  if (const Status status = check_trial(scene); !status.ok()) return status.error().in(source);
+  return Document{std::move(name), std::move(scene), std::move(view)};
 }
 
 }  // namespace
@@ -257,6 +297,7 @@ Json document_to_json(const Document& document) {
   add_fields(document.scene.sculpting, json["sculpting"]);
   if (is_not_default(document.scene.symmetry)) add_fields(document.scene.symmetry, json["symmetry"]);
   if (document.scene.ground) add_fields(*document.scene.ground, json["ground"]);
+  if (document.scene.trial) add_fields(*document.scene.trial, json["trial"] = Json::object());
   json["view"] = document.view;
   return json;
 }

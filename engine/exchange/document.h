@@ -17,6 +17,8 @@
 //        "flow_rate_per_s": 240,
 //        "hardening": 0.1, "stiffening": 2, "friction": 0.3,     each optional, 0
 //        "relaxing_share": 0.5, "relaxation_time_s": 30},        optional, no creep
+//      "kind": "fixed",               optional, "deformable"; a fixed body has no lattice, regions, loads or
+//                                     supports
 //      "lattice": {"node_budget": 2000,                          or "nodes": [4, 8, 60]
 //        "feature_map": {"draws_per_node": 500, "first_rate": 0.1, "last_rate": 0.01,
 //          "first_neighbourhood": 2, "last_neighbourhood": 1, "seed": 1}},     optional
@@ -43,6 +45,9 @@
 //      "real_time": false},                                      optional, false: bodies respond slower
 //    "ground": {"point_mm": [0, 0, 0], "normal": [0, 1, 0], "friction": 0.5},       optional
 //    "symmetry": {"on": true, "point_mm": [0, 0, 0], "normal": [0, 0, 1]},          optional
+//    "trial": {"lowered_body": "jelly", "lowering_speed_m_per_s": 0.01,             optional; TrialPlan in
+//      "turned_body": "spoon", "point_mm": [0, 0, 0], "axis": [0, 0, 1],            scene.h gives the
+//      "angle_deg": 10, "turn_speed_deg_per_s": 30},                                defaults of the fields
 //    "view": {...}}                                              optional
 //
 // A region is a part of its body (BodyRegion in material.h): {"along": [0.9, 1], "around": [0.25, 0.75],
@@ -126,6 +131,8 @@ Result<Material> read_material(const std::filesystem::path& file);
 //   {"command": "reset_proxy"}
 //   {"command": "lift_tool"}
 //   {"command": "refine_knots", and optionally "body"}
+//   {"command": "turn_body", "point_mm", "axis", "angle_deg", "speed_deg_per_s", and optionally "body"}
+//   {"command": "lower_body", "speed_m_per_s", and optionally "body"}
 // "body" is the index in the list of all bodies, default: 0.
 Result<Command> command_from_json(const Json& json, const std::string& source);
 Json command_to_json(const Command& command);

@@ -1,5 +1,6 @@
 #include "engine/scene/body.h"
 
+#include <string>
 #include <utility>
 #include <variant>
 
@@ -59,6 +60,18 @@ Status check_loads(const Body& body) {
     if (Status status = check_point(body.loads[l], l, body.surface); !status.ok()) return status;
   }
   return check_range("supports", static_cast<int>(body.supports.size()), support_count_range);
+}
+
+Status check_kind(const Body& body) {
+  if (body.kind != BodyKind::fixed) return {};
+  const char* const field = !body.regions.empty()    ? "regions"
+                            : !body.loads.empty()    ? "loads"
+                            : !body.supports.empty() ? "supports"
+                                                     : nullptr;
+  if (field == nullptr) return {};
+  return Error{ErrorCode::inconsistent,
+               std::string("a fixed body has no ") + field + "; remove them, or make the body deformable",
+               field};
 }
 
 Result<std::shared_ptr<const TrimmedArea>> make_trimmed_area(const Body& body) {

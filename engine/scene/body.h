@@ -66,13 +66,18 @@ struct LatticeRequest {
 inline constexpr Range<int> node_budget_range{50, 40000};
 inline constexpr Range<int> node_count_range{2, 64};  // number of nodes in each direction
 
+// Kind of a body in a simulation. A deformable body has a lattice. A fixed body is rigid and has none: it
+// stays where it is, unless TurnBody (scene.h) turns it, and nothing that touches it can move it.
+enum class BodyKind { deformable, fixed };
+inline constexpr const char* body_kind_names[] = {"deformable", "fixed"};
+
 // A solid bounded by one tube (periodic in u, closed by a pole at both ends of v) or one ring (periodic in u
 // and v). With a shell thickness, the body is instead a thin shell behind one surface (shell_lattice.h).
 struct Body {
   std::string name;
   Surface surface;
-  Material material;  // material of the body outside its regions
-  LatticeRequest lattice;
+  Material material;       // material of the body outside its regions
+  LatticeRequest lattice;  // ignored if the body is fixed
   // Parts of the body with their own material or friction. Where parts overlap, the later part applies.
   std::vector<MaterialRegion> regions = {};
   std::vector<Load> loads = {};
@@ -82,6 +87,7 @@ struct Body {
   std::vector<TrimLoop> trims = {};
   // Name of the CAD solid that has this body as a face; empty if the body is not a face of a solid.
   std::string solid = {};
+  BodyKind kind = BodyKind::deformable;
 };
 
 inline constexpr Range<int> control_point_count_range{2, 200};  // number of control points in each direction
@@ -92,6 +98,8 @@ Status check_feature_map(const FeatureMapSettings& settings);
 Status check_lattice_request(const LatticeRequest& lattice);
 // Checks the numbers of loads and supports, and that point loads are within the surface's domain.
 Status check_loads(const Body& body);
+// Refuses a fixed body with regions, loads or supports, which would have no effect.
+Status check_kind(const Body& body);
 
 // Returns the area within the body's trim loops; null if the body has no trims.
 Result<std::shared_ptr<const TrimmedArea>> make_trimmed_area(const Body& body);

@@ -1,5 +1,6 @@
 #include "engine/scene/scene.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/base/assert.h"
@@ -38,6 +39,83 @@ Status check_sculpting(const Sculpting& sculpting) {
 
 Status check_symmetry(const Symmetry& symmetry) {
   return check_fields("symmetry: ", symmetry);
+}
+
+namespace {
+
+// Returns the body with this name. If there is none, or if it is not of this kind, returns an error about the
+// field of the trial that names it.
+Status check_named_body(const Scene& scene, const std::string& name, BodyKind kind, const char* field) {
+  if (name.empty()) return {};
+  const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),
+                                 [&](const Body& candidate) { return candidate.name == name; });
+  if (body == scene.bodies.end()) {
+    return Error{ErrorCode::unknown, "trial: " + std::string(field) + ": no body is called \"" + name + "\"",
+                 field};
+  }
+  if (body->kind == kind) return {};
+  return Error{ErrorCode::inconsistent,
+               "trial: " + std::string(field) + ": the body \"" + name + "\" must be " +
+                   body_kind_names[static_cast<std::size_t>(kind)],
+               field};
+}
+
+}  // namespace
+
+Status check_trial(const Scene& scene) {
+  if (!scene.trial) return {};
+  const TrialPlan& plan = *scene.trial;
+  if (Status status = check_fields("trial: ", plan); !status.ok()) return status;
+  if (Status status = check_named_body(scene, plan.lowered_body, BodyKind::deformable, "lowered_body");
+      !status.ok()) {
+    return status;
+  }
+  return check_named_body(scene, plan.turned_body, BodyKind::fixed, "turned_body");
+}
+
+std::string drop_unfit_trial(Scene& scene) {
+  const Status status = check_trial(scene);
+  if (status.ok()) return {};
+  scene.trial.reset();
+  return "the trial is left out: " + status.error().message;
+}
+
+namespace {
+
+// A turn speeds up for `ramp_s`, turns at constant speed, and slows down for `ramp_s`.
+struct TurnProfile {
+  double ramp_s, top_deg_per_s, duration_s;
+};
+
+TurnProfile find_profile(const TurnBody& turn) {
+  const double angle = std::abs(turn.angle_deg), speed = turn.speed_deg_per_s;
+  SPOONBILL_ASSERT(speed > 0.0);
+  if (angle >= speed * turn_ramp_s) return {turn_ramp_s, speed, angle / speed + turn_ramp_s};
+  // The angle is reached while the turn still speeds up at the same acceleration.
+  const double ramp_s = std::sqrt(angle * turn_ramp_s / speed);
+  return {ramp_s, speed * ramp_s / turn_ramp_s, 2.0 * ramp_s};
+}
+
+}  // namespace
+
+double turn_duration_s(const TurnBody& turn) {
+  return find_profile(turn).duration_s;
+}
+
+double turned_angle_deg(const TurnBody& turn, double time_s) {
+  const TurnProfile profile = find_profile(turn);
+  if (time_s >= profile.duration_s) return turn.angle_deg;
+  if (!(time_s > 0.0)) return 0.0;
+  const double left_s = profile.duration_s - time_s;
+  // Angle covered while the speed rises from 0 for `seconds`, at most ramp_s.
+  const auto ramp_deg = [&](double seconds) {
+    return 0.5 * profile.top_deg_per_s * seconds * seconds / profile.ramp_s;
+  };
+  const double angle = std::abs(turn.angle_deg);
+  const double turned = time_s < profile.ramp_s   ? ramp_deg(time_s)
+                        : left_s < profile.ramp_s ? angle - ramp_deg(left_s)
+                                                  : profile.top_deg_per_s * (time_s - 0.5 * profile.ramp_s);
+  return std::copysign(turned, turn.angle_deg);
 }
 
 Status check_tool_and_symmetry(const Tool& tool, const Symmetry& symmetry) {

@@ -46,6 +46,18 @@ struct Symmetry {
 Vector3 mirror_point(const Symmetry& symmetry, const Vector3& point_m);
 Pose mirror_pose(const Symmetry& symmetry, const Pose& pose);
 
+// How a trial of the scene runs (engine/trial): a body such as food is lowered until others bear its weight,
+// comes to rest, and then a fixed body such as a spoon is turned.
+struct TrialPlan {
+  std::string lowered_body;              // name of the body that is lowered first; empty: none
+  double lowering_speed_m_per_s = 0.01;  // along gravity
+  std::string turned_body;               // name of the fixed body that turns; empty: none
+  Vector3 point_m = Vector3::Zero();     // point of the axis of the turn
+  Vector3 axis = Vector3::UnitX();       // unit vector; a positive angle is counter-clockwise seen against it
+  double angle_deg = 0.0;
+  double turn_speed_deg_per_s = 30.0;
+};
+
 struct Scene {
   // Bodies push each other where they touch. A document may have more bodies than can be simulated.
   std::vector<Body> bodies;
@@ -54,6 +66,7 @@ struct Scene {
   Sculpting sculpting;
   Symmetry symmetry = {};
   std::optional<Ground> ground = {};
+  std::optional<TrialPlan> trial = {};
 };
 
 // Returns true if bodies that no plane or support fixes keep their mean position and orientation.
@@ -71,6 +84,9 @@ inline constexpr Range<int> sculpted_body_count_range{1, 8};
 inline constexpr Range<double> drag_range_per_s{0.0, 8000.0};
 inline constexpr double gravity_limit_m_per_s2 = 100.0;  // largest length of the gravity vector
 inline constexpr Range<double> force_scale_range{0.0, 1e6};
+inline constexpr Range<double> lowering_speed_range_m_per_s{1e-4, 1.0};
+inline constexpr Range<double> turn_angle_range_deg{-360.0, 360.0};
+inline constexpr Range<double> turn_speed_range_deg_per_s{0.1, 360.0};
 
 template <>
 inline constexpr auto fields_of<Sculpting> = std::to_array<Field<Sculpting>>({
@@ -92,6 +108,19 @@ inline constexpr auto fields_of<Symmetry> = std::to_array<Field<Symmetry>>({
     direction_field("normal", &Symmetry::normal),
 });
 
+template <>
+inline constexpr auto fields_of<TrialPlan> = std::to_array<Field<TrialPlan>>({
+    text_field("lowered_body", &TrialPlan::lowered_body).optional(),
+    number_field("lowering_speed_m_per_s", &TrialPlan::lowering_speed_m_per_s, lowering_speed_range_m_per_s)
+        .optional(),
+    text_field("turned_body", &TrialPlan::turned_body).optional(),
+    position_field("point_mm", &TrialPlan::point_m).optional(),
+    direction_field("axis", &TrialPlan::axis).optional(),
+    number_field("angle_deg", &TrialPlan::angle_deg, turn_angle_range_deg).optional(),
+    number_field("turn_speed_deg_per_s", &TrialPlan::turn_speed_deg_per_s, turn_speed_range_deg_per_s)
+        .optional(),
+});
+
 // Refuses a scene without bodies, and more bodies than can be simulated together. The error for too many
 // bodies explains how to select some.
 Status check_body_count(const Scene& scene);
@@ -99,6 +128,12 @@ Status check_body_count(const Scene& scene);
 // Returns an error that names the first field out of range, with its value and its range.
 Status check_sculpting(const Sculpting& sculpting);
 Status check_symmetry(const Symmetry& symmetry);
+// Checks the numbers of a trial, that its bodies are in the scene, and that the turned body is fixed and the
+// lowered body is not.
+Status check_trial(const Scene& scene);
+// Removes the trial if check_trial() fails, for example because a body was removed or renamed. Returns a note
+// about it; empty if the trial stays.
+std::string drop_unfit_trial(Scene& scene);
 // Refuses a soft tool if its action is not push or if symmetry is on.
 Status check_tool_and_symmetry(const Tool& tool, const Symmetry& symmetry);
 
@@ -137,8 +172,30 @@ struct RefineKnots {
   int body = 0;  // index in the scene
 };
 
+// Turns a fixed body about an axis. It starts and stops within turn_ramp_s each, at constant angular
+// acceleration. A turn that has not ended is replaced.
+struct TurnBody {
+  int body = 0;  // index in the scene
+  Vector3 point_m = Vector3::Zero();
+  Vector3 axis = Vector3::UnitX();  // unit vector; a positive angle is counter-clockwise seen against it
+  double angle_deg = 0.0;
+  double speed_deg_per_s = 30.0;
+};
+// Lowers a body level, along gravity, until contacts bear its weight, and then lets it go.
+struct LowerBody {
+  int body = 0;  // index in the scene
+  double speed_m_per_s = 0.01;
+};
+
+// Time in which a turn reaches its speed, s.
+inline constexpr double turn_ramp_s = 0.1;
+// turn_duration_s() returns the duration of a turn. turned_angle_deg() returns the angle of a turn `time_s`
+// after its start.
+double turn_duration_s(const TurnBody& turn);
+double turned_angle_deg(const TurnBody& turn, double time_s);
+
 using Command = std::variant<PlacePlane, RemovePlanes, SetTool, SetMaterial, SetSculpting, SetSymmetry,
-                             ResetProxy, LiftTool, KeepShape, RefineKnots>;
+                             ResetProxy, LiftTool, KeepShape, RefineKnots, TurnBody, LowerBody>;
 
 // Names of the commands in scripts and recordings.
 template <>
@@ -161,5 +218,21 @@ template <>
 inline constexpr const char* kind_name<KeepShape> = "keep_shape";
 template <>
 inline constexpr const char* kind_name<RefineKnots> = "refine_knots";
+template <>
+inline constexpr const char* kind_name<TurnBody> = "turn_body";
+template <>
+inline constexpr const char* kind_name<LowerBody> = "lower_body";
+
+template <>
+inline constexpr auto fields_of<TurnBody> = std::to_array<Field<TurnBody>>({
+    position_field("point_mm", &TurnBody::point_m),
+    direction_field("axis", &TurnBody::axis),
+    number_field("angle_deg", &TurnBody::angle_deg, turn_angle_range_deg),
+    number_field("speed_deg_per_s", &TurnBody::speed_deg_per_s, turn_speed_range_deg_per_s),
+});
+template <>
+inline constexpr auto fields_of<LowerBody> = std::to_array<Field<LowerBody>>({
+    number_field("speed_m_per_s", &LowerBody::speed_m_per_s, lowering_speed_range_m_per_s),
+});
 
 }  // namespace spoonbill

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
+#include "engine/simulation/simulation.h"
 
 namespace spoonbill {
 namespace {
@@ -64,6 +65,16 @@ struct SkinPoint {
   Vector3 fit_error_m;
 };
 
+// Returns whether the body stands still in this tick. Its points then need no embedding.
+bool stands_still(const BodyState& body) {
+  return body.rigid && !body.rigid->motion().moves;
+}
+
+// Returns a point that does not move.
+SkinPoint make_still_point(const IndexedBody& body) {
+  return {{body.index, &body.state->lattice, {}}, Vector3::Zero()};
+}
+
 SkinPoint make_skin_point(const IndexedBody& body, const EmbeddedPoint& embedding, const Vector3& error_m) {
   const SpringLattice& lattice = body.state->lattice;
   const double most_m = largest_fit_error_cells * static_cast<double>(lattice.cell_size_m());
@@ -73,6 +84,7 @@ SkinPoint make_skin_point(const IndexedBody& body, const EmbeddedPoint& embeddin
 
 // `point_m` is the position of the sample on the surface.
 SkinPoint find_skin_sample(const IndexedBody& body, int sample, const Vector3& point_m) {
+  if (stands_still(*body.state)) return make_still_point(body);
   const EmbeddedPoint& embedding = body.state->mapping().sample(sample);
   return make_skin_point(body, embedding, embedding.position_m(body.state->lattice) - point_m);
 }
@@ -81,6 +93,7 @@ SkinPoint find_skin_sample(const IndexedBody& body, int sample, const Vector3& p
 // a blend of those of the samples around it. This offset along the normal is not an error, and turns with the
 // surface.
 SkinPoint find_skin_point(const IndexedBody& body, double u, double v) {
+  if (stands_still(*body.state)) return make_still_point(body);
   const BodyMapping& mapping = body.state->mapping();
   const SpringLattice& lattice = body.state->lattice;
   const EmbeddedPoint embedding = mapping.at(u, v);
@@ -108,7 +121,8 @@ EmbeddedPoint find_embedding(const BodyMapping& mapping, const NearPoint& near) 
 
 bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::vector<NearPoint>& points,
                      BodyContacts& contacts) {
-  const double least_lead_m = least_lead_cells * static_cast<double>(from.state->lattice.cell_size_m());
+  const SpringLattice& cells = from.state->rigid ? to.state->lattice : from.state->lattice;
+  const double least_lead_m = least_lead_cells * static_cast<double>(cells.cell_size_m());
   bool complete = true;
   for (const NearPoint& near : points) {
     if (near.sample < 0 && near.lead_m < least_lead_m) continue;
@@ -236,11 +250,15 @@ BodyPairContact::BodyPairContact(const BodyState& first, const BodyState& second
 }
 
 bool BodyPairContact::find(const IndexedBody& first, const IndexedBody& second) {
-  const double cell =
-      static_cast<double>(std::max(first.state->lattice.cell_size_m(), second.state->lattice.cell_size_m()));
+  const auto size_of_cells = [](const BodyState& body) {
+    return body.rigid ? 0.0 : static_cast<double>(body.lattice.cell_size_m());
+  };
+  const double cell = std::max(size_of_cells(*first.state), size_of_cells(*second.state));
+  const double motion_m = tick_s * (first.state->fastest_m_per_s() + second.state->fastest_m_per_s());
+  const double margin_m = std::max(contact_margin_cells * cell, motion_m);
   return std::visit(
       [&](const auto& proximity) {
-        find_near_points(*proximity, *first.state, *second.state, contact_margin_cells * cell);
+        find_near_points(*proximity, *first.state, *second.state, margin_m);
         return !proximity->overflow();
       },
       proximity_);
@@ -267,7 +285,7 @@ bool BodyPairContact::add_contacts(const IndexedBody& first, const IndexedBody& 
 
 BodySelfContact::BodySelfContact(const BodyState& body) {
   SPOONBILL_ASSERT_DEBUG(body.fixed.size() == static_cast<std::size_t>(body.lattice.mesh().node_count()));
-  if (body.mesh() != nullptr || body.lattice.mesh().slender) return;
+  if (body.mesh() != nullptr || body.lattice.mesh().slender || body.rigid) return;
   proximity_ = std::make_unique<SelfProximity>(body.mapping().nested(), body.mapping().rest(),
                                                static_cast<double>(body.lattice.cell_size_m()));
 }

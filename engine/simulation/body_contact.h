@@ -47,8 +47,8 @@ bool resolve_shell_gap(const ShellOrSolid& of, const ShellOrSolid& other, double
 // for this reason, and by another 0.02 between samples.
 inline constexpr double body_depth_limit_cells = 0.06;
 
-// Gap below which a constraint is added for a point, in lattice cells of the coarser body. It is about the
-// movement in one tick.
+// Gap below which a constraint is added for a point, in lattice cells of the coarser body that is deformable.
+// It is about the movement in one tick. Bodies that move faster get a larger margin.
 inline constexpr double contact_margin_cells = 0.25;
 
 // State of a body, and its index in the simulation.

@@ -168,15 +168,16 @@ bool BodyHold::limit(SpringLattice& lattice, ImplicitSolver* solver, double reac
   return true;
 }
 
-void BodyHold::keep_pose(SpringLattice& lattice, ImplicitSolver* solver) const {
+void BodyHold::keep_pose(SpringLattice& lattice, ImplicitSolver* solver, const Vector3& shift_m) const {
   SPOONBILL_ASSERT_DEBUG(!lattice.has_fixed_nodes());
   const MeanPose now = measure(lattice);
   const bool is_turned = (now.turn - pose_.turn).norm() > least_turn_rad;
-  if (!is_turned && (now.centre_m - pose_.centre_m).norm() <= least_move_m) return;
+  const Vector3 centre_m = pose_.centre_m + shift_m;
+  if (!is_turned && (now.centre_m - centre_m).norm() <= least_move_m) return;
   const MassCentre centre = find_mass_centre(lattice);
   RigidMove move;
   move.from_m = now.centre_m;
-  move.to_m = pose_.centre_m;
+  move.to_m = centre_m;
   move.velocity_m_per_s = centre.velocity_m_per_s;
   move.spin_rad_per_s = find_spin(lattice, centre);
   if (now.has_turn && pose_.has_turn) {

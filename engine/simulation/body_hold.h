@@ -26,11 +26,13 @@ class BodyHold {
   // zero velocities, and returns true. `solver` is null if the body uses the spring solver.
   bool limit(SpringLattice& lattice, ImplicitSolver* solver, double reach_m) const;
 
-  // Returns the body to its mean position and orientation at the start of the tick, and removes its linear
-  // and angular momentum, as if a hand gently held the whole body. The lattice must have no fixed nodes. The
+  // Returns the body to its mean orientation at the start of the tick, and to its mean position plus
+  // `shift_m`, and removes its linear and angular momentum, as if a hand gently held the whole body. The
+  // lattice must have no fixed nodes. The
   // mean orientation is the rotation that fits the rest shape best (Kabsch 1976), so that it does not drift
   // with a sequence of deformations.
-  void keep_pose(SpringLattice& lattice, ImplicitSolver* solver) const;
+  void keep_pose(SpringLattice& lattice, ImplicitSolver* solver,
+                 const Vector3& shift_m = Vector3::Zero()) const;
 
  private:
   struct MeanPose {

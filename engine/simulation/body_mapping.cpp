@@ -216,7 +216,7 @@ Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& curren
   mapping.collapsed_edges_ = find_collapsed_edges(mapping.rest_);
   const KnotVector& v = mapping.rest_.v;
   RefitConstraints constraints{find_fixed_columns(v, fixed), true, true};
-  if (lattice.mesh().thin || v.is_periodic()) {
+  if (lattice.mesh().thin || lattice.mesh().is_frame || v.is_periodic()) {
     constraints.keep_first = v.is_clamped(false);
     constraints.keep_last = v.is_clamped(true);
     mapping.first_pole_ = is_pole(mapping.rest_, false);

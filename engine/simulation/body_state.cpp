@@ -17,7 +17,7 @@ std::string rounded_text(double number) {
 // Returns a warning if the cells of a body without an implicit solver are too slender; otherwise an empty
 // text.
 std::string describe_slender_cells(const BodyState& body) {
-  if (body.implicit_solver) return {};
+  if (body.implicit_solver || body.rigid) return {};
   const LatticeReport& report = body.lattice.report();
   int worst = 0;
   const auto error = [&](int axis) { return std::abs(report.youngs_modulus_ratio[axis] - 1.0); };
@@ -65,6 +65,7 @@ std::vector<std::uint8_t> find_nodes_behind(const SpringLattice& lattice,
 }
 
 void BodyState::fix_nodes_behind(const std::vector<FixingPlane>& planes) {
+  if (rigid) return fix(std::vector<std::uint8_t>(lattice.mesh().nodes.size(), 1));
   std::vector<std::uint8_t> nodes = find_nodes_behind(lattice, planes);
   supports.claim_nodes(lattice, nodes);
   fix(std::move(nodes));
@@ -80,9 +81,12 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
   if (!materials.ok()) return materials.error();
   Result<SpringLattice> lattice = SpringLattice::make(mesh.value(), materials.value(), set);
   if (!lattice.ok()) return lattice.error();
-  Result<std::optional<ImplicitSolver>> solver = make_implicit_solver(lattice.value(), mesh->nodes, set);
+  const bool is_rigid = body.kind == BodyKind::fixed;
+  Result<std::optional<ImplicitSolver>> solver = std::optional<ImplicitSolver>();
+  if (!is_rigid) solver = make_implicit_solver(lattice.value(), mesh->nodes, set);
   if (!solver.ok()) return solver.error();
-  Result<BodyMapping> mapping = BodyMapping::make(body.surface, body.surface, lattice.value(), planes, set);
+  Result<BodyMapping> mapping = BodyMapping::make(body.surface, body.surface, lattice.value(),
+                                                  is_rigid ? std::vector<FixingPlane>() : planes, set);
   if (!mapping.ok()) return mapping.error();
   Result<BodyLoads> loads =
       BodyLoads::make(body.loads, mesh.value(), [&](double u, double v) { return mapping->at(u, v); });
@@ -98,6 +102,7 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
   state.trim = std::move(trim).value();
   state.loads = std::move(loads).value();
   state.supports = std::move(supports).value();
+  if (is_rigid) state.rigid.emplace();
   state.fix_nodes_behind(planes);
   state.set_implicit_solver(std::move(solver).value());
   return state;

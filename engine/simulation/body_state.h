@@ -1,6 +1,8 @@
 // State of one body of a simulation: lattice, skin, loads, supports and fixed nodes.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -20,6 +22,7 @@
 #include "engine/simulation/body_hold.h"
 #include "engine/simulation/body_loads.h"
 #include "engine/simulation/body_mapping.h"
+#include "engine/simulation/rigid_body.h"
 #include "engine/simulation/smoothing.h"
 
 namespace spoonbill {
@@ -36,14 +39,20 @@ struct BodyState {
   BodySupports supports = {};
   double shell_thickness_m = 0.0;                // 0 for a solid
   std::shared_ptr<const TrimmedArea> trim = {};  // area within the trims; null without trims
+  // Pose of a rigid body, whose lattice is its frame (rigid_frame()); empty for a deformable body.
+  std::optional<RigidBody> rigid = {};
+  // Speed at which the body is lowered until contacts bear its weight; 0 for any other body.
+  double lowering_m_per_s = 0.0;
 
-  // Fixes the nodes behind the planes, then the nodes of the supports; frees all others.
+  // Fixes the nodes behind the planes, then the nodes of the supports; frees all others. All nodes of a rigid
+  // body stay fixed.
   void fix_nodes_behind(const std::vector<FixingPlane>& planes);
   // Sets the fixed nodes, one byte per node.
   void fix(std::vector<std::uint8_t> nodes) {
     SPOONBILL_ASSERT(nodes.size() == static_cast<std::size_t>(lattice.mesh().node_count()));
     fixed = std::move(nodes);
     lattice.fix_nodes(fixed);
+    if (lattice.has_fixed_nodes()) lowering_m_per_s = 0.0;
     if (implicit_solver) implicit_solver->fix_nodes(fixed);
   }
   void set_lattice(SpringLattice other) {
@@ -83,6 +92,15 @@ struct BodyState {
   }
   // Returns the triangles of a soft mesh tool; null for any other body.
   const MeshMapping* mesh() const { return std::get_if<MeshMapping>(&skin); }
+
+  // Returns the highest speed of a node. For a rigid body, it is that of the last tick in which it moved.
+  double fastest_m_per_s() const {
+    double square = 0.0;
+    for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+      square = std::max(square, lattice.velocity(n).squaredNorm());
+    }
+    return std::sqrt(square);
+  }
 
   // Updates the skin to the present displacements of the lattice.
   void update_skin() {

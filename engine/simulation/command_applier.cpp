@@ -27,6 +27,21 @@ BodyContacts make_contact_buffer() {
   return BodyContacts(capacity);
 }
 
+namespace {
+
+// Returns the planes that fix nodes of the body: none if the body is rigid.
+std::vector<FixingPlane> planes_through(const BodyState& body, const std::vector<FixingPlane>& planes) {
+  return body.rigid ? std::vector<FixingPlane>() : planes;
+}
+
+}  // namespace
+
+Result<std::optional<ImplicitSolver>> CommandApplier::make_solver_of(
+    const BodyState& body, const SpringLattice& lattice, const std::vector<Vector3>& rest_m) const {
+  if (body.rigid) return std::optional<ImplicitSolver>();
+  return make_implicit_solver(lattice, rest_m, state.set);
+}
+
 Status CommandApplier::operator()(const PlacePlane& command) {
   if (Status status = check_fixing_plane(command.plane); !status.ok()) return status;
   std::vector<FixingPlane> planes = state.scene.planes;
@@ -109,9 +124,9 @@ Status CommandApplier::operator()(const SetMaterial& command) {
   lattice->set_shape(body.lattice.shape());
   // Rest shape of the new solver: the present shape if the body had no solver, otherwise the rest shape of
   // the old solver.
-  Result<std::optional<ImplicitSolver>> solver = make_implicit_solver(
-      lattice.value(), body.implicit_solver ? body.implicit_solver->rest_m() : body.lattice.positions(),
-      state.set);
+  Result<std::optional<ImplicitSolver>> solver =
+      make_solver_of(body, lattice.value(),
+                     body.implicit_solver ? body.implicit_solver->rest_m() : body.lattice.positions());
   if (!solver.ok()) return solver.error();
   body.set_lattice(std::move(lattice).value());
   body.set_implicit_solver(std::move(solver).value());
@@ -133,11 +148,10 @@ Status CommandApplier::operator()(const KeepShape&) {
     if (!lattice.ok()) return lattice.error();
     lattice->fix_nodes(body.fixed);
     const Surface& surface = body.mapping().current();
-    Result<BodyMapping> mapping =
-        BodyMapping::make(surface, surface, lattice.value(), state.scene.planes, state.set);
+    Result<BodyMapping> mapping = BodyMapping::make(surface, surface, lattice.value(),
+                                                    planes_through(body, state.scene.planes), state.set);
     if (!mapping.ok()) return mapping.error();
-    Result<std::optional<ImplicitSolver>> solver =
-        make_implicit_solver(lattice.value(), mesh.nodes, state.set);
+    Result<std::optional<ImplicitSolver>> solver = make_solver_of(body, lattice.value(), mesh.nodes);
     if (!solver.ok()) return solver.error();
     solvers.push_back(std::move(solver).value());
     lattices.push_back(std::move(lattice).value());
@@ -148,6 +162,7 @@ Status CommandApplier::operator()(const KeepShape&) {
     state.bodies[b].supports.rebase(state.bodies[b].lattice, lattices[b]);
     state.bodies[b].set_lattice(std::move(lattices[b]));
     state.bodies[b].set_implicit_solver(std::move(solvers[b]));
+    if (state.bodies[b].rigid) state.bodies[b].rigid->place({});
   }
   update_inertia(state);
   set_mappings(std::move(mappings));
@@ -164,8 +179,8 @@ Status CommandApplier::operator()(const RefineKnots& command) {
     return Error{ErrorCode::inconsistent,
                  "refine_knots: nothing moved since the knots were last changed; shape the body first"};
   }
-  Result<BodyMapping> finer =
-      mapping.refine_at(residual.u, residual.v, state.bodies[index].lattice, state.scene.planes);
+  Result<BodyMapping> finer = mapping.refine_at(residual.u, residual.v, state.bodies[index].lattice,
+                                                planes_through(state.bodies[index], state.scene.planes));
   if (!finer.ok()) return finer.error();
   for (const KnotVector* knots : {&finer->rest().u, &finer->rest().v}) {
     if (Status status = check_range("refine_knots: control points in one direction",
@@ -178,6 +193,33 @@ Status CommandApplier::operator()(const RefineKnots& command) {
   state.scene.bodies[index].surface = mapping.current();
   release();
   make_contacts();
+  return {};
+}
+
+Status CommandApplier::operator()(const TurnBody& command) {
+  if (Status status = check_body(command.body); !status.ok()) return status;
+  if (Status status = check_fields("turn_body: ", command); !status.ok()) return status;
+  std::optional<RigidBody>& rigid = state.bodies[static_cast<std::size_t>(command.body)].rigid;
+  if (!rigid) {
+    return Error{ErrorCode::inconsistent, "turn_body: the body is deformable; only a fixed body turns",
+                 "body"};
+  }
+  rigid->turn(command);
+  return {};
+}
+
+Status CommandApplier::operator()(const LowerBody& command) {
+  if (Status status = check_body(command.body); !status.ok()) return status;
+  if (Status status = check_fields("lower_body: ", command); !status.ok()) return status;
+  BodyState& body = state.bodies[static_cast<std::size_t>(command.body)];
+  if (body.lattice.has_fixed_nodes()) {
+    return Error{ErrorCode::inconsistent, "lower_body: the body is fixed; only a free body is lowered",
+                 "body"};
+  }
+  if (state.scene.sculpting.gravity_m_per_s2.isZero(0.0)) {
+    return Error{ErrorCode::missing, "lower_body: without gravity nothing is lowered", "gravity_m_per_s2"};
+  }
+  body.lowering_m_per_s = command.speed_m_per_s;
   return {};
 }
 
@@ -194,8 +236,8 @@ void CommandApplier::release() {
 Status CommandApplier::set_planes(std::vector<FixingPlane> planes) {
   std::vector<BodyMapping> mappings;
   for (const BodyState& body : state.scene_bodies()) {
-    Result<BodyMapping> mapping =
-        BodyMapping::make(body.mapping().rest(), body.mapping().current(), body.lattice, planes, state.set);
+    Result<BodyMapping> mapping = BodyMapping::make(body.mapping().rest(), body.mapping().current(),
+                                                    body.lattice, planes_through(body, planes), state.set);
     if (!mapping.ok()) return mapping.error();
     mappings.push_back(std::move(mapping).value());
   }

@@ -273,6 +273,7 @@ void BodyGroundContact::forget() {
 void BodyGroundContact::find(int index, const BodyState& body, const Ground& ground, double reach_m,
                              double time_s) {
   BodyFootings& footings = bodies_[static_cast<std::size_t>(index)];
+  if (footings.footings.empty()) return;  // a rigid body
   const double look_m = reach_m + footings.max_sample_distance_m;
   // A shell's nodes are on its faces, so its skin needs no correction.
   const bool thin = body.lattice.mesh().thin, boxed = is_boxed(body.lattice.mesh());

@@ -15,6 +15,11 @@
 namespace spoonbill {
 namespace {
 
+// Adds the body's name to an error if the scene has several bodies.
+Error name_body(const Body& body, const Scene& scene, const Error& error) {
+  return scene.bodies.size() == 1 ? error : error.in("body \"" + body.name + "\"");
+}
+
 Status check_scene(const Scene& scene) {
   if (Status status = check_tool(scene.tool); !status.ok()) return status;
   if (Status status = check_tool_and_symmetry(scene.tool, scene.symmetry); !status.ok()) return status;
@@ -23,7 +28,9 @@ Status check_scene(const Scene& scene) {
   for (const Body& body : scene.bodies) {
     if (Status status = check_lattice_request(body.lattice); !status.ok()) return status;
     if (Status status = check_loads(body); !status.ok()) return status;
+    if (Status status = check_kind(body); !status.ok()) return name_body(body, scene, status.error());
   }
+  if (Status status = check_trial(scene); !status.ok()) return status;
   for (const FixingPlane& plane : scene.planes) {
     if (Status status = check_fixing_plane(plane); !status.ok()) return status;
   }
@@ -31,11 +38,6 @@ Status check_scene(const Scene& scene) {
     if (Status status = check_ground(*scene.ground); !status.ok()) return status;
   }
   return check_symmetry(scene.symmetry);
-}
-
-// Adds the body's name to an error if the scene has several bodies.
-Error name_body(const Body& body, const Scene& scene, const Error& error) {
-  return scene.bodies.size() == 1 ? error : error.in("body \"" + body.name + "\"");
 }
 
 // Returns the diagonal of the box around the bodies at rest, in metres.
@@ -80,7 +82,7 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
                                             false,
                                             0.0,
                                             scene_size_m,
-                                            false,
+                                            -1,
                                             std::move(retired_bodies),
                                             {}});
   update_inertia(*made);
@@ -98,13 +100,14 @@ void update_inertia(Simulation::State& s) {
   const int wanted = s.scene.tool.substeps;
   double real_time_step_s = tick_s / wanted;
   for (BodyState& body : bodies) {
-    if (!body.solver()) real_time_step_s = body.lattice.find_real_time_step_s(real_time_step_s);
+    if (!body.solver() && !body.rigid)
+      real_time_step_s = body.lattice.find_real_time_step_s(real_time_step_s);
   }
   s.real_time_substeps = static_cast<int>(std::lround(tick_s / real_time_step_s));
   s.substeps = s.scene.sculpting.real_time ? s.real_time_substeps : wanted;
   const double step_s = tick_s / s.substeps;
   const auto own_scale = [&](BodyState& body) {
-    return body.solver() ? 1.0 : body.lattice.find_inertia_scale(step_s);
+    return body.solver() || body.rigid ? 1.0 : body.lattice.find_inertia_scale(step_s);
   };
   double shared = 1.0;
   for (BodyState& body : bodies) {
@@ -129,6 +132,7 @@ void visit_pairs(Simulation::State& s, const Visit& visit) {
   auto pair = s.pairs.begin();
   for (std::size_t second = 1; second < s.stepped_count(); ++second) {
     for (std::size_t first = 0; first < second; ++first, ++pair) {
+      if (s.bodies[first].rigid && s.bodies[second].rigid) continue;
       visit(*pair, IndexedBody{static_cast<int>(first), &s.bodies[first]},
             IndexedBody{static_cast<int>(second), &s.bodies[second]}, is_tool(s, second));
     }
@@ -168,7 +172,8 @@ void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
     body.loads.apply(body.lattice, body.solver());
     const double end_s = static_cast<double>(s.tick + 1) * tick_s;
     lattices[b] = {&body.lattice, sculpting.gravity_m_per_s2, body.solver(),
-                   body.supports.begin_tick(body.lattice, end_s, tick_s)};
+                   body.supports.begin_tick(body.lattice, end_s, tick_s),
+                   body.rigid ? &body.rigid->motion() : nullptr};
   }
   const RelaxSettings settings{s.tick, s.substeps, tick_s, sculpting.drag_per_s,
                                sculpting.is_critically_damped};
@@ -179,22 +184,43 @@ void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
 // Largest allowed distance of a node from its body's centre of mass, as a fraction of the scene's size.
 constexpr double reach_fraction = 1.0;
 
+// Impulse of the ground and of other bodies on a body in the last tick, N s.
+Vector3 contact_impulse_ns(const Simulation::State& s, int body) {
+  const Vector3 between = s.between.impulse_ns(body, tick_s);
+  return s.scene.ground ? Vector3(between + s.ground_contact.contacts().impulse_ns(body)) : between;
+}
+
+// Lowers a body level by the distance of a tick, unless contacts bear its weight: then lets it go.
+void lower(Simulation::State& s, std::size_t index) {
+  BodyState& body = s.bodies[index];
+  const Vector3& gravity = s.scene.sculpting.gravity_m_per_s2;
+  const double weight_ns = body.lattice.mass_kg() * gravity.norm() * tick_s;
+  const Vector3 down = gravity.normalized();
+  if (-contact_impulse_ns(s, static_cast<int>(index)).dot(down) >= weight_ns) {
+    body.lowering_m_per_s = 0.0;
+    return;
+  }
+  body.hold.keep_pose(body.lattice, body.solver(), body.lowering_m_per_s * tick_s * down);
+}
+
 // Keeps the bodies in the scene. Call after everything else has moved them; BodyHold::begin() must have been
 // called at the start of the tick.
 void hold_bodies(Simulation::State& s) {
-  s.bodies_limited = false;
+  s.limited_body = -1;
   const double reach_m = reach_fraction * s.scene_size_m;
   for (std::size_t b = 0; b < s.scene.bodies.size(); ++b) {
     BodyState& body = s.bodies[b];
+    if (body.rigid) continue;
     ImplicitSolver* const solver = body.solver();
-    s.bodies_limited |= body.hold.limit(body.lattice, solver, reach_m);
+    if (body.hold.limit(body.lattice, solver, reach_m)) s.limited_body = static_cast<int>(b);
+    if (body.lowering_m_per_s > 0.0) lower(s, b);
     if (keeps_place(s.scene) && !body.lattice.has_fixed_nodes()) body.hold.keep_pose(body.lattice, solver);
   }
 }
 
 std::uint32_t collect_flags(const Simulation::State& s) {
   std::uint32_t flags = tick_flag_none;
-  if (s.bodies_limited) flags |= tick_flag_body_limited;
+  if (s.limited_body >= 0) flags |= tick_flag_body_limited;
   if (s.relaxed.nodes_slowed) flags |= tick_flag_nodes_slowed;
   if (s.relaxed.speed_capped) flags |= tick_flag_speed_capped;
   if (s.tool.contact.overflow() || s.mirrored.contact.overflow() || s.pairs_overflow) {
@@ -236,6 +262,9 @@ Reaction Simulation::advance(const ToolInput& input) {
   if (both) {
     tools[1] = touch(s, s.mirrored, make_mirrored_hold(s.scene.symmetry, input), input.coupling_n_per_m);
   }
+  for (BodyState& body : s.scene_bodies()) {
+    if (body.rigid) body.rigid->begin_tick(tick_s);
+  }
   find_contacts_between(s, hold);
   for (BodyState& body : s.scene_bodies()) body.hold.begin(body.lattice);
   relax_bodies(s, {tools.data(), both ? std::size_t{2} : std::size_t{1}});
@@ -245,7 +274,10 @@ Reaction Simulation::advance(const ToolInput& input) {
     if (both) reform(s, s.mirrored);
   }
   hold_bodies(s);
-  for (std::size_t b = 0; b < s.stepped_count(); ++b) s.bodies[b].update_skin();
+  for (std::size_t b = 0; b < s.stepped_count(); ++b) {
+    if (s.bodies[b].rigid && !s.bodies[b].rigid->motion().moves) continue;
+    s.bodies[b].update_skin();
+  }
   measure_residuals(s);
   ++s.tick;
 
@@ -287,6 +319,23 @@ Vector3 Simulation::support_force_n(int support, int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
   const auto at = static_cast<std::size_t>(body);
   return state_->bodies[at].supports.supports()[static_cast<std::size_t>(support)].impulse_ns / tick_s;
+}
+Vector3 Simulation::contact_force_n(int body) const {
+  SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
+  return state_->between.impulse_ns(body, tick_s) / tick_s;
+}
+bool Simulation::is_moving_bodies() const {
+  return std::any_of(state_->bodies.begin(), state_->bodies.end(), [](const BodyState& body) {
+    return body.lowering_m_per_s > 0.0 || (body.rigid && body.rigid->is_turning());
+  });
+}
+int Simulation::body_at_fault() const {
+  return state_->limited_body >= 0 ? state_->limited_body : state_->relaxed.at_fault;
+}
+double Simulation::largest_overlap_m() const {
+  double overlap = 0.0;
+  for (const BodyPairContact& pair : state_->pairs) overlap = std::max(overlap, -pair.least_gap_m());
+  return overlap;
 }
 Vector3 Simulation::ground_force_n(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
@@ -334,6 +383,10 @@ std::uint64_t Simulation::state_hash() const {
       body.implicit_solver->visit_state(
           [&](const double* data, std::size_t count) { hash.add(data, count); });
     }
+    if (body.rigid) {
+      body.rigid->visit_state([&](const double* data, std::size_t count) { hash.add(data, count); });
+    }
+    if (body.lowering_m_per_s > 0.0) hash.add(body.lowering_m_per_s);
     if (s.scene.ground && body.implicit_solver) {
       body.implicit_solver->visit_state_on_ground(
           [&](const double* data, std::size_t count) { hash.add(data, count); });
@@ -361,14 +414,17 @@ ShapeState Simulation::shape() const {
 
 void Simulation::write_shape(ShapeState& shape) const {
   shape.lattices.resize(state_->scene.bodies.size());
+  shape.poses.resize(state_->scene.bodies.size());
   for (std::size_t b = 0; b < shape.lattices.size(); ++b) {
     state_->bodies[b].lattice.write_shape(shape.lattices[b]);
+    if (state_->bodies[b].rigid) shape.poses[b] = state_->bodies[b].rigid->pose();
   }
 }
 
 Status Simulation::restore(const ShapeState& shape) {
   const DenormalsFlushed flushed;
-  bool fits = shape.lattices.size() == state_->scene.bodies.size();
+  bool fits = shape.lattices.size() == state_->scene.bodies.size() &&
+              shape.poses.size() == state_->scene.bodies.size();
   for (std::size_t b = 0; fits && b < shape.lattices.size(); ++b) {
     fits = shape.lattices[b].size() == state_->bodies[b].lattice.shape_size();
   }
@@ -376,6 +432,8 @@ Status Simulation::restore(const ShapeState& shape) {
   for (std::size_t b = 0; b < shape.lattices.size(); ++b) {
     BodyState& body = state_->bodies[b];
     body.lattice.set_shape(shape.lattices[b]);
+    if (body.rigid) body.rigid->place(shape.poses[b]);
+    body.lowering_m_per_s = 0.0;
     if (body.solver()) body.solver()->adopt_shape(body.lattice);
     body.update_skin();
   }

@@ -43,9 +43,11 @@ struct Reaction {
 };
 
 // State that a stroke can change and that undo restores bit for bit: the displacements, velocities, rest
-// lengths, rest volumes and creep strains of the lattices. The control points follow from this state.
+// lengths, rest volumes and creep strains of the lattices, and the poses of rigid bodies. The control points
+// follow from this state.
 struct ShapeState {
   std::vector<std::vector<float>> lattices;  // shape of each body's lattice
+  std::vector<Pose> poses = {};              // pose of each body that is rigid; the default pose for others
   friend bool operator==(const ShapeState&, const ShapeState&) = default;
 };
 
@@ -132,10 +134,18 @@ class Simulation {
   // Returns the elasticity that the solver of the body achieves.
   const LatticeReport& report(int body = 0) const;
 
-  // support_force_n() and ground_force_n() return the mean force of a support or of the ground on a body over
-  // the last tick.
+  // support_force_n(), ground_force_n() and contact_force_n() return the mean force of a support, of the
+  // ground or of all other bodies on a body over the last tick.
   Vector3 support_force_n(int support, int body = 0) const;
   Vector3 ground_force_n(int body = 0) const;
+  Vector3 contact_force_n(int body = 0) const;
+  // Returns true while a body is being turned or lowered.
+  bool is_moving_bodies() const;
+  // Returns the index of the body to which the last tick's flags nodes_slowed, speed_capped and body_limited
+  // apply, or -1.
+  int body_at_fault() const;
+  // Returns the largest overlap of two bodies that the contact search of the last tick found, m; 0 if none.
+  double largest_overlap_m() const;
 
   struct State;
 

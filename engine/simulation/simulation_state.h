@@ -47,9 +47,9 @@ struct Simulation::State {
   std::vector<BodySelfContact> self;   // self-contact of each body
   BodyGroundContact ground_contact;    // contacts of the scene's bodies; empty without a ground
   bool pairs_overflow = false;
-  double tool_gap_m = 0.0;      // smallest gap between a soft tool and a body; infinite if none is near
-  double scene_size_m = 0.0;    // diagonal of the box around the bodies at rest
-  bool bodies_limited = false;  // true if BodyHold::limit() restored a body in the last tick
+  double tool_gap_m = 0.0;    // smallest gap between a soft tool and a body; infinite if none is near
+  double scene_size_m = 0.0;  // diagonal of the box around the bodies at rest
+  int limited_body = -1;      // a body that BodyHold::limit() restored in the last tick, or -1
   // Bodies of all solid tools so far, the last one included, and triangles of replaced soft tools. They are
   // kept, because snapshots share them and no tick may free the last reference.
   std::vector<std::shared_ptr<const ToolBody>> retired_bodies;
@@ -134,10 +134,15 @@ struct CommandApplier {
   Status operator()(const SetMaterial& command);
   Status operator()(const KeepShape& command);
   Status operator()(const RefineKnots& command);
+  Status operator()(const TurnBody& command);
+  Status operator()(const LowerBody& command);
 
  private:
   void release();
   Status check_body(int body) const;
+  // Makes the implicit solver of a body (make_implicit_solver()); a rigid body has none.
+  Result<std::optional<ImplicitSolver>> make_solver_of(const BodyState& body, const SpringLattice& lattice,
+                                                       const std::vector<Vector3>& rest_m) const;
   // Checks a tool. If the tool is a B-spline body that has already been modelled, does not check this body
   // again, because that takes as long as modelling it.
   Status check_changes(const Tool& tool) const;

@@ -84,7 +84,7 @@ void write_material(const Material& material, const Sculpting& sculpting, const 
   out.density_kg_per_m3 = material.density_kg_per_m3;
   out.drag_per_s = sculpting.drag_per_s;
   out.plastic = material.plastic;
-  out.lattice_mass_kg = body.lattice.mass_kg();
+  out.lattice_mass_kg = body.rigid ? 0.0 : body.lattice.mass_kg();
 }
 
 }  // namespace
@@ -104,6 +104,7 @@ void write_bodies(std::span<const BodyState> bodies, const Scene& scene, std::ve
       out[b].residual = {mapping.residual().largest_m, mapping.residual().root_mean_square_m};
     }
     out[b].shell_thickness_m = bodies[b].shell_thickness_m;
+    out[b].is_rigid = bodies[b].rigid.has_value();
     write_lattice(bodies[b].lattice, bodies[b].fixed, bodies[b].touched, out[b].lattice);
     write_material(b < scene.bodies.size() ? scene.bodies[b].material : scene.tool.body->soft->material,
                    scene.sculpting, bodies[b], out[b].material);

@@ -23,7 +23,9 @@ TEST(Command, ReadsWhatItWrites) {
                               ResetProxy{},
                               LiftTool{},
                               KeepShape{},
-                              RefineKnots{1}};
+                              RefineKnots{1},
+                              TurnBody{1, Vector3(0.01, 0, 0), Vector3::UnitZ(), -12.5, 60.0},
+                              LowerBody{2, 0.02}};
   for (const Command& command : commands) {
     const Json json = command_to_json(command);
     EXPECT_TRUE(is_simulation_command(json)) << json_to_line(json);
@@ -44,7 +46,8 @@ TEST(Command, KnowsItsNames) {
 TEST(Command, NamesWhatIsWrong) {
   EXPECT_EQ(command_refusal("{\"command\": \"fly\"}").message,
             "bend.jsonl: line 4: command is \"fly\", must be one of place_plane, remove_planes, set_tool, "
-            "set_material, set_sculpting, set_symmetry, reset_proxy, lift_tool, keep_shape, refine_knots");
+            "set_material, set_sculpting, set_symmetry, reset_proxy, lift_tool, keep_shape, refine_knots, "
+            "turn_body, lower_body");
   EXPECT_EQ(command_refusal("{}"), Refusal(ErrorCode::missing, "command"));
   EXPECT_EQ(command_refusal("{\"command\": 3}"), Refusal(ErrorCode::wrong_type, "command"));
   EXPECT_EQ(command_refusal("[]"), Refusal(ErrorCode::wrong_type));

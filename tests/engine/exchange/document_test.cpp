@@ -65,6 +65,39 @@ TEST(Document, KeepsTheThicknessOfAShell) {
   EXPECT_EQ(through_text(document).scene.bodies[0].shell_thickness_m, 0.0015);
 }
 
+TEST(Document, KeepsTheKindOfABodyAndTheTrial) {
+  Document document = sample_document();
+  Body spoon = document.scene.bodies[0];
+  spoon.name = "spoon";
+  spoon.kind = BodyKind::fixed;
+  spoon.regions.clear();
+  spoon.loads.clear();
+  spoon.supports.clear();
+  document.scene.bodies[0].name = "jelly";
+  document.scene.bodies.push_back(spoon);
+  document.scene.trial = TrialPlan{"jelly", 0.02, "spoon", {0.001, 0.0, 0.0}, Vector3::UnitY(), -7.5, 12.0};
+  const Json json = document_to_json(document);
+  EXPECT_FALSE(json["body"].contains("kind"));
+  EXPECT_FALSE(json["other_bodies"][0].contains("lattice"));
+  const auto read = document_from_json(json, "text");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->scene.bodies[0].kind, BodyKind::deformable);
+  EXPECT_EQ(read->scene.bodies[1].kind, BodyKind::fixed);
+  EXPECT_EQ(document_to_json(read.value()), json);
+
+  Json loaded = json;
+  loaded["other_bodies"][0]["supports"] = Json::array({{{"region", Json::object()}}});
+  EXPECT_EQ(Refusal(document_from_json(loaded, "text")),
+            Refusal(ErrorCode::inconsistent, "other_bodies[0].supports"));
+  Json unnamed = json;
+  unnamed["trial"]["turned_body"] = "jelly";
+  EXPECT_EQ(Refusal(document_from_json(unnamed, "text")), Refusal(ErrorCode::inconsistent, "turned_body"));
+  Json fast = json;
+  fast["trial"]["turn_speed_deg_per_s"] = 1000;
+  EXPECT_EQ(Refusal(document_from_json(fast, "text")),
+            Refusal(ErrorCode::out_of_range, "trial.turn_speed_deg_per_s"));
+}
+
 TEST(Document, RefusesWhatIsNoThickness) {
   const auto refused = [](const Json& thickness) {
     return refusal([&](Json& json) { json["body"]["shell_thickness_mm"] = thickness; });

@@ -1,0 +1,193 @@
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "app/commands/command.h"
+#include "app/commands/option_set.h"
+#include "app/commands/option_values.h"
+#include "app/files/documents.h"
+#include "app/report/fact_sheet.h"
+#include "app/report/quantity_text.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr Range<int> model_count_range{1, 64};
+
+struct AddOptions {
+  OutputOptions how;
+  std::vector<std::filesystem::path> models;
+  std::vector<Pose> poses;
+  std::vector<std::string> fixed;  // names of bodies, as they are in the new document
+  std::filesystem::path out;
+  bool json = false;
+};
+
+// Moves a body with its loads and the motions of its supports.
+void move_body(const Pose& pose, Body& body) {
+  body.surface = placed(std::move(body.surface), pose);
+  for (Load& load : body.loads) {
+    if (auto* const force = std::get_if<ForceLoad>(&load)) force->force_n = pose.orientation * force->force_n;
+    if (auto* const force = std::get_if<PointLoad>(&load)) force->force_n = pose.orientation * force->force_n;
+  }
+  for (Support& support : body.supports) {
+    if (support.motion) support.motion->displacement_m = pose.orientation * support.motion->displacement_m;
+  }
+}
+
+// Returns the name, with a number appended if it is taken.
+std::string make_unique(const std::string& name, const std::vector<std::string>& taken) {
+  std::string unique = name;
+  for (int number = 2; std::find(taken.begin(), taken.end(), unique) != taken.end(); ++number) {
+    unique = name + "-" + std::to_string(number);
+  }
+  return unique;
+}
+
+// Adds the bodies of `document` to those of `sum`.
+void add_bodies(Document document, const Pose& pose, Document& sum) {
+  std::vector<Body>& bodies = sum.scene.bodies;
+  std::vector<std::string> names, solids;
+  std::map<std::string, std::string> new_solids;  // new name of each solid of `document`
+  for (const Body& body : bodies) {
+    names.push_back(body.name);
+    solids.push_back(body.solid);
+  }
+  for (Body& body : document.scene.bodies) {
+    move_body(pose, body);
+    body.name = make_unique(body.name, names);
+    names.push_back(body.name);
+    // A solid of another document is another solid, even if it has the same name.
+    if (!body.solid.empty()) {
+      const auto [renamed, is_new] = new_solids.try_emplace(body.solid);
+      if (is_new) {
+        renamed->second = make_unique(body.solid, solids);
+        solids.push_back(renamed->second);
+      }
+      body.solid = renamed->second;
+    }
+    bodies.push_back(std::move(body));
+  }
+}
+
+// Returns what of a further document does not enter the new one; empty if it has nothing else.
+std::string describe_left_out(const Document& document, const std::string& source) {
+  std::string rest;
+  const auto add = [&](bool is_there, const char* what) {
+    if (is_there) rest += (rest.empty() ? "" : ", ") + std::string(what);
+  };
+  add(!document.scene.planes.empty(), "fixing planes");
+  add(document.scene.ground.has_value(), "ground");
+  add(document.scene.trial.has_value(), "trial");
+  return rest.empty() ? rest : source + ": left out: " + rest + "; they are those of the first model";
+}
+
+Status fix_bodies(const std::vector<std::string>& names, Document& document) {
+  for (const std::string& name : names) {
+    const auto body = std::find_if(document.scene.bodies.begin(), document.scene.bodies.end(),
+                                   [&](const Body& candidate) { return candidate.name == name; });
+    if (body == document.scene.bodies.end()) {
+      std::string known;
+      for (const Body& each : document.scene.bodies) known += (known.empty() ? "" : ", ") + each.name;
+      return Error{ErrorCode::unknown, "--fixed: no body is called '" + name + "'; choose from " + known,
+                   "--fixed"};
+    }
+    body->kind = BodyKind::fixed;
+    if (Status checked = check_kind(*body); !checked) return checked.error().in("body \"" + name + "\"");
+  }
+  return {};
+}
+
+Status add_models(const AddOptions& options, Console& console) {
+  if (Status checked = check_output(options.out, options.how); !checked) return checked;
+  const int models = static_cast<int>(options.models.size());
+  if (Status count = check_range("the number of models", models, model_count_range); !count) return count;
+  std::optional<Document> sum;
+  std::vector<std::string> notes;
+  for (std::size_t m = 0; m < options.models.size(); ++m) {
+    auto document = read_document_file(options.models[m]);
+    if (!document) return document.error();
+    const Pose pose = m < options.poses.size() ? options.poses[m] : Pose();
+    if (!sum) {
+      sum = document.value();
+      sum->scene.bodies.clear();
+      sum->view = Json::object();  // the default view frames all bodies
+    } else if (const std::string rest = describe_left_out(document.value(), options.models[m].string());
+               !rest.empty()) {
+      notes.push_back(rest);
+    }
+    add_bodies(std::move(document).value(), pose, *sum);
+  }
+  sum->name = options.out.stem().string();
+  const int bodies = static_cast<int>(sum->scene.bodies.size());
+  if (Status count = check_range("the number of bodies", bodies, body_count_range); !count) return count;
+  if (Status fixed = fix_bodies(options.fixed, *sum); !fixed) return fixed;
+  const InterruptWatch until_written;
+  if (Status written = write_document(*sum, options.out, options.how); !written) return written;
+  FactSheet facts;
+  Json list = Json::array();
+  for (const Body& body : sum->scene.bodies) {
+    const char* const kind = body_kind_names[static_cast<std::size_t>(body.kind)];
+    facts.add("Body", body.name + ", " + kind, "", nullptr);
+    list.push_back({{"name", body.name}, {"kind", kind}});
+  }
+  facts.add("", "", "bodies", list);
+  add_notes(facts, notes);
+  facts.add("Written", options.out.string(), "out", options.out.string());
+  facts.print(console.out, options.json);
+  return {};
+}
+
+}  // namespace
+
+CommandEntry add_add(OptionSet root) {
+  auto options = std::make_shared<AddOptions>();
+  const OptionSet parser = root.add_command("add", "Put bodies of several models into one document");
+  parser.set_footer(
+      "Tool, gravity, ground, fixing planes and trial are those of the first model, and --pose does not "
+      "move\n"
+      "them. Bodies keep their materials and lattices. A body whose name is taken gets a number.\n"
+      "Example: spoonbill add assets/models/jelly.json assets/models/spoon-bowl.json \\\n"
+      "  --pose 137mm,16mm,0,1,0,0,0 --fixed bowl --out served.json");
+  parser.add_option("MODEL", options->models, "Documents (.json), 1 to 64").require();
+  parser
+      .add_parsed_list(
+          "--pose",
+          [options](const std::vector<std::string>& texts) -> Status {
+            for (const std::string& text : texts) {
+              auto pose = parse_pose(text);
+              if (!pose) return pose.error();
+              options->poses.push_back(pose.value());
+            }
+            return {};
+          },
+          "Move of a model: x, y, z with units, then the orientation as a quaternion w,x,y,z. The first "
+          "--pose "
+          "moves the first model, and so on; default: none")
+      .show_as("POSE");
+  parser
+      .add_parsed_list(
+          "--fixed",
+          [options](const std::vector<std::string>& names) -> Status {
+            options->fixed = names;
+            return {};
+          },
+          "Name of a body that becomes rigid and fixed; may be repeated. Default: none")
+      .show_as("NAME");
+  add_force_option(parser, options->how);
+  add_document_output(parser, options->out).require();
+  add_json_option(parser, options->json);
+  parser.set_final_check([options]() -> Status {
+    if (options->poses.size() <= options->models.size()) return {};
+    return Error{ErrorCode::too_many, "--pose: there are more poses than models", "--pose"};
+  });
+  return {parser, [options](Console& console) { return add_models(*options, console); }};
+}
+
+}  // namespace spoonbill

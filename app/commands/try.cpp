@@ -1,0 +1,276 @@
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "app/commands/command.h"
+#include "app/commands/option_set.h"
+#include "app/commands/option_values.h"
+#include "app/files/documents.h"
+#include "app/frames/frame_painter.h"
+#include "app/frames/replay_pictures.h"
+#include "app/report/document_facts.h"
+#include "app/report/fact_sheet.h"
+#include "app/report/quantity_text.h"
+#include "app/session/lockstep.h"
+#include "app/session/session.h"
+#include "engine/base/text.h"
+#include "engine/trial/trial.h"
+#include "engine/trial/trial_report.h"
+#include "haptic/recording_lines.h"
+#include "haptic/virtual_device.h"
+#include "render/gl/context.h"
+
+namespace spoonbill {
+namespace {
+
+struct TryOptions {
+  OutputOptions how;
+  std::filesystem::path model, out;
+  Extent size{1280, 720};
+  std::uint64_t every = 1;
+  std::optional<double> seconds, tilt_deg;
+  InstructionSet instruction_set = best_instruction_set();
+  bool progress = false;
+  bool json = false;
+};
+
+// Draws the frames of a trial on several threads and writes them. Used by one thread.
+class TrialPictures {
+ public:
+  TrialPictures(const TryOptions& options, const Session& session)
+      : options_(options), crew_(options.size.width, options.size.height), writer_(options.out) {
+    Snapshot start;
+    write_snapshot(session, start);
+    framed_ = framed_box(start);
+  }
+
+  // Draws the present state if a frame is due.
+  Status draw(Session& session) {
+    const std::uint64_t tick = session.simulation.tick();
+    while (frame_tick(next_frame_) < tick) ++next_frame_;
+    if (frame_tick(next_frame_) != tick || next_frame_ % options_.every != 0) return {};
+    if (crew_.is_full()) {
+      if (Status written = write_oldest(); !written) return written;
+    }
+    PaintingJob job;
+    job.frame = next_frame_;
+    write_snapshot(session, job.snapshot);
+    job.view = frame_view(session.view, framed_, options_.size.width, options_.size.height);
+    SessionFacts facts;
+    write_facts(session, facts);
+    job.panel = make_panel_model(facts, job.snapshot, job.view);
+    session.flags = tick_flag_none;
+    crew_.start(std::move(job));
+    return {};
+  }
+
+  Status finish() {
+    while (crew_.in_flight() > 0) {
+      if (Status written = write_oldest(); !written) return written;
+    }
+    return writer_.finish();
+  }
+
+  int count() const { return count_; }
+
+ private:
+  Status write_oldest() {
+    auto painted = crew_.receive();
+    if (!painted) return painted.error();
+    ++count_;
+    return writer_.add(static_cast<int>(painted->frame), std::move(painted->picture));
+  }
+
+  const TryOptions& options_;
+  Box framed_;
+  PaintingCrew crew_;
+  FrameWriter writer_;
+  std::uint64_t next_frame_ = 0;
+  int count_ = 0;
+};
+
+// A trial that has ended, because it is over or because the simulation could not hold a body.
+struct EndedTrial {
+  Trial trial;
+  Status held;
+  double elapsed_s = 0.0;  // wall time of all ticks
+};
+
+Result<EndedTrial> run_trial(const TryOptions& options, Session& session, TrialPictures* pictures,
+                             Console& console) {
+  TrialSettings settings;
+  settings.seconds = options.seconds.value_or(settings.seconds);
+  EndedTrial ended{Trial(session.simulation.scene(), settings), {}};
+  Trial& trial = ended.trial;
+  InterruptWatch interrupt;
+  ProgressBar progress(console, "Trying", options.progress);
+  const auto expected_ms = static_cast<std::uint64_t>(1e3 * (settings.seconds + settings.longest_settling_s));
+  while (trial.phase() != TrialPhase::done) {
+    if (interrupt.requested()) {
+      interrupt.answer();
+      return Error{ErrorCode::cancelled,
+                   "stopped after " + std::to_string(session.simulation.tick()) + " ticks"};
+    }
+    if (pictures) {
+      if (Status drawn = pictures->draw(session); !drawn) return drawn.error();
+    }
+    if (const std::optional<Command> command = trial.next_command()) {
+      if (Status applied = session.simulation.apply(*command); !applied) return applied.error();
+    }
+    const auto start = std::chrono::steady_clock::now();
+    const Reaction reaction = session.simulation.advance(trial_input());
+    ended.elapsed_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    ended.held = trial.follow(session.simulation, reaction.flags);
+    if (!ended.held) break;
+    const std::uint64_t tick = session.simulation.tick();
+    if (tick % 10 == 0) progress.show(std::min(tick, expected_ms), expected_ms);
+  }
+  if (pictures) {
+    if (Status drawn = pictures->draw(session); !drawn) return drawn.error();
+    if (Status finished = pictures->finish(); !finished) return finished.error();
+  }
+  return ended;
+}
+
+void add_trial_body(FactSheet& facts, const TrialBodyReport& body, BodyKind kind, Json& list) {
+  facts.add("Body", body.name + (kind == BodyKind::fixed ? ", fixed" : ""), "", nullptr);
+  facts.add("  Centre of mass", position_text(body.centre_of_mass_m), "", nullptr);
+  if (kind == BodyKind::deformable) {
+    facts.add("  Volume", percent_text(body.volume_ratio) + " of that at rest", "", nullptr);
+    facts.add(
+        "  Cells",
+        "smallest Jacobian " + decimals_text(body.smallest_jacobian, 2) + ", " +
+            count_text(static_cast<std::size_t>(body.inverted_cells), "inverted cell", "inverted cells"),
+        "", nullptr);
+  }
+  facts.add("  Forces",
+            newtons_text(body.support_force_n.norm()) + " of supports, " +
+                newtons_text(body.ground_force_n.norm()) + " of the ground, " +
+                newtons_text(body.contact_force_n.norm()) + " of other bodies",
+            "", nullptr);
+  list.push_back({{"name", body.name},
+                  {"kind", body_kind_names[static_cast<std::size_t>(kind)]},
+                  {"centre_of_mass_m", components_json(body.centre_of_mass_m)},
+                  {"volume_ratio", body.volume_ratio},
+                  {"smallest_jacobian", body.smallest_jacobian},
+                  {"inverted_cells", body.inverted_cells},
+                  {"support_force_n", components_json(body.support_force_n)},
+                  {"ground_force_n", components_json(body.ground_force_n)},
+                  {"contact_force_n", components_json(body.contact_force_n)}});
+}
+
+void add_trial_facts(FactSheet& facts, const EndedTrial& ended, const Session& session) {
+  const Trial& trial = ended.trial;
+  const Simulation& simulation = session.simulation;
+  const TrialReport report = report_on(trial, simulation);
+  const std::uint64_t ticks = simulation.tick();
+  facts.add("Ticks", std::to_string(ticks) + " of 1 ms", "ticks", ticks);
+  facts.add("Substeps", std::to_string(simulation.substeps()) + " a tick", "substeps", simulation.substeps());
+  const double factor = ended.elapsed_s > 0.0 ? trial.time_s() / ended.elapsed_s : 0.0;
+  facts.add("Speed", decimals_text(factor, 2) + " times real time", "real_time_factor", factor);
+  facts.add("Settled", trial.is_settled() ? "yes" : "no, the bodies still move", "settled",
+            trial.is_settled());
+  facts.add("Largest speed", decimals_text(1e3 * trial.largest_speed_m_per_s(), 3) + " mm/s",
+            "largest_speed_m_per_s", trial.largest_speed_m_per_s());
+  facts.add("Largest overlap", short_length_text(trial.largest_penetration_m()), "largest_penetration_m",
+            trial.largest_penetration_m());
+  facts.add("Inverted cells", std::to_string(report.inverted_cells), "inverted_cells", report.inverted_cells);
+  facts.add("", "", "inertia_scale", report.inertia_scale);
+  facts.add("", "", "energy_j", report.energy_j ? Json(*report.energy_j) : Json());
+  facts.add("", "", "stopped", ended.held ? Json() : Json(ended.held.error().message));
+  Json list = Json::array();
+  for (std::size_t b = 0; b < report.bodies.size(); ++b) {
+    add_trial_body(facts, report.bodies[b], simulation.scene().bodies[b].kind, list);
+  }
+  facts.add("", "", "bodies", list);
+}
+
+Status try_document(const TryOptions& options, Console& console) {
+  auto document = read_document_file(options.model);
+  if (!document) return document.error();
+  const std::string source = options.model.string();
+  auto scene = make_trial_scene(document->scene, options.tilt_deg);
+  if (!scene) return scene.error().in(source);
+  document->scene = std::move(scene).value();
+  auto session = [&] {
+    MapProgress maps(console, options.progress);
+    return Session::make(document.value(), source, VirtualDevice::default_specification(),
+                         options.instruction_set, maps.watch());
+  }();
+  if (!session) return session.error();
+  if (Status ready = check_trial_start(session->simulation); !ready) return ready.error().in(source);
+  session->keeps_documents = false;
+  session->reading.position_nm[1] = 10'000'000'000;
+  session->reading.buttons = button_hover;
+  std::optional<TrialPictures> pictures;
+  if (!options.out.empty()) {
+    if (Status prepared = prepare_frame_folder(options.out, options.how.replaces_read_only); !prepared)
+      return prepared;
+    pictures.emplace(options, session.value());
+  }
+  auto ended = run_trial(options, session.value(), pictures ? &*pictures : nullptr, console);
+  if (!ended) return ended.error().in(source);
+  FactSheet facts;
+  facts.add("File", source, "file", source);
+  add_trial_facts(facts, ended.value(), session.value());
+  if (pictures) {
+    facts.add("Frames", std::to_string(pictures->count()), "frames", pictures->count());
+    facts.add("Folder", options.out.string(), "out", options.out.string());
+  }
+  const std::string hash = hash_text(state_hash(session.value()));
+  facts.add("State hash", hash, "state_hash", hash);
+  facts.print(console.out, options.json);
+  return ended->held ? Status() : Status(ended->held.error().in(source));
+}
+
+}  // namespace
+
+CommandEntry add_try(OptionSet root) {
+  auto options = std::make_shared<TryOptions>();
+  const OptionSet parser = root.add_command("try", "Try bodies with their true inertia under gravity");
+  parser.set_footer(
+      "Gives all bodies their true inertia and lets gravity act; without gravity in the document, standard\n"
+      "gravity along -y. The document's \"trial\" may name a body that is lowered until others bear its "
+      "weight,\n"
+      "and a fixed body that then turns. The bodies settle before the turn, for 10 s at most. Bodies have\n"
+      "settled when no node has moved faster than 0.1 mm/s for 0.2 s. A trial that cannot hold a body, or "
+      "in\n"
+      "which nothing bears the lowered body within 30 s, ends with an error.\n"
+      "Example: spoonbill try assets/models/jelly-on-spoon.json --tilt 10deg --out output/tilt");
+  parser.add_option("DOCUMENT", options->model, "Document (.json)").require();
+  parser
+      .add_option("--seconds", options->seconds,
+                  "Time after the turn, or after the settling if nothing turns; default: 3, range: 0 to 600")
+      .limit(trial_seconds_range);
+  add_parsed_option(
+      parser, "--tilt", "ANGLE",
+      [](const std::string& text) { return parse_angle_deg(text, turn_angle_range_deg); },
+      [options](double angle_deg) { options->tilt_deg = angle_deg; },
+      "Angle of the turn, such as 10deg; default: the document's, range: -360deg to 360deg");
+  parser.add_option("--out", options->out, "Folder for frame-####.png; default: none").show_as("DIR");
+  parser
+      .add_parsed(
+          "--size",
+          [options](const std::string& text) -> Status {
+            const auto size = parse_extent(text, picture_size_range, "1280x720");
+            if (!size) return size.error();
+            options->size = size.value();
+            return {};
+          },
+          "Frame size in pixels, each from 64 to 7680; default: 1280x720. The panel needs 750x700")
+      .show_as("WxH");
+  parser
+      .add_option("--every", options->every, "Interval between drawn frames; default: 1, range: 1 to 1000000")
+      .limit(Range<std::uint64_t>{1, 1000000})
+      .show_as("N");
+  add_force_option(parser, options->how);
+  add_instruction_set_option(parser, options->instruction_set);
+  parser.add_flag("--progress", options->progress, "Show progress even if the output is not a terminal");
+  add_json_option(parser, options->json);
+  return {parser, [options](Console& console) { return try_document(*options, console); }};
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,211 @@
+#include "engine/trial/trial.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/base/assert.h"
+#include "engine/base/text.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double longest_lowering_s = 30.0;
+constexpr std::size_t mean_ticks = static_cast<std::size_t>(Trial::mean_force_s / tick_s + 0.5);
+
+int find_body(const Scene& scene, const std::string& name) {
+  const auto found = std::find_if(scene.bodies.begin(), scene.bodies.end(),
+                                  [&](const Body& body) { return body.name == name; });
+  SPOONBILL_ASSERT(found != scene.bodies.end());
+  return static_cast<int>(found - scene.bodies.begin());
+}
+
+bool is_deformable(const Body& body) {
+  return body.kind == BodyKind::deformable;
+}
+
+Vector3 momentum_ns(const SpringLattice& lattice) {
+  Vector3 sum = Vector3::Zero();
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    sum += static_cast<double>(lattice.mass(n)) * lattice.velocity(n);
+  }
+  return sum;
+}
+
+double top_speed_m_per_s(const SpringLattice& lattice) {
+  double square = 0.0;
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    square = std::max(square, lattice.velocity(n).squaredNorm());
+  }
+  return std::sqrt(square);
+}
+
+// Names the body at fault; empty if it is unknown.
+std::string name_body_at_fault(const Simulation& simulation) {
+  const int body = simulation.body_at_fault();
+  const std::vector<Body>& bodies = simulation.scene().bodies;
+  if (body < 0 || static_cast<std::size_t>(body) >= bodies.size()) return {};
+  return "body \"" + bodies[static_cast<std::size_t>(body)].name + "\": ";
+}
+
+// Returns what a flag of a tick means for a trial; null if the tick was true to the material.
+const char* describe_failure(std::uint32_t flags) {
+  if ((flags & tick_flag_body_limited) != 0) return "its lattice was lost";
+  if ((flags & tick_flag_nodes_slowed) != 0) return "it was strained too much for the substeps of a tick";
+  if ((flags & tick_flag_speed_capped) != 0) return "a node moved faster than the lattice can follow";
+  if ((flags & tick_flag_contact_overflow) != 0) return "the bodies have more contacts than a tick can hold";
+  return nullptr;
+}
+
+}  // namespace
+
+Result<Scene> make_trial_scene(Scene scene, std::optional<double> tilt_deg) {
+  if (std::none_of(scene.bodies.begin(), scene.bodies.end(), is_deformable)) {
+    return Error{ErrorCode::missing, "all bodies are fixed; a trial needs a deformable one", "kind"};
+  }
+  if (tilt_deg) {
+    if (!scene.trial || scene.trial->turned_body.empty()) {
+      return Error{ErrorCode::missing, "nothing is tilted; name the fixed body in trial.turned_body",
+                   "turned_body"};
+    }
+    scene.trial->angle_deg = *tilt_deg;
+  }
+  Sculpting& sculpting = scene.sculpting;
+  sculpting.drag_per_s = 0.0;
+  sculpting.is_critically_damped = false;
+  sculpting.free = true;
+  sculpting.real_time = true;
+  if (sculpting.gravity_m_per_s2.isZero(0.0)) sculpting.gravity_m_per_s2.y() = -standard_gravity_m_per_s2;
+  scene.symmetry.on = false;
+  scene.tool = Tool();
+  scene.tool.kind = ToolKind::point;
+  if (Status status = check_trial(scene); !status.ok()) return status.error();
+  return scene;
+}
+
+const char* name_of(TrialPhase phase) {
+  constexpr const char* names[] = {"lowering", "settling", "turning", "watching", "done"};
+  return names[static_cast<std::size_t>(phase)];
+}
+
+ToolInput trial_input() {
+  ToolInput input;
+  input.pose.position_m = Vector3(0.0, 10.0, 0.0);
+  input.hovering = true;
+  return input;
+}
+
+Status check_trial_start(const Simulation& simulation) {
+  const Scene& scene = simulation.scene();
+  if (!scene.trial || scene.trial->lowered_body.empty()) return {};
+  if (!simulation.lattice(find_body(scene, scene.trial->lowered_body)).has_fixed_nodes()) return {};
+  return Error{ErrorCode::inconsistent,
+               "trial: lowered_body: \"" + scene.trial->lowered_body +
+                   "\" is fixed by a support or a plane; remove it, or lower another body",
+               "lowered_body"};
+}
+
+Trial::Trial(const Scene& scene, const TrialSettings& settings)
+    : plan_(scene.trial.value_or(TrialPlan())), settings_(settings), forces_(scene.bodies.size()) {
+  SPOONBILL_ASSERT(trial_seconds_range.contains(settings.seconds));
+  if (!plan_.lowered_body.empty()) {
+    lower_ = LowerBody{find_body(scene, plan_.lowered_body), plan_.lowering_speed_m_per_s};
+  }
+  if (!plan_.turned_body.empty() && plan_.angle_deg != 0.0) {
+    turn_ = TurnBody{find_body(scene, plan_.turned_body), plan_.point_m, plan_.axis, plan_.angle_deg,
+                     plan_.turn_speed_deg_per_s};
+  }
+  start(lower_ ? TrialPhase::lowering : TrialPhase::settling);
+}
+
+void Trial::start(TrialPhase phase) {
+  phase_ = phase;
+  phase_s_ = 0.0;
+  // A body that is lowered moves, although its nodes have no velocity.
+  if (phase == TrialPhase::settling) still_s_ = 0.0;
+  if (phase == TrialPhase::lowering) next_ = *lower_;
+  if (phase == TrialPhase::turning) next_ = *turn_;
+}
+
+std::optional<Command> Trial::next_command() {
+  return std::exchange(next_, std::nullopt);
+}
+
+Status Trial::follow(const Simulation& simulation, std::uint32_t flags) {
+  SPOONBILL_ASSERT(simulation.scene().bodies.size() == forces_.size());
+  ++ticks_;
+  phase_s_ += tick_s;
+  largest_speed_m_per_s_ = 0.0;
+  for (std::size_t b = 0; b < forces_.size(); ++b) {
+    if (!is_deformable(simulation.scene().bodies[b])) continue;
+    largest_speed_m_per_s_ =
+        std::max(largest_speed_m_per_s_, top_speed_m_per_s(simulation.lattice(static_cast<int>(b))));
+  }
+  largest_penetration_m_ = std::max(largest_penetration_m_, simulation.largest_overlap_m());
+  still_s_ = largest_speed_m_per_s_ <= settled_speed_m_per_s ? still_s_ + tick_s : 0.0;
+  record_forces(simulation);
+  if (const char* const failure = describe_failure(flags)) {
+    return Error{ErrorCode::not_converged, name_body_at_fault(simulation) + "stopped after " +
+                                               std::to_string(ticks_) + " ticks: " + failure +
+                                               "; use a coarser lattice or a stiffer material"};
+  }
+  switch (phase_) {
+    case TrialPhase::lowering:
+      if (phase_s_ > longest_lowering_s) {
+        return Error{ErrorCode::not_converged,
+                     "trial: lowered_body: nothing bore \"" + plan_.lowered_body + "\" within " +
+                         number_text(longest_lowering_s) + " s; place it above another body or the ground",
+                     "lowered_body"};
+      }
+      if (!simulation.is_moving_bodies()) start(TrialPhase::settling);
+      break;
+    case TrialPhase::settling:
+      if (is_settled() || phase_s_ >= settings_.longest_settling_s) {
+        start(turn_ ? TrialPhase::turning : TrialPhase::watching);
+      }
+      break;
+    case TrialPhase::turning:
+      if (!simulation.is_moving_bodies()) start(TrialPhase::watching);
+      break;
+    case TrialPhase::watching:
+      if (phase_s_ >= settings_.seconds) phase_ = TrialPhase::done;
+      break;
+    case TrialPhase::done:
+      break;
+  }
+  return {};
+}
+
+void Trial::record_forces(const Simulation& simulation) {
+  for (std::size_t b = 0; b < forces_.size(); ++b) {
+    const int body = static_cast<int>(b);
+    const bool deforms = is_deformable(simulation.scene().bodies[b]);
+    const Forces now{simulation.contact_force_n(body), simulation.ground_force_n(body),
+                     deforms ? momentum_ns(simulation.lattice(body)) : Vector3(Vector3::Zero())};
+    std::vector<Forces>& ring = forces_[b];
+    if (ring.size() < mean_ticks) {
+      ring.push_back(now);
+    } else {
+      ring[(ticks_ - 1) % mean_ticks] = now;
+    }
+  }
+}
+
+Trial::MeanForces Trial::find_mean_forces(std::size_t body) const {
+  const std::vector<Forces>& ring = forces_[body];
+  MeanForces mean;
+  if (ring.empty()) return mean;
+  for (const Forces& forces : ring) {
+    mean.contact_n += forces.contact_n / static_cast<double>(ring.size());
+    mean.ground_n += forces.ground_n / static_cast<double>(ring.size());
+  }
+  const std::size_t newest = (ticks_ - 1) % mean_ticks;
+  const std::size_t oldest = ring.size() < mean_ticks ? 0 : ticks_ % mean_ticks;
+  if (newest != oldest) {
+    mean.inertial_n = (ring[newest].momentum_ns - ring[oldest].momentum_ns) /
+                      (static_cast<double>(ring.size() - 1) * tick_s);
+  }
+  return mean;
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,41 @@
+// The report of a trial about its bodies. Computed outside the tick.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/geometry.h"
+#include "engine/simulation/simulation.h"
+#include "engine/trial/trial.h"
+
+namespace spoonbill {
+
+struct TrialBodyReport {
+  std::string name;
+  Vector3 centre_of_mass_m = Vector3::Zero();
+  // volume_ratio and smallest_jacobian compare a lattice with its rest shape; both are 1 for a fixed body.
+  // The Jacobian is the least volume at a corner of a cell, divided by its value at rest.
+  double volume_ratio = 1.0;
+  double smallest_jacobian = 1.0;
+  int inverted_cells = 0;  // cells with a corner whose volume is not positive
+  // Mean forces on the body over the last half second: of planes, supports and whatever else holds the body;
+  // of the ground; and of other bodies. The first is the rest of Newton's second law after weight, loads,
+  // ground and contacts. For a fixed body without a computable mass, it does not include the weight.
+  Vector3 support_force_n = Vector3::Zero();
+  Vector3 ground_force_n = Vector3::Zero();
+  Vector3 contact_force_n = Vector3::Zero();
+};
+
+struct TrialReport {
+  std::vector<TrialBodyReport> bodies;
+  int inverted_cells = 0;
+  double inertia_scale = 1.0;  // largest of all bodies; 1 unless the scene is not a trial
+  // Kinetic, gravitational and elastic energy of the deformable bodies, J. Empty if a material is plastic or
+  // creeps, because its elastic energy is then not a function of the shape.
+  std::optional<double> energy_j;
+};
+
+TrialReport report_on(const Trial& trial, const Simulation& simulation);
+
+}  // namespace spoonbill

@@ -1,0 +1,159 @@
+// Tests trials: bodies in real time under gravity, their course and their report.
+#include "engine/trial/trial.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "engine/base/processor.h"
+#include "engine/simulation/body_contact.h"
+#include "engine/trial/trial_report.h"
+#include "tests/engine/effort.h"
+#include "tests/engine/forces/samples.h"
+
+namespace spoonbill {
+namespace {
+
+Body soft_block(double friction, int node_budget = 300) {
+  Material gelatin = made_elastic(bundled_material("gelatin-10-1"));
+  gelatin.friction = friction;
+  return stock_body("block", BoxSize{{0.03, 0.008, 0.02}, 0.001}, {0.0, 0.0042, 0.0}, gelatin, node_budget);
+}
+
+// A soft block 0.2 mm above a fixed plate, which turns about the z axis.
+Scene block_over_plate(double friction, double angle_deg) {
+  Body block = soft_block(friction);
+  Material hard = bundled_material("abs");
+  hard.friction = friction;
+  Body plate = stock_body("plate", PlateSize{0.16, 0.06, 0.004, 0.006}, {0.0, -0.002, 0.0}, hard, 300);
+  plate.kind = BodyKind::fixed;
+  Scene scene;
+  scene.bodies = {block, plate};
+  scene.trial = TrialPlan{"block", 0.005, "plate", Vector3::Zero(), Vector3::UnitZ(), angle_deg, 60.0};
+  return make_trial_scene(scene, {}).value();
+}
+
+struct RunTrial {
+  std::vector<TrialPhase> phases;
+  Status held;
+  TrialReport report;
+  bool settled = false;
+  double largest_speed_m_per_s = 0.0, largest_penetration_m = 0.0;
+};
+
+RunTrial run_trial(Simulation& simulation, const TrialSettings& settings) {
+  Trial trial(simulation.scene(), settings);
+  RunTrial result;
+  while (trial.phase() != TrialPhase::done && result.held.ok()) {
+    if (result.phases.empty() || result.phases.back() != trial.phase())
+      result.phases.push_back(trial.phase());
+    if (const auto command = trial.next_command()) {
+      EXPECT_TRUE(simulation.apply(*command).ok());
+    }
+    const Reaction reaction = simulation.advance(trial_input());
+    result.held = trial.follow(simulation, reaction.flags);
+  }
+  result.report = report_on(trial, simulation);
+  result.settled = trial.is_settled();
+  result.largest_speed_m_per_s = trial.largest_speed_m_per_s();
+  result.largest_penetration_m = trial.largest_penetration_m();
+  return result;
+}
+
+TEST(Trial, LaysABlockOnAPlateAndTiltsIt) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  Simulation simulation = make_simulation(block_over_plate(0.5, 10.0));
+  const RunTrial result = run_trial(simulation, {0.5, 2.0});
+  ASSERT_TRUE(result.held.ok()) << result.held.error().message;
+  EXPECT_EQ(result.phases, (std::vector{TrialPhase::lowering, TrialPhase::settling, TrialPhase::turning,
+                                        TrialPhase::watching}));
+  const TrialBodyReport& block = result.report.bodies[0];
+  const TrialBodyReport& plate = result.report.bodies[1];
+  EXPECT_EQ(result.report.inertia_scale, 1.0);
+  EXPECT_EQ(result.report.inverted_cells, 0);
+  EXPECT_GT(block.smallest_jacobian, 0.5);
+  EXPECT_NEAR(block.volume_ratio, 1.0, 0.01);
+  EXPECT_LT(block.centre_of_mass_m.norm(), 0.01);  // it has not slid off
+  const Vector3 weight_n(0.0, -standard_gravity_m_per_s2 * simulation.lattice(0).mass_kg(), 0.0);
+  EXPECT_LT((plate.contact_force_n - weight_n).norm(), 0.01 * weight_n.norm());
+  EXPECT_LT((block.contact_force_n + weight_n).norm(), 0.01 * weight_n.norm());
+  EXPECT_EQ(block.support_force_n, Vector3::Zero());
+  // The plate's own weight: 1.02 g/cm^3 times its volume, which its rounded corners make a little smaller.
+  EXPECT_GT(plate.support_force_n.y(), -weight_n.y());
+}
+
+// Too little friction to hold the block at the angle.
+TEST(Trial, ABlockSlidesOffASlipperyPlate) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  Simulation simulation = make_simulation(block_over_plate(0.05, 20.0));
+  const RunTrial result = run_trial(simulation, {0.3, 0.1});
+  ASSERT_TRUE(result.held.ok()) << result.held.error().message;
+  EXPECT_FALSE(result.settled);
+  const double angle = 20.0 * std::numbers::pi / 180.0;
+  // From the end of the turn it slides for 0.3 s at least, with g (sin t - mu cos t).
+  const double slid_m =
+      0.5 * standard_gravity_m_per_s2 * (std::sin(angle) - 0.05 * std::cos(angle)) * 0.3 * 0.3;
+  EXPECT_GT(result.report.bodies[0].centre_of_mass_m.norm(), slid_m);
+}
+
+// The bundled jelly slides over the front rim of its spoon and falls. It never enters the spoon.
+TEST(Trial, JellySlidesOffATiltedSpoon) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  const Scene scene = bundled_scene("jelly-on-spoon");
+  Simulation simulation = make_simulation(make_trial_scene(scene, -30.0).value());
+  const RunTrial result = run_trial(simulation, {0.3, 0.5});
+  ASSERT_TRUE(result.held.ok()) << result.held.error().message;
+  const double cell_m = static_cast<double>(simulation.lattice(0).cell_size_m());
+  EXPECT_LT(result.largest_penetration_m, body_depth_limit_cells * cell_m);
+  EXPECT_EQ(result.report.inverted_cells, 0);
+  const TrialBodyReport &jelly = result.report.bodies[0], &spoon = result.report.bodies[1];
+  EXPECT_LT(jelly.centre_of_mass_m.y(), spoon.centre_of_mass_m.y() - 0.02);
+}
+
+// The height of the centre of mass changes by what a falling body without contact loses.
+TEST(Trial, KeepsTheEnergyOfAFallingBody) {
+  Scene scene;
+  scene.bodies = {soft_block(0.0)};
+  Simulation simulation = make_simulation(make_trial_scene(scene, {}).value());
+  const Trial before(simulation.scene(), {});
+  const double start_j = report_on(before, simulation).energy_j.value();
+  const RunTrial result = run_trial(simulation, {0.1, 0.05});
+  const double fallen_m =
+      result.largest_speed_m_per_s * result.largest_speed_m_per_s / (2.0 * standard_gravity_m_per_s2);
+  const double lost_j = simulation.lattice(0).mass_kg() * standard_gravity_m_per_s2 * fallen_m;
+  // The symplectic Euler method is half a tick ahead.
+  EXPECT_NEAR(result.report.energy_j.value(), start_j, 0.02 * lost_j);
+  EXPECT_NEAR(result.report.bodies[0].centre_of_mass_m.y(), 0.0042 - fallen_m, 0.01 * fallen_m);
+}
+
+TEST(Trial, MakesASceneTrue) {
+  Scene scene;
+  scene.bodies = {soft_block(0.0)};
+  scene.sculpting.drag_per_s = 300.0;
+  scene.sculpting.is_critically_damped = true;
+  const Scene trial = make_trial_scene(scene, {}).value();
+  EXPECT_EQ(trial.sculpting.drag_per_s, 0.0);
+  EXPECT_FALSE(trial.sculpting.is_critically_damped);
+  EXPECT_TRUE(trial.sculpting.real_time && trial.sculpting.free);
+  EXPECT_EQ(trial.sculpting.gravity_m_per_s2, Vector3(0.0, -standard_gravity_m_per_s2, 0.0));
+  scene.sculpting.gravity_m_per_s2 = {1.0, 0.0, 0.0};
+  EXPECT_EQ(make_trial_scene(scene, {}).value().sculpting.gravity_m_per_s2, Vector3(1.0, 0.0, 0.0));
+}
+
+TEST(Trial, RefusesAPlanThatDoesNotFitTheScene) {
+  Scene scene;
+  scene.bodies = {soft_block(0.0)};
+  EXPECT_EQ(make_trial_scene(scene, 10.0).error().field, "turned_body");
+  scene.trial.emplace().turned_body = "block";
+  EXPECT_EQ(make_trial_scene(scene, {}).error().code, ErrorCode::inconsistent);
+  scene.trial->turned_body = "spoon";
+  EXPECT_EQ(make_trial_scene(scene, {}).error().code, ErrorCode::unknown);
+  scene.trial.reset();
+  scene.bodies[0].kind = BodyKind::fixed;
+  EXPECT_EQ(make_trial_scene(scene, {}).error().code, ErrorCode::missing);
+}
+
+}  // namespace
+}  // namespace spoonbill
