@@ -89,7 +89,7 @@ def main():
         },
         "view": {
             "camera": {"yaw_deg": 25, "pitch_deg": 22},
-            "overlays": {"tool": False},
+            "overlays": {"tool": False, "touched_nodes": False},
         },
     }
     write(document)
