@@ -525,7 +525,7 @@ void stabilise_strained_nodes(Relaxation& relaxation, float h) {
   }
 }
 
-// Moves overlapping bodies apart. Call after everything else has moved them in the substep.
+// Moves bodies out of rigid ones that they overlap. Call after everything else has moved them in the substep.
 void separate_bodies(const Relaxation& relaxation, BodyContacts& between, float h) {
   between.separate({relaxation.view.data(), relaxation.count()}, static_cast<double>(h),
                    find_push_caps(relaxation));

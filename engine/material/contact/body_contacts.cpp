@@ -11,10 +11,11 @@ namespace {
 
 // Pace of contacts between bodies. The surfaces are fitted to the samples in each tick, so they may move
 // slightly more or less than the constrained points. Closing at most half of a gap in a substep leaves a
-// margin for this difference. An overlap is corrected by separate(), which leaves velocities alone.
-constexpr ContactPace body_pace{0.5, 0.0};
-// Pace of contacts that separate() cannot correct, because no point is moved by springs.
-constexpr ContactPace solver_pace{0.5, 400.0};
+// margin for this difference. A push starts from the force of the last substep, so a moderate rate of
+// correction suffices; a faster one would shake bodies at rest.
+constexpr ContactPace body_pace{0.5, 400.0};
+// Pace of contacts with rigid bodies, whose overlaps separate() corrects.
+constexpr ContactPace rigid_pace{0.5, 0.0};
 
 // Rate at which separate() corrects an overlap. Points that push the same nodes correct together, so the part
 // of an overlap that is corrected in a substep must be small.
@@ -91,14 +92,13 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
   SPOONBILL_ASSERT_DEBUG(std::abs(normal.squaredNorm() - 1.0) < 1e-5);
   if (count_ == static_cast<int>(constraints_.size())) return false;
   // A rigid body next to an implicitly stepped one counts as such a one.
-  const auto has_springs = [](const BodyPoint& point) {
-    return !point.lattice->moved_by_solver() && !point.lattice->mesh().is_frame;
+  const auto is_rigid = [](const BodyPoint& point) { return point.lattice->mesh().is_frame; };
+  const auto has_springs = [&](const BodyPoint& point) {
+    return !point.lattice->moved_by_solver() && !is_rigid(point);
   };
   const bool by_solvers = !has_springs(first) && !has_springs(second);
   const double moved =
       normal.dot(first.point.displacement_m(*first.lattice) - second.point.displacement_m(*second.lattice));
-  const bool separates_first = !first.lattice->moved_by_solver();
-  const bool separates_second = !second.lattice->moved_by_solver();
   const double compliance = mutual_compliance(first, second);
   Constraint& added = constraints_[count_++];
   added = {.first_body = first.body,
@@ -107,15 +107,10 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
            .second = second.point,
            .normal = normal,
            .compliance = compliance,
-           .separation_compliance = separates_first && separates_second ? compliance
-                                    : separates_first  ? first.point.compliance(*first.lattice)
-                                    : separates_second ? second.point.compliance(*second.lattice)
-                                                       : 0.0,
-           .separates_first = separates_first,
-           .separates_second = separates_second,
            .base_m = gap_m - moved,
            .friction = mutual_friction(first, second),
            .moved_by = by_solvers ? MovedBy::solvers : MovedBy::springs,
+           .separates = !by_solvers && is_rigid(first) != is_rigid(second) && compliance > 0.0,
            .sample = sample};
   if (sample >= 0) {
     added.force_n = limit_to_cone(kept_.find(added.key(), Vector3::Zero()), normal, added.friction);
@@ -179,7 +174,7 @@ void BodyContacts::separate(std::span<const LatticeView> lattices, double h_s,
   const double part = std::min(max_separation, separation_per_s * h_s);
   for (int c = 0; c < count_; ++c) {
     const Constraint& constraint = constraints_[c];
-    if (!(constraint.separation_compliance > 0.0)) continue;
+    if (!constraint.separates) continue;
     const auto first = static_cast<std::size_t>(constraint.first_body);
     const auto second = static_cast<std::size_t>(constraint.second_body);
     const Vector3 apart =
@@ -188,9 +183,9 @@ void BodyContacts::separate(std::span<const LatticeView> lattices, double h_s,
     if (!(gap_m < 0.0)) continue;
     const double cap = static_cast<double>(std::min(caps_m_per_s[first], caps_m_per_s[second]));
     const double speed = std::min(-gap_m * part / h_s, cap);
-    const Vector3 impulse = speed / constraint.separation_compliance * constraint.normal;
-    if (constraint.separates_first) constraint.first.shift(lattices[first], impulse, h_s);
-    if (constraint.separates_second) constraint.second.shift(lattices[second], -impulse, h_s);
+    const Vector3 impulse = speed / constraint.compliance * constraint.normal;
+    constraint.first.shift(lattices[first], impulse, h_s);
+    constraint.second.shift(lattices[second], -impulse, h_s);
   }
 }
 
@@ -220,7 +215,7 @@ void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& cons
                           1.0 / compliance};
   const Vector3 started = h * constraint.force_n;
   const double started_push = started.dot(constraint.normal);
-  const ContactPace& pace = constraint.separation_compliance > 0.0 ? body_pace : solver_pace;
+  const ContactPace& pace = constraint.separates ? rigid_pace : body_pace;
   const double pushed = state.normal_impulse(h, pace, cap, started_push);
   constraint.passed_force_n = constraint.force_n;
   if (pushed == 0.0 && started.isZero(0.0)) return;

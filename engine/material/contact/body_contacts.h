@@ -68,10 +68,9 @@ class BodyContacts {
   // Solves each constraint of the kind pass.moved_by once. Call after start() and before the drift of a
   // substep of h_s. A reversed pass solves the last constraint first.
   void pass(std::span<const LatticeView> lattices, const ContactPass& pass);
-  // Moves the points of overlapping contacts apart, by a part of the overlap and at most by the distance that
-  // the caps allow in a substep of h_s. Velocities do not change, so that the correction adds no kinetic
-  // energy and does not shake bodies at rest. Implicitly stepped lattices stay where they are. Call after the
-  // drift.
+  // Moves the points of bodies with springs out of rigid bodies, by a part of the overlap and at most by the
+  // distance that the caps allow in a substep of h_s. Velocities do not change, so that the correction adds
+  // no kinetic energy and does not shake bodies at rest. Call after the drift.
   void separate(std::span<const LatticeView> lattices, double h_s, std::span<const float> caps_m_per_s);
   // Multiplies by `fraction` the changes that the last pass() with MovedBy::solvers made to the forces. The
   // caller must scale the impulses on the nodes in the same way.
@@ -101,13 +100,10 @@ class BodyContacts {
     EmbeddedPoint first, second;
     Vector3 normal = Vector3::UnitY();
     double compliance = 0.0;  // relative velocity change of the points per impulse, 1/kg, without frames
-    // The same for a change of position that separate() makes, 1/kg. It is 0 if separate() can move neither
-    // point; push() then corrects the overlap by velocities.
-    double separation_compliance = 0.0;
-    bool separates_first = false, separates_second = false;  // whether separate() moves the points
-    double base_m = 0.0;    // gap minus the part due to displacements since rest
-    double friction = 0.0;  // the smaller coefficient of the two surfaces
+    double base_m = 0.0;      // gap minus the part due to displacements since rest
+    double friction = 0.0;    // the smaller coefficient of the two surfaces
     MovedBy moved_by = MovedBy::springs;
+    bool separates = false;  // whether separate() corrects an overlap, instead of the push
     int sample = -1;
     Vector3 force_n = Vector3::Zero();  // force on the first point in the last substep: push and friction
     Vector3 passed_force_n = Vector3::Zero();  // `force_n` before the last pass()
