@@ -33,6 +33,23 @@ Status check_output(const std::filesystem::path& out, const OutputOptions& how) 
   return how.replaces_read_only ? Status() : check_replaceable(out);
 }
 
+void add_frame_options(OptionSet parser, Extent& size, std::uint64_t& every) {
+  parser
+      .add_parsed(
+          "--size",
+          [&size](const std::string& text) -> Status {
+            const auto parsed = parse_extent(text, picture_size_range, "1280x720");
+            if (!parsed) return parsed.error();
+            size = parsed.value();
+            return {};
+          },
+          "Frame size in pixels, each from 64 to 7680; default: 1280x720. The panel needs 750x700")
+      .show_as("WxH");
+  parser.add_option("--every", every, "Interval between drawn frames; default: 1, range: 1 to 1000000")
+      .limit(Range<std::uint64_t>{1, 1000000})
+      .show_as("N");
+}
+
 void add_instruction_set_option(OptionSet parser, InstructionSet& set) {
   std::string names;
   for (const InstructionSet available : available_instruction_sets()) {

@@ -3,11 +3,13 @@
 // run() of the returned entry does the work.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
 
 #include "app/commands/option_set.h"
+#include "app/commands/option_values.h"
 #include "app/console.h"
 #include "engine/base/file.h"
 #include "engine/base/processor.h"
@@ -56,6 +58,9 @@ void add_force_option(OptionSet parser, OutputOptions& how);
 // Returns an error if the output is read-only and may not be replaced. A command calls this function before a
 // long computation, so that it fails early. Writing the file repeats the check.
 Status check_output(const std::filesystem::path& out, const OutputOptions& how);
+
+// --size and --every: the size of frames in pixels, and the interval between drawn frames.
+void add_frame_options(OptionSet parser, Extent& size, std::uint64_t& every);
 
 // --instruction-set: an instruction set that this processor supports; any other is a usage error.
 void add_instruction_set_option(OptionSet parser, InstructionSet& set);

@@ -91,19 +91,6 @@ PictureRequest make_picture_request(const ReplayOptions& options, const Lockstep
   return request;
 }
 
-// Returns the job that paints the session's current state.
-PaintingJob make_painting_job(std::uint64_t frame, Session& session, const Box& framed,
-                              const PictureRequest& request) {
-  PaintingJob job;
-  job.frame = frame;
-  write_snapshot(session, job.snapshot);
-  job.view = frame_view(session.view, framed, request.width_px, request.height_px);
-  SessionFacts facts;
-  write_facts(session, facts);
-  job.panel = make_panel_model(facts, job.snapshot, job.view);
-  return job;
-}
-
 // Waits for the oldest picture in progress and writes it to its files.
 Status write_oldest_frame(PaintingCrew& crew, const PictureRequest& request, ReplayPictures& pictures) {
   auto painted = crew.receive();
@@ -142,7 +129,7 @@ Status draw_frames(const Replay& replay, const PictureRequest& request, ReplayPi
   ProgressBar progress(replay.console, "Drawing", replay.options.progress);
   std::vector<std::string> names;
   const auto paint = [&](std::uint64_t frame, bool is_frame) -> Status {
-    PaintingJob job = make_painting_job(frame, replay.session, framed, request);
+    PaintingJob job = make_painting_job(frame, replay.session, framed, {request.width_px, request.height_px});
     job.extra_names = std::exchange(names, {});
     job.is_frame = is_frame;
     // Only a numbered frame clears the flags of the ticks since the last frame. A screenshot between two
@@ -267,21 +254,7 @@ void add_picture_options(OptionSet parser, const std::shared_ptr<ReplayOptions>&
       .add_option("--out", options->out,
                   "Folder for frame-####.png and contact-sheet.png; required unless --no-frames is given")
       .show_as("DIR");
-  parser
-      .add_parsed(
-          "--size",
-          [options](const std::string& text) -> Status {
-            const auto size = parse_extent(text, picture_size_range, "1280x720");
-            if (!size) return size.error();
-            options->size = size.value();
-            return {};
-          },
-          "Frame size in pixels, each from 64 to 7680; default: 1280x720. The panel needs 750x700")
-      .show_as("WxH");
-  parser
-      .add_option("--every", options->every, "Interval between drawn frames; default: 1, range: 1 to 1000000")
-      .limit(Range<std::uint64_t>{1, 1000000})
-      .show_as("N");
+  add_frame_options(parser, options->size, options->every);
   parser
       .add_option("--video", options->video,
                   "Video to write if ffmpeg is installed; its ending selects the format. Default: none")

@@ -55,13 +55,8 @@ class TrialPictures {
     if (crew_.is_full()) {
       if (Status written = write_oldest(); !written) return written;
     }
-    PaintingJob job;
-    job.frame = next_frame_;
-    write_snapshot(session, job.snapshot);
-    job.view = frame_view(session.view, framed_, options_.size.width, options_.size.height);
-    SessionFacts facts;
-    write_facts(session, facts);
-    job.panel = make_panel_model(facts, job.snapshot, job.view);
+    PaintingJob job =
+        make_painting_job(next_frame_, session, framed_, {options_.size.width, options_.size.height});
     session.flags = tick_flag_none;
     crew_.start(std::move(job));
     return {};
@@ -233,12 +228,11 @@ CommandEntry add_try(OptionSet root) {
   const OptionSet parser = root.add_command("try", "Try bodies with their true inertia under gravity");
   parser.set_footer(
       "Gives all bodies their true inertia and lets gravity act; without gravity in the document, standard\n"
-      "gravity along -y. The document's \"trial\" may name a body that is lowered until others bear its "
-      "weight,\n"
-      "and a fixed body that then turns. The bodies settle before the turn, for 10 s at most. Bodies have\n"
-      "settled when no node has moved faster than 0.1 mm/s for 0.2 s. A trial that cannot hold a body, or "
-      "in\n"
-      "which nothing bears the lowered body within 30 s, ends with an error.\n"
+      "gravity along -y. The document's \"trial\" may name a body that is lowered until others bear its\n"
+      "weight, and a fixed body that then turns. The bodies settle before the turn, for 10 s at most. "
+      "Bodies\n"
+      "have settled when no node has moved faster than 0.1 mm/s for 0.2 s. A trial that cannot hold a body,\n"
+      "or in which nothing bears the lowered body within 30 s, ends with an error.\n"
       "Example: spoonbill try assets/models/jelly-on-spoon.json --tilt 10deg --out output/tilt");
   parser.add_option("DOCUMENT", options->model, "Document (.json)").require();
   parser
@@ -251,21 +245,7 @@ CommandEntry add_try(OptionSet root) {
       [options](double angle_deg) { options->tilt_deg = angle_deg; },
       "Angle of the turn, such as 10deg; default: the document's, range: -360deg to 360deg");
   parser.add_option("--out", options->out, "Folder for frame-####.png; default: none").show_as("DIR");
-  parser
-      .add_parsed(
-          "--size",
-          [options](const std::string& text) -> Status {
-            const auto size = parse_extent(text, picture_size_range, "1280x720");
-            if (!size) return size.error();
-            options->size = size.value();
-            return {};
-          },
-          "Frame size in pixels, each from 64 to 7680; default: 1280x720. The panel needs 750x700")
-      .show_as("WxH");
-  parser
-      .add_option("--every", options->every, "Interval between drawn frames; default: 1, range: 1 to 1000000")
-      .limit(Range<std::uint64_t>{1, 1000000})
-      .show_as("N");
+  add_frame_options(parser, options->size, options->every);
   add_force_option(parser, options->how);
   add_instruction_set_option(parser, options->instruction_set);
   parser.add_flag("--progress", options->progress, "Show progress even if the output is not a terminal");

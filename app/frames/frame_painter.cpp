@@ -43,6 +43,18 @@ ViewSettings frame_view(const ViewChoice& choice, const Box& framed, int width_p
   return view;
 }
 
+PaintingJob make_painting_job(std::uint64_t frame, const Session& session, const Box& framed,
+                              const PictureSize& size) {
+  PaintingJob job;
+  job.frame = frame;
+  write_snapshot(session, job.snapshot);
+  job.view = frame_view(session.view, framed, size.width_px, size.height_px);
+  SessionFacts facts;
+  write_facts(session, facts);
+  job.panel = make_panel_model(facts, job.snapshot, job.view);
+  return job;
+}
+
 Result<FramePainter> FramePainter::make(int width_px, int height_px, std::mutex* interface_turn) {
   const auto turn = lock_interface(interface_turn);
   auto context = OsmesaContext::make(width_px, height_px);

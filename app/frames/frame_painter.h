@@ -11,6 +11,7 @@
 
 #include "app/panel/interface_context.h"
 #include "app/panel/panel.h"
+#include "app/session/session.h"
 #include "app/session/view_choice.h"
 #include "engine/base/geometry.h"
 #include "render/gl/context.h"
@@ -58,6 +59,11 @@ class FramePainter {
   StageFinder stages_;
 };
 
+struct PictureSize {
+  int width_px = 0;
+  int height_px = 0;
+};
+
 // Everything that a frame shows, copied so that the session can continue.
 struct PaintingJob {
   std::uint64_t frame = 0;
@@ -67,6 +73,11 @@ struct PaintingJob {
   std::vector<std::string> extra_names;  // names of further files that get a copy of this picture
   bool is_frame = true;  // false if the picture is painted only for the files of `extra_names`
 };
+
+// Returns the job that paints the session's current state in a frame of this size. `framed` is the
+// framed_box() of the initial state.
+PaintingJob make_painting_job(std::uint64_t frame, const Session& session, const Box& framed,
+                              const PictureSize& size);
 
 // A painted frame.
 struct PaintedFrame {

@@ -198,6 +198,10 @@ struct Relaxation {
   bool has_solver(std::size_t at) const { return lattices[at].implicit_solver != nullptr; }
   bool is_rigid(std::size_t at) const { return lattices[at].rigid_motion != nullptr; }
   bool has_springs(std::size_t at) const { return !has_solver(at) && !is_rigid(at); }
+  bool has_rigid() const {
+    return std::any_of(lattices.begin(), lattices.end(),
+                       [](const RelaxedLattice& lattice) { return lattice.rigid_motion != nullptr; });
+  }
   SpringLattice& lattice(std::size_t at) const { return *lattices[at].lattice; }
 };
 
@@ -673,6 +677,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     relaxation.frame_m = soft->state->position_m;
   }
   if (substeps.slowed) stabilise_strained_nodes(relaxation, h);
+  const bool has_rigid = relaxation.has_rigid();
   for (int s = 0; s < substeps.count; ++s) {
     const Substep substep{s, substeps.count, h};
     kick(relaxation, substep);
@@ -684,7 +689,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     if (soft) move_soft_tool(relaxation, *soft);
     move_supported_nodes(relaxation, static_cast<double>(s + 1) / substeps.count);
     move_rigid_bodies(relaxation, static_cast<double>(s + 1) / substeps.count);
-    if (between) separate_bodies(relaxation, *between, h);
+    if (between && has_rigid) separate_bodies(relaxation, *between, h);
   }
   end_implicit_steps(relaxation, ground);
   if (flows) flow(relaxation);

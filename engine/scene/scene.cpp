@@ -43,8 +43,8 @@ Status check_symmetry(const Symmetry& symmetry) {
 
 namespace {
 
-// Returns the body with this name. If there is none, or if it is not of this kind, returns an error about the
-// field of the trial that names it.
+// Checks that a body has this name and is of this kind. The error is about the field of the trial that names
+// the body. An empty name passes.
 Status check_named_body(const Scene& scene, const std::string& name, BodyKind kind, const char* field) {
   if (name.empty()) return {};
   const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),

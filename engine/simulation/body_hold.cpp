@@ -21,10 +21,7 @@ constexpr double largest_turn_rad = 0.2;
 // rest therefore stays bitwise the same.
 constexpr double least_move_m = 1e-9, least_turn_rad = 1e-8;
 
-struct MassCentre {
-  Vector3 rest_m = Vector3::Zero(), position_m = Vector3::Zero(), velocity_m_per_s = Vector3::Zero();
-  double mass_kg = 0.0;
-};
+}  // namespace
 
 MassCentre find_mass_centre(const SpringLattice& lattice) {
   MassCentre centre;
@@ -41,6 +38,8 @@ MassCentre find_mass_centre(const SpringLattice& lattice) {
   centre.velocity_m_per_s /= centre.mass_kg;
   return centre;
 }
+
+namespace {
 
 // Returns the angular velocity of a rigid body with the mass distribution and angular momentum of the
 // lattice, rad/s.

@@ -12,6 +12,13 @@
 
 namespace spoonbill {
 
+// Mass of a lattice, and the centre of mass with its position at rest and at present, and its velocity.
+struct MassCentre {
+  Vector3 rest_m = Vector3::Zero(), position_m = Vector3::Zero(), velocity_m_per_s = Vector3::Zero();
+  double mass_kg = 0.0;
+};
+MassCentre find_mass_centre(const SpringLattice& lattice);
+
 class BodyHold {
  public:
   // Makes the hold of a body with this lattice. If its masses or rest positions change, a new hold must be

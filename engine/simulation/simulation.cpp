@@ -324,6 +324,10 @@ Vector3 Simulation::contact_force_n(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
   return state_->between.impulse_ns(body, tick_s) / tick_s;
 }
+double Simulation::fastest_m_per_s(int body) const {
+  SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
+  return state_->bodies[static_cast<std::size_t>(body)].fastest_m_per_s();
+}
 bool Simulation::is_moving_bodies() const {
   return std::any_of(state_->bodies.begin(), state_->bodies.end(), [](const BodyState& body) {
     return body.lowering_m_per_s > 0.0 || (body.rigid && body.rigid->is_turning());

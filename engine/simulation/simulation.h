@@ -139,6 +139,8 @@ class Simulation {
   Vector3 support_force_n(int support, int body = 0) const;
   Vector3 ground_force_n(int body = 0) const;
   Vector3 contact_force_n(int body = 0) const;
+  // Returns the highest speed of a node of a body.
+  double fastest_m_per_s(int body = 0) const;
   // Returns true while a body is being turned or lowered.
   bool is_moving_bodies() const;
   // Returns the index of the body to which the last tick's flags nodes_slowed, speed_capped and body_limited

@@ -6,6 +6,7 @@
 
 #include "engine/base/assert.h"
 #include "engine/base/text.h"
+#include "engine/simulation/body_hold.h"
 
 namespace spoonbill {
 namespace {
@@ -25,19 +26,8 @@ bool is_deformable(const Body& body) {
 }
 
 Vector3 momentum_ns(const SpringLattice& lattice) {
-  Vector3 sum = Vector3::Zero();
-  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
-    sum += static_cast<double>(lattice.mass(n)) * lattice.velocity(n);
-  }
-  return sum;
-}
-
-double top_speed_m_per_s(const SpringLattice& lattice) {
-  double square = 0.0;
-  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
-    square = std::max(square, lattice.velocity(n).squaredNorm());
-  }
-  return std::sqrt(square);
+  const MassCentre centre = find_mass_centre(lattice);
+  return centre.mass_kg * centre.velocity_m_per_s;
 }
 
 // Names the body at fault; empty if it is unknown.
@@ -81,11 +71,6 @@ Result<Scene> make_trial_scene(Scene scene, std::optional<double> tilt_deg) {
   scene.tool.kind = ToolKind::point;
   if (Status status = check_trial(scene); !status.ok()) return status.error();
   return scene;
-}
-
-const char* name_of(TrialPhase phase) {
-  constexpr const char* names[] = {"lowering", "settling", "turning", "watching", "done"};
-  return names[static_cast<std::size_t>(phase)];
 }
 
 ToolInput trial_input() {
@@ -139,7 +124,7 @@ Status Trial::follow(const Simulation& simulation, std::uint32_t flags) {
   for (std::size_t b = 0; b < forces_.size(); ++b) {
     if (!is_deformable(simulation.scene().bodies[b])) continue;
     largest_speed_m_per_s_ =
-        std::max(largest_speed_m_per_s_, top_speed_m_per_s(simulation.lattice(static_cast<int>(b))));
+        std::max(largest_speed_m_per_s_, simulation.fastest_m_per_s(static_cast<int>(b)));
   }
   largest_penetration_m_ = std::max(largest_penetration_m_, simulation.largest_overlap_m());
   still_s_ = largest_speed_m_per_s_ <= settled_speed_m_per_s ? still_s_ + tick_s : 0.0;

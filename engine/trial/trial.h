@@ -19,7 +19,7 @@ inline constexpr double settled_speed_m_per_s = 1e-4;
 inline constexpr double settled_time_s = 0.2;
 
 struct TrialSettings {
-  double seconds = 3.0;              // time from the end of the turn, or from rest if nothing turns
+  double seconds = 3.0;              // time after the turn, or after the settling if nothing turns
   double longest_settling_s = 10.0;  // time after which a trial goes on although the bodies still move
 };
 inline constexpr Range<double> trial_seconds_range{0.0, 600.0};
@@ -36,15 +36,12 @@ Status check_trial_start(const Simulation& simulation);
 // The parts of a trial, in their order. Parts for which the plan names no body are left out.
 enum class TrialPhase { lowering, settling, turning, watching, done };
 
-// Returns "lowering", "settling" and so on.
-const char* name_of(TrialPhase phase);
-
 // Course of a trial. Has one owner, which runs the ticks:
 //
 //   Trial trial(simulation.scene(), settings);
 //   while (trial.phase() != TrialPhase::done) {
 //     if (const auto command = trial.next_command()) simulation.apply(*command);
-//     const Reaction reaction = simulation.advance(trial_input);
+//     const Reaction reaction = simulation.advance(trial_input());
 //     if (const Status held = trial.follow(simulation, reaction.flags); !held) return held;
 //   }
 class Trial {
@@ -55,7 +52,7 @@ class Trial {
   // Returns the command to apply before the next tick, if there is one.
   std::optional<Command> next_command();
   // Call after each tick. `flags` are the tick's flags. Fails if the simulation could not hold a body, which
-  // the error names, and if no body bears the lowered body within half a minute.
+  // the error names if it is known, and if no body bears the lowered body within half a minute.
   Status follow(const Simulation& simulation, std::uint32_t flags);
 
   TrialPhase phase() const { return phase_; }

@@ -6,6 +6,7 @@
 
 #include "engine/inspection/mass_properties.h"
 #include "engine/material/statics/static_body.h"
+#include "engine/simulation/body_hold.h"
 
 namespace spoonbill {
 namespace {
@@ -39,17 +40,6 @@ CellShape measure_cells(const SpringLattice& lattice) {
   return shape;
 }
 
-Vector3 find_centre_m(const SpringLattice& lattice) {
-  Vector3 sum = Vector3::Zero();
-  double mass_kg = 0.0;
-  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
-    const auto mass = static_cast<double>(lattice.mass(n));
-    mass_kg += mass;
-    sum += mass * lattice.position(n);
-  }
-  return sum / mass_kg;
-}
-
 Vector3 find_loads_n(const SpringLattice& lattice) {
   Vector3 sum = Vector3::Zero();
   if (!lattice.has_applied_force()) return sum;
@@ -61,11 +51,13 @@ Vector3 find_loads_n(const SpringLattice& lattice) {
   return sum;
 }
 
-// Returns the mass and the centre of a fixed body; empty if the body encloses no volume.
 struct RigidMass {
   double mass_kg = 0.0;
   Vector3 centre_m = Vector3::Zero();
 };
+
+// Returns the mass and the centre of mass of a fixed body. If its mass cannot be computed, the mass is 0 and
+// the centre is that of its area.
 RigidMass find_rigid_mass(const Body& body, const Surface& surface) {
   Body present = body;
   present.surface = surface;
@@ -118,7 +110,7 @@ TrialBodyReport report_on_body(const Trial& trial, const Simulation& simulation,
     mass_kg = rigid.mass_kg;
   } else {
     const CellShape cells = measure_cells(lattice);
-    report.centre_of_mass_m = find_centre_m(lattice);
+    report.centre_of_mass_m = find_mass_centre(lattice).position_m;
     report.volume_ratio = lattice.volume_m3() / lattice.rest_volume_m3();
     report.smallest_jacobian = cells.smallest_jacobian;
     report.inverted_cells = cells.inverted_cells;

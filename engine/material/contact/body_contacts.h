@@ -48,8 +48,8 @@ class BodyContacts {
   void begin();
 
   // Calls visit(node, impulse) for nodes of a body. The impulses, N s, are the forces of the last tick times
-  // `time_s`. Only constraints between two implicitly stepped lattices are visited, because implicit solvers
-  // need these impulses at the start of their steps.
+  // `time_s`. Only constraints of the kind MovedBy::solvers are visited, because implicit solvers need these
+  // impulses at the start of their steps.
   template <class Visit>
   void visit_known_impulses(int body, double time_s, const Visit& visit) const {
     for (int c = 0; c < count_; ++c) {
@@ -61,9 +61,9 @@ class BodyContacts {
     }
   }
 
-  // Acts with the forces of the last substep, friction included. Leaves out the constraints between two
-  // implicitly stepped lattices, whose solvers already include the impulses of visit_known_impulses(). Call
-  // after the kick of a substep of h_s.
+  // Acts with the forces of the last substep, friction included. Skips the constraints of the kind
+  // MovedBy::solvers, whose solvers already include the impulses of visit_known_impulses(). Call after the
+  // kick of a substep of h_s.
   void start(std::span<const LatticeView> lattices, double h_s);
   // Solves each constraint of the kind pass.moved_by once. Call after start() and before the drift of a
   // substep of h_s. A reversed pass solves the last constraint first.
@@ -75,7 +75,7 @@ class BodyContacts {
   // Multiplies by `fraction` the changes that the last pass() with MovedBy::solvers made to the forces. The
   // caller must scale the impulses on the nodes in the same way.
   void shorten_solver_pass(double fraction);
-  // Returns whether there is a constraint between two implicitly stepped lattices.
+  // Returns whether there is a constraint of the kind MovedBy::solvers.
   bool has_constraint_between_solvers() const;
 
   int count() const { return count_; }

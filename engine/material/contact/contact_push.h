@@ -48,9 +48,9 @@ struct ContactPush {
   }
 };
 
-// Kind of solver that advances the lattices of a contact. `solvers`: all lattices are stepped implicitly, and
-// the contact is solved once a tick. `springs`: at least one lattice is stepped explicitly by its springs,
-// and the contact is solved in each substep.
+// Kind of solver that advances the lattices of a contact. `solvers`: the contact is solved once a tick,
+// because each lattice is stepped implicitly, or is the frame of a rigid body beside one that is. `springs`:
+// at least one lattice is stepped explicitly by its springs, and the contact is solved in each substep.
 enum class MovedBy { springs, solvers };
 
 // One pass over the contacts. It solves each contact of the kind `moved_by` once.
