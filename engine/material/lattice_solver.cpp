@@ -677,7 +677,6 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     relaxation.frame_m = soft->state->position_m;
   }
   if (substeps.slowed) stabilise_strained_nodes(relaxation, h);
-  const bool has_rigid = relaxation.has_rigid();
   for (int s = 0; s < substeps.count; ++s) {
     const Substep substep{s, substeps.count, h};
     kick(relaxation, substep);
@@ -689,7 +688,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     if (soft) move_soft_tool(relaxation, *soft);
     move_supported_nodes(relaxation, static_cast<double>(s + 1) / substeps.count);
     move_rigid_bodies(relaxation, static_cast<double>(s + 1) / substeps.count);
-    if (between && has_rigid) separate_bodies(relaxation, *between, h);
+    if (between) separate_bodies(relaxation, *between, h);
   }
   end_implicit_steps(relaxation, ground);
   if (flows) flow(relaxation);

@@ -19,8 +19,8 @@ constexpr double lateral_tolerance = 0.2, rounding_m = 1e-6;
 // a cell. Such points differ from tick to tick, so that their pushes would shake bodies at rest.
 constexpr double least_lead_cells = 0.02;
 
-// Largest correction of a gap for what the control net does not reproduce, in cells. A larger one would let
-// the drawn surfaces overlap visibly where a net is too coarse for its lattice.
+// Largest lasting correction of a gap for what the control net does not reproduce, in cells. A larger one
+// would let the drawn surfaces overlap visibly where a net is too coarse for its lattice.
 constexpr double largest_fit_error_cells = 0.02;
 
 }  // namespace
@@ -56,14 +56,21 @@ bool resolve_shell_gap(const ShellOrSolid& of, const ShellOrSolid& other, double
 
 namespace {
 
-// A point of a surface as contacts use it. `fit_error_m` is the position of the embedded point minus that of
-// the point on the surface, whose control net does not reproduce every displacement of its lattice; it is
-// limited (see largest_fit_error_cells). Gaps measured on surfaces are corrected by it, so that a push
-// changes the gap that caused it. Without the correction, bodies would never come to rest on each other.
+// A point of a surface as contacts use it. Its error is the position of the embedded point minus that of the
+// point on the surface, whose control net does not reproduce every displacement of its lattice. `fit_error_m`
+// is this error up to largest_fit_error_cells, and `left_out_m` is the rest of it. Gaps measured on surfaces
+// are corrected by the error, so that a push changes the gap that caused it. Without the correction, bodies
+// would never come to rest on each other.
 struct SkinPoint {
   BodyPoint point;
-  Vector3 fit_error_m;
+  Vector3 fit_error_m = Vector3::Zero(), left_out_m = Vector3::Zero();
 };
+
+// Returns the gap between two points whose surfaces are `gap_m` apart along `normal`.
+BodyGap corrected_gap(double gap_m, const Vector3& normal, const SkinPoint& first, const SkinPoint& second) {
+  return {gap_m + normal.dot(first.fit_error_m - second.fit_error_m),
+          normal.dot(first.left_out_m - second.left_out_m)};
+}
 
 // Returns whether the body stands still in this tick. Its points then need no embedding.
 bool stands_still(const BodyState& body) {
@@ -72,14 +79,15 @@ bool stands_still(const BodyState& body) {
 
 // Returns a point that does not move.
 SkinPoint make_still_point(const IndexedBody& body) {
-  return {{body.index, &body.state->lattice, {}}, Vector3::Zero()};
+  return {{body.index, &body.state->lattice, {}}};
 }
 
 SkinPoint make_skin_point(const IndexedBody& body, const EmbeddedPoint& embedding, const Vector3& error_m) {
   const SpringLattice& lattice = body.state->lattice;
   const double most_m = largest_fit_error_cells * static_cast<double>(lattice.cell_size_m());
   const double size_m = error_m.norm();
-  return {{body.index, &lattice, embedding}, (size_m > most_m ? most_m / size_m : 1.0) * error_m};
+  const double kept = size_m > most_m ? most_m / size_m : 1.0;
+  return {{body.index, &lattice, embedding}, kept * error_m, (1.0 - kept) * error_m};
 }
 
 // `point_m` is the position of the sample on the surface.
@@ -128,8 +136,8 @@ bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::
     if (near.sample < 0 && near.lead_m < least_lead_m) continue;
     const SkinPoint own = find_own_skin_point(from, near),
                     other = find_skin_point(to, near.other_u, near.other_v);
-    const double gap_m = near.gap_m + near.normal.dot(own.fit_error_m - other.fit_error_m);
-    complete &= contacts.add(own.point, other.point, near.normal, gap_m, near.sample);
+    complete &= contacts.add(own.point, other.point, near.normal,
+                             corrected_gap(near.gap_m, near.normal, own, other), near.sample);
   }
   return complete;
 }
@@ -151,14 +159,15 @@ bool add_contacts_of(const IndexedBody& first, const IndexedBody& second, const 
   for (const SampleNearMesh& near : proximity.surface_samples()) {
     const auto [u, v] = find_sample_parameters(surface, near.sample);
     const SkinPoint own = find_skin_sample(first, near.sample, position(surface.current(), u, v));
-    complete &=
-        contacts.add(own.point, {second.index, &second.state->lattice, mesh.at(near.mesh.on)},
-                     near.mesh.normal, near.mesh.gap_m + near.mesh.normal.dot(own.fit_error_m), near.sample);
+    const SkinPoint other{{second.index, &second.state->lattice, mesh.at(near.mesh.on)}};
+    complete &= contacts.add(own.point, other.point, near.mesh.normal,
+                             corrected_gap(near.mesh.gap_m, near.mesh.normal, own, other), near.sample);
   }
   for (const VertexNearSurface& near : proximity.mesh_vertices()) {
+    const SkinPoint own{{second.index, &second.state->lattice, mesh.vertex(near.vertex)}};
     const SkinPoint other = find_skin_point(first, near.u, near.v);
-    complete &= contacts.add({second.index, &second.state->lattice, mesh.vertex(near.vertex)}, other.point,
-                             near.normal, near.gap_m - near.normal.dot(other.fit_error_m), near.vertex);
+    complete &= contacts.add(own.point, other.point, near.normal,
+                             corrected_gap(near.gap_m, near.normal, own, other), near.vertex);
   }
   return complete;
 }

@@ -14,12 +14,16 @@ namespace {
 // margin for this difference. A push starts from the force of the last substep, so a moderate rate of
 // correction suffices; a faster one would shake bodies at rest.
 constexpr ContactPace body_pace{0.5, 400.0};
-// Pace of contacts with rigid bodies, whose overlaps separate() corrects.
-constexpr ContactPace rigid_pace{0.5, 0.0};
+// Pace of contacts whose overlaps separate() corrects.
+constexpr ContactPace separated_pace{0.5, 0.0};
 
 // Rate at which separate() corrects an overlap. Points that push the same nodes correct together, so the part
 // of an overlap that is corrected in a substep must be small.
 constexpr double separation_per_s = 600.0, max_separation = 0.1;
+
+// Part of a change of BodyGap::left_out_m that is forgotten in a tick. If all of it were forgotten at once,
+// colliding bodies would gain energy; if it were forgotten more slowly, their drawn surfaces would overlap.
+constexpr double forgotten_in_tick = 0.3;
 
 // Returns the relative velocity change of two points per impulse between them, 1/kg. Within one body, the
 // impulses overlap in the nodes that both points use.
@@ -74,8 +78,8 @@ void BodyContacts::clear() {
   kept_.clear();
   for (int c = 0; c < count_; ++c) {
     const Constraint& constraint = constraints_[c];
-    if (constraint.sample >= 0 && !constraint.force_n.isZero(0.0))
-      kept_.add(constraint.key(), constraint.force_n);
+    if (constraint.sample < 0 || (constraint.force_n.isZero(0.0) && constraint.forgotten_m == 0.0)) continue;
+    kept_.add(constraint.key(), {constraint.force_n, constraint.forgotten_m});
   }
   kept_.sort();
   count_ = 0;
@@ -86,8 +90,8 @@ void BodyContacts::forget() {
   count_ = 0;
 }
 
-bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m,
-                       int sample) {
+bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal,
+                       const BodyGap& gap, int sample) {
   SPOONBILL_ASSERT_DEBUG(first.lattice != nullptr && second.lattice != nullptr);
   SPOONBILL_ASSERT_DEBUG(std::abs(normal.squaredNorm() - 1.0) < 1e-5);
   if (count_ == static_cast<int>(constraints_.size())) return false;
@@ -100,6 +104,13 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
   const double moved =
       normal.dot(first.point.displacement_m(*first.lattice) - second.point.displacement_m(*second.lattice));
   const double compliance = mutual_compliance(first, second);
+  const ContactKey key{first.body, second.body, sample};
+  const Kept* const kept = sample >= 0 ? kept_.find(key) : nullptr;
+  const double friction = mutual_friction(first, second);
+  const double forgotten_m =
+      kept != nullptr ? kept->forgotten_m + forgotten_in_tick * (gap.left_out_m - kept->forgotten_m)
+      : sample >= 0   ? gap.left_out_m
+                      : 0.0;
   Constraint& added = constraints_[count_++];
   added = {.first_body = first.body,
            .second_body = second.body,
@@ -107,14 +118,14 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
            .second = second.point,
            .normal = normal,
            .compliance = compliance,
-           .base_m = gap_m - moved,
-           .friction = mutual_friction(first, second),
+           .base_m = gap.gap_m + gap.left_out_m - forgotten_m - moved,
+           .forgotten_m = forgotten_m,
+           .friction = friction,
            .moved_by = by_solvers ? MovedBy::solvers : MovedBy::springs,
-           .separates = !by_solvers && is_rigid(first) != is_rigid(second) && compliance > 0.0,
+           .separates = !by_solvers && !first.lattice->moved_by_solver() &&
+                        !second.lattice->moved_by_solver() && compliance > 0.0,
            .sample = sample};
-  if (sample >= 0) {
-    added.force_n = limit_to_cone(kept_.find(added.key(), Vector3::Zero()), normal, added.friction);
-  }
+  if (kept != nullptr) added.force_n = limit_to_cone(kept->force_n, normal, friction);
   return true;
 }
 
@@ -215,7 +226,7 @@ void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& cons
                           1.0 / compliance};
   const Vector3 started = h * constraint.force_n;
   const double started_push = started.dot(constraint.normal);
-  const ContactPace& pace = constraint.separates ? rigid_pace : body_pace;
+  const ContactPace& pace = constraint.separates ? separated_pace : body_pace;
   const double pushed = state.normal_impulse(h, pace, cap, started_push);
   constraint.passed_force_n = constraint.force_n;
   if (pushed == 0.0 && started.isZero(0.0)) return;

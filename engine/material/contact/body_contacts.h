@@ -7,7 +7,7 @@
 
 #include "engine/material/contact/contact_constraints.h"
 #include "engine/material/contact/contact_push.h"
-#include "engine/material/contact/kept_forces.h"
+#include "engine/material/contact/kept_values.h"
 #include "engine/material/lattice/embedded_point.h"
 #include "engine/material/springs/spring_lattice.h"
 
@@ -19,6 +19,14 @@ struct BodyPoint {
   int body = 0;
   const SpringLattice* lattice = nullptr;
   EmbeddedPoint point;
+};
+
+// Distance of a point of a body beyond a point of another body, m; negative for a penetration. Two points of
+// surfaces differ from the points that the lattices move, by what the control nets do not reproduce. The
+// distance of the latter is gap_m + left_out_m. At rest, contacts hold gap_m at zero.
+struct BodyGap {
+  double gap_m = 0.0;
+  double left_out_m = 0.0;
 };
 
 // Contacts between two bodies, or of a body with itself: velocity constraints between points of
@@ -36,13 +44,16 @@ class BodyContacts {
   // Removes the constraints and their forces.
   void forget();
   // Adds a constraint that keeps the first point on one side of the second: the side to which the unit vector
-  // `normal` points. `gap_m` is the present distance of the first point beyond the second along `normal`,
-  // negative for a penetration. It should be the distance of the points that the lattices move: with other
-  // gaps, contacts generate energy. Both points may be of the same body and share nodes. Returns false
-  // when full. `sample` is the number of the first point among the samples or vertices of its body; push and
-  // friction then start from the force of the last tick. For a point that differs in every tick, `sample` is
-  // -1, and the force starts from zero.
-  bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m, int sample);
+  // `normal` points. `gap` is the present distance of the first point beyond the second along `normal`. Both
+  // points may be of the same body and share nodes. Returns false when full. `sample` is the number of the
+  // first point among the samples or vertices of its body; push and friction then start from the force of the
+  // last tick. For a point that differs in every tick, `sample` is -1, and the force starts from zero.
+  //
+  // If the gap did not follow the points that the lattices move, contacts would generate energy. Therefore
+  // changes of gap.left_out_m count at first, and are forgotten within some ticks. With the sample -1, all of
+  // it counts.
+  bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, const BodyGap& gap,
+           int sample);
 
   // Starts a tick: marks all constraints as not having acted.
   void begin();
@@ -68,9 +79,9 @@ class BodyContacts {
   // Solves each constraint of the kind pass.moved_by once. Call after start() and before the drift of a
   // substep of h_s. A reversed pass solves the last constraint first.
   void pass(std::span<const LatticeView> lattices, const ContactPass& pass);
-  // Moves the points of bodies with springs out of rigid bodies, by a part of the overlap and at most by the
-  // distance that the caps allow in a substep of h_s. Velocities do not change, so that the correction adds
-  // no kinetic energy and does not shake bodies at rest. Call after the drift.
+  // Moves the points of bodies with springs out of each other and out of rigid bodies, by a part of the
+  // overlap and at most by the distance that the caps allow in a substep of h_s. Velocities do not change, so
+  // that the correction adds no kinetic energy and does not shake bodies at rest. Call after the drift.
   void separate(std::span<const LatticeView> lattices, double h_s, std::span<const float> caps_m_per_s);
   // Multiplies by `fraction` the changes that the last pass() with MovedBy::solvers made to the forces. The
   // caller must scale the impulses on the nodes in the same way.
@@ -91,7 +102,11 @@ class BodyContacts {
   // Calls `visit` with the state on which the next tick depends.
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
-    for (int c = 0; c < count_; ++c) visit(constraints_[static_cast<std::size_t>(c)].force_n.data(), 3);
+    for (int c = 0; c < count_; ++c) {
+      const Constraint& constraint = constraints_[static_cast<std::size_t>(c)];
+      visit(constraint.force_n.data(), 3);
+      visit(&constraint.forgotten_m, 1);
+    }
   }
 
  private:
@@ -99,9 +114,10 @@ class BodyContacts {
     int first_body = 0, second_body = 0;
     EmbeddedPoint first, second;
     Vector3 normal = Vector3::UnitY();
-    double compliance = 0.0;  // relative velocity change of the points per impulse, 1/kg, without frames
-    double base_m = 0.0;      // gap minus the part due to displacements since rest
-    double friction = 0.0;    // the smaller coefficient of the two surfaces
+    double compliance = 0.0;   // relative velocity change of the points per impulse, 1/kg, without frames
+    double base_m = 0.0;       // gap minus the part due to displacements since rest
+    double forgotten_m = 0.0;  // part of BodyGap::left_out_m that does not count
+    double friction = 0.0;     // the smaller coefficient of the two surfaces
     MovedBy moved_by = MovedBy::springs;
     bool separates = false;  // whether separate() corrects an overlap, instead of the push
     int sample = -1;
@@ -114,8 +130,13 @@ class BodyContacts {
   void solve(std::span<const LatticeView> lattices, Constraint& constraint, double h, double cap);
   void push(std::span<const LatticeView> lattices, Constraint& constraint, const Vector3& impulse);
 
+  struct Kept {
+    Vector3 force_n;
+    double forgotten_m;
+  };
+
   std::vector<Constraint> constraints_;
-  KeptForces<Vector3> kept_;  // forces of the last tick
+  KeptValues<Kept> kept_;  // of the last tick
   // Impulses on each body since begin() of the constraints that substeps solve, N s.
   std::array<Vector3, lattice_capacity> impulse_ns_;
   int count_ = 0;

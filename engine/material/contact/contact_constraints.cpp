@@ -44,7 +44,8 @@ void ContactConstraints::forget() {
 }
 
 double ContactConstraints::last_force_n(int body, int key) const {
-  return kept_.find({.first = body, .point = key}, 0.0);
+  const double* const force_n = kept_.find({.first = body, .point = key});
+  return force_n ? *force_n : 0.0;
 }
 
 bool ContactConstraints::add_push(int body, const SpringLattice& lattice, const EmbeddedPoint& point, int key,

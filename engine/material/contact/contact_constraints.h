@@ -10,7 +10,7 @@
 
 #include "engine/base/geometry.h"
 #include "engine/material/contact/contact_push.h"
-#include "engine/material/contact/kept_forces.h"
+#include "engine/material/contact/kept_values.h"
 #include "engine/material/lattice/embedded_point.h"
 #include "engine/material/springs/spring_lattice.h"
 
@@ -167,7 +167,7 @@ class ContactConstraints {
   void exchange(const LatticeView& lattice, Constraint& constraint, ToolState& tool, const Vector3& impulse);
 
   std::vector<Constraint> constraints_;
-  KeptForces<double> kept_;  // forces of the last tick
+  KeptValues<double> kept_;  // forces of the last tick
   int count_ = 0;
   ToolMotion motion_;
   Vector3 hand_velocity_ = Vector3::Zero();  // m/s

@@ -18,7 +18,7 @@ namespace {
 
 // Largest allowed penetration of a surface and a mesh, in cells of the coarser of their two lattices. Most of
 // it is what the control net of the surface does not reproduce; a mesh follows its lattice exactly.
-constexpr double mesh_depth_limit_cells = 0.035;
+constexpr double mesh_depth_limit_cells = 0.04;
 
 SoftTool flesh(int nodes, double grip_m = 0.001) {
   return {silicone(), {nodes, {}}, {Vector3(0, grip_m, 0), -Vector3::UnitY()}};
