@@ -33,6 +33,22 @@ Status check_output(const std::filesystem::path& out, const OutputOptions& how) 
   return how.replaces_read_only ? Status() : check_replaceable(out);
 }
 
+Status check_is_not_source(const std::filesystem::path& out, const std::filesystem::path& source,
+                           const std::string& option) {
+  std::error_code ignored;
+  if (!std::filesystem::equivalent(source, out, ignored)) return {};
+  return Error{ErrorCode::inconsistent, out.string() + ": is the source itself; choose another name", option};
+}
+
+void add_log_option(OptionSet parser, std::filesystem::path& log) {
+  parser
+      .add_option(
+          "--log", log,
+          "CSV file for the poses, forces, contact areas, speeds and energies of the bodies after each "
+          "tick; default: none")
+      .show_as("FILE");
+}
+
 void add_frame_options(OptionSet parser, Extent& size, std::uint64_t& every) {
   parser
       .add_parsed(

@@ -59,6 +59,13 @@ void add_force_option(OptionSet parser, OutputOptions& how);
 // long computation, so that it fails early. Writing the file repeats the check.
 Status check_output(const std::filesystem::path& out, const OutputOptions& how);
 
+// Returns an error if `out` is the file from which the command reads. `option` names the option of `out`.
+Status check_is_not_source(const std::filesystem::path& out, const std::filesystem::path& source,
+                           const std::string& option);
+
+// --log: the file of a RunLog.
+void add_log_option(OptionSet parser, std::filesystem::path& log);
+
 // --size and --every: the size of frames in pixels, and the interval between drawn frames.
 void add_frame_options(OptionSet parser, Extent& size, std::uint64_t& every);
 

@@ -65,11 +65,8 @@ std::string document_name(const std::filesystem::path& scan) {
 Status fit(const FitOptions& options, Console& console) {
   if (Status checked = check_output(options.out, options.how); !checked) return checked;
   if (Status checked = check_output(options.errors, options.how); !checked) return checked;
-  std::error_code ignored;
-  if (std::filesystem::equivalent(options.scan, options.errors, ignored)) {
-    return Error{ErrorCode::inconsistent,
-                 options.errors.string() + ": is the scan itself; choose another name", "--errors"};
-  }
+  if (Status checked = check_is_not_source(options.errors, options.scan, "--errors"); !checked)
+    return checked;
   const auto clay = read_material(std::filesystem::path(assets_folder) / "materials/modelling-clay.json");
   if (!clay) return clay.error();
   MeshReading reading;

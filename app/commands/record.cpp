@@ -181,11 +181,7 @@ Status record_source(const RecordOptions& options, Console& console) {
   if (Status native = check_native_name(options.source); !native) return native;
   const auto format = find_native_format(options.source);
   if (!format) return format.error();
-  std::error_code ignored;
-  if (std::filesystem::equivalent(options.source, options.out, ignored)) {
-    return Error{ErrorCode::inconsistent,
-                 options.out.string() + ": is the source itself; choose another name", "--out"};
-  }
+  if (Status checked = check_is_not_source(options.out, options.source, "--out"); !checked) return checked;
   if (format.value() == FileFormat::script) return record_script(options, console);
   if (options.live) {
     return Error{ErrorCode::unsupported,

@@ -15,6 +15,7 @@
 #include "app/report/document_facts.h"
 #include "app/report/fact_sheet.h"
 #include "app/report/quantity_text.h"
+#include "app/report/run_log.h"
 #include "app/session/lockstep.h"
 #include "engine/base/geometry.h"
 #include "haptic/recording_lines.h"
@@ -32,6 +33,7 @@ struct ReplayOptions {
   std::uint64_t every = 1;
   std::filesystem::path video;
   std::filesystem::path rerecord;
+  std::filesystem::path log;
   InstructionSet instruction_set = best_instruction_set();
   bool no_frames = false;
   bool progress = false;
@@ -44,6 +46,7 @@ struct Replay {
   Lockstep& lockstep;
   Console& console;
   const RecordingWriter* writer = nullptr;
+  RunLog* log = nullptr;
 };
 
 Error stopped_replay(const Replay& replay, InterruptWatch& interrupt) {
@@ -58,6 +61,16 @@ Error stopped_replay(const Replay& replay, InterruptWatch& interrupt) {
   return Error{ErrorCode::cancelled, text};
 }
 
+// Runs the replay up to `tick`, and adds every tick to the log if there is one.
+Status run_to(const Replay& replay, std::uint64_t tick) {
+  if (replay.log == nullptr) return replay.lockstep.run_to(tick);
+  while (replay.lockstep.tick() < std::min(tick, replay.lockstep.tick_count())) {
+    if (Status ran = replay.lockstep.run_to(replay.lockstep.tick() + 1); !ran) return ran;
+    if (Status added = replay.log->add(replay.session); !added) return added;
+  }
+  return {};
+}
+
 Status run_without_pictures(const Replay& replay) {
   constexpr std::uint64_t ticks_between_checks = 10;  // ticks between progress updates and checks for Ctrl+C
   replay.session.keeps_documents = false;
@@ -66,7 +79,7 @@ Status run_without_pictures(const Replay& replay) {
   Lockstep& lockstep = replay.lockstep;
   while (lockstep.tick() < lockstep.tick_count()) {
     if (interrupt.requested()) return stopped_replay(replay, interrupt);
-    if (Status ran = lockstep.run_to(lockstep.tick() + ticks_between_checks); !ran) return ran;
+    if (Status ran = run_to(replay, lockstep.tick() + ticks_between_checks); !ran) return ran;
     replay.session.marks.clear();  // discards requests for files, because there is no output folder
     progress.show(lockstep.tick(), lockstep.tick_count());
   }
@@ -109,7 +122,7 @@ Status run_and_save(const Replay& replay, const PictureRequest& request, std::ui
                     const InterruptWatch& interrupt, std::vector<std::string>& names) {
   while (!interrupt.requested()) {
     const std::uint64_t next = std::min(replay.lockstep.tick() + 1, tick);
-    if (Status ran = replay.lockstep.run_to(next); !ran) return ran;
+    if (Status ran = run_to(replay, next); !ran) return ran;
     auto more = consume_marks(replay.session, request.folder);
     if (!more) return more.error();
     for (std::string& name : more.value()) {
@@ -199,6 +212,12 @@ Status replay_recording(const ReplayOptions& options, const Recording& recording
     if (!created->notice().empty()) console.err << "spoonbill: " << created->notice() << '\n';
     writer.emplace(std::move(created).value());
   }
+  std::optional<RunLog> log;
+  if (!options.log.empty()) {
+    auto created = RunLog::create(options.log, options.how, session.value(), LoggedTool::with_force);
+    if (!created) return created.error();
+    log.emplace(std::move(created).value());
+  }
   PlaybackDevice device(recording.header.device, recording.readings);
   if (!recording.readings.empty()) session->reading = recording.readings.front();
   LockstepInput input;
@@ -220,11 +239,16 @@ Status replay_recording(const ReplayOptions& options, const Recording& recording
     facts.add("", "", "missed", recording.missed);
   }
   if (Status ran = run_with_pictures(
-          {options, session.value(), lockstep, console, writer ? &*writer : nullptr}, facts);
+          {options, session.value(), lockstep, console, writer ? &*writer : nullptr, log ? &*log : nullptr},
+          facts);
       !ran)
     return ran;
   if (writer) {
     if (Status committed = writer->commit(); !committed) return committed;
+  }
+  if (log) {
+    if (Status committed = log->commit(); !committed) return committed;
+    facts.add("Log", options.log.string(), "log", options.log.string());
   }
   const std::string hash = hash_text(state_hash(session.value()));
   facts.add("State hash", hash, "state_hash", hash);
@@ -235,16 +259,14 @@ Status replay_recording(const ReplayOptions& options, const Recording& recording
 }
 
 Status replay_file(const ReplayOptions& options, Console& console) {
-  for (const auto& out : {options.rerecord, options.video}) {
+  for (const auto& out : {options.rerecord, options.video, options.log}) {
     if (Status checked = check_output(out, options.how); !checked) return checked;
   }
   const auto recording = read_recording(options.recording);
   if (!recording) return recording.error();
-  std::error_code ignored;
-  if (std::filesystem::equivalent(options.recording, options.rerecord, ignored)) {
-    return Error{ErrorCode::inconsistent,
-                 options.rerecord.string() + ": is the source itself; choose another name", "--rerecord"};
-  }
+  if (Status checked = check_is_not_source(options.rerecord, options.recording, "--rerecord"); !checked)
+    return checked;
+  if (Status checked = check_is_not_source(options.log, options.recording, "--log"); !checked) return checked;
   if (!recording->notice.empty()) console.err << "spoonbill: " << one_line(recording->notice) << '\n';
   return replay_recording(options, recording.value(), console);
 }
@@ -279,6 +301,7 @@ CommandEntry add_replay(OptionSet root) {
       .add_option("--rerecord", options->rerecord,
                   "File for a new recording of the replay, with the same bytes as RECORDING; default: none")
       .show_as("FILE");
+  add_log_option(parser, options->log);
   add_force_option(parser, options->how);
   add_instruction_set_option(parser, options->instruction_set);
   parser.add_flag("--progress", options->progress, "Show progress even if the output is not a terminal");

@@ -1,5 +1,3 @@
-#include <array>
-#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -9,6 +7,7 @@
 #include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
 #include "app/files/documents.h"
+#include "app/report/csv_text.h"
 #include "engine/base/file.h"
 #include "engine/bspline/evaluate.h"
 
@@ -24,22 +23,6 @@ struct SampleOptions {
   std::filesystem::path out;
   OutputOptions how;
 };
-
-// Returns the text as a CSV field, quoted if it contains a comma, a quote or a line break (RFC 4180).
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char letter : text) quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
-  return quoted + '"';
-}
-
-void append_number(std::string& line, double number) {
-  std::array<char, 32> text{};
-  // Adding zero turns a negative zero into a positive one.
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), number + 0.0);
-  line += ',';
-  line.append(text.data(), end);
-}
 
 // Passes the rows of a body to `write` in chunks, and stops at the first error of `write`.
 template <class Write>
@@ -61,7 +44,7 @@ Status sample_body(const Body& body, Extent counts, Write write) {
       for (const double number :
            {grid->u.parameters[i], grid->v.parameters[j], samples.x[sample], samples.y[sample],
             samples.z[sample], samples.nx[sample], samples.ny[sample], samples.nz[sample]}) {
-        append_number(text, number);
+        append_csv_number(text, number);
       }
       text += '\n';
     }
@@ -93,11 +76,7 @@ Status sample(const SampleOptions& options, Console& console) {
       return {};
     });
   }
-  std::error_code ignored;
-  if (std::filesystem::equivalent(options.model, options.out, ignored)) {
-    return Error{ErrorCode::inconsistent, options.out.string() + ": is the model itself; choose another name",
-                 "--out"};
-  }
+  if (Status checked = check_is_not_source(options.out, options.model, "--out"); !checked) return checked;
   auto file = OutputFile::create(options.out, options.how);
   if (!file) return file.error();
   InterruptWatch interrupt;

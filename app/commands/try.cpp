@@ -14,6 +14,7 @@
 #include "app/report/document_facts.h"
 #include "app/report/fact_sheet.h"
 #include "app/report/quantity_text.h"
+#include "app/report/run_log.h"
 #include "app/session/lockstep.h"
 #include "app/session/session.h"
 #include "engine/base/text.h"
@@ -28,7 +29,7 @@ namespace {
 
 struct TryOptions {
   OutputOptions how;
-  std::filesystem::path model, out;
+  std::filesystem::path model, out, log;
   Extent size{1280, 720};
   std::uint64_t every = 1;
   std::optional<double> seconds, tilt_deg;
@@ -95,7 +96,7 @@ struct EndedTrial {
 };
 
 Result<EndedTrial> run_trial(const TryOptions& options, Session& session, TrialPictures* pictures,
-                             Console& console) {
+                             RunLog* log, Console& console) {
   TrialSettings settings;
   settings.seconds = options.seconds.value_or(settings.seconds);
   EndedTrial ended{Trial(session.simulation.scene(), settings), {}};
@@ -119,6 +120,9 @@ Result<EndedTrial> run_trial(const TryOptions& options, Session& session, TrialP
     const Reaction reaction = session.simulation.advance(trial_input());
     ended.elapsed_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     ended.held = trial.follow(session.simulation, reaction.flags);
+    if (log) {
+      if (Status added = log->add(session); !added) return added.error();
+    }
     if (!ended.held) break;
     const std::uint64_t tick = session.simulation.tick();
     if (tick % 10 == 0) progress.show(std::min(tick, expected_ms), expected_ms);
@@ -126,6 +130,9 @@ Result<EndedTrial> run_trial(const TryOptions& options, Session& session, TrialP
   if (pictures) {
     if (Status drawn = pictures->draw(session); !drawn) return drawn.error();
     if (Status finished = pictures->finish(); !finished) return finished.error();
+  }
+  if (log) {
+    if (Status committed = log->commit(); !committed) return committed.error();
   }
   return ended;
 }
@@ -184,6 +191,8 @@ void add_trial_facts(FactSheet& facts, const EndedTrial& ended, const Session& s
 }
 
 Status try_document(const TryOptions& options, Console& console) {
+  if (Status checked = check_output(options.log, options.how); !checked) return checked;
+  if (Status checked = check_is_not_source(options.log, options.model, "--log"); !checked) return checked;
   auto document = read_document_file(options.model);
   if (!document) return document.error();
   const std::string source = options.model.string();
@@ -206,7 +215,14 @@ Status try_document(const TryOptions& options, Console& console) {
       return prepared;
     pictures.emplace(options, session.value());
   }
-  auto ended = run_trial(options, session.value(), pictures ? &*pictures : nullptr, console);
+  std::optional<RunLog> log;
+  if (!options.log.empty()) {
+    auto created = RunLog::create(options.log, options.how, session.value(), LoggedTool::none);
+    if (!created) return created.error();
+    log.emplace(std::move(created).value());
+  }
+  auto ended =
+      run_trial(options, session.value(), pictures ? &*pictures : nullptr, log ? &*log : nullptr, console);
   if (!ended) return ended.error().in(source);
   FactSheet facts;
   facts.add("File", source, "file", source);
@@ -215,6 +231,7 @@ Status try_document(const TryOptions& options, Console& console) {
     facts.add("Frames", std::to_string(pictures->count()), "frames", pictures->count());
     facts.add("Folder", options.out.string(), "out", options.out.string());
   }
+  if (log) facts.add("Log", options.log.string(), "log", options.log.string());
   const std::string hash = hash_text(state_hash(session.value()));
   facts.add("State hash", hash, "state_hash", hash);
   facts.print(console.out, options.json);
@@ -246,6 +263,7 @@ CommandEntry add_try(OptionSet root) {
       "Angle of the turn, such as 10deg; default: the document's, range: -360deg to 360deg");
   parser.add_option("--out", options->out, "Folder for frame-####.png; default: none").show_as("DIR");
   add_frame_options(parser, options->size, options->every);
+  add_log_option(parser, options->log);
   add_force_option(parser, options->how);
   add_instruction_set_option(parser, options->instruction_set);
   parser.add_flag("--progress", options->progress, "Show progress even if the output is not a terminal");

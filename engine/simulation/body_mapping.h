@@ -67,6 +67,9 @@ class BodyMapping {
   // the embeddings of the samples around the point.
   const EmbeddedPoint& sample(int index) const { return embedding_[index]; }
   EmbeddedPoint at(double u, double v) const;
+  // Returns the index of the first sample at the same point, across a seam or at a pole; otherwise the
+  // sample's own index.
+  int find_twin(int row, int column) const;
   // embedded_rest_m() returns the position of a sample's embedded point in the undeformed lattice, m.
   // embedded_m() returns its position at the last make() or update(), m. This position differs from that of
   // the sample on current() by what the control net cannot reproduce.
@@ -81,9 +84,6 @@ class BodyMapping {
  private:
   BodyMapping(Surface rest, Surface current, InstructionSet set)
       : set_(set), rest_(std::move(rest)), base_(current), current_(std::move(current)) {}
-  // Returns the index of the first sample at the same point, across a seam or at a pole; otherwise the
-  // sample's own index.
-  int find_twin(int row, int column) const;
   void embed(const SpringLattice& lattice);
   // Embedding of one sample in the compact form that update() reads. An unused entry has weight 0.
   struct CellWeights {

@@ -10,6 +10,7 @@
 
 #include "engine/base/assert.h"
 #include "engine/base/processor.h"
+#include "engine/simulation/contact_area.h"
 #include "engine/simulation/simulation_state.h"
 
 namespace spoonbill {
@@ -323,6 +324,14 @@ Vector3 Simulation::support_force_n(int support, int body) const {
 Vector3 Simulation::contact_force_n(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
   return state_->between.impulse_ns(body, tick_s) / tick_s;
+}
+double Simulation::contact_area_m2(int body) const {
+  return find_contact_area_m2(*state_, body);
+}
+std::optional<Pose> Simulation::rigid_pose(int body) const {
+  SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
+  const std::optional<RigidBody>& rigid = state_->bodies[static_cast<std::size_t>(body)].rigid;
+  return rigid ? std::optional(rigid->pose()) : std::nullopt;
 }
 double Simulation::fastest_m_per_s(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));

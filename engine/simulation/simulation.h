@@ -139,6 +139,11 @@ class Simulation {
   Vector3 support_force_n(int support, int body = 0) const;
   Vector3 ground_force_n(int body = 0) const;
   Vector3 contact_force_n(int body = 0) const;
+  // Returns the area of a body's surface on which contacts pushed in the last tick (contact_area.h).
+  // Allocates.
+  double contact_area_m2(int body) const;
+  // Returns the pose of a fixed body, which maps its rest shape to the present one; empty for any other body.
+  std::optional<Pose> rigid_pose(int body) const;
   // Returns the highest speed of a node of a body.
   double fastest_m_per_s(int body = 0) const;
   // Returns true while a body is being turned or lowered.

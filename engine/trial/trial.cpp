@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "engine/base/assert.h"
 #include "engine/base/text.h"
+#include "engine/bspline/surface.h"
 #include "engine/simulation/body_hold.h"
 
 namespace spoonbill {
@@ -28,6 +30,55 @@ bool is_deformable(const Body& body) {
 Vector3 momentum_ns(const SpringLattice& lattice) {
   const MassCentre centre = find_mass_centre(lattice);
   return centre.mass_kg * centre.velocity_m_per_s;
+}
+
+// Returns the height of a surface along the unit vector `up`.
+double find_height_m(const Surface& surface, const Vector3& up) {
+  constexpr int steps = 32;  // in each direction; the height of a ball is then 0.5 % too small
+  double lowest = infinity, highest = -infinity;
+  for (int i = 0; i <= steps; ++i) {
+    for (int j = 0; j <= steps; ++j) {
+      const double height = up.dot(position(surface, surface.u.parameter_at(static_cast<double>(i) / steps),
+                                            surface.v.parameter_at(static_cast<double>(j) / steps)));
+      lowest = std::min(lowest, height);
+      highest = std::max(highest, height);
+    }
+  }
+  return highest - lowest;
+}
+
+// A body whose yield stress is under this fraction of the pressure of its own height is a liquid: it spreads
+// without end, and its cells would tangle.
+constexpr double least_yield_fraction = 0.3;
+
+Status check_yields_as_solid(const Body& body, const Material& material, const Vector3& gravity_m_per_s2) {
+  if (!material.plastic) return {};
+  const double pressure_pa = material.density_kg_per_m3 * gravity_m_per_s2.norm() *
+                             find_height_m(body.surface, gravity_m_per_s2.normalized());
+  const double yield_pa = material.youngs_modulus_pa * material.yield_strain;
+  if (yield_pa >= least_yield_fraction * pressure_pa) return {};
+  char text[256];
+  std::snprintf(
+      text, sizeof text,
+      "body \"%s\": material.yield_strain: the material yields at %.3g Pa, under 0.3 of the %.3g Pa "
+      "that the body's own height causes; it flows like a liquid, which a lattice cannot judge; use a "
+      "yield strain of at least %.2g",
+      excerpt(body.name).c_str(), yield_pa, pressure_pa,
+      least_yield_fraction * pressure_pa / material.youngs_modulus_pa);
+  return Error{ErrorCode::inconsistent, text, "yield_strain"};
+}
+
+Status check_bodies_are_solid(const Scene& scene) {
+  const Vector3& gravity = scene.sculpting.gravity_m_per_s2;
+  for (const Body& body : scene.bodies) {
+    if (!is_deformable(body)) continue;
+    if (Status status = check_yields_as_solid(body, body.material, gravity); !status.ok()) return status;
+    for (const MaterialRegion& region : body.regions) {
+      if (!region.material) continue;
+      if (Status status = check_yields_as_solid(body, *region.material, gravity); !status.ok()) return status;
+    }
+  }
+  return {};
 }
 
 // Names the body at fault; empty if it is unknown.
@@ -70,6 +121,7 @@ Result<Scene> make_trial_scene(Scene scene, std::optional<double> tilt_deg) {
   scene.tool = Tool();
   scene.tool.kind = ToolKind::point;
   if (Status status = check_trial(scene); !status.ok()) return status.error();
+  if (Status status = check_bodies_are_solid(scene); !status.ok()) return status.error();
   return scene;
 }
 

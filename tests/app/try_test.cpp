@@ -1,7 +1,13 @@
 // Tests the try command.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <map>
+#include <numbers>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -60,6 +66,113 @@ TEST(Try, NamesTheBodyThatNothingBears) {
   const Outcome held = run({"try", place.text("held.json")});
   EXPECT_EQ(held.code, exit_failed);
   EXPECT_TRUE(is_clean_failure(held)) << held.err;
+}
+
+// The fields of a log by column, for each row of a body.
+using LogRows = std::vector<std::map<std::string, std::string>>;
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> fields;
+  std::istringstream text(line + ',');
+  for (std::string field; std::getline(text, field, ',');) fields.push_back(field);
+  return fields;
+}
+
+LogRows read_log(const std::filesystem::path& file, const std::string& body) {
+  std::ifstream text(file);
+  std::string line;
+  std::getline(text, line);
+  const std::vector<std::string> names = split(line);
+  LogRows rows;
+  while (std::getline(text, line)) {
+    const std::vector<std::string> fields = split(line);
+    EXPECT_EQ(fields.size(), names.size()) << line;
+    if (fields.size() != names.size() || fields[2] != body) continue;
+    auto& row = rows.emplace_back();
+    for (std::size_t f = 0; f < fields.size(); ++f) row[names[f]] = fields[f];
+  }
+  return rows;
+}
+
+double number(const std::map<std::string, std::string>& row, const char* column) {
+  return std::stod(row.at(column));
+}
+
+// A coarse elastic block falls onto the ground by a millimetre and comes to rest.
+TEST(Try, LogsEachTick) {
+  const Workplace place;
+  Document document = read_document(jelly_on_spoon).value();
+  document.scene.bodies.pop_back();
+  document.scene.trial.reset();
+  document.scene.bodies[0].lattice.counts = {{5, 4, 6}};
+  document.scene.bodies[0].material.relaxing_fraction = 0.0;
+  document.scene.ground = Ground{Vector3(0.0, 0.001, 0.0), Vector3::UnitY(), 0.3};
+  place.write("block.json", json_to_page(document_to_json(document)));
+  const std::filesystem::path log = place.path("run.csv");
+  const Outcome outcome =
+      run({"try", place.text("block.json"), "--seconds", "0.1", "--log", log.string(), "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  const Json facts = json_of(outcome.out);
+  EXPECT_EQ(facts["log"], log.string());
+  const LogRows rows = read_log(log, "jelly");
+  ASSERT_EQ(rows.size(), facts["ticks"].get<std::size_t>());
+  const auto& first = rows.front();
+  const auto& last = rows.back();
+  EXPECT_EQ(first.at("tick"), "1");
+  EXPECT_EQ(first.at("time_s"), "0.001");
+  EXPECT_EQ(first.at("kind"), "deformable");
+  EXPECT_TRUE(first.at("qw").empty());
+  EXPECT_EQ(number(first, "ground_y_n"), 0.0);
+  EXPECT_EQ(number(first, "contact_area_m2"), 0.0);
+  EXPECT_NEAR(number(last, "ground_y_n"), facts["bodies"][0]["ground_force_n"][1].get<double>(), 1e-4);
+  EXPECT_EQ(number(last, "largest_speed_m_per_s"), facts["largest_speed_m_per_s"].get<double>());
+  EXPECT_EQ(number(last, "centre_y_m"), facts["bodies"][0]["centre_of_mass_m"][1].get<double>());
+  EXPECT_EQ(number(last, "energy_j"), facts["energy_j"].get<double>());
+  EXPECT_LT(number(last, "energy_j"), number(first, "energy_j"));
+  EXPECT_GT(number(last, "contact_area_m2"), 1e-5);
+  EXPECT_LT(number(last, "contact_area_m2"), 0.028 * 0.022);
+  EXPECT_EQ(last.at("inverted_cells"), "0");
+}
+
+TEST(Try, DoesNotWriteTheLogOverItsDocument) {
+  const Workplace place;
+  const std::string model = place.text("own.json");
+  std::filesystem::copy_file(jelly_on_spoon, model);
+  EXPECT_EQ(run({"try", model, "--log", model}).code, exit_failed);
+  EXPECT_TRUE(read_document(model).ok());
+}
+
+// The log of a replay has a row for the tool, with the force on the hand.
+TEST(Try, AReplayLogsTheToolToo) {
+  const Workplace place;
+  const std::string recording = std::string(SPOONBILL_ASSETS) + "/recordings/contact-stages.recording.jsonl";
+  const std::filesystem::path log = place.path("run.csv");
+  const Outcome outcome = run({"replay", recording, "--no-frames", "--log", log.string(), "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  const LogRows rows = read_log(log, "tool");
+  ASSERT_EQ(rows.size(), json_of(outcome.out)["ticks"].get<std::size_t>());
+  EXPECT_EQ(read_log(log, "handle").size(), rows.size());
+  double largest_n = 0.0;
+  for (const auto& row : rows) largest_n = std::max(largest_n, std::abs(number(row, "contact_y_n")));
+  EXPECT_GT(largest_n, 0.1);
+  EXPECT_LE(largest_n, 3.3);
+  EXPECT_FALSE(rows.front().at("qw").empty());
+}
+
+// On a plate, only friction holds the bundled jelly.
+TEST(Try, TheJellyStaysOnATiltedPlate) {
+  const Outcome outcome = run({"try", std::string(SPOONBILL_ASSETS) + "/models/jelly-on-plate.json", "--tilt",
+                               "10deg", "--seconds", "0.3", "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  const Json facts = json_of(outcome.out);
+  EXPECT_EQ(facts["inverted_cells"], 0);
+  const double angle = 10.0 * std::numbers::pi / 180.0;
+  const Json& centre = facts["bodies"][0]["centre_of_mass_m"];
+  // Its place along the plate, from which it would slide towards negative values.
+  const double along_m =
+      centre[0].get<double>() * std::cos(angle) + centre[1].get<double>() * std::sin(angle);
+  EXPECT_NEAR(along_m, 0.0, 0.001);
+  EXPECT_LT(facts["largest_penetration_m"].get<double>(), 2e-4);
 }
 
 TEST(Try, RefusesWrongUse) {

@@ -120,6 +120,7 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
            .compliance = compliance,
            .base_m = gap.gap_m + gap.left_out_m - forgotten_m - moved,
            .forgotten_m = forgotten_m,
+           .added_gap_m = gap.gap_m,
            .friction = friction,
            .moved_by = by_solvers ? MovedBy::solvers : MovedBy::springs,
            .separates = !by_solvers && !first.lattice->moved_by_solver() &&

@@ -99,6 +99,19 @@ class BodyContacts {
   // Sets to 1 the bytes in `touched` of the nodes of a body on which a constraint has acted.
   void mark_touched(int body, std::uint8_t* touched) const;
 
+  // Calls visit(sample) for each sample of a body that a constraint has pushed since begin(), or that was
+  // closer than `reach_m` when its constraint was added.
+  template <class Visit>
+  void visit_pushed_samples(int body, double reach_m, const Visit& visit) const {
+    for (int c = 0; c < count_; ++c) {
+      const Constraint& constraint = constraints_[static_cast<std::size_t>(c)];
+      if (constraint.first_body != body || constraint.sample < 0) continue;
+      if (constraint.added_gap_m < reach_m || (constraint.acted && !constraint.force_n.isZero(0.0))) {
+        visit(constraint.sample);
+      }
+    }
+  }
+
   // Calls `visit` with the state on which the next tick depends.
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
@@ -117,6 +130,7 @@ class BodyContacts {
     double compliance = 0.0;   // relative velocity change of the points per impulse, 1/kg, without frames
     double base_m = 0.0;       // gap minus the part due to displacements since rest
     double forgotten_m = 0.0;  // part of BodyGap::left_out_m that does not count
+    double added_gap_m = 0.0;  // gap when the constraint was added
     double friction = 0.0;     // the smaller coefficient of the two surfaces
     MovedBy moved_by = MovedBy::springs;
     bool separates = false;  // whether separate() corrects an overlap, instead of the push

@@ -123,6 +123,16 @@ class ContactConstraints {
   // Sets to 1 the bytes in `touched` of the nodes of a body on which a constraint has acted.
   void mark_touched(int body, std::uint8_t* touched) const;
 
+  // Calls visit(key) for each constraint on a body that has pushed since begin() and has the number of a
+  // sample, or of a point between samples, as its key.
+  template <class Visit>
+  void visit_pushed_samples(int body, const Visit& visit) const {
+    for (int c = 0; c < count_; ++c) {
+      const Constraint& constraint = constraints_[static_cast<std::size_t>(c)];
+      if (constraint.acted && constraint.body == body && constraint.key >= 0) visit(constraint.key);
+    }
+  }
+
   // Calls `visit` with the state on which the next tick depends.
   template <class Visitor>
   void visit_state(Visitor&& visit) const {

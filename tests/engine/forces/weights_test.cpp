@@ -70,8 +70,8 @@ void PrintTo(const ModelCase& model, std::ostream* out) {
 std::vector<ModelCase> model_cases() {
   std::vector<ModelCase> cases;
   for (const std::string& model : bundled_model_names()) {
-    // The lattice of a trimmed body also covers what is trimmed away. The jelly on the spoon has no supports.
-    if (model == "trimmed-plate" || model == "jelly-on-spoon") continue;
+    // The lattice of a trimmed body also covers what is trimmed away. The bodies of trials have no supports.
+    if (model == "trimmed-plate" || bundled_scene(model).trial) continue;
     const ForceRun run = model == "spoon-handle" ? ForceRun::always
                          : model == "jelly"      ? ForceRun::full
                                                  : ForceRun::whole_table;

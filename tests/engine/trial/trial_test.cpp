@@ -80,6 +80,10 @@ TEST(Trial, LaysABlockOnAPlateAndTiltsIt) {
   EXPECT_LT((plate.contact_force_n - weight_n).norm(), 0.01 * weight_n.norm());
   EXPECT_LT((block.contact_force_n + weight_n).norm(), 0.01 * weight_n.norm());
   EXPECT_EQ(block.support_force_n, Vector3::Zero());
+  // The flat underside, from which the edges curve away.
+  const double underside_m2 = 0.028 * 0.018, outline_m2 = 0.03 * 0.02;
+  EXPECT_GT(simulation.contact_area_m2(0), 0.9 * underside_m2);
+  EXPECT_LT(simulation.contact_area_m2(0), outline_m2);
   // The plate's own weight: 1.02 g/cm^3 times its volume, which its rounded corners make a little smaller.
   EXPECT_GT(plate.support_force_n.y(), -weight_n.y());
 }
@@ -140,6 +144,29 @@ TEST(Trial, MakesASceneTrue) {
   EXPECT_EQ(trial.sculpting.gravity_m_per_s2, Vector3(0.0, -standard_gravity_m_per_s2, 0.0));
   scene.sculpting.gravity_m_per_s2 = {1.0, 0.0, 0.0};
   EXPECT_EQ(make_trial_scene(scene, {}).value().sculpting.gravity_m_per_s2, Vector3(1.0, 0.0, 0.0));
+}
+
+// The block is 8 mm high and has a density of 1,000 kg/m^3: 0.3 of the pressure at its foot is 23.5 Pa.
+TEST(Trial, RefusesALiquid) {
+  Scene scene;
+  scene.bodies = {soft_block(0.0)};
+  Material& material = scene.bodies[0].material;
+  material.plastic = true;
+  material.youngs_modulus_pa = 1000.0;
+  material.density_kg_per_m3 = 1000.0;
+  material.flow_rate_per_s = 20.0;
+  material.yield_strain = 0.023;
+  EXPECT_EQ(make_trial_scene(scene, {}).error().field, "yield_strain");
+  material.yield_strain = 0.024;
+  EXPECT_TRUE(make_trial_scene(scene, {}).ok());
+  scene.sculpting.gravity_m_per_s2 = {2.0 * standard_gravity_m_per_s2, 0.0, 0.0};  // along the 30 mm
+  EXPECT_EQ(make_trial_scene(scene, {}).error().field, "yield_strain");
+  scene.sculpting.gravity_m_per_s2.setZero();
+  MaterialRegion region;
+  region.material = material;
+  region.material->yield_strain = 0.001;
+  scene.bodies[0].regions = {region};
+  EXPECT_EQ(make_trial_scene(scene, {}).error().field, "yield_strain");
 }
 
 TEST(Trial, RefusesAPlanThatDoesNotFitTheScene) {

@@ -1,0 +1,123 @@
+#include "app/report/run_log.h"
+
+#include <cstdint>
+#include <string_view>
+#include <utility>
+
+#include "app/report/csv_text.h"
+#include "engine/base/assert.h"
+#include "engine/simulation/body_hold.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr std::string_view column_names =
+    "tick,time_s,body,kind,x_m,y_m,z_m,qw,qx,qy,qz,centre_x_m,centre_y_m,centre_z_m,largest_speed_m_per_s,"
+    "contact_x_n,contact_y_n,contact_z_n,contact_area_m2,ground_x_n,ground_y_n,ground_z_n,support_x_n,"
+    "support_y_n,support_z_n,inverted_cells,energy_j\n";
+
+// A quotient gives the decimal that a product with tick_s would miss by rounding.
+constexpr double ticks_per_s = 1000.0;
+
+// Rows are written in pieces of about this size.
+constexpr std::size_t chunk_bytes = 1 << 16;
+
+void append_empty(std::string& line, int fields) {
+  line.append(static_cast<std::size_t>(fields), ',');
+}
+
+void append_vector(std::string& line, const Vector3& vector) {
+  for (const double component : vector) append_csv_number(line, component);
+}
+
+void append_pose(std::string& line, const Pose& pose) {
+  append_vector(line, pose.position_m);
+  const Quaternion& q = pose.orientation;
+  for (const double component : {q.w(), q.x(), q.y(), q.z()}) append_csv_number(line, component);
+}
+
+void append_start(std::string& line, std::uint64_t tick, const std::string& name, const std::string& kind) {
+  line += std::to_string(tick);
+  append_csv_number(line, static_cast<double>(tick) / ticks_per_s);
+  line += ',' + name + ',' + kind;
+}
+
+}  // namespace
+
+RunLog::RunLog(OutputFile file, const Session& session, LoggedTool tool)
+    : file_(std::move(file)), tool_(tool) {
+  const std::vector<Body>& bodies = session.simulation.scene().bodies;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    LoggedBody& logged = bodies_.emplace_back();
+    logged.name = csv_field(bodies[b].name);
+    logged.kind = body_kind_names[static_cast<std::size_t>(bodies[b].kind)];
+    logged.support_count = static_cast<int>(bodies[b].supports.size());
+    if (bodies[b].kind == BodyKind::fixed)
+      logged.rest_m = find_rigid_mass(bodies[b], bodies[b].surface).centre_m;
+  }
+}
+
+Result<RunLog> RunLog::create(const std::filesystem::path& file, const OutputOptions& how,
+                              const Session& session, LoggedTool tool) {
+  auto created = OutputFile::create(file, how);
+  if (!created) return created.error();
+  if (Status written = created->write(column_names); !written) return written.error();
+  return RunLog(std::move(created).value(), session, tool);
+}
+
+void RunLog::add_body(const Session& session, int body) {
+  LoggedBody& logged = bodies_[static_cast<std::size_t>(body)];
+  const Simulation& simulation = session.simulation;
+  const SpringLattice& lattice = simulation.lattice(body);
+  const std::optional<Pose> pose = simulation.rigid_pose(body);
+  append_start(text_, simulation.tick(), logged.name, logged.kind);
+  if (pose) {
+    append_pose(text_, *pose);
+    append_vector(text_, pose->position_m + pose->orientation * logged.rest_m);
+    append_empty(text_, 1);
+  } else {
+    append_empty(text_, 7);
+    append_vector(text_, find_mass_centre(lattice).position_m);
+    append_csv_number(text_, simulation.fastest_m_per_s(body));
+  }
+  append_vector(text_, simulation.contact_force_n(body));
+  append_csv_number(text_, simulation.contact_area_m2(body));
+  append_vector(text_, simulation.ground_force_n(body));
+  Vector3 support_n = Vector3::Zero();
+  for (int s = 0; s < logged.support_count; ++s) support_n += simulation.support_force_n(s, body);
+  append_vector(text_, support_n);
+  if (pose) {
+    append_empty(text_, 2);
+  } else {
+    append_csv_number(text_, measure_cells(lattice).inverted_cells);
+    const std::optional<double> energy_j =
+        logged.energy.find_energy_j(lattice, simulation.scene().sculpting.gravity_m_per_s2);
+    energy_j ? append_csv_number(text_, *energy_j) : append_empty(text_, 1);
+  }
+  text_ += '\n';
+}
+
+void RunLog::add_tool(const Session& session) {
+  write_snapshot(session, snapshot_);
+  append_start(text_, session.simulation.tick(), "tool", "tool");
+  append_pose(text_, snapshot_.tool.proxy);
+  append_empty(text_, 4);
+  append_vector(text_, snapshot_.force_n);
+  append_empty(text_, 9);
+  text_ += '\n';
+}
+
+Status RunLog::add(const Session& session) {
+  SPOONBILL_ASSERT(session.simulation.scene().bodies.size() == bodies_.size());
+  for (std::size_t b = 0; b < bodies_.size(); ++b) add_body(session, static_cast<int>(b));
+  if (tool_ == LoggedTool::with_force) add_tool(session);
+  if (text_.size() < chunk_bytes) return {};
+  return file_.write(std::exchange(text_, {}));
+}
+
+Status RunLog::commit() {
+  if (Status written = file_.write(text_); !written) return written;
+  return file_.commit();
+}
+
+}  // namespace spoonbill

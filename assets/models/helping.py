@@ -1,0 +1,49 @@
+"""A helping of the bundled jelly for trials."""
+from documents import model, tube
+
+DEGREE = 3
+
+
+def blend(one, other, share):
+    return [a + (b - a) * share for a, b in zip(one, other)]
+
+
+def halve_around(rows):
+    """Twice as many control points around a uniform periodic cubic; the shape stays."""
+    finer = []
+    for i, row in enumerate(rows):
+        before, after = rows[i - 1], rows[(i + 1) % len(rows)]
+        finer.append([[(a + 6 * b + c) / 8 for a, b, c in zip(*three)] for three in zip(before, row, after)])
+        finer.append([blend(one, other, 0.5) for one, other in zip(row, after)])
+    return finer
+
+
+def insert_along(knots, row, knot):
+    """The control points after a knot is inserted (Boehm 1980)."""
+    span = max(k for k in range(len(knots)) if knots[k] <= knot)
+    first = span - DEGREE + 1
+    inner = [
+        blend(row[i - 1], row[i], (knot - knots[i]) / (knots[i + DEGREE] - knots[i])) for i in range(first, span + 1)
+    ]
+    return row[:first] + inner + row[span:]
+
+
+def helping(size_mm, centre_mm):
+    """The bundled jelly, scaled to a size along x, y and z and moved to a centre. Its control net is about as fine as the
+    lattice of a trial, so that the drawn surface follows the lattice closely and lies on what bears it."""
+    surface = model("jelly")["body"]["surface"]
+    points, knots = halve_around(surface["control_points_mm"]), surface["v"]["knots"]
+    breaks = sorted(set(knots))
+    for knot in [round(0.5 * (a + b), 6) for a, b in zip(breaks, breaks[1:])]:
+        points = [insert_along(knots, row, knot) for row in points]
+        knots = sorted(knots + [knot])
+    surface = tube(DEGREE, knots, points)
+    size = [0.0] * 3
+    for axis in range(3):
+        values = [point[axis] for row in points for point in row]
+        size[axis] = max(values) - min(values)
+    for row in points:
+        for point in row:
+            for axis in range(3):
+                point[axis] = round(centre_mm[axis] + point[axis] * size_mm[axis] / size[axis], 6)
+    return surface

@@ -1,0 +1,89 @@
+#include "engine/simulation/contact_area.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "engine/base/assert.h"
+#include "engine/bspline/evaluate.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double reach_cells = 0.02;
+
+// Samples of a surface that contacts push. Samples at the same point, at a seam or a pole, count as one.
+class PushedSamples {
+ public:
+  explicit PushedSamples(const BodyMapping& mapping)
+      : mapping_(mapping),
+        grid_(mapping.nested().grid),
+        pushed_(static_cast<std::size_t>(grid_.rows()) * static_cast<std::size_t>(grid_.columns())) {}
+
+  // Ignores points between samples, which have larger numbers.
+  void add(int sample) {
+    if (static_cast<std::size_t>(sample) < pushed_.size()) pushed_[twin(sample)] = 1;
+  }
+
+  void add_near_ground(const Ground& ground, double reach_m) {
+    for (int i = 0; i < grid_.rows(); ++i) {
+      for (int j = 0; j < grid_.columns(); ++j) {
+        if (ground.normal.dot(point_m(i, j) - ground.point_m) < reach_m) add(i * grid_.columns() + j);
+      }
+    }
+  }
+
+  double area_m2() const {
+    double sum = 0.0;
+    for (int i = 0; i + 1 < grid_.rows(); ++i) {
+      for (int j = 0; j + 1 < grid_.columns(); ++j) {
+        const int corners =
+            is_pushed(i, j) + is_pushed(i, j + 1) + is_pushed(i + 1, j) + is_pushed(i + 1, j + 1);
+        if (corners > 0) sum += 0.25 * corners * patch_m2(i, j);
+      }
+    }
+    return sum;
+  }
+
+ private:
+  std::size_t twin(int sample) const {
+    return static_cast<std::size_t>(mapping_.find_twin(sample / grid_.columns(), sample % grid_.columns()));
+  }
+  int is_pushed(int row, int column) const { return pushed_[twin(row * grid_.columns() + column)]; }
+  Vector3 point_m(int row, int column) const {
+    return position(mapping_.current(), grid_.u.parameters[static_cast<std::size_t>(row)],
+                    grid_.v.parameters[static_cast<std::size_t>(column)]);
+  }
+  double patch_m2(int row, int column) const {
+    const Vector3 diagonal = point_m(row + 1, column + 1) - point_m(row, column);
+    const Vector3 other = point_m(row + 1, column) - point_m(row, column + 1);
+    return 0.5 * diagonal.cross(other).norm();
+  }
+
+  const BodyMapping& mapping_;
+  const Grid& grid_;
+  std::vector<std::uint8_t> pushed_;
+};
+
+}  // namespace
+
+double find_contact_area_m2(const Simulation::State& state, int body) {
+  SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state.scene.bodies.size()));
+  const BodyState& own = state.bodies[static_cast<std::size_t>(body)];
+  double cell_m = 0.0;
+  for (const BodyState& each : state.bodies) {
+    if (!each.rigid) cell_m = std::max(cell_m, static_cast<double>(each.lattice.cell_size_m()));
+  }
+  const double reach_m = reach_cells * cell_m;
+  PushedSamples pushed(own.mapping());
+  const auto add = [&](int sample) { pushed.add(sample); };
+  state.between.visit_pushed_samples(body, reach_m, add);
+  state.tool.contact.constraints().visit_pushed_samples(body, add);
+  if (state.scene.symmetry.on) state.mirrored.contact.constraints().visit_pushed_samples(body, add);
+  if (state.scene.ground && !state.ground_contact.contacts().impulse_ns(body).isZero(0.0)) {
+    pushed.add_near_ground(*state.scene.ground, reach_m);
+  }
+  return pushed.area_m2();
+}
+
+}  // namespace spoonbill

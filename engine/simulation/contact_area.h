@@ -1,0 +1,14 @@
+// Area of a body's surface on which contacts push. Computed outside the tick.
+#pragma once
+
+#include "engine/simulation/simulation_state.h"
+
+namespace spoonbill {
+
+// Returns the area, m^2, on which other bodies, the body itself, the ground and the tool pushed the body's
+// surface in the last tick. A patch between four samples of the surface counts by the part of them that was
+// pushed. Samples closer to another body than a fiftieth of the largest cell count as pushed, and those
+// closer to the ground while the ground pushes the body.
+double find_contact_area_m2(const Simulation::State& state, int body);
+
+}  // namespace spoonbill
