@@ -51,7 +51,9 @@ PAIRS = {
 }
 
 HANDLE = "assets/recordings/spoon-handle-bend.recording.jsonl"
-TICK_CASES = {"handle": HANDLE, "stiff handle": "stiff:" + HANDLE, "block 12x12x12": "block:12:6"}
+TICK_CASES = {"handle": HANDLE, "stiff handle": "stiff:" + HANDLE, "block 12x12x12": "block:12:6",
+              "jelly, median": "trial:assets/models/jelly-on-spoon.json",
+              "jelly, p99": "trial:assets/models/jelly-on-spoon.json"}
 LATTICE_COUNTS = (8, 12, 16, 20, 24, 28, 30, 32, 34)
 
 LOOP = ("ticks of the 1 kHz loop late by 1 ms or more, the tick of the block in it; peer: cyclictest -m -p80, "
@@ -104,6 +106,10 @@ FIGURES = (
            "the whole tick while touching, 6 substeps, p99 as above", "block 12x12x12"),
     Figure("stiff_tick_p99_us", "us", "ours", "at most", 1000,
            "the whole tick while touching, of ABS stepped implicitly, p99 as above", "stiff handle"),
+    Figure("trial_tick_us", "us", "ours", "at most", 250,
+           "the whole tick of a trial, bundled jelly of 720 nodes on its spoon, while it tilts by 10 degrees and for two "
+           "seconds after; the median over ticks", "jelly, median"),
+    Figure("trial_tick_us", "us", "ours", "at most", 800, "as above, p99 over ticks", "jelly, p99"),
     Figure("frames_per_second", "1/s", "ours", "at least", 30,
            "`spoonbill replay` of the bundled recording to PNG, 1280x720, antialiasing, shadow and panel"),
     Figure("png_ms", "ms", "ours", "at most", 8, "one frame of 1280x720 to PNG; peer: stb_image_write"),

@@ -1,7 +1,8 @@
-// tick_bench ROUNDS CASE...: plays presses and prints as JSON how long each whole tick with contact took, as
-// the median of the rounds. A case is the file of a recording, stiff:FILE, or block:COUNT:SUBSTEPS. Every
-// tick is timed with the steady clock and with the thread's own clock, which stops while another program has
-// the processor.
+// tick_bench ROUNDS CASE...: plays presses and trials, and prints as JSON how long each whole tick with
+// contact took, as the median of the rounds. A case is the file of a recording, stiff:FILE,
+// block:COUNT:SUBSTEPS, or trial:DOCUMENT, whose ticks count from when the bodies have settled. Every tick is
+// timed with the steady clock and with the thread's own clock, which stops while another program has the
+// processor.
 #include <time.h>
 
 #include <algorithm>
@@ -12,11 +13,14 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "engine/base/processor.h"
 #include "engine/exchange/document.h"
 #include "engine/exchange/json.h"
+#include "engine/trial/trial.h"
 #include "haptic/tick.h"
 #include "tests/bench/presses.h"
 
@@ -45,6 +49,17 @@ double quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(at)];
 }
 
+// Times the calls of `advance`, which returns whether the tick counts.
+template <class Advance>
+void time_tick(Times& times, const Advance& advance) {
+  const double wall = steady_time_us(), thread = thread_time_us();
+  const bool counts = advance();
+  const double thread_after = thread_time_us(), wall_after = steady_time_us();
+  if (!counts) return;
+  times.wall_us.push_back(wall_after - wall);
+  times.thread_us.push_back(thread_after - thread);
+}
+
 bool play(const Press& press, Times& times) {
   auto made = Simulation::make(press.scene, best_instruction_set());
   if (!made) {
@@ -60,14 +75,44 @@ bool play(const Press& press, Times& times) {
         (void)simulation.apply(command.value());
       }
     }
-    const double wall = steady_time_us(), thread = thread_time_us();
-    const TickResult result = tick(simulation, coupling, press.device, press.readings[t]);
-    const double thread_after = thread_time_us(), wall_after = steady_time_us();
-    if (!result.touching) continue;
-    times.wall_us.push_back(wall_after - wall);
-    times.thread_us.push_back(thread_after - thread);
+    time_tick(times, [&] { return tick(simulation, coupling, press.device, press.readings[t]).touching; });
   }
   return true;
+}
+
+// Plays a trial that tilts by 10 degrees and goes on for two seconds.
+bool play(const Scene& scene, Times& times) {
+  auto made = Simulation::make(scene, best_instruction_set());
+  if (!made) {
+    std::cerr << made.error().message << '\n';
+    return false;
+  }
+  Simulation simulation = std::move(made).value();
+  Trial trial(simulation.scene(), {.seconds = 2.0});
+  while (trial.phase() != TrialPhase::done) {
+    if (const auto command = trial.next_command()) (void)simulation.apply(*command);
+    const bool counts = trial.phase() == TrialPhase::turning || trial.phase() == TrialPhase::watching;
+    Reaction reaction;
+    time_tick(times, [&] {
+      reaction = simulation.advance(trial_input());
+      return counts;
+    });
+    if (const Status held = trial.follow(simulation, reaction.flags); !held) {
+      std::cerr << held.error().message << '\n';
+      return false;
+    }
+  }
+  return true;
+}
+
+using Case = std::variant<Press, Scene>;
+
+Result<Case> trial_case(const std::string& file) {
+  auto document = read_document(file);
+  if (!document) return document.error();
+  auto scene = make_trial_scene(std::move(document->scene), 10.0);
+  if (!scene) return scene.error();
+  return Case(std::move(scene).value());
 }
 
 Result<Press> press_of(const std::string& name) {
@@ -78,6 +123,14 @@ Result<Press> press_of(const std::string& name) {
   constexpr std::string_view stiff = "stiff:";
   if (name.starts_with(stiff)) return stiff_press(name.substr(stiff.size()));
   return recorded_press(name);
+}
+
+Result<Case> case_of(const std::string& name) {
+  constexpr std::string_view trial = "trial:";
+  if (name.starts_with(trial)) return trial_case(name.substr(trial.size()));
+  auto press = press_of(name);
+  if (!press) return press.error();
+  return Case(std::move(press).value());
 }
 
 // Returns the median time of each tick over the rounds. A tick does the same work in every round, bit for
@@ -101,11 +154,12 @@ double median_p99(const std::vector<std::vector<double>>& rounds) {
   return quantile(each, 0.5);
 }
 
-Json report(const Press& press, int rounds) {
+Json report(const Case& played, int rounds) {
   std::vector<std::vector<double>> wall, thread;
   for (int round = 0; round < rounds; ++round) {
     Times times;
-    if (!play(press, times) || times.wall_us.empty()) return {};
+    const bool done = std::visit([&](const auto& each) { return play(each, times); }, played);
+    if (!done || times.wall_us.empty()) return {};
     wall.push_back(std::move(times.wall_us));
     thread.push_back(std::move(times.thread_us));
   }
@@ -121,12 +175,12 @@ Json report(const Press& press, int rounds) {
 int run(int rounds, std::span<char*> cases) {
   Json all = Json::object();
   for (const std::string name : cases) {
-    const auto press = press_of(name);
-    if (!press) {
-      std::cerr << press.error().message << '\n';
+    const auto played = case_of(name);
+    if (!played) {
+      std::cerr << played.error().message << '\n';
       return 1;
     }
-    all[name] = report(press.value(), rounds);
+    all[name] = report(played.value(), rounds);
     if (all[name].is_null()) {
       std::cerr << name << ": no tick touched the body\n";
       return 1;
