@@ -275,6 +275,7 @@ void CommandApplier::make_contacts() {
   state.pairs = make_pairs(state.bodies);
   state.self = make_self_contacts(state.bodies);
   state.between = make_contact_buffer();
+  state.searched = SearchedShapes(state.bodies);
   state.ground_contact =
       BodyGroundContact(state.scene_bodies().first(state.scene.ground ? state.scene.bodies.size() : 0));
 }

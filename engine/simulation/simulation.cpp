@@ -86,6 +86,7 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
                                             -1,
                                             std::move(retired_bodies),
                                             {}});
+  made->searched = SearchedShapes(made->bodies);
   update_inertia(*made);
   return Simulation(std::move(made));
 }
@@ -119,6 +120,7 @@ void update_inertia(Simulation::State& s) {
 
 Status Simulation::apply(const Command& command) {
   const DenormalsFlushed flushed;  // every thread then computes the same bits
+  state_->searched.forget();
   return std::visit(CommandApplier{*state_}, command);
 }
 
@@ -140,7 +142,18 @@ void visit_pairs(Simulation::State& s, const Visit& visit) {
   }
 }
 
+// Returns whether the constraints of the last search still hold. A soft tool moves with the hand, and its
+// contacts depend on what the hand does.
+bool is_searched(const Simulation::State& s) {
+  return s.between.count() > 0 && !s.tool_is_soft() && s.searched.still_hold(s.bodies);
+}
+
 void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
+  if (is_searched(s)) {
+    s.between.begin();
+    return;
+  }
+  s.searched.remember(s.bodies);
   s.between.clear();
   s.pairs_overflow = false;
   s.tool_gap_m = std::numeric_limits<double>::infinity();
@@ -414,6 +427,9 @@ std::uint64_t Simulation::state_hash() const {
     s.ground_contact.visit_state([&](const double* data, std::size_t count) { hash.add(data, count); });
   }
   s.between.visit_state([&](const double* data, std::size_t count) { hash.add(data, count); });
+  if (s.between.count() > 0) {
+    s.searched.visit_state([&](const double* data, std::size_t count) { hash.add(data, count); });
+  }
   add_to_hash(s.tool, hash);
   if (s.scene.symmetry.on) add_to_hash(s.mirrored, hash);
   return hash.value();

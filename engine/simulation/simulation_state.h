@@ -11,6 +11,7 @@
 #include "engine/simulation/body_contact.h"
 #include "engine/simulation/body_state.h"
 #include "engine/simulation/ground_contact.h"
+#include "engine/simulation/searched_shapes.h"
 #include "engine/simulation/simulation.h"
 #include "engine/simulation/snapshot.h"
 #include "engine/simulation/tool_contact.h"
@@ -59,6 +60,7 @@ struct Simulation::State {
   int real_time_substeps = 1;  // number of substeps at rest with an inertia scale of 1
   RelaxReport relaxed{};
   Reaction reaction{};
+  SearchedShapes searched{};  // the shapes for which `between` was found
 
   bool tool_is_soft() const {
     return scene.tool.kind == ToolKind::solid && bodies.size() > scene.bodies.size();
