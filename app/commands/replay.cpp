@@ -46,7 +46,6 @@ struct Replay {
   Lockstep& lockstep;
   Console& console;
   const RecordingWriter* writer = nullptr;
-  RunLog* log = nullptr;
 };
 
 Error stopped_replay(const Replay& replay, InterruptWatch& interrupt) {
@@ -61,16 +60,6 @@ Error stopped_replay(const Replay& replay, InterruptWatch& interrupt) {
   return Error{ErrorCode::cancelled, text};
 }
 
-// Runs the replay up to `tick`, and adds every tick to the log if there is one.
-Status run_to(const Replay& replay, std::uint64_t tick) {
-  if (replay.log == nullptr) return replay.lockstep.run_to(tick);
-  while (replay.lockstep.tick() < std::min(tick, replay.lockstep.tick_count())) {
-    if (Status ran = replay.lockstep.run_to(replay.lockstep.tick() + 1); !ran) return ran;
-    if (Status added = replay.log->add(replay.session); !added) return added;
-  }
-  return {};
-}
-
 Status run_without_pictures(const Replay& replay) {
   constexpr std::uint64_t ticks_between_checks = 10;  // ticks between progress updates and checks for Ctrl+C
   replay.session.keeps_documents = false;
@@ -79,7 +68,7 @@ Status run_without_pictures(const Replay& replay) {
   Lockstep& lockstep = replay.lockstep;
   while (lockstep.tick() < lockstep.tick_count()) {
     if (interrupt.requested()) return stopped_replay(replay, interrupt);
-    if (Status ran = run_to(replay, lockstep.tick() + ticks_between_checks); !ran) return ran;
+    if (Status ran = lockstep.run_to(lockstep.tick() + ticks_between_checks); !ran) return ran;
     replay.session.marks.clear();  // discards requests for files, because there is no output folder
     progress.show(lockstep.tick(), lockstep.tick_count());
   }
@@ -122,7 +111,7 @@ Status run_and_save(const Replay& replay, const PictureRequest& request, std::ui
                     const InterruptWatch& interrupt, std::vector<std::string>& names) {
   while (!interrupt.requested()) {
     const std::uint64_t next = std::min(replay.lockstep.tick() + 1, tick);
-    if (Status ran = run_to(replay, next); !ran) return ran;
+    if (Status ran = replay.lockstep.run_to(next); !ran) return ran;
     auto more = consume_marks(replay.session, request.folder);
     if (!more) return more.error();
     for (std::string& name : more.value()) {
@@ -228,6 +217,7 @@ Status replay_recording(const ReplayOptions& options, const Recording& recording
   input.expected_end = recording.end;
   input.missed = recording.missed;
   input.source = source;
+  if (log) input.after_tick = [&] { return log->add(session.value()); };
   Lockstep lockstep(session.value(), std::move(input), writer ? &*writer : nullptr);
 
   FactSheet facts;
@@ -239,8 +229,7 @@ Status replay_recording(const ReplayOptions& options, const Recording& recording
     facts.add("", "", "missed", recording.missed);
   }
   if (Status ran = run_with_pictures(
-          {options, session.value(), lockstep, console, writer ? &*writer : nullptr, log ? &*log : nullptr},
-          facts);
+          {options, session.value(), lockstep, console, writer ? &*writer : nullptr}, facts);
       !ran)
     return ran;
   if (writer) {

@@ -52,8 +52,6 @@ RunLog::RunLog(OutputFile file, const Session& session, LoggedTool tool)
     logged.name = csv_field(bodies[b].name);
     logged.kind = body_kind_names[static_cast<std::size_t>(bodies[b].kind)];
     logged.support_count = static_cast<int>(bodies[b].supports.size());
-    if (bodies[b].kind == BodyKind::fixed)
-      logged.rest_m = find_rigid_mass(bodies[b], bodies[b].surface).centre_m;
   }
 }
 
@@ -72,6 +70,12 @@ void RunLog::add_body(const Session& session, int body) {
   const std::optional<Pose> pose = simulation.rigid_pose(body);
   append_start(text_, simulation.tick(), logged.name, logged.kind);
   if (pose) {
+    const Body& at_rest = simulation.scene().bodies[static_cast<std::size_t>(body)];
+    if (logged.rest.x != at_rest.surface.net.x || logged.rest.y != at_rest.surface.net.y ||
+        logged.rest.z != at_rest.surface.net.z) {
+      logged.rest = at_rest.surface.net;
+      logged.rest_m = find_rigid_mass(at_rest, at_rest.surface).centre_m;
+    }
     append_pose(text_, *pose);
     append_vector(text_, pose->position_m + pose->orientation * logged.rest_m);
     append_empty(text_, 1);

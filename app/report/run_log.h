@@ -49,6 +49,7 @@ class RunLog {
   struct LoggedBody {
     std::string name, kind;
     EnergyMeter energy;                // of a deformable body
+    ControlNet rest;                   // control points of a fixed body at rest
     Vector3 rest_m = Vector3::Zero();  // centre of mass of a fixed body at rest
     int support_count = 0;
   };

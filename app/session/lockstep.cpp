@@ -103,7 +103,7 @@ Status Lockstep::run_tick() {
   device_.give(result.force_n);
   ++tick_;
   is_prepared_ = false;
-  return {};
+  return input_.after_tick ? input_.after_tick() : Status();
 }
 
 }  // namespace spoonbill

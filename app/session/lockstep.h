@@ -2,6 +2,7 @@
 // same states on any machine.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,8 @@ struct LockstepInput {
   std::optional<Checkpoint> expected_end;
   std::uint64_t missed = 0;  // ticks that the replayed live recording had missed; copied to the new recording
   std::string source;        // names the input in messages
+  // Called after each tick, before the commands that follow it; may be empty. An error ends the run.
+  std::function<Status()> after_tick = {};
 };
 
 // Runs a session in lock-step. The loop has one owner and is used by one thread.

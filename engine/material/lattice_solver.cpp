@@ -198,10 +198,6 @@ struct Relaxation {
   bool has_solver(std::size_t at) const { return lattices[at].implicit_solver != nullptr; }
   bool is_rigid(std::size_t at) const { return lattices[at].rigid_motion != nullptr; }
   bool has_springs(std::size_t at) const { return !has_solver(at) && !is_rigid(at); }
-  bool has_rigid() const {
-    return std::any_of(lattices.begin(), lattices.end(),
-                       [](const RelaxedLattice& lattice) { return lattice.rigid_motion != nullptr; });
-  }
   SpringLattice& lattice(std::size_t at) const { return *lattices[at].lattice; }
 };
 
@@ -529,7 +525,7 @@ void stabilise_strained_nodes(Relaxation& relaxation, float h) {
   }
 }
 
-// Moves bodies out of rigid ones that they overlap. Call after everything else has moved them in the substep.
+// Moves overlapping bodies apart. Call after everything else has moved them in the substep.
 void separate_bodies(const Relaxation& relaxation, BodyContacts& between, float h) {
   between.separate({relaxation.view.data(), relaxation.count()}, static_cast<double>(h),
                    find_push_caps(relaxation));
@@ -688,7 +684,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     if (soft) move_soft_tool(relaxation, *soft);
     move_supported_nodes(relaxation, static_cast<double>(s + 1) / substeps.count);
     move_rigid_bodies(relaxation, static_cast<double>(s + 1) / substeps.count);
-    if (between) separate_bodies(relaxation, *between, h);
+    if (between && between->count() > 0) separate_bodies(relaxation, *between, h);
   }
   end_implicit_steps(relaxation, ground);
   if (flows) flow(relaxation);

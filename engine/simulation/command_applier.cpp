@@ -229,6 +229,7 @@ Status CommandApplier::check_body(int body) const {
 
 void CommandApplier::release() {
   state.between.forget();
+  state.searched.forget();
   state.tool.contact.release();
   state.mirrored.contact.release();
 }

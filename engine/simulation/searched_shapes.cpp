@@ -18,12 +18,12 @@ void SearchedShapes::remember(std::span<const BodyState> bodies) {
     for (std::size_t n = 0; n < nodes.size(); ++n)
       nodes[n] = bodies[b].lattice.displacement(static_cast<int>(n));
   }
-  known_ = true;
+  known_count_ = bodies.size();
 }
 
 bool SearchedShapes::still_hold(std::span<const BodyState> bodies) const {
   SPOONBILL_ASSERT(bodies.size() <= displacements_m_.size());
-  if (!known_) return false;
+  if (known_count_ != bodies.size()) return false;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const BodyState& body = bodies[b];
     if (body.rigid && body.rigid->motion().moves) return false;
@@ -32,7 +32,7 @@ bool SearchedShapes::still_hold(std::span<const BodyState> bodies) const {
     const std::vector<Vector3>& nodes = displacements_m_[b];
     for (std::size_t n = 0; n < nodes.size(); ++n) {
       const Vector3 moved_m = body.lattice.displacement(static_cast<int>(n)) - nodes[n];
-      // The negation also catches NaN.
+      // The negation also catches a displacement that is not a number.
       if (!(moved_m.squaredNorm() <= most_m * most_m)) return false;
     }
   }

@@ -23,7 +23,7 @@ class SearchedShapes {
 
   // Stores the shapes of the first bodies given to the constructor, in their order.
   void remember(std::span<const BodyState> bodies);
-  void forget() { known_ = false; }
+  void forget() { known_count_ = 0; }
   // Returns whether no node of these bodies has moved farther than searched_motion_cells since remember(),
   // and no rigid body has moved or is about to move.
   bool still_hold(std::span<const BodyState> bodies) const;
@@ -31,13 +31,15 @@ class SearchedShapes {
   // Calls visit(const double*, count) with the state on which the next tick depends.
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
-    if (!known_) return;
-    for (const std::vector<Vector3>& nodes : displacements_m_) visit(nodes.data()->data(), 3 * nodes.size());
+    for (std::size_t b = 0; b < known_count_; ++b) {
+      const std::vector<Vector3>& nodes = displacements_m_[b];
+      visit(nodes.data()->data(), 3 * nodes.size());
+    }
   }
 
  private:
   std::vector<std::vector<Vector3>> displacements_m_;  // of the nodes of each body
-  bool known_ = false;
+  std::size_t known_count_ = 0;  // number of bodies of the last remember(); 0 if forgotten
 };
 
 }  // namespace spoonbill

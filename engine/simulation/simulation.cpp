@@ -120,8 +120,9 @@ void update_inertia(Simulation::State& s) {
 
 Status Simulation::apply(const Command& command) {
   const DenormalsFlushed flushed;  // every thread then computes the same bits
-  state_->searched.forget();
-  return std::visit(CommandApplier{*state_}, command);
+  const Status applied = std::visit(CommandApplier{*state_}, command);
+  if (applied.ok()) state_->searched.forget();
+  return applied;
 }
 
 namespace {
@@ -143,17 +144,22 @@ void visit_pairs(Simulation::State& s, const Visit& visit) {
 }
 
 // Returns whether the constraints of the last search still hold. A soft tool moves with the hand, and its
-// contacts depend on what the hand does.
+// contacts depend on what the hand does. Contacts of implicitly stepped bodies depend on a contact mass that
+// changes with each impulse.
 bool is_searched(const Simulation::State& s) {
-  return s.between.count() > 0 && !s.tool_is_soft() && s.searched.still_hold(s.bodies);
+  const auto stepped = s.stepped_bodies();
+  const bool has_solver = std::any_of(stepped.begin(), stepped.end(),
+                                      [](const BodyState& body) { return body.implicit_solver.has_value(); });
+  return s.between.count() > 0 && !s.tool_is_soft() && !has_solver && s.searched.still_hold(stepped);
 }
 
 void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
   if (is_searched(s)) {
+    s.between.keep();
     s.between.begin();
     return;
   }
-  s.searched.remember(s.bodies);
+  s.searched.remember(s.stepped_bodies());
   s.between.clear();
   s.pairs_overflow = false;
   s.tool_gap_m = std::numeric_limits<double>::infinity();
@@ -226,7 +232,10 @@ void hold_bodies(Simulation::State& s) {
     BodyState& body = s.bodies[b];
     if (body.rigid) continue;
     ImplicitSolver* const solver = body.solver();
-    if (body.hold.limit(body.lattice, solver, reach_m)) s.limited_body = static_cast<int>(b);
+    if (body.hold.limit(body.lattice, solver, reach_m)) {
+      s.limited_body = static_cast<int>(b);
+      s.searched.forget();  // the forces of the constraints may be lost too
+    }
     if (body.lowering_m_per_s > 0.0) lower(s, b);
     if (keeps_place(s.scene) && !body.lattice.has_fixed_nodes()) body.hold.keep_pose(body.lattice, solver);
   }
@@ -468,6 +477,7 @@ Status Simulation::restore(const ShapeState& shape) {
   }
   state_->ground_contact.forget();
   state_->between.forget();
+  state_->searched.forget();
   state_->tool.contact.release();
   state_->mirrored.contact.release();
   return {};

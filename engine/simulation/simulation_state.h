@@ -68,6 +68,7 @@ struct Simulation::State {
   std::span<BodyState> scene_bodies() { return {bodies.data(), scene.bodies.size()}; }
   // Number of bodies that a tick moves. A soft tool pauses while the hand holds another tool.
   std::size_t stepped_count() const { return scene.bodies.size() + (tool_is_soft() ? 1 : 0); }
+  std::span<const BodyState> stepped_bodies() const { return {bodies.data(), stepped_count()}; }
   const Material& material(std::size_t body) const {
     return body < scene.bodies.size() ? scene.bodies[body].material : scene.tool.body->soft->material;
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "engine/base/assert.h"
@@ -57,15 +56,17 @@ Status check_yields_as_solid(const Body& body, const Material& material, const V
                              find_height_m(body.surface, gravity_m_per_s2.normalized());
   const double yield_pa = material.youngs_modulus_pa * material.yield_strain;
   if (yield_pa >= least_yield_fraction * pressure_pa) return {};
-  char text[256];
-  std::snprintf(
-      text, sizeof text,
-      "body \"%s\": material.yield_strain: the material yields at %.3g Pa, under 0.3 of the %.3g Pa "
-      "that the body's own height causes; it flows like a liquid, which a lattice cannot judge; use a "
-      "yield strain of at least %.2g",
-      excerpt(body.name).c_str(), yield_pa, pressure_pa,
-      least_yield_fraction * pressure_pa / material.youngs_modulus_pa);
-  return Error{ErrorCode::inconsistent, text, "yield_strain"};
+  const double least = least_yield_fraction * pressure_pa / material.youngs_modulus_pa;
+  const auto digits = [](double number) { return number_text(std::round(number * 10.0) / 10.0); };
+  return Error{
+      ErrorCode::inconsistent,
+      "body \"" + excerpt(body.name) + "\": material.yield_strain: the material yields at " +
+          digits(yield_pa) + " Pa, under " + number_text(least_yield_fraction) + " of the " +
+          digits(pressure_pa) +
+          " Pa that the body's own height causes; it flows like a liquid, which a lattice cannot judge; "
+          "use a yield strain of at least " +
+          number_text(std::ceil(least * 1e4) / 1e4),
+      "yield_strain"};
 }
 
 Status check_bodies_are_solid(const Scene& scene) {

@@ -182,7 +182,7 @@ int run(int rounds, std::span<char*> cases) {
     }
     all[name] = report(played.value(), rounds);
     if (all[name].is_null()) {
-      std::cerr << name << ": no tick touched the body\n";
+      std::cerr << name << ": no tick counted\n";
       return 1;
     }
   }

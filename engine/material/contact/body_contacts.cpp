@@ -9,10 +9,10 @@
 namespace spoonbill {
 namespace {
 
-// Pace of contacts between bodies. The surfaces are fitted to the samples in each tick, so they may move
-// slightly more or less than the constrained points. Closing at most half of a gap in a substep leaves a
-// margin for this difference. A push starts from the force of the last substep, so a moderate rate of
-// correction suffices; a faster one would shake bodies at rest.
+// Pace of contacts of a body that an implicit solver steps. The surfaces are fitted to the samples in each
+// tick, so they may move slightly more or less than the constrained points. Closing at most half of a gap in
+// a substep leaves a margin for this difference. A push starts from the force of the last substep, so a
+// moderate rate of correction suffices; a faster one would shake bodies at rest.
 constexpr ContactPace body_pace{0.5, 400.0};
 // Pace of contacts whose overlaps separate() corrects.
 constexpr ContactPace separated_pace{0.5, 0.0};
@@ -78,7 +78,7 @@ void BodyContacts::clear() {
   kept_.clear();
   for (int c = 0; c < count_; ++c) {
     const Constraint& constraint = constraints_[c];
-    if (constraint.sample < 0 || (constraint.force_n.isZero(0.0) && constraint.forgotten_m == 0.0)) continue;
+    if (constraint.sample < 0 || constraint.force_n.isZero(0.0)) continue;
     kept_.add(constraint.key(), {constraint.force_n, constraint.forgotten_m});
   }
   kept_.sort();
@@ -119,6 +119,7 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
            .normal = normal,
            .compliance = compliance,
            .base_m = gap.gap_m + gap.left_out_m - forgotten_m - moved,
+           .left_out_m = gap.left_out_m,
            .forgotten_m = forgotten_m,
            .added_gap_m = gap.gap_m,
            .friction = friction,
@@ -128,6 +129,19 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
            .sample = sample};
   if (kept != nullptr) added.force_n = limit_to_cone(kept->force_n, normal, friction);
   return true;
+}
+
+void BodyContacts::keep() {
+  for (int c = 0; c < count_; ++c) {
+    Constraint& constraint = constraints_[c];
+    if (constraint.sample < 0) {
+      constraint.force_n.setZero();
+      continue;
+    }
+    const double forgotten_m = forgotten_in_tick * (constraint.left_out_m - constraint.forgotten_m);
+    constraint.forgotten_m += forgotten_m;
+    constraint.base_m -= forgotten_m;
+  }
 }
 
 void BodyContacts::begin() {

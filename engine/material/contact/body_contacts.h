@@ -50,10 +50,15 @@ class BodyContacts {
   // last tick. For a point that differs in every tick, `sample` is -1, and the force starts from zero.
   //
   // If the gap did not follow the points that the lattices move, contacts would generate energy. Therefore
-  // changes of gap.left_out_m count at first, and are forgotten within some ticks. With the sample -1, all of
-  // it counts.
+  // changes of gap.left_out_m count at first while the contact pushes, and are forgotten within some ticks.
+  // With the sample -1, all of it counts.
   bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, const BodyGap& gap,
            int sample);
+
+  // Keeps the constraints of the last tick for the next one, which needs no new search, as if they were added
+  // again. Bodies must not have turned or moved noticeably since the constraints were added, and inverse
+  // masses and frictions must be the same.
+  void keep();
 
   // Starts a tick: marks all constraints as not having acted.
   void begin();
@@ -79,9 +84,10 @@ class BodyContacts {
   // Solves each constraint of the kind pass.moved_by once. Call after start() and before the drift of a
   // substep of h_s. A reversed pass solves the last constraint first.
   void pass(std::span<const LatticeView> lattices, const ContactPass& pass);
-  // Moves the points of bodies with springs out of each other and out of rigid bodies, by a part of the
-  // overlap and at most by the distance that the caps allow in a substep of h_s. Velocities do not change, so
-  // that the correction adds no kinetic energy and does not shake bodies at rest. Call after the drift.
+  // Moves the points of bodies with springs out of each other, out of their own body and out of rigid ones,
+  // by a part of the overlap and at most by the distance that the caps allow in a substep of h_s. Velocities
+  // do not change, so that the correction adds no kinetic energy and does not shake bodies at rest. Call
+  // after the drift.
   void separate(std::span<const LatticeView> lattices, double h_s, std::span<const float> caps_m_per_s);
   // Multiplies by `fraction` the changes that the last pass() with MovedBy::solvers made to the forces. The
   // caller must scale the impulses on the nodes in the same way.
@@ -118,7 +124,9 @@ class BodyContacts {
     for (int c = 0; c < count_; ++c) {
       const Constraint& constraint = constraints_[static_cast<std::size_t>(c)];
       visit(constraint.force_n.data(), 3);
-      visit(&constraint.forgotten_m, 1);
+      visit(constraint.normal.data(), 3);
+      for (const double* value : {&constraint.base_m, &constraint.forgotten_m, &constraint.compliance})
+        visit(value, 1);
     }
   }
 
@@ -129,7 +137,8 @@ class BodyContacts {
     Vector3 normal = Vector3::UnitY();
     double compliance = 0.0;   // relative velocity change of the points per impulse, 1/kg, without frames
     double base_m = 0.0;       // gap minus the part due to displacements since rest
-    double forgotten_m = 0.0;  // part of BodyGap::left_out_m that does not count
+    double left_out_m = 0.0;   // BodyGap::left_out_m
+    double forgotten_m = 0.0;  // part of it that does not count
     double added_gap_m = 0.0;  // gap when the constraint was added
     double friction = 0.0;     // the smaller coefficient of the two surfaces
     MovedBy moved_by = MovedBy::springs;

@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "engine/base/processor.h"
 #include "engine/simulation/body_contact.h"
+#include "engine/simulation/body_hold.h"
 #include "engine/trial/trial_report.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/forces/samples.h"
@@ -144,6 +146,39 @@ TEST(Trial, MakesASceneTrue) {
   EXPECT_EQ(trial.sculpting.gravity_m_per_s2, Vector3(0.0, -standard_gravity_m_per_s2, 0.0));
   scene.sculpting.gravity_m_per_s2 = {1.0, 0.0, 0.0};
   EXPECT_EQ(make_trial_scene(scene, {}).value().sculpting.gravity_m_per_s2, Vector3(1.0, 0.0, 0.0));
+}
+
+// A block at rest is found in the same place and bears the same force, whether its contacts are searched in
+// each tick, as after a command, or only after it has moved.
+TEST(Trial, ABlockRestsTheSameWithoutNewSearches) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  std::array<Vector3, 2> centre_m, force_n;
+  for (const bool searches : {false, true}) {
+    Simulation simulation = make_simulation(block_over_plate(0.5, 0.0));
+    ASSERT_TRUE(simulation.apply(LowerBody{0, 0.02}).ok());
+    force_n[searches].setZero();
+    constexpr int ticks = 600, mean_ticks = 100;
+    for (int t = 0; t < ticks; ++t) {
+      if (searches) {
+        ASSERT_TRUE(simulation.apply(ResetProxy{}).ok());
+      }
+      simulation.advance(trial_input());
+      if (t >= ticks - mean_ticks) force_n[searches] += simulation.contact_force_n(0) / mean_ticks;
+    }
+    centre_m[searches] = find_mass_centre(simulation.lattice(0)).position_m;
+  }
+  EXPECT_LT((centre_m[0] - centre_m[1]).norm(), 1e-5);  // a two-hundredth of a cell
+  EXPECT_LT((force_n[0] - force_n[1]).norm(), 0.005 * force_n[1].norm());
+}
+
+TEST(Trial, ARefusedCommandChangesNothing) {
+  Simulation simulation = make_simulation(block_over_plate(0.5, 0.0));
+  ASSERT_TRUE(simulation.apply(LowerBody{0, 0.02}).ok());
+  for (int t = 0; t < 50; ++t) simulation.advance(trial_input());
+  ASSERT_GT(simulation.contact_force_n(0).norm(), 0.0);
+  const std::uint64_t before = simulation.state_hash();
+  EXPECT_FALSE(simulation.apply(TurnBody{}).ok());  // the first body deforms
+  EXPECT_EQ(simulation.state_hash(), before);
 }
 
 // The block is 8 mm high and has a density of 1,000 kg/m^3: 0.3 of the pressure at its foot is 23.5 Pa.
