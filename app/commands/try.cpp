@@ -119,9 +119,10 @@ Result<EndedTrial> run_trial(const TryOptions& options, Session& session, TrialP
     const auto start = std::chrono::steady_clock::now();
     const Reaction reaction = session.simulation.advance(trial_input());
     ended.elapsed_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const auto phase = static_cast<std::size_t>(trial.phase());
     ended.held = trial.follow(session.simulation, reaction.flags);
     if (log) {
-      if (Status added = log->add(session); !added) return added.error();
+      if (Status added = log->add(session, trial_phase_names[phase]); !added) return added.error();
     }
     if (!ended.held) break;
     const std::uint64_t tick = session.simulation.tick();

@@ -1,7 +1,6 @@
 #include "app/report/run_log.h"
 
 #include <cstdint>
-#include <string_view>
 #include <utility>
 
 #include "app/report/csv_text.h"
@@ -14,7 +13,7 @@ namespace {
 constexpr std::string_view column_names =
     "tick,time_s,body,kind,x_m,y_m,z_m,qw,qx,qy,qz,centre_x_m,centre_y_m,centre_z_m,largest_speed_m_per_s,"
     "contact_x_n,contact_y_n,contact_z_n,contact_area_m2,ground_x_n,ground_y_n,ground_z_n,support_x_n,"
-    "support_y_n,support_z_n,inverted_cells,energy_j\n";
+    "support_y_n,support_z_n,inverted_cells,energy_j,phase\n";
 
 // A quotient gives the decimal that a product with tick_s would miss by rounding.
 constexpr double ticks_per_s = 1000.0;
@@ -34,6 +33,12 @@ void append_pose(std::string& line, const Pose& pose) {
   append_vector(line, pose.position_m);
   const Quaternion& q = pose.orientation;
   for (const double component : {q.w(), q.x(), q.y(), q.z()}) append_csv_number(line, component);
+}
+
+void append_end(std::string& line, std::string_view phase) {
+  line += ',';
+  line += phase;
+  line += '\n';
 }
 
 void append_start(std::string& line, std::uint64_t tick, const std::string& name, const std::string& kind) {
@@ -63,10 +68,11 @@ Result<RunLog> RunLog::create(const std::filesystem::path& file, const OutputOpt
   return RunLog(std::move(created).value(), session, tool);
 }
 
-void RunLog::add_body(const Session& session, int body) {
+void RunLog::add_body(const Session& session, int body, std::string_view phase) {
   LoggedBody& logged = bodies_[static_cast<std::size_t>(body)];
   const Simulation& simulation = session.simulation;
   const SpringLattice& lattice = simulation.lattice(body);
+  const Vector3& gravity = simulation.scene().sculpting.gravity_m_per_s2;
   const std::optional<Pose> pose = simulation.rigid_pose(body);
   append_start(text_, simulation.tick(), logged.name, logged.kind);
   if (pose) {
@@ -74,47 +80,49 @@ void RunLog::add_body(const Session& session, int body) {
     if (logged.rest.x != at_rest.surface.net.x || logged.rest.y != at_rest.surface.net.y ||
         logged.rest.z != at_rest.surface.net.z) {
       logged.rest = at_rest.surface.net;
-      logged.rest_m = find_rigid_mass(at_rest, at_rest.surface).centre_m;
+      logged.at_rest = find_rigid_mass(at_rest, at_rest.surface);
     }
     append_pose(text_, *pose);
-    append_vector(text_, pose->position_m + pose->orientation * logged.rest_m);
+    append_vector(text_, pose->position_m + pose->orientation * logged.at_rest.centre_m);
     append_empty(text_, 1);
   } else {
     append_empty(text_, 7);
     append_vector(text_, find_mass_centre(lattice).position_m);
     append_csv_number(text_, simulation.fastest_m_per_s(body));
   }
-  append_vector(text_, simulation.contact_force_n(body));
+  const Vector3 contact_n = simulation.contact_force_n(body) + simulation.tool_force_n(body);
+  const Vector3 ground_n = simulation.ground_force_n(body);
+  append_vector(text_, contact_n);
   append_csv_number(text_, simulation.contact_area_m2(body));
-  append_vector(text_, simulation.ground_force_n(body));
+  append_vector(text_, ground_n);
   Vector3 support_n = Vector3::Zero();
+  if (pose) support_n = -contact_n - ground_n - logged.at_rest.mass_kg * gravity;
   for (int s = 0; s < logged.support_count; ++s) support_n += simulation.support_force_n(s, body);
   append_vector(text_, support_n);
   if (pose) {
     append_empty(text_, 2);
   } else {
     append_csv_number(text_, measure_cells(lattice).inverted_cells);
-    const std::optional<double> energy_j =
-        logged.energy.find_energy_j(lattice, simulation.scene().sculpting.gravity_m_per_s2);
+    const std::optional<double> energy_j = logged.energy.find_energy_j(lattice, gravity);
     energy_j ? append_csv_number(text_, *energy_j) : append_empty(text_, 1);
   }
-  text_ += '\n';
+  append_end(text_, phase);
 }
 
-void RunLog::add_tool(const Session& session) {
+void RunLog::add_tool(const Session& session, std::string_view phase) {
   write_snapshot(session, snapshot_);
   append_start(text_, session.simulation.tick(), "tool", "tool");
   append_pose(text_, snapshot_.tool.proxy);
   append_empty(text_, 4);
   append_vector(text_, snapshot_.force_n);
   append_empty(text_, 9);
-  text_ += '\n';
+  append_end(text_, phase);
 }
 
-Status RunLog::add(const Session& session) {
+Status RunLog::add(const Session& session, std::string_view phase) {
   SPOONBILL_ASSERT(session.simulation.scene().bodies.size() == bodies_.size());
-  for (std::size_t b = 0; b < bodies_.size(); ++b) add_body(session, static_cast<int>(b));
-  if (tool_ == LoggedTool::with_force) add_tool(session);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) add_body(session, static_cast<int>(b), phase);
+  if (tool_ == LoggedTool::with_force) add_tool(session, phase);
   if (text_.size() < chunk_bytes) return {};
   return file_.write(std::exchange(text_, {}));
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/session/session.h"
@@ -20,13 +21,17 @@ enum class LoggedTool { none, with_force };
 //
 // - tick, time_s; body: the name of the body, or "tool"; kind: that of the body, or "tool"
 // - x_m to qz: pose of a fixed body, which maps its rest shape to the present one, or of the tool's proxy
-// - centre_x_m to centre_z_m: centre of mass; largest_speed_m_per_s: highest speed of a node
-// - contact_x_n to contact_z_n and contact_area_m2: force of all other bodies on the body, and the area on
-//   which contacts push it; for the tool, the force on the hand
+// - centre_x_m to centre_z_m: centre of mass
+// - largest_speed_m_per_s: highest speed of a node; a body that is lowered counts as at rest
+// - contact_x_n to contact_z_n: force of all other bodies and of the tool on the body; for the tool, the
+//   force on the hand, after force scale and limit
+// - contact_area_m2: area on which contacts push the body (Simulation::contact_area_m2())
 // - ground_x_n to ground_z_n: force of the ground on the body
-// - support_x_n to support_z_n: force of the body's supports on it
-// - inverted_cells; energy_j: kinetic, gravitational and elastic energy of a body that neither creeps nor
-//   flows
+// - support_x_n to support_z_n: force of the body's supports on it; for a fixed body, the force that holds
+//   it. Fixing planes are not included
+// - inverted_cells
+// - energy_j: kinetic, gravitational and elastic energy; empty for a body that creeps or flows
+// - phase: the part of a trial
 //
 // A field that has no meaning for a row is empty.
 class RunLog {
@@ -35,22 +40,23 @@ class RunLog {
   static Result<RunLog> create(const std::filesystem::path& file, const OutputOptions& how,
                                const Session& session, LoggedTool tool);
 
-  // Adds the rows of the last tick. The session must have the same bodies as in create().
-  Status add(const Session& session);
+  // Adds the rows of the last tick. The session must have the same bodies as in create(). `phase` is the part
+  // of the run, if it has parts.
+  Status add(const Session& session, std::string_view phase = {});
 
   Status commit();
 
  private:
   RunLog(OutputFile file, const Session& session, LoggedTool tool);
-  void add_body(const Session& session, int body);
-  void add_tool(const Session& session);
+  void add_body(const Session& session, int body, std::string_view phase);
+  void add_tool(const Session& session, std::string_view phase);
 
   // A body, with what its rows need from tick to tick.
   struct LoggedBody {
     std::string name, kind;
-    EnergyMeter energy;                // of a deformable body
-    ControlNet rest;                   // control points of a fixed body at rest
-    Vector3 rest_m = Vector3::Zero();  // centre of mass of a fixed body at rest
+    EnergyMeter energy;  // of a deformable body
+    ControlNet rest;     // control points of a fixed body at rest
+    RigidMass at_rest;   // mass of a fixed body, and its centre at rest
     int support_count = 0;
   };
   OutputFile file_;

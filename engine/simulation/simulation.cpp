@@ -347,6 +347,12 @@ Vector3 Simulation::contact_force_n(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
   return state_->between.impulse_ns(body, tick_s) / tick_s;
 }
+Vector3 Simulation::tool_force_n(int body) const {
+  SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->scene.bodies.size()));
+  Vector3 impulse_ns = -state_->tool.contact.constraints().tool_impulse(body);
+  if (state_->scene.symmetry.on) impulse_ns -= state_->mirrored.contact.constraints().tool_impulse(body);
+  return impulse_ns / tick_s;
+}
 double Simulation::contact_area_m2(int body) const {
   return find_contact_area_m2(*state_, body);
 }

@@ -139,6 +139,9 @@ class Simulation {
   Vector3 support_force_n(int support, int body = 0) const;
   Vector3 ground_force_n(int body = 0) const;
   Vector3 contact_force_n(int body = 0) const;
+  // Returns the mean force of the tool, and of its mirror image, on a body over the last tick. The force of a
+  // soft tool is part of contact_force_n() instead.
+  Vector3 tool_force_n(int body = 0) const;
   // Returns the area of a body's surface on which contacts pushed in the last tick (contact_area.h).
   // Allocates.
   double contact_area_m2(int body) const;

@@ -36,6 +36,7 @@ Status check_trial_start(const Simulation& simulation);
 
 // The parts of a trial, in their order. Parts for which the plan names no body are left out.
 enum class TrialPhase { lowering, settling, turning, watching, done };
+inline constexpr const char* trial_phase_names[] = {"lowering", "settling", "turning", "watching", "done"};
 
 // Course of a trial. Has one owner, which runs the ticks:
 //

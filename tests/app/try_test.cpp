@@ -132,6 +132,8 @@ TEST(Try, LogsEachTick) {
   EXPECT_GT(number(last, "contact_area_m2"), 1e-5);
   EXPECT_LT(number(last, "contact_area_m2"), 0.028 * 0.022);
   EXPECT_EQ(last.at("inverted_cells"), "0");
+  EXPECT_EQ(first.at("phase"), "settling");
+  EXPECT_EQ(last.at("phase"), "watching");
 }
 
 TEST(Try, DoesNotWriteTheLogOverItsDocument) {
@@ -151,11 +153,17 @@ TEST(Try, AReplayLogsTheToolToo) {
   ASSERT_EQ(outcome.code, exit_done) << outcome.err;
   const LogRows rows = read_log(log, "tool");
   ASSERT_EQ(rows.size(), json_of(outcome.out)["ticks"].get<std::size_t>());
-  EXPECT_EQ(read_log(log, "handle").size(), rows.size());
-  double largest_n = 0.0;
-  for (const auto& row : rows) largest_n = std::max(largest_n, std::abs(number(row, "contact_y_n")));
+  const LogRows handle = read_log(log, "handle");
+  ASSERT_EQ(handle.size(), rows.size());
+  double largest_n = 0.0, largest_on_handle_n = 0.0;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    largest_n = std::max(largest_n, std::abs(number(rows[r], "contact_y_n")));
+    largest_on_handle_n = std::max(largest_on_handle_n, -number(handle[r], "contact_y_n"));
+  }
   EXPECT_GT(largest_n, 0.1);
   EXPECT_LE(largest_n, 3.3);
+  // The tool presses it down; the force on the hand is scaled by 60.
+  EXPECT_NEAR(largest_on_handle_n, largest_n / 60.0, 0.1 * largest_on_handle_n);
   EXPECT_FALSE(rows.front().at("qw").empty());
 }
 
