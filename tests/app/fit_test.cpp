@@ -248,9 +248,7 @@ TEST_F(FitTest, TheScanIsNeverReplaced) {
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
       "end_header\n0 0 0\n";
   const std::string scan = write("scan.ply", ply);
-  const Outcome errors = fit(scan, {"--errors", scan});
-  EXPECT_EQ(errors.code, 1);
-  EXPECT_NE(errors.err.find("is the scan itself"), std::string::npos) << errors.err;
+  EXPECT_EQ(fit(scan, {"--errors", scan}).code, 1);
   EXPECT_EQ(fit(scan, {"--errors", out()}).code, 2);
   EXPECT_EQ(run_process(SPOONBILL_PROGRAM, {"fit", scan, "--out", scan}).code, 2);
   EXPECT_EQ(content_of(scan), ply);
