@@ -107,8 +107,8 @@ FIGURES = (
     Figure("stiff_tick_p99_us", "us", "ours", "at most", 1000,
            "the whole tick while touching, of ABS stepped implicitly, p99 as above", "stiff handle"),
     Figure("trial_tick_us", "us", "ours", "at most", 250,
-           "the whole tick of a trial, bundled jelly of 720 nodes on its spoon, while it tilts by 10 degrees and for two "
-           "seconds after; the median over ticks", "jelly, median"),
+           "the whole tick of a trial, bundled jelly of 720 nodes on its spoon, while it tilts by 10 degrees and for "
+           "two seconds after; the median over ticks", "jelly, median"),
     Figure("trial_tick_us", "us", "ours", "at most", 800, "as above, p99 over ticks", "jelly, p99"),
     Figure("frames_per_second", "1/s", "ours", "at least", 30,
            "`spoonbill replay` of the bundled recording to PNG, 1280x720, antialiasing, shadow and panel"),

@@ -24,7 +24,7 @@ class MadeUp:
 
     def ticks(self, case, rounds=3):
         count = int(case.split(":")[1]) if case.startswith("block") else 0
-        return {"thread_p99_us": 1500.0 if count > 20 else 300.0}
+        return {"thread_p99_us": 1500.0 if count > 20 else 300.0, "thread_median_us": 200.0}
 
     def replay(self):
         return 300, 6.0, 9.0
