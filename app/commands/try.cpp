@@ -50,17 +50,16 @@ class TrialPictures {
 
   // Draws the present state if a frame is due.
   Status draw(Session& session) {
-    const std::uint64_t tick = session.simulation.tick();
-    while (frame_tick(next_frame_) < tick) ++next_frame_;
-    if (frame_tick(next_frame_) != tick || next_frame_ % options_.every != 0) return {};
-    if (crew_.is_full()) {
-      if (Status written = write_oldest(); !written) return written;
-    }
-    PaintingJob job =
-        make_painting_job(next_frame_, session, framed_, {options_.size.width, options_.size.height});
-    session.flags = tick_flag_none;
-    crew_.start(std::move(job));
-    return {};
+    find_next_frame(session);
+    const bool is_due =
+        frame_tick(next_frame_) == session.simulation.tick() && next_frame_ % options_.every == 0;
+    return is_due ? paint(session) : Status();
+  }
+
+  // Draws the state at the end, unless it is drawn already, as the frame whose time comes next.
+  Status draw_end(Session& session) {
+    find_next_frame(session);
+    return last_painted_ == next_frame_ ? Status() : paint(session);
   }
 
   Status finish() {
@@ -73,6 +72,22 @@ class TrialPictures {
   int count() const { return count_; }
 
  private:
+  void find_next_frame(const Session& session) {
+    while (frame_tick(next_frame_) < session.simulation.tick()) ++next_frame_;
+  }
+
+  Status paint(Session& session) {
+    if (crew_.is_full()) {
+      if (Status written = write_oldest(); !written) return written;
+    }
+    PaintingJob job =
+        make_painting_job(next_frame_, session, framed_, {options_.size.width, options_.size.height});
+    session.flags = tick_flag_none;
+    crew_.start(std::move(job));
+    last_painted_ = next_frame_;
+    return {};
+  }
+
   Status write_oldest() {
     auto painted = crew_.receive();
     if (!painted) return painted.error();
@@ -85,6 +100,7 @@ class TrialPictures {
   PaintingCrew crew_;
   FrameWriter writer_;
   std::uint64_t next_frame_ = 0;
+  std::optional<std::uint64_t> last_painted_;
   int count_ = 0;
 };
 
@@ -129,7 +145,7 @@ Result<EndedTrial> run_trial(const TryOptions& options, Session& session, TrialP
     if (tick % 10 == 0) progress.show(std::min(tick, expected_ms), expected_ms);
   }
   if (pictures) {
-    if (Status drawn = pictures->draw(session); !drawn) return drawn.error();
+    if (Status drawn = pictures->draw_end(session); !drawn) return drawn.error();
     if (Status finished = pictures->finish(); !finished) return finished.error();
   }
   if (log) {
@@ -262,7 +278,10 @@ CommandEntry add_try(OptionSet root) {
       [](const std::string& text) { return parse_angle_deg(text, turn_angle_range_deg); },
       [options](double angle_deg) { options->tilt_deg = angle_deg; },
       "Angle of the turn, such as 10deg; default: the document's, range: -360deg to 360deg");
-  parser.add_option("--out", options->out, "Folder for frame-####.png; default: none").show_as("DIR");
+  parser
+      .add_option("--out", options->out,
+                  "Folder for frame-####.png, the last of which shows the end; default: none")
+      .show_as("DIR");
   add_frame_options(parser, options->size, options->every);
   add_log_option(parser, options->log);
   add_force_option(parser, options->how);

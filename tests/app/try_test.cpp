@@ -36,9 +36,13 @@ TEST(Try, TellsWhereTheJellyIs) {
   const double carried_n = facts["bodies"][0]["contact_force_n"][1].get<double>();
   EXPECT_GT(carried_n, 0.0);
   EXPECT_NEAR(facts["bodies"][1]["contact_force_n"][1].get<double>(), -carried_n, 1e-6 * carried_n);
-  const auto frames = facts["frames"].get<int>();
-  EXPECT_GE(frames, 1);
   EXPECT_TRUE(std::filesystem::exists(place.path("frames") / "frame-0000.png"));
+  // The last frame shows the end, although no frame is due there.
+  const auto ticks = facts["ticks"].get<std::uint64_t>();
+  const std::uint64_t last = (ticks * 60 + 999) / 1000;
+  EXPECT_EQ(facts["frames"].get<std::uint64_t>(), (last - 1) / 30 + 2);
+  const std::string name = "frame-" + std::to_string(10000 + last).substr(1) + ".png";
+  EXPECT_TRUE(std::filesystem::exists(place.path("frames") / name)) << name;
 }
 
 // A model without the body that the trial lowers has no trial.
