@@ -1,7 +1,8 @@
-"""A helping of the bundled jelly for trials."""
-from documents import model, tube
+"""A helping of the bundled jelly, and a trial that lowers it onto a fixed body."""
+from documents import material, model, tube
 
 DEGREE = 3
+SIZE_MM = (28.0, 14.0, 22.0)  # along, up, across
 
 
 def blend(one, other, share):
@@ -28,8 +29,8 @@ def insert_along(knots, row, knot):
     return row[:first] + inner + row[span:]
 
 
-def helping(size_mm, centre_mm):
-    """The bundled jelly, scaled to a size along x, y and z and moved to a centre. Its control net is about as fine as the
+def helping(centre_mm):
+    """The bundled jelly, scaled to SIZE_MM and moved to a centre. Its control net is about as fine as the
     lattice of a trial, so that the drawn surface follows the lattice closely and lies on what bears it."""
     surface = model("jelly")["body"]["surface"]
     points, knots = halve_around(surface["control_points_mm"]), surface["v"]["knots"]
@@ -45,5 +46,41 @@ def helping(size_mm, centre_mm):
     for row in points:
         for point in row:
             for axis in range(3):
-                point[axis] = round(centre_mm[axis] + point[axis] * size_mm[axis] / size[axis], 6)
+                point[axis] = round(centre_mm[axis] + point[axis] * SIZE_MM[axis] / size[axis], 6)
     return surface
+
+
+def trial(name, centre_mm, bearer, axis_point_mm, friction):
+    """A document in which a helping of soft gelatin is lowered from a centre onto a fixed body, given by its name, surface
+    and material. The body then turns about an axis along z. Both bodies get the friction."""
+    return {
+        "spoonbill_document": 3,
+        "name": name,
+        "body": {
+            "name": "jelly",
+            "surface": helping(centre_mm),
+            "material": dict(material("gelatin-20-1"), friction=friction),
+            "lattice": {"nodes": [10, 6, 12]},
+        },
+        "other_bodies": [
+            {
+                "name": bearer["name"],
+                "kind": "fixed",
+                "surface": bearer["surface"],
+                "material": dict(material(bearer["material"]), friction=friction),
+            }
+        ],
+        "fixing_planes": [],
+        "tool": {"kind": "point", "action": "push", "radius_mm": 8.0, "substeps": 6},
+        "sculpting": {"drag_per_s": 0.0, "gravity_m_per_s2": [0.0, -9.81, 0.0], "force_scale": 1.0},
+        "trial": {
+            "lowered_body": "jelly",
+            "turned_body": bearer["name"],
+            "point_mm": list(axis_point_mm),
+            "axis": [0, 0, 1],
+        },
+        "view": {
+            "camera": {"yaw_deg": 25, "pitch_deg": 22},
+            "overlays": {"tool": False, "touched_nodes": False},
+        },
+    }

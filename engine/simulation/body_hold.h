@@ -35,9 +35,8 @@ class BodyHold {
 
   // Returns the body to its mean orientation at the start of the tick, and to its mean position plus
   // `shift_m`, and removes its linear and angular momentum, as if a hand gently held the whole body. The
-  // lattice must have no fixed nodes. The
-  // mean orientation is the rotation that fits the rest shape best (Kabsch 1976), so that it does not drift
-  // with a sequence of deformations.
+  // lattice must have no fixed nodes. The mean orientation is the rotation that fits the rest shape best
+  // (Kabsch 1976), so that it does not drift with a sequence of deformations.
   void keep_pose(SpringLattice& lattice, ImplicitSolver* solver,
                  const Vector3& shift_m = Vector3::Zero()) const;
 

@@ -71,7 +71,7 @@ double find_contact_area_m2(const Simulation::State& state, int body) {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state.scene.bodies.size()));
   const BodyState& own = state.bodies[static_cast<std::size_t>(body)];
   double cell_m = 0.0;
-  for (const BodyState& each : state.bodies) {
+  for (const BodyState& each : state.stepped_bodies()) {
     if (!each.rigid) cell_m = std::max(cell_m, static_cast<double>(each.lattice.cell_size_m()));
   }
   const double reach_m = reach_cells * cell_m;

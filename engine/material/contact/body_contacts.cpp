@@ -25,6 +25,11 @@ constexpr double separation_per_s = 600.0, max_separation = 0.1;
 // colliding bodies would gain energy; if it were forgotten more slowly, their drawn surfaces would overlap.
 constexpr double forgotten_in_tick = 0.3;
 
+// Returns how much more of `left_out_m` is forgotten in a tick.
+double find_newly_forgotten_m(double left_out_m, double forgotten_m) {
+  return forgotten_in_tick * (left_out_m - forgotten_m);
+}
+
 // Returns the relative velocity change of two points per impulse between them, 1/kg. Within one body, the
 // impulses overlap in the nodes that both points use.
 double mutual_compliance(const BodyPoint& first, const BodyPoint& second) {
@@ -108,7 +113,7 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
   const Kept* const kept = sample >= 0 ? kept_.find(key) : nullptr;
   const double friction = mutual_friction(first, second);
   const double forgotten_m =
-      kept != nullptr ? kept->forgotten_m + forgotten_in_tick * (gap.left_out_m - kept->forgotten_m)
+      kept != nullptr ? kept->forgotten_m + find_newly_forgotten_m(gap.left_out_m, kept->forgotten_m)
       : sample >= 0   ? gap.left_out_m
                       : 0.0;
   Constraint& added = constraints_[count_++];
@@ -138,7 +143,7 @@ void BodyContacts::keep() {
       constraint.force_n.setZero();
       continue;
     }
-    const double forgotten_m = forgotten_in_tick * (constraint.left_out_m - constraint.forgotten_m);
+    const double forgotten_m = find_newly_forgotten_m(constraint.left_out_m, constraint.forgotten_m);
     constraint.forgotten_m += forgotten_m;
     constraint.base_m -= forgotten_m;
   }

@@ -1,4 +1,4 @@
-// Tests when a tick must search anew for contacts between bodies.
+// Tests when a tick must search for contacts between bodies again.
 #include "engine/simulation/searched_shapes.h"
 
 #include <gtest/gtest.h>

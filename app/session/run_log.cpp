@@ -1,4 +1,4 @@
-#include "app/report/run_log.h"
+#include "app/session/run_log.h"
 
 #include <cstdint>
 #include <utility>
