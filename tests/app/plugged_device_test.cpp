@@ -14,7 +14,6 @@
 #include "tests/app/wait_for.h"
 #include "tests/app/workplace.h"
 #include "tests/engine/refusal.h"
-#include "tests/engine/simulation/handle.h"
 
 namespace spoonbill {
 namespace {
@@ -86,15 +85,12 @@ class PluggedDevice : public Device {
 };
 
 // Returns a document with a rubber handle, so that each press meets the same resistance. The force scale
-// makes the forces exceed the limit of the device. The lattice is coarse, because a loop of fewer than 200
-// ticks a second, as a finer one has under a sanitizer, gets no force.
+// makes the forces exceed the limit of the device.
 Document rubber_handle() {
-  Document document{"small handle", small_handle(), Json::object()};
+  Document document = held_handle();
   document.scene.bodies[0].material.plastic = false;
   document.scene.bodies[0].material.youngs_modulus_pa = 3e5;
-  document.scene.bodies[0].lattice = {200, {}};
   document.scene.sculpting.force_scale = 40.0;
-  document.scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
   return document;
 }
 

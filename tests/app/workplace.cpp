@@ -53,6 +53,7 @@ Json json_of(const std::string& text) {
 
 Document held_handle() {
   Document document{"small handle", small_handle(), Json::object()};
+  document.scene.bodies[0].lattice = {200, {}};
   document.scene.planes.push_back({Vector3(0.02, 0, 0), Vector3::UnitX()});
   return document;
 }
