@@ -50,7 +50,7 @@ def helping(centre_mm):
     return surface
 
 
-def trial(name, centre_mm, bearer, axis_point_mm, friction):
+def trial(name, lattice, centre_mm, bearer, axis_point_mm, friction):
     """A document in which a helping of soft gelatin is lowered from a centre onto a fixed body, given by its name, surface
     and material. The body then turns about an axis along z. Both bodies get the friction."""
     return {
@@ -60,7 +60,7 @@ def trial(name, centre_mm, bearer, axis_point_mm, friction):
             "name": "jelly",
             "surface": helping(centre_mm),
             "material": dict(material("gelatin-20-1"), friction=friction),
-            "lattice": {"nodes": [10, 6, 12]},
+            "lattice": lattice,
         },
         "other_bodies": [
             {

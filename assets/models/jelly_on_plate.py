@@ -32,4 +32,4 @@ def plate():
 
 
 bearer = {"name": "plate", "surface": plate(), "material": "abs"}
-write(trial("jelly-on-plate", (0.0, 8.0, 0.0), bearer, (0, 0, 0), FRICTION))
+write(trial("jelly-on-plate", {"nodes": [10, 6, 12]}, (0.0, 8.0, 0.0), bearer, (0, 0, 0), FRICTION))

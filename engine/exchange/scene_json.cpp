@@ -210,6 +210,9 @@ LatticeRequest read_lattice_request(FieldReader& reader) {
     lattice.feature_map = read_fields<FeatureMapSettings>(map);
     map.finish();
   }
+  if (reader.has("cells")) {
+    lattice.cells = static_cast<LatticeCells>(reader.choose("cells", lattice_cells_names));
+  }
   if (reader.has("node_budget")) {
     lattice.node_budget = reader.integer("node_budget", node_budget_range);
   } else {
@@ -225,6 +228,9 @@ void add_lattice_request(const LatticeRequest& lattice, Json& json) {
     json["node_budget"] = lattice.node_budget;
   }
   if (lattice.feature_map) add_fields(*lattice.feature_map, json["feature_map"]);
+  if (lattice.cells != LatticeCells::bent) {
+    json["cells"] = lattice_cells_names[static_cast<std::size_t>(lattice.cells)];
+  }
 }
 
 Tool read_tool(FieldReader& reader) {

@@ -33,6 +33,11 @@ Status check_lattice_request(const LatticeRequest& lattice) {
     if (Status status = check_feature_map(*lattice.feature_map); !status.ok()) {
       return status.error().in("lattice");
     }
+    if (lattice.cells == LatticeCells::box) {
+      return Error{ErrorCode::inconsistent,
+                   "lattice: feature_map: the nodes of a box are not spread; remove feature_map or cells",
+                   "feature_map"};
+    }
   }
   if (!lattice.counts) return check_range("lattice: node_budget", lattice.node_budget, node_budget_range);
   int product = 1;

@@ -48,11 +48,18 @@ inline constexpr auto fields_of<FeatureMapSettings> = std::to_array<Field<Featur
     whole_number_field("seed", &FeatureMapSettings::seed, map_seed_range),
 });
 
+// How the cells of a solid's lattice are laid out. `bent`: a block of cells is bent into the body, so that
+// its outer nodes lie on the surface; where no block can follow the shape, the cells are a box. `box`: equal
+// cells about the body, along x, y and z (box_lattice.h). A tick of a soft body in a box takes fewer
+// substeps, because no cell is flat; its surface is inside the cells, so thin parts are too stiff in bending.
+enum class LatticeCells { bent, box };
+inline constexpr const char* lattice_cells_names[] = {"bent", "box"};
+
 // Size of a body's lattice: either the node counts, or a budget from which near-cubic cells are derived.
 struct LatticeRequest {
   int node_budget = 2000;  // largest number of nodes; ignored if `counts` is given
   // Nodes in each direction, at least 2. The directions are:
-  // - tubes and rings: across (first, second) and along (third) the body;
+  // - bent blocks: across (first, second) and along (third) the body;
   // - triangle meshes and bodies in a box of cells (box_lattice.h): x, y and z;
   // - open shells: along u, through the thickness, along v;
   // - closed shells: around, through and along the shell; the count around includes the node at the seam
@@ -61,6 +68,7 @@ struct LatticeRequest {
   // Settings of the map that spreads the inner nodes of a tube after transfinite interpolation has placed
   // them. If empty, the nodes stay where interpolation placed them.
   std::optional<FeatureMapSettings> feature_map = {};
+  LatticeCells cells = LatticeCells::bent;  // a shell has cells of its own, and refuses a box
 };
 
 inline constexpr Range<int> node_budget_range{50, 40000};

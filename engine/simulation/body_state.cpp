@@ -44,9 +44,10 @@ Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& 
   return std::optional<ImplicitSolver>(std::move(solver).value());
 }
 
-std::string describe_lattice_warning(const BodyState& body) {
+std::string describe_lattice_warning(const BodyState& body, const LatticeRequest& request) {
   const std::string slender = describe_slender_cells(body);
-  if (body.lattice.mesh().along.empty()) return slender.empty() ? slender : "lattice: " + slender;
+  if (body.lattice.mesh().along.empty() || request.cells == LatticeCells::box)
+    return slender.empty() ? slender : "lattice: " + slender;
   return "lattice: the body is in a box of cells, because no lattice can follow its shape; nodes are counted "
          "along x, y and z, feature_map is ignored, and parts thinner than a cell are too stiff in bending" +
          (slender.empty() ? slender : "; " + slender);

@@ -129,9 +129,9 @@ Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& 
 // describe_lattice_warning() warns if the relative error of a lattice's Young's modulus along an axis exceeds
 // this value. Cells that are too slender for springs cause such errors.
 inline constexpr double slender_stiffness_limit = 0.25;
-// Returns one line that warns about a lattice that can be simulated but deviates from its material, and
-// states a remedy. Empty if there is nothing to warn about.
-std::string describe_lattice_warning(const BodyState& body);
+// Returns one line that warns about a lattice that can be simulated but deviates from its material or from
+// the request, and states a remedy. Empty if there is nothing to warn about.
+std::string describe_lattice_warning(const BodyState& body, const LatticeRequest& request);
 
 // Returns one byte per node, 1 for nodes behind a plane.
 std::vector<std::uint8_t> find_nodes_behind(const SpringLattice& lattice,

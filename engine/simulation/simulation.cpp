@@ -325,7 +325,7 @@ std::vector<std::string> Simulation::warnings() const {
   std::vector<std::string> warnings;
   for (const Body& body : state_->scene.bodies) {
     const auto at = static_cast<std::size_t>(&body - state_->scene.bodies.data());
-    const std::string warning = describe_lattice_warning(state_->bodies[at]);
+    const std::string warning = describe_lattice_warning(state_->bodies[at], body.lattice);
     if (!warning.empty())
       warnings.push_back(name_body(body, state_->scene, Error{ErrorCode::internal, warning}).message);
   }

@@ -476,7 +476,7 @@ Result<LatticeMesh> tube_lattice(const Surface& surface, const LatticeRequest& r
 
 Result<LatticeMesh> solid_lattice(const Surface& surface, const LatticeRequest& request,
                                   const FeatureMapWatch& watch) {
-  if (surface.v.is_periodic()) {
+  if (surface.v.is_periodic() || request.cells == LatticeCells::box) {
     if (Status closed = check_closed(surface); !closed) return closed.error();
     return surface_in_box(surface, request);
   }

@@ -23,9 +23,10 @@ Result<LatticeMesh> rigid_frame(const Surface& surface);
 // of order_by_feature_map().
 Result<LatticeMesh> make_body_lattice(const Body& body, const FeatureMapWatch& watch = {});
 
-// Returns the lattice of a closed body: that of tube_lattice() if the body is a tube and no cell folds,
-// otherwise that of surface_in_box(). Fails if the surface does not pass check_closed(), if the body is too
-// flat for cells, and on counts below 2. `watch` receives the progress of order_by_feature_map().
+// Returns the lattice of a closed body: that of tube_lattice() if the body is a tube, no cell folds and the
+// request is not for a box, otherwise that of surface_in_box(). Fails if the surface does not pass
+// check_closed(), if the body is too flat for cells, and on counts below 2. `watch` receives the progress of
+// order_by_feature_map().
 Result<LatticeMesh> solid_lattice(const Surface& surface, const LatticeRequest& request,
                                   const FeatureMapWatch& watch = {});
 

@@ -433,6 +433,10 @@ Result<LatticeMesh> shell_lattice(const Surface& surface, double thickness_m, co
                  "lattice: feature_map: a shell has no inside to spread nodes in; remove feature_map",
                  "feature_map"};
   }
+  if (request.cells == LatticeCells::box) {
+    return Error{ErrorCode::inconsistent,
+                 "lattice: cells: a shell has layers of cells of its own; remove cells", "cells"};
+  }
   const Result<ShellSurface> face = ShellSurface::make(surface);
   if (!face.ok()) return face.error();
   const Spread spread(face.value());

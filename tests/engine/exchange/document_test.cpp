@@ -98,6 +98,16 @@ TEST(Document, KeepsTheKindOfABodyAndTheTrial) {
             Refusal(ErrorCode::out_of_range, "trial.turn_speed_deg_per_s"));
 }
 
+TEST(Document, KeepsTheCellsOfALattice) {
+  Document document = sample_document();
+  EXPECT_FALSE(document_to_json(document)["body"]["lattice"].contains("cells"))
+      << "bent cells are the default";
+  document.scene.bodies[0].lattice.cells = LatticeCells::box;
+  EXPECT_EQ(through_text(document).scene.bodies[0].lattice.cells, LatticeCells::box);
+  EXPECT_EQ(refusal([](Json& json) { json["body"]["lattice"]["cells"] = "round"; }).field,
+            "body.lattice.cells");
+}
+
 TEST(Document, RefusesWhatIsNoThickness) {
   const auto refused = [](const Json& thickness) {
     return refusal([&](Json& json) { json["body"]["shell_thickness_mm"] = thickness; });

@@ -43,7 +43,7 @@ optional = {
     "body": {"regions", "loads", "supports", "shell_thickness_mm", "solid"},
     "surface": {"trims"},
     "material": {"hardening", "stiffening", "friction"},
-    "lattice": {"feature_map"},
+    "lattice": {"feature_map", "cells"},
     "region": {"along", "around", "depth_mm"},
     "regions": {"material", "friction"},
     "supports": {"motion"},

@@ -227,7 +227,7 @@ TEST(BoxedLoads, RemarksTellOfTheBoxAndOfItsCells) {
   for (const bool slender : {false, true}) {
     if (slender) body.lattice.counts = {5, 4, 40};
     const std::string warning =
-        describe_lattice_warning(make_body_state(body, {}, InstructionSet::baseline).value());
+        describe_lattice_warning(make_body_state(body, {}, InstructionSet::baseline).value(), body.lattice);
     EXPECT_NE(warning.find("nodes are counted along x, y and z"), std::string::npos) << warning;
     EXPECT_EQ(warning.find("cells are too slender") != std::string::npos, slender) << warning;
   }

@@ -6,8 +6,10 @@
 #include <numbers>
 #include <vector>
 
+#include "engine/material/lattice/body_lattice.h"
 #include "engine/material/lattice/box_lattice.h"
 #include "tests/engine/collision/surfaces/sheets.h"
+#include "tests/engine/simulation/handle.h"
 
 namespace spoonbill {
 namespace {
@@ -55,6 +57,25 @@ TEST(SurfaceInBox, IsNotSlenderForItsEdges) {
   EXPECT_FALSE(is_slender(boxed_ring(0.01, 0.01)));
   // The section is an equilateral triangle: the faces meet at 60 degrees.
   EXPECT_FALSE(is_slender(edged_ring({{0.0, 0.0115}, {0.01, -0.0058}, {-0.01, -0.0058}})));
+}
+
+// A tube, which cells can be bent into.
+TEST(SurfaceInBox, IsWhatASolidGetsThatAsksForABox) {
+  const Scene handle = small_handle();
+  Body body = handle.bodies[0];
+  body.lattice = {.counts = std::array{16, 4, 5}, .cells = LatticeCells::box};
+  const Result<LatticeMesh> box = make_body_lattice(body);
+  ASSERT_TRUE(box.ok()) << box.error().message;
+  EXPECT_EQ(box->count, (std::array{16, 4, 5}));
+  const Vector3 edges_m = box->nodes.back() - box->nodes.front();
+  EXPECT_NEAR(edges_m.x(), 0.06, 1e-3);
+  EXPECT_NEAR(edges_m.y(), 0.005, 1e-3);
+  EXPECT_NEAR(edges_m.z(), 0.01, 1e-3);
+  body.lattice.feature_map = FeatureMapSettings{};
+  EXPECT_EQ(check_lattice_request(body.lattice).error().field, "feature_map");
+  body.lattice.feature_map.reset();
+  body.shell_thickness_m = 0.001;
+  EXPECT_EQ(make_body_lattice(body).error().field, "cells");
 }
 
 }  // namespace
