@@ -19,9 +19,13 @@ constexpr double lateral_tolerance = 0.2, rounding_m = 1e-6;
 // a cell. Such points differ from tick to tick, so that their pushes would shake bodies at rest.
 constexpr double least_lead_cells = 0.02;
 
-// Largest lasting correction of a gap for what the control net does not reproduce, in cells. A larger one
-// would let the drawn surfaces overlap visibly where a net is too coarse for its lattice.
+// Largest correction of a gap for what the control net does not reproduce, in cells. A larger one would let
+// the drawn surfaces overlap visibly where a net is too coarse for its lattice.
 constexpr double largest_fit_error_cells = 0.02;
+
+// Largest depth of a point that had no contact in the last tick, in cells. A hand moves a soft tool by less
+// in a tick. A deeper point is beside a fold of the surface.
+constexpr double deepest_new_cells = 1.0;
 
 }  // namespace
 
@@ -58,18 +62,16 @@ namespace {
 
 // A point of a surface as contacts use it. Its error is the position of the embedded point minus that of the
 // point on the surface, whose control net does not reproduce every displacement of its lattice. `fit_error_m`
-// is this error up to largest_fit_error_cells, and `left_out_m` is the rest of it. Gaps measured on surfaces
-// are corrected by the error, so that a push changes the gap that caused it. Without the correction, bodies
-// would never come to rest on each other.
+// is this error up to largest_fit_error_cells. Gaps measured on surfaces are corrected by it, so that a push
+// changes the gap that caused it. Without the correction, bodies would never come to rest on each other.
 struct SkinPoint {
   BodyPoint point;
-  Vector3 fit_error_m = Vector3::Zero(), left_out_m = Vector3::Zero();
+  Vector3 fit_error_m = Vector3::Zero();
 };
 
 // Returns the gap between two points whose surfaces are `gap_m` apart along `normal`.
-BodyGap corrected_gap(double gap_m, const Vector3& normal, const SkinPoint& first, const SkinPoint& second) {
-  return {gap_m + normal.dot(first.fit_error_m - second.fit_error_m),
-          normal.dot(first.left_out_m - second.left_out_m)};
+double corrected_gap_m(double gap_m, const Vector3& normal, const SkinPoint& first, const SkinPoint& second) {
+  return gap_m + normal.dot(first.fit_error_m - second.fit_error_m);
 }
 
 // Returns whether the body stands still in this tick. Its points then need no embedding.
@@ -87,7 +89,7 @@ SkinPoint make_skin_point(const IndexedBody& body, const EmbeddedPoint& embeddin
   const double most_m = largest_fit_error_cells * static_cast<double>(lattice.cell_size_m());
   const double size_m = error_m.norm();
   const double kept = size_m > most_m ? most_m / size_m : 1.0;
-  return {{body.index, &lattice, embedding}, kept * error_m, (1.0 - kept) * error_m};
+  return {{body.index, &lattice, embedding}, kept * error_m};
 }
 
 // `point_m` is the position of the sample on the surface.
@@ -128,7 +130,7 @@ EmbeddedPoint find_embedding(const BodyMapping& mapping, const NearPoint& near) 
 }
 
 bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::vector<NearPoint>& points,
-                     BodyContacts& contacts) {
+                     double reach_m, BodyContacts& contacts) {
   const SpringLattice& cells = from.state->rigid ? to.state->lattice : from.state->lattice;
   const double least_lead_m = least_lead_cells * static_cast<double>(cells.cell_size_m());
   bool complete = true;
@@ -137,7 +139,7 @@ bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::
     const SkinPoint own = find_own_skin_point(from, near),
                     other = find_skin_point(to, near.other_u, near.other_v);
     complete &= contacts.add(own.point, other.point, near.normal,
-                             corrected_gap(near.gap_m, near.normal, own, other), near.sample);
+                             corrected_gap_m(near.gap_m, near.normal, own, other), reach_m, near.sample);
   }
   return complete;
 }
@@ -145,14 +147,14 @@ bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::
 namespace {
 
 bool add_contacts_of(const IndexedBody& first, const IndexedBody& second, const SurfaceProximity& proximity,
-                     BodyContacts& contacts) {
-  const bool first_complete = add_near_points(first, second, proximity.first_points(), contacts);
-  const bool second_complete = add_near_points(second, first, proximity.second_points(), contacts);
+                     double reach_m, BodyContacts& contacts) {
+  const bool first_complete = add_near_points(first, second, proximity.first_points(), reach_m, contacts);
+  const bool second_complete = add_near_points(second, first, proximity.second_points(), reach_m, contacts);
   return first_complete && second_complete;
 }
 
 bool add_contacts_of(const IndexedBody& first, const IndexedBody& second, const MeshProximity& proximity,
-                     BodyContacts& contacts) {
+                     double reach_m, BodyContacts& contacts) {
   const BodyMapping& surface = first.state->mapping();
   const MeshMapping& mesh = *second.state->mesh();
   bool complete = true;
@@ -160,14 +162,15 @@ bool add_contacts_of(const IndexedBody& first, const IndexedBody& second, const 
     const auto [u, v] = find_sample_parameters(surface, near.sample);
     const SkinPoint own = find_skin_sample(first, near.sample, position(surface.current(), u, v));
     const SkinPoint other{{second.index, &second.state->lattice, mesh.at(near.mesh.on)}};
-    complete &= contacts.add(own.point, other.point, near.mesh.normal,
-                             corrected_gap(near.mesh.gap_m, near.mesh.normal, own, other), near.sample);
+    complete &=
+        contacts.add(own.point, other.point, near.mesh.normal,
+                     corrected_gap_m(near.mesh.gap_m, near.mesh.normal, own, other), reach_m, near.sample);
   }
   for (const VertexNearSurface& near : proximity.mesh_vertices()) {
     const SkinPoint own{{second.index, &second.state->lattice, mesh.vertex(near.vertex)}};
     const SkinPoint other = find_skin_point(first, near.u, near.v);
     complete &= contacts.add(own.point, other.point, near.normal,
-                             corrected_gap(near.gap_m, near.normal, own, other), near.vertex);
+                             corrected_gap_m(near.gap_m, near.normal, own, other), reach_m, near.vertex);
   }
   return complete;
 }
@@ -265,6 +268,7 @@ bool BodyPairContact::find(const IndexedBody& first, const IndexedBody& second) 
   const double cell = std::max(size_of_cells(*first.state), size_of_cells(*second.state));
   const double motion_m = tick_s * (first.state->fastest_m_per_s() + second.state->fastest_m_per_s());
   const double margin_m = std::max(contact_margin_cells * cell, motion_m);
+  reach_m_ = std::max(deepest_new_cells * cell, motion_m);
   return std::visit(
       [&](const auto& proximity) {
         find_near_points(*proximity, *first.state, *second.state, margin_m);
@@ -288,7 +292,7 @@ std::optional<SurfaceSpot> BodyPairContact::deepest_on_second() const {
 bool BodyPairContact::add_contacts(const IndexedBody& first, const IndexedBody& second,
                                    BodyContacts& contacts) const {
   return std::visit(
-      [&](const auto& proximity) { return add_contacts_of(first, second, *proximity, contacts); },
+      [&](const auto& proximity) { return add_contacts_of(first, second, *proximity, reach_m_, contacts); },
       proximity_);
 }
 
@@ -308,7 +312,8 @@ bool BodySelfContact::add_contacts(const IndexedBody& body, BodyContacts& contac
       return trim->contains(near.u, near.v) && trim->contains(near.other_u, near.other_v);
     });
   }
-  const bool complete = add_near_points(body, body, proximity_->points(), contacts);
+  const bool complete = add_near_points(body, body, proximity_->points(),
+                                        deepest_new_cells / contact_margin_cells * margin, contacts);
   return complete && !proximity_->overflow();
 }
 

@@ -160,7 +160,9 @@ void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
     return;
   }
   s.searched.remember(s.stepped_bodies());
-  s.between.clear();
+  std::array<const SpringLattice*, lattice_capacity> lattices{};
+  for (std::size_t b = 0; b < s.stepped_count(); ++b) lattices[b] = &s.stepped_bodies()[b].lattice;
+  s.between.clear(lattices);
   s.pairs_overflow = false;
   s.tool_gap_m = std::numeric_limits<double>::infinity();
   visit_pairs(

@@ -27,8 +27,8 @@ bool is_clean_failure(const Outcome& outcome);
 
 Json json_of(const std::string& text);
 
-// Returns a small handle that is fixed by one plane. Its lattice is coarse, because a loop of fewer than 200 ticks a
-// second, as a finer one has under a sanitizer, gets no force.
+// Returns a small handle that is fixed by one plane. Its lattice is coarse, because a loop of fewer than 200
+// ticks a second, as a finer one has under a sanitizer, gets no force.
 Document held_handle();
 
 class Workplace {

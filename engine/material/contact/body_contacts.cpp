@@ -17,18 +17,15 @@ constexpr ContactPace body_pace{0.5, 400.0};
 // Pace of contacts whose overlaps separate() corrects.
 constexpr ContactPace separated_pace{0.5, 0.0};
 
-// Rate at which separate() corrects an overlap. Points that push the same nodes correct together, so the part
-// of an overlap that is corrected in a substep must be small.
-constexpr double separation_per_s = 600.0, max_separation = 0.1;
+// Rate at which separate() corrects an overlap. A correction against the force of a collision adds energy, so
+// it is slow. Points that push the same nodes correct together, so the part of an overlap that is corrected
+// in a substep must be small.
+constexpr double separation_per_s = 200.0, max_separation = 0.1;
 
-// Part of a change of BodyGap::left_out_m that is forgotten in a tick. If all of it were forgotten at once,
-// colliding bodies would gain energy; if it were forgotten more slowly, their drawn surfaces would overlap.
-constexpr double forgotten_in_tick = 0.3;
-
-// Returns how much more of `left_out_m` is forgotten in a tick.
-double find_newly_forgotten_m(double left_out_m, double forgotten_m) {
-  return forgotten_in_tick * (left_out_m - forgotten_m);
-}
+// Part of the difference between a gap that is found and the gap of its constraint that is taken over in a
+// tick. If it were taken over faster, colliding bodies would gain energy; if more slowly, their drawn
+// surfaces would overlap.
+constexpr double taken_over_in_tick = 0.18;
 
 // Returns the relative velocity change of two points per impulse between them, 1/kg. Within one body, the
 // impulses overlap in the nodes that both points use.
@@ -79,12 +76,16 @@ BodyContacts::BodyContacts(int capacity)
   impulse_ns_.fill(Vector3::Zero());
 }
 
-void BodyContacts::clear() {
+void BodyContacts::clear(std::span<const SpringLattice* const> lattices) {
   kept_.clear();
   for (int c = 0; c < count_; ++c) {
     const Constraint& constraint = constraints_[c];
-    if (constraint.sample < 0 || constraint.force_n.isZero(0.0)) continue;
-    kept_.add(constraint.key(), {constraint.force_n, constraint.forgotten_m});
+    if (constraint.sample < 0) continue;
+    const Vector3 apart = constraint.first.displacement_m(*lattices[constraint.first_body]) -
+                          constraint.second.displacement_m(*lattices[constraint.second_body]);
+    const double gap_m = constraint.base_m + constraint.normal.dot(apart);
+    if (!std::isfinite(gap_m)) continue;
+    kept_.add(constraint.key(), {constraint.force_n, constraint.normal, gap_m});
   }
   kept_.sort();
   count_ = 0;
@@ -93,12 +94,19 @@ void BodyContacts::clear() {
 void BodyContacts::forget() {
   kept_.clear();
   count_ = 0;
+  has_searched_ = false;
 }
 
-bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal,
-                       const BodyGap& gap, int sample) {
+bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Vector3& found_normal,
+                       double found_gap_m, double reach_m, int sample) {
   SPOONBILL_ASSERT_DEBUG(first.lattice != nullptr && second.lattice != nullptr);
-  SPOONBILL_ASSERT_DEBUG(std::abs(normal.squaredNorm() - 1.0) < 1e-5);
+  SPOONBILL_ASSERT_DEBUG(std::abs(found_normal.squaredNorm() - 1.0) < 1e-5);
+  const ContactKey key{first.body, second.body, sample};
+  const Kept* const kept = sample >= 0 ? kept_.find(key) : nullptr;
+  if (kept == nullptr && has_searched_ && found_gap_m < -reach_m) return true;
+  const bool is_folded = kept != nullptr && kept->normal.dot(found_normal) < 0.0;
+  const Vector3 normal = is_folded ? kept->normal : found_normal;
+  const double gap_m = is_folded ? kept->gap_m : found_gap_m;
   if (count_ == static_cast<int>(constraints_.size())) return false;
   // A rigid body next to an implicitly stepped one counts as such a one.
   const auto is_rigid = [](const BodyPoint& point) { return point.lattice->mesh().is_frame; };
@@ -109,13 +117,11 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
   const double moved =
       normal.dot(first.point.displacement_m(*first.lattice) - second.point.displacement_m(*second.lattice));
   const double compliance = mutual_compliance(first, second);
-  const ContactKey key{first.body, second.body, sample};
-  const Kept* const kept = sample >= 0 ? kept_.find(key) : nullptr;
   const double friction = mutual_friction(first, second);
-  const double forgotten_m =
-      kept != nullptr ? kept->forgotten_m + find_newly_forgotten_m(gap.left_out_m, kept->forgotten_m)
-      : sample >= 0   ? gap.left_out_m
-                      : 0.0;
+  const bool separates = !by_solvers && !first.lattice->moved_by_solver() &&
+                         !second.lattice->moved_by_solver() && compliance > 0.0;
+  const double difference_m =
+      separates && kept != nullptr ? (1.0 - taken_over_in_tick) * (gap_m - kept->gap_m) : 0.0;
   Constraint& added = constraints_[count_++];
   added = {.first_body = first.body,
            .second_body = second.body,
@@ -123,14 +129,12 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
            .second = second.point,
            .normal = normal,
            .compliance = compliance,
-           .base_m = gap.gap_m + gap.left_out_m - forgotten_m - moved,
-           .left_out_m = gap.left_out_m,
-           .forgotten_m = forgotten_m,
-           .added_gap_m = gap.gap_m,
+           .base_m = gap_m - difference_m - moved,
+           .difference_m = difference_m,
+           .added_gap_m = gap_m,
            .friction = friction,
            .moved_by = by_solvers ? MovedBy::solvers : MovedBy::springs,
-           .separates = !by_solvers && !first.lattice->moved_by_solver() &&
-                        !second.lattice->moved_by_solver() && compliance > 0.0,
+           .separates = separates,
            .sample = sample};
   if (kept != nullptr) added.force_n = limit_to_cone(kept->force_n, normal, friction);
   return true;
@@ -143,15 +147,16 @@ void BodyContacts::keep() {
       constraint.force_n.setZero();
       continue;
     }
-    const double forgotten_m = find_newly_forgotten_m(constraint.left_out_m, constraint.forgotten_m);
-    constraint.forgotten_m += forgotten_m;
-    constraint.base_m -= forgotten_m;
+    const double taken_over_m = taken_over_in_tick * constraint.difference_m;
+    constraint.difference_m -= taken_over_m;
+    constraint.base_m += taken_over_m;
   }
 }
 
 void BodyContacts::begin() {
   for (int c = 0; c < count_; ++c) constraints_[c].acted = false;
   impulse_ns_.fill(Vector3::Zero());
+  has_searched_ = true;
 }
 
 Vector3 BodyContacts::impulse_ns(int body, double time_s) const {
@@ -205,7 +210,7 @@ void BodyContacts::separate(std::span<const LatticeView> lattices, double h_s,
   const double part = std::min(max_separation, separation_per_s * h_s);
   for (int c = 0; c < count_; ++c) {
     const Constraint& constraint = constraints_[c];
-    if (!constraint.separates) continue;
+    if (!constraint.separates || constraint.sample < 0) continue;
     const auto first = static_cast<std::size_t>(constraint.first_body);
     const auto second = static_cast<std::size_t>(constraint.second_body);
     const Vector3 apart =

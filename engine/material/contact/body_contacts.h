@@ -21,14 +21,6 @@ struct BodyPoint {
   EmbeddedPoint point;
 };
 
-// Distance of a point of a body beyond a point of another body, m; negative for a penetration. Two points of
-// surfaces differ from the points that the lattices move, by what the control nets do not reproduce. The
-// distance of the latter is gap_m + left_out_m. At rest, contacts hold gap_m at zero.
-struct BodyGap {
-  double gap_m = 0.0;
-  double left_out_m = 0.0;
-};
-
 // Contacts between two bodies, or of a body with itself: velocity constraints between points of
 // their surfaces, which are solved after the contacts of tools. Impulses are equal and opposite, so momentum
 // is conserved. A push on the lattice of a soft tool also acts on its frame (see MovingFrame).
@@ -39,21 +31,30 @@ class BodyContacts {
  public:
   explicit BodyContacts(int capacity);
 
-  // Removes the constraints, and remembers their forces for the constraints that are added next.
-  void clear();
+  // Removes the constraints, and remembers their forces and present gaps for the constraints that are added
+  // next. `lattices` are those of the bodies, by BodyPoint::body.
+  void clear(std::span<const SpringLattice* const> lattices);
   // Removes the constraints and their forces.
   void forget();
   // Adds a constraint that keeps the first point on one side of the second: the side to which the unit vector
-  // `normal` points. `gap` is the present distance of the first point beyond the second along `normal`. Both
-  // points may be of the same body and share nodes. Returns false when full. `sample` is the number of the
-  // first point among the samples or vertices of its body; push and friction then start from the force of the
-  // last tick. For a point that differs in every tick, `sample` is -1, and the force starts from zero.
+  // `normal` points. `gap_m` is the present distance of the first point beyond the second along `normal`,
+  // negative for a penetration. Both points may be of the same body and share nodes. Returns false when full.
+  // `sample` is the number of the first point among the samples or vertices of its body; push and friction
+  // then start from the force of the last tick. For a point that differs in every tick, `sample` is -1, and
+  // the force starts from zero.
   //
-  // If the gap did not follow the points that the lattices move, contacts would generate energy. Therefore
-  // changes of gap.left_out_m count at first while the contact pushes, and are forgotten within some ticks.
-  // With the sample -1, all of it counts.
-  bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, const BodyGap& gap,
-           int sample);
+  // The gap of a constraint follows the points that the lattices move. A new search finds a slightly
+  // different gap, because the surfaces do not follow these points exactly and the normal has turned. If a
+  // constraint took over the difference at once, overlaps would arise against the forces of a collision, and
+  // separate() would add energy by correcting them. Therefore, a constraint between bodies with springs goes
+  // on with the gap that it has had, and takes over a part of the difference in each tick.
+  //
+  // A surface may fold locally, as beside the pole of a pressed tube. Its normal then points inwards there,
+  // and a point outside seems to be deep inside. A point that is deeper than `reach_m` and had no constraint
+  // in the last tick is therefore left out, and a constraint whose normal has turned round keeps its earlier
+  // normal and gap. Bodies that begin in each other keep all points of the first search after forget().
+  bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m,
+           double reach_m, int sample);
 
   // Keeps the constraints of the last tick for the next one, which needs no new search, as if they were added
   // again. Bodies must not have turned or moved noticeably since the constraints were added, and inverse
@@ -86,7 +87,8 @@ class BodyContacts {
   void pass(std::span<const LatticeView> lattices, const ContactPass& pass);
   // Moves the points of bodies with springs out of each other, out of their own body and out of rigid ones,
   // by a part of the overlap and at most by the distance that the caps allow in a substep of h_s. Velocities
-  // do not change, so that the correction adds no kinetic energy and does not shake bodies at rest. Call
+  // do not change, so that the correction adds no kinetic energy and does not shake bodies at rest. Points
+  // without a sample are not moved, because each would begin with an overlap of its own in every tick. Call
   // after the drift.
   void separate(std::span<const LatticeView> lattices, double h_s, std::span<const float> caps_m_per_s);
   // Multiplies by `fraction` the changes that the last pass() with MovedBy::solvers made to the forces. The
@@ -125,7 +127,7 @@ class BodyContacts {
       const Constraint& constraint = constraints_[static_cast<std::size_t>(c)];
       visit(constraint.force_n.data(), 3);
       visit(constraint.normal.data(), 3);
-      for (const double* value : {&constraint.base_m, &constraint.forgotten_m, &constraint.compliance})
+      for (const double* value : {&constraint.base_m, &constraint.difference_m, &constraint.compliance})
         visit(value, 1);
     }
   }
@@ -135,12 +137,11 @@ class BodyContacts {
     int first_body = 0, second_body = 0;
     EmbeddedPoint first, second;
     Vector3 normal = Vector3::UnitY();
-    double compliance = 0.0;   // relative velocity change of the points per impulse, 1/kg, without frames
-    double base_m = 0.0;       // gap minus the part due to displacements since rest
-    double left_out_m = 0.0;   // BodyGap::left_out_m
-    double forgotten_m = 0.0;  // part of it that does not count
-    double added_gap_m = 0.0;  // gap when the constraint was added
-    double friction = 0.0;     // the smaller coefficient of the two surfaces
+    double compliance = 0.0;    // relative velocity change of the points per impulse, 1/kg, without frames
+    double base_m = 0.0;        // gap minus the part due to displacements since rest
+    double difference_m = 0.0;  // gap that the search found, minus the gap of the constraint
+    double added_gap_m = 0.0;   // gap when the constraint was added
+    double friction = 0.0;      // the smaller coefficient of the two surfaces
     MovedBy moved_by = MovedBy::springs;
     bool separates = false;  // whether separate() corrects an overlap, instead of the push
     int sample = -1;
@@ -155,7 +156,8 @@ class BodyContacts {
 
   struct Kept {
     Vector3 force_n;
-    double forgotten_m;
+    Vector3 normal;
+    double gap_m;
   };
 
   std::vector<Constraint> constraints_;
@@ -163,6 +165,7 @@ class BodyContacts {
   // Impulses on each body since begin() of the constraints that substeps solve, N s.
   std::array<Vector3, lattice_capacity> impulse_ns_;
   int count_ = 0;
+  bool has_searched_ = false;  // whether a tick has begun since forget()
 };
 
 }  // namespace spoonbill

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "engine/bspline/change_knots.h"
 #include "engine/material/statics/static_body.h"
 #include "tests/engine/forces/samples.h"
 #include "tests/engine/simulation/impact.h"
@@ -119,19 +120,41 @@ double whole_energy_j(const BodyState& body, const StaticBody& springs) {
   return kinetic_energy_j(body.lattice) + find_potential(body.lattice, springs).energy_j;
 }
 
-// Throws one ball off centre against another, in real time.
-Collision collide(int node_budget, bool is_damped) {
+// Returns the same surface with twice as many polynomial pieces in both directions.
+Surface with_finer_net(const Surface& surface) {
+  Surface finer = surface;
+  for (const Direction direction : {Direction::u, Direction::v}) {
+    const KnotVector& knots = direction == Direction::u ? finer.u : finer.v;
+    std::vector<double> middles;
+    const std::vector<double> breaks = knots.breakpoints();
+    for (std::size_t b = 1; b < breaks.size(); ++b) middles.push_back(0.5 * (breaks[b - 1] + breaks[b]));
+    finer = convert_to_finer_knots(finer, direction, halve_pieces(knots, middles).value()).value();
+  }
+  return finer;
+}
+
+struct Balls {
+  bool damped = true;
+  bool coarse_nets = false;  // whether the drawn surfaces cannot follow fine lattices
+};
+
+// Throws one ball off centre against another, in real time, from a direction.
+Collision collide(int node_budget, const Balls& balls, const Quaternion& direction) {
   const DenormalsFlushed flushed;
   Material silicone = made_elastic(bundled_material("silicone-00-30"));
-  if (!is_damped) silicone.damping_time_s = 0.0;
+  if (!balls.damped) silicone.damping_time_s = 0.0;
   const SphereSize size{0.015};
-  Impact impact(make_state(stock_body("target", size, Vector3::Zero(), silicone, node_budget)),
-                make_state(stock_body("thrown", size, {0.004, 0.0302, 0.002}, silicone, node_budget)),
+  const auto ball = [&](const char* name, const Vector3& centre_m) {
+    Body body = stock_body(name, size, centre_m, silicone, node_budget);
+    if (!balls.coarse_nets) body.surface = with_finer_net(body.surface);
+    return make_state(body);
+  };
+  Impact impact(ball("target", Vector3::Zero()), ball("thrown", direction * Vector3(0.004, 0.0302, 0.002)),
                 Impact::Clock::real_time);
   const std::array<StaticBody, 2> springs = {
       StaticBody::make(impact.body(0).lattice.mesh(), silicone, CellKind::springs).value(),
       StaticBody::make(impact.body(1).lattice.mesh(), silicone, CellKind::springs).value()};
-  impact.throw_at(1, {0.0, -0.2, 0.0});
+  impact.throw_at(1, direction * Vector3(0.0, -0.2, 0.0));
   const auto energy_j = [&] {
     return whole_energy_j(impact.body(0), springs[0]) + whole_energy_j(impact.body(1), springs[1]);
   };
@@ -151,43 +174,77 @@ Collision collide(int node_budget, bool is_damped) {
   return collision;
 }
 
-// Numbers of nodes for which collisions are tried. From one to the next, cells shrink to 0.6 or 0.7 of their
-// size, because the loss also depends on where nodes happen to meet: at 500 nodes it is lower than at 800.
+// Returns directions of collisions. The loss also depends on where nodes and samples happen to meet, so
+// losses are compared by their mean over directions.
+std::vector<Quaternion> collision_directions(int count) {
+  std::vector<Quaternion> all;
+  for (int i = 0; i < count; ++i) {
+    all.push_back(Quaternion(Eigen::AngleAxisd(2.4 * i, Vector3::UnitZ()) *
+                             Eigen::AngleAxisd(0.7 * i, Vector3::UnitX())));
+  }
+  return all;
+}
+
+struct Losses {
+  double mean = 0.0, least = 1.0;
+};
+
+// Returns the losses of collisions in several directions, as fractions of the energy.
+Losses find_losses(int node_budget, const Balls& balls) {
+  const bool is_whole = find_skip_reason(ForceRun::whole_table).empty();
+  const std::vector<Quaternion> directions = collision_directions(is_whole ? 8 : 3);
+  const std::string what = std::to_string(node_budget) + " nodes" + (balls.damped ? "" : ", undamped");
+  Losses losses;
+  double momentum_change = 0.0;
+  for (const Quaternion& direction : directions) {
+    const Collision collision = collide(node_budget, balls, direction);
+    EXPECT_TRUE(collision.touched && collision.parted) << what;
+    losses.mean += collision.energy_lost / static_cast<double>(directions.size());
+    losses.least = std::min(losses.least, collision.energy_lost);
+    momentum_change = std::max(momentum_change, collision.momentum_change);
+  }
+  print_result("collision", what + ": change of momentum", momentum_change);
+  print_result("collision", what + ": energy lost, mean", losses.mean);
+  print_result("collision", what + ": energy lost, least", losses.least);
+  EXPECT_LT(momentum_change, 1e-5) << what;
+  return losses;
+}
+
 std::vector<int> collision_budgets() {
   const bool is_whole = find_skip_reason(ForceRun::whole_table).empty();
-  return is_whole ? std::vector<int>{150, 800, 2500} : std::vector<int>{150, 500};
+  return is_whole ? std::vector<int>{150, 300, 500, 800, 1500, 2500} : std::vector<int>{150, 500};
 }
 
 TEST(FreeCollision, KeepsMomentumAndLosesLessEnergyWithSmallerCells) {
   if (const std::string reason = find_skip_reason(ForceRun::full); !reason.empty()) GTEST_SKIP() << reason;
-  double last = 2.0;
+  double last = 1.0;
   for (const int node_budget : collision_budgets()) {
-    const Collision collision = collide(node_budget, true);
-    const std::string what = std::to_string(node_budget) + " nodes";
-    print_result("collision", what + ": change of momentum", collision.momentum_change);
-    print_result("collision", what + ": energy lost", collision.energy_lost);
-    EXPECT_TRUE(collision.touched && collision.parted) << what;
-    EXPECT_LT(collision.momentum_change, 1e-5) << what;
-    EXPECT_LT(collision.energy_lost, last) << what;
-    last = collision.energy_lost;
+    const Losses losses = find_losses(node_budget, {.damped = true});
+    EXPECT_GT(losses.least, 0.0) << node_budget;
+    EXPECT_LT(losses.mean, last) << node_budget;
+    last = losses.mean;
   }
 }
 
 // Without damping, only contact takes energy. Contacts whose gaps do not follow the lattices, and springs
-// whose forces do not follow their lengths, would add energy, which no damping would take away. The control
-// nets of the balls are coarser than their lattices.
-TEST(FreeCollision, NeverGainsEnergyWithoutDamping) {
+// whose forces do not follow their lengths, would add energy, which no damping would take away.
+TEST(FreeCollision, GainsNoEnergyWithoutDamping) {
   if (const std::string reason = find_skip_reason(ForceRun::full); !reason.empty()) GTEST_SKIP() << reason;
-  std::vector<int> budgets = collision_budgets();
-  budgets.push_back(1500);
-  for (const int node_budget : budgets) {
-    const Collision collision = collide(node_budget, false);
-    const std::string what = std::to_string(node_budget) + " nodes";
-    print_result("collision", what + ", undamped: energy lost", collision.energy_lost);
-    EXPECT_TRUE(collision.touched && collision.parted) << what;
-    EXPECT_GT(collision.energy_lost, 0.0) << what;
-    EXPECT_LT(collision.energy_lost, 0.05) << what;
+  for (const int node_budget : collision_budgets()) {
+    const Losses losses = find_losses(node_budget, {.damped = false});
+    EXPECT_GT(losses.mean, 0.0) << node_budget;
+    EXPECT_LT(losses.mean, 0.05) << node_budget;
+    EXPECT_GT(losses.least, -0.005) << node_budget;
   }
+}
+
+// The surface folds beside the pole where these balls meet, because its control net is coarser than its
+// lattice. Points outside then seem to be deep inside.
+TEST(FreeCollision, StaysBoundedWhereASurfaceFolds) {
+  const Collision collision =
+      collide(500, {.damped = false, .coarse_nets = true}, collision_directions(6)[5]);
+  EXPECT_TRUE(collision.touched && collision.parted);
+  EXPECT_NEAR(collision.energy_lost, 0.0, 0.05);
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ class Folding {
 
   bool tick() {
     const DenormalsFlushed flushed;
-    contacts_.clear();
+    contacts_.clear(std::array<const SpringLattice*, 1>{&body_.lattice});
     EXPECT_TRUE(!meets_itself_ || self_.add_contacts({0, &body_}, contacts_));
     contacts_.begin();
     relax(std::array{RelaxedLattice{&body_.lattice}}, {tick_++, 1, 1e-3, drag_per_s_}, {}, &contacts_);
