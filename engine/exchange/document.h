@@ -22,7 +22,7 @@
 //      "lattice": {"node_budget": 2000,                          or "nodes": [4, 8, 60]
 //        "feature_map": {"draws_per_node": 500, "first_rate": 0.1, "last_rate": 0.01,
 //          "first_neighbourhood": 2, "last_neighbourhood": 1, "seed": 1},      optional
-//        "cells": "box"},                                        optional, "bent"
+//        "cells": "box"},                      optional, "bent"; not for shells or beside feature_map
 //      "regions": [{"region": {...}, "material": {...}, "friction": 0.8}],     optional; material, friction
 //                                                               or both
 //      "loads": [{"kind": "pressure", "region": {...}, "pressure_pa": 500},    optional

@@ -130,7 +130,7 @@ EmbeddedPoint find_embedding(const BodyMapping& mapping, const NearPoint& near) 
 }
 
 bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::vector<NearPoint>& points,
-                     double reach_m, BodyContacts& contacts) {
+                     double deepest_new_m, BodyContacts& contacts) {
   const SpringLattice& cells = from.state->rigid ? to.state->lattice : from.state->lattice;
   const double least_lead_m = least_lead_cells * static_cast<double>(cells.cell_size_m());
   bool complete = true;
@@ -138,8 +138,9 @@ bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::
     if (near.sample < 0 && near.lead_m < least_lead_m) continue;
     const SkinPoint own = find_own_skin_point(from, near),
                     other = find_skin_point(to, near.other_u, near.other_v);
-    complete &= contacts.add(own.point, other.point, near.normal,
-                             corrected_gap_m(near.gap_m, near.normal, own, other), reach_m, near.sample);
+    complete &=
+        contacts.add(own.point, other.point, near.normal,
+                     corrected_gap_m(near.gap_m, near.normal, own, other), deepest_new_m, near.sample);
   }
   return complete;
 }
@@ -147,14 +148,16 @@ bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::
 namespace {
 
 bool add_contacts_of(const IndexedBody& first, const IndexedBody& second, const SurfaceProximity& proximity,
-                     double reach_m, BodyContacts& contacts) {
-  const bool first_complete = add_near_points(first, second, proximity.first_points(), reach_m, contacts);
-  const bool second_complete = add_near_points(second, first, proximity.second_points(), reach_m, contacts);
+                     double deepest_new_m, BodyContacts& contacts) {
+  const bool first_complete =
+      add_near_points(first, second, proximity.first_points(), deepest_new_m, contacts);
+  const bool second_complete =
+      add_near_points(second, first, proximity.second_points(), deepest_new_m, contacts);
   return first_complete && second_complete;
 }
 
 bool add_contacts_of(const IndexedBody& first, const IndexedBody& second, const MeshProximity& proximity,
-                     double reach_m, BodyContacts& contacts) {
+                     double deepest_new_m, BodyContacts& contacts) {
   const BodyMapping& surface = first.state->mapping();
   const MeshMapping& mesh = *second.state->mesh();
   bool complete = true;
@@ -162,15 +165,16 @@ bool add_contacts_of(const IndexedBody& first, const IndexedBody& second, const 
     const auto [u, v] = find_sample_parameters(surface, near.sample);
     const SkinPoint own = find_skin_sample(first, near.sample, position(surface.current(), u, v));
     const SkinPoint other{{second.index, &second.state->lattice, mesh.at(near.mesh.on)}};
-    complete &=
-        contacts.add(own.point, other.point, near.mesh.normal,
-                     corrected_gap_m(near.mesh.gap_m, near.mesh.normal, own, other), reach_m, near.sample);
+    complete &= contacts.add(own.point, other.point, near.mesh.normal,
+                             corrected_gap_m(near.mesh.gap_m, near.mesh.normal, own, other), deepest_new_m,
+                             near.sample);
   }
   for (const VertexNearSurface& near : proximity.mesh_vertices()) {
     const SkinPoint own{{second.index, &second.state->lattice, mesh.vertex(near.vertex)}};
     const SkinPoint other = find_skin_point(first, near.u, near.v);
-    complete &= contacts.add(own.point, other.point, near.normal,
-                             corrected_gap_m(near.gap_m, near.normal, own, other), reach_m, near.vertex);
+    complete &=
+        contacts.add(own.point, other.point, near.normal,
+                     corrected_gap_m(near.gap_m, near.normal, own, other), deepest_new_m, near.vertex);
   }
   return complete;
 }
@@ -268,7 +272,7 @@ bool BodyPairContact::find(const IndexedBody& first, const IndexedBody& second) 
   const double cell = std::max(size_of_cells(*first.state), size_of_cells(*second.state));
   const double motion_m = tick_s * (first.state->fastest_m_per_s() + second.state->fastest_m_per_s());
   const double margin_m = std::max(contact_margin_cells * cell, motion_m);
-  reach_m_ = std::max(deepest_new_cells * cell, motion_m);
+  deepest_new_m_ = std::max(deepest_new_cells * cell, motion_m);
   return std::visit(
       [&](const auto& proximity) {
         find_near_points(*proximity, *first.state, *second.state, margin_m);
@@ -292,7 +296,9 @@ std::optional<SurfaceSpot> BodyPairContact::deepest_on_second() const {
 bool BodyPairContact::add_contacts(const IndexedBody& first, const IndexedBody& second,
                                    BodyContacts& contacts) const {
   return std::visit(
-      [&](const auto& proximity) { return add_contacts_of(first, second, *proximity, reach_m_, contacts); },
+      [&](const auto& proximity) {
+        return add_contacts_of(first, second, *proximity, deepest_new_m_, contacts);
+      },
       proximity_);
 }
 
@@ -305,15 +311,15 @@ BodySelfContact::BodySelfContact(const BodyState& body) {
 
 bool BodySelfContact::add_contacts(const IndexedBody& body, BodyContacts& contacts) const {
   if (!proximity_) return true;
-  const double margin = contact_margin_cells * static_cast<double>(body.state->lattice.cell_size_m());
-  proximity_->find(body.state->mapping().current(), margin);
+  const auto cell_m = static_cast<double>(body.state->lattice.cell_size_m());
+  proximity_->find(body.state->mapping().current(), contact_margin_cells * cell_m);
   if (const TrimmedArea* const trim = body.state->trim.get()) {
     proximity_->keep_if([&](const NearPoint& near) {
       return trim->contains(near.u, near.v) && trim->contains(near.other_u, near.other_v);
     });
   }
-  const bool complete = add_near_points(body, body, proximity_->points(),
-                                        deepest_new_cells / contact_margin_cells * margin, contacts);
+  const bool complete =
+      add_near_points(body, body, proximity_->points(), deepest_new_cells * cell_m, contacts);
   return complete && !proximity_->overflow();
 }
 

@@ -61,9 +61,9 @@ struct IndexedBody {
 EmbeddedPoint find_embedding(const BodyMapping& mapping, const NearPoint& near);
 
 // Adds a constraint for each of `points`, which are points of the body `from` near the body `to`. Both may be
-// the same body. `reach_m` is that of BodyContacts::add(). Returns false if a capacity was exceeded.
+// the same body. `deepest_new_m` is that of BodyContacts::add(). Returns false if a capacity was exceeded.
 bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::vector<NearPoint>& points,
-                     double reach_m, BodyContacts& contacts);
+                     double deepest_new_m, BodyContacts& contacts);
 
 // Contact of two bodies. Owned by the simulation, which rebuilds it when the mapping of either body is
 // replaced. find() and add_contacts() allocate nothing.
@@ -91,7 +91,7 @@ class BodyPairContact {
  private:
   // On the heap, because a proximity search cannot be moved.
   std::variant<std::unique_ptr<SurfaceProximity>, std::unique_ptr<MeshProximity>> proximity_;
-  double reach_m_ = 0.0;  // largest depth of a point that had no contact before the last find()
+  double deepest_new_m_ = 0.0;  // largest depth of a point that had no contact before the last find()
 };
 
 // Contact of a body with itself, where one part of its surface comes near another part from outside. A

@@ -98,12 +98,12 @@ void BodyContacts::forget() {
 }
 
 bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Vector3& found_normal,
-                       double found_gap_m, double reach_m, int sample) {
+                       double found_gap_m, double deepest_new_m, int sample) {
   SPOONBILL_ASSERT_DEBUG(first.lattice != nullptr && second.lattice != nullptr);
   SPOONBILL_ASSERT_DEBUG(std::abs(found_normal.squaredNorm() - 1.0) < 1e-5);
   const ContactKey key{first.body, second.body, sample};
   const Kept* const kept = sample >= 0 ? kept_.find(key) : nullptr;
-  if (kept == nullptr && has_searched_ && found_gap_m < -reach_m) return true;
+  if (kept == nullptr && has_searched_ && found_gap_m < -deepest_new_m) return true;
   const bool is_folded = kept != nullptr && kept->normal.dot(found_normal) < 0.0;
   const Vector3 normal = is_folded ? kept->normal : found_normal;
   const double gap_m = is_folded ? kept->gap_m : found_gap_m;

@@ -34,7 +34,7 @@ class BodyContacts {
   // Removes the constraints, and remembers their forces and present gaps for the constraints that are added
   // next. `lattices` are those of the bodies, by BodyPoint::body.
   void clear(std::span<const SpringLattice* const> lattices);
-  // Removes the constraints and their forces.
+  // Removes the constraints and all that is remembered of them.
   void forget();
   // Adds a constraint that keeps the first point on one side of the second: the side to which the unit vector
   // `normal` points. `gap_m` is the present distance of the first point beyond the second along `normal`,
@@ -45,16 +45,17 @@ class BodyContacts {
   //
   // The gap of a constraint follows the points that the lattices move. A new search finds a slightly
   // different gap, because the surfaces do not follow these points exactly and the normal has turned. If a
-  // constraint took over the difference at once, overlaps would arise against the forces of a collision, and
-  // separate() would add energy by correcting them. Therefore, a constraint between bodies with springs goes
-  // on with the gap that it has had, and takes over a part of the difference in each tick.
+  // constraint took over the difference at once, a collision would leave overlaps, and separate() would add
+  // energy by correcting them against its forces. Therefore, a constraint between bodies with springs keeps
+  // its own gap, and takes over a part of the difference in each tick.
   //
   // A surface may fold locally, as beside the pole of a pressed tube. Its normal then points inwards there,
-  // and a point outside seems to be deep inside. A point that is deeper than `reach_m` and had no constraint
-  // in the last tick is therefore left out, and a constraint whose normal has turned round keeps its earlier
-  // normal and gap. Bodies that begin in each other keep all points of the first search after forget().
+  // and a point outside seems to be deep inside. A point that is deeper than `deepest_new_m` and had no
+  // constraint in the last tick is therefore left out, and a constraint whose normal has turned round keeps
+  // its earlier normal and gap. Bodies that begin in each other keep all points of the first search after
+  // forget().
   bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m,
-           double reach_m, int sample);
+           double deepest_new_m, int sample);
 
   // Keeps the constraints of the last tick for the next one, which needs no new search, as if they were added
   // again. Bodies must not have turned or moved noticeably since the constraints were added, and inverse

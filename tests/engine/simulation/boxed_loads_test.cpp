@@ -233,6 +233,14 @@ TEST(BoxedLoads, RemarksTellOfTheBoxAndOfItsCells) {
   }
 }
 
+TEST(BoxedLoads, NoRemarkTellsOfABoxThatWasAskedFor) {
+  Body body = small_handle().bodies[0];
+  body.lattice = {.counts = std::array{25, 4, 6}, .cells = LatticeCells::box};
+  EXPECT_EQ(
+      describe_lattice_warning(make_body_state(body, {}, InstructionSet::baseline).value(), body.lattice),
+      "");
+}
+
 // A ring that is fixed on one side moves farthest on the other. The corners of the box beyond the ring move
 // farther, but are not part of the body.
 TEST(BoxedLoads, RestTellsWhatTheBodyDoes) {
