@@ -185,9 +185,24 @@ bool is_on_edge(const PiecewiseSurface& surface, double u, double v) {
   return is_end(surface.u->knots(), u) || is_end(surface.v->knots(), v);
 }
 
+namespace {
+
+// On an edge that is collapsed to a point, and beside it, one of the tangents is only rounding noise. This is
+// twice the distance from the edge, in domain lengths, at which unit_normal(Surface) expects that.
+constexpr double beside_edge = 2e-6;
+
+bool is_beside_end(const KnotVector& knots, double parameter) {
+  if (knots.is_periodic()) return false;
+  const double margin = beside_edge * knots.domain_length();
+  return parameter <= knots.domain_start() + margin || parameter >= knots.domain_end() - margin;
+}
+
+}  // namespace
+
 Vector3 unit_normal(const PiecewiseSurface& surface, const SurfacePoint& at, double u, double v) {
-  // On an edge that is collapsed to a point, one of the tangents is only rounding noise.
-  if (is_on_edge(surface, u, v)) return unit_normal(*surface.surface, u, v);
+  if (is_beside_end(surface.u->knots(), u) || is_beside_end(surface.v->knots(), v)) {
+    return unit_normal(*surface.surface, u, v);
+  }
   const Vector3 across = at.du.cross(at.dv);
   const double squared = across.squaredNorm();
   if (squared > min_sine * min_sine * at.du.squaredNorm() * at.dv.squaredNorm()) {

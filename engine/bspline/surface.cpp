@@ -152,8 +152,12 @@ constexpr double product_noise = 16.0 * std::numeric_limits<Real>::epsilon();
 // Distance from an edge, in domain lengths. The edge counts as collapsed if, over this distance, du x dv
 // grows by more than its value at the edge. The control points of a collapsed edge need not coincide exactly,
 // because after a refit in single precision they coincide only to about 1e-7. The edge is then the border of
-// a tiny hole, around which du x dv has an arbitrary direction.
+// a tiny hole, around which du x dv has an arbitrary direction, also at parameters within this distance.
 constexpr double hole = 1e-6;
+
+// Largest part of its growth from a collapsed edge by which du x dv may differ from it beside the edge. If it
+// differs by more, it is that of the border of a tiny hole.
+constexpr double hole_part = 0.1;
 
 // Distances in domain lengths, the smallest first. If du x dv and its growth from the edge both vanish at a
 // point, the normal is taken from a point at one of these distances, towards the midpoint of the domain.
@@ -222,16 +226,28 @@ bool exceeds(const Vector3& product, double threshold) {
 }
 
 // Returns the sign of the direction from an end of an open domain into the domain: +1 at its start, -1 at its
-// end. Returns 0 elsewhere.
+// end, also beside it. Returns 0 elsewhere.
 int inward(const KnotVector& knots, double u) {
   if (knots.is_periodic()) return 0;
-  return u <= knots.domain_start() ? 1 : u >= knots.domain_end() ? -1 : 0;
+  const double beside = hole * knots.domain_length();
+  return u <= knots.domain_start() + beside ? 1 : u >= knots.domain_end() - beside ? -1 : 0;
+}
+
+// Returns the distance from the nearer end of a domain, in domain lengths.
+double distance_from_end(const KnotVector& knots, double u) {
+  return std::min(u - knots.domain_start(), knots.domain_end() - u) / knots.domain_length();
 }
 
 // Growth of du x dv per domain length, from the edge into the surface; zero away from edges.
 struct Growth {
   Vector3 by_u = Vector3::Zero(), by_v = Vector3::Zero();
 };
+
+// Returns true if du x dv has grown from zero over the distance from an edge, which is thus a single point.
+bool has_grown(const Vector3& product, const Vector3& growth, double distance) {
+  const Vector3 grown = distance * growth;
+  return (product - grown).norm() < hole_part * grown.norm();
+}
 
 Growth growth_from_edge(const LimitTangents& t, int inward_u, int inward_v) {
   return {inward_u * (t.duu.cross(t.dv) + t.du.cross(t.duv)),
@@ -256,6 +272,9 @@ Vector3 unit_normal(const KnotVector& u_knots, const KnotVector& v_knots, const 
   const Vector3 product = here.du.cross(here.dv);
   const Growth growth = growth_from_edge(here, inward(u_knots, u), inward(v_knots, v));
   const double threshold = product_noise<Real> * here.product_bound;
+  const bool has_grown_here = has_grown(product, growth.by_u, distance_from_end(u_knots, u)) ||
+                              has_grown(product, growth.by_v, distance_from_end(v_knots, v));
+  if (has_grown_here && exceeds(product, threshold)) return normalize_product(product);
   if (exceeds(product, std::max({threshold, hole * growth.by_u.norm(), hole * growth.by_v.norm()}))) {
     return normalize_product(product);
   }

@@ -96,26 +96,39 @@ SkinPoint make_skin_point(const IndexedBody& body, const EmbeddedPoint& embeddin
 SkinPoint find_skin_sample(const IndexedBody& body, int sample, const Vector3& point_m) {
   if (stands_still(*body.state)) return make_still_point(body);
   const EmbeddedPoint& embedding = body.state->mapping().sample(sample);
+  if (body.state->rigid) return {{body.index, &body.state->lattice, embedding}};
   return make_skin_point(body, embedding, embedding.position_m(body.state->lattice) - point_m);
 }
 
 // Between samples, the embedded point is beside the surface even in the rest shape, because its embedding is
 // a blend of those of the samples around it. This offset along the normal is not an error, and turns with the
-// surface.
-SkinPoint find_skin_point(const IndexedBody& body, double u, double v) {
+// surface. `point_m` and `normal` are the position and the normal of the surface.
+SkinPoint find_skin_point(const IndexedBody& body, double u, double v, const Vector3& point_m,
+                          const Vector3& normal) {
   if (stands_still(*body.state)) return make_still_point(body);
   const BodyMapping& mapping = body.state->mapping();
   const SpringLattice& lattice = body.state->lattice;
   const EmbeddedPoint embedding = mapping.at(u, v);
+  if (body.state->rigid) return {{body.index, &lattice, embedding}};
   const Vector3 rest_offset_m = embedding.rest_m(lattice) - position(mapping.rest(), u, v);
-  const Vector3 offset_m = embedding.position_m(lattice) - position(mapping.current(), u, v);
+  const Vector3 offset_m = embedding.position_m(lattice) - point_m;
   const double height_m = rest_offset_m.dot(unit_normal(mapping.rest(), u, v));
-  return make_skin_point(body, embedding, offset_m - height_m * unit_normal(mapping.current(), u, v));
+  return make_skin_point(body, embedding, offset_m - height_m * normal);
 }
 
 SkinPoint find_own_skin_point(const IndexedBody& body, const NearPoint& near) {
-  return near.sample >= 0 ? find_skin_sample(body, near.sample, near.point_m)
-                          : find_skin_point(body, near.u, near.v);
+  if (near.sample >= 0) return find_skin_sample(body, near.sample, near.point_m);
+  if (stands_still(*body.state)) return make_still_point(body);
+  return find_skin_point(body, near.u, near.v, near.point_m,
+                         unit_normal(body.state->mapping().current(), near.u, near.v));
+}
+
+SkinPoint find_other_skin_point(const IndexedBody& body, const NearPoint& near) {
+  // The normal of a contact may be that of the far face of a shell.
+  const Vector3 normal = body.state->shell_thickness_m > 0.0 && !stands_still(*body.state)
+                             ? unit_normal(body.state->mapping().current(), near.other_u, near.other_v)
+                             : near.normal;
+  return find_skin_point(body, near.other_u, near.other_v, near.other_m, normal);
 }
 
 std::pair<double, double> find_sample_parameters(const BodyMapping& mapping, int sample) {
@@ -136,8 +149,7 @@ bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::
   bool complete = true;
   for (const NearPoint& near : points) {
     if (near.sample < 0 && near.lead_m < least_lead_m) continue;
-    const SkinPoint own = find_own_skin_point(from, near),
-                    other = find_skin_point(to, near.other_u, near.other_v);
+    const SkinPoint own = find_own_skin_point(from, near), other = find_other_skin_point(to, near);
     complete &=
         contacts.add(own.point, other.point, near.normal,
                      corrected_gap_m(near.gap_m, near.normal, own, other), deepest_new_m, near.sample);
@@ -171,7 +183,9 @@ bool add_contacts_of(const IndexedBody& first, const IndexedBody& second, const 
   }
   for (const VertexNearSurface& near : proximity.mesh_vertices()) {
     const SkinPoint own{{second.index, &second.state->lattice, mesh.vertex(near.vertex)}};
-    const SkinPoint other = find_skin_point(first, near.u, near.v);
+    const SkinPoint other =
+        find_skin_point(first, near.u, near.v, position(surface.current(), near.u, near.v),
+                        unit_normal(surface.current(), near.u, near.v));
     complete &=
         contacts.add(own.point, other.point, near.normal,
                      corrected_gap_m(near.gap_m, near.normal, own, other), deepest_new_m, near.vertex);
@@ -226,7 +240,8 @@ void find_near_points(SurfaceProximity& proximity, const BodyState& first, const
                       double margin) {
   const ShellOrSolid one{&first.mapping().current(), first.shell_thickness_m},
       other{&second.mapping().current(), second.shell_thickness_m};
-  proximity.find(*one.surface, *other.surface, margin + one.thickness_m + other.thickness_m);
+  const Pose frame = first.rigid ? first.rigid->pose() : second.rigid ? second.rigid->pose() : Pose{};
+  proximity.find(*one.surface, *other.surface, margin + one.thickness_m + other.thickness_m, 1.0, frame);
   drop_trimmed_points(proximity, first, second);
   if (!(one.thickness_m > 0.0 || other.thickness_m > 0.0)) return;
   proximity.keep_if([&](NearPoint& near) { return resolve_shell_gap(one, other, margin, near); },

@@ -49,7 +49,7 @@ inline constexpr double body_depth_limit_cells = 0.07;
 
 // Gap below which a constraint is added for a point, in lattice cells of the coarser body that is deformable.
 // It is about the movement in one tick. Bodies that move faster get a larger margin.
-inline constexpr double contact_margin_cells = 0.25;
+inline constexpr double contact_margin_cells = 0.08;
 
 // State of a body, and its index in the simulation.
 struct IndexedBody {

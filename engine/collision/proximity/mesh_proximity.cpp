@@ -54,7 +54,7 @@ void MeshProximity::find(const Surface& surface, const DeformingMesh& mesh, doub
   SPOONBILL_ASSERT(margin_m >= 0.0);
   ++search_;
   least_gap_m_ = infinity;
-  budget_.evaluations_left = proximity_evaluation_limit;
+  budget_ = {proximity_evaluation_limit, proximity_least_gain_m};
   overflow_ = false;
   candidates_.clear();
   samples_.clear();

@@ -327,7 +327,7 @@ void SelfProximity::find(const Surface& surface, double margin_m) {
   const double reach = std::max(margin_m, deepest_self_cells * cell_m_);
   for (const auto& [one, other] : nearby_) offer_elements(one, other, reach);
   near_.keep_if([&](const NearPoint& near) { return near.gap_m <= reach; });
-  near_.compute_nearest(levels, 1.0, margin_m);
+  near_.compute_nearest(levels, 1.0, margin_m, margin_m);
   const auto keep = [&](const NearPoint& near) { return is_contact(near); };
   near_.keep_if(keep);
   near_.add_between_samples(near_, 1.0);

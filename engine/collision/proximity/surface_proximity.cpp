@@ -47,39 +47,71 @@ NearestOnCell nearest_on_cell(const Vector3& point, const PatchCorners& at) {
   return low.distance <= high.distance ? low : high;
 }
 
-namespace {
-
-// Returns a lower bound of the distance from a point to a patch: the distance to the box of the patch's
-// corners.
-double distance_bound(const Vector3& point, const PatchCorners& at) {
-  Box box;
-  for (const Vector3& corner : at) box.include(corner);
-  return std::sqrt(box.squared_distance(point));
-}
-
-}  // namespace
-
 NearPoints::NearPoints(const NestedGrid& nested) : levels_(nested) {
   const auto samples = static_cast<std::size_t>(nested.grid.rows() * nested.grid.columns());
   index_.assign(samples, 0);
   indexed_at_.assign(samples, 0);
   near_.reserve(near_point_limit);
+  candidates_.reserve(near_point_limit);
+  followed_.reserve(near_point_limit);
 }
 
 bool NearPoints::begin(const Surface& surface) {
   ++generation_;
-  budget_.evaluations_left = proximity_evaluation_limit;
+  budget_ = {proximity_evaluation_limit, proximity_least_gain_m};
   least_gap_m_ = infinity;
   overflow_ = false;
   near_.clear();
+  followed_.clear();
   return levels_.begin(surface);
 }
 
-void NearPoints::offer_corners(const LevelCell& cell, SurfaceLevels& other, const LevelCell& patch) {
+void NearPoints::add_sample(const NearPoint& near) {
+  indexed_at_[near.sample] = generation_;
+  index_[near.sample] = static_cast<int>(near_.size());
+  near_.push_back(near);
+}
+
+void NearPoints::follow(const SurfaceLevels& other) {
+  SPOONBILL_ASSERT(near_.empty());
+  const Grid& grid = levels_.nested().grid;
+  for (const Candidate& candidate : candidates_) {
+    if (budget_.is_spent()) return;
+    add_sample({candidate.sample, grid.u.parameters[candidate.sample / grid.columns()],
+                grid.v.parameters[candidate.sample % grid.columns()], candidate.other_u, candidate.other_v,
+                levels_.sample(candidate.sample)});
+    followed_.push_back({find_nearest(other, near_.back()), true});
+  }
+}
+
+double NearPoints::find_nearest(const SurfaceLevels& other, NearPoint& near) {
+  const NearestPoint nearest =
+      nearest_point(other.pieces(), near.point_m, near.other_u, near.other_v, &budget_);
+  near.other_u = nearest.u;
+  near.other_v = nearest.v;
+  near.other_m = nearest.at.position_m;
+  near.normal = unit_normal(other.pieces(), nearest.at, nearest.u, nearest.v);
+  const Vector3 difference = near.point_m - near.other_m;
+  near.gap_m = difference.norm();
+  return difference.dot(near.normal);
+}
+
+void NearPoints::offer_corners(const LevelCell& cell, SurfaceLevels& other, const LevelCell& patch,
+                               double margin_m) {
   const PatchCorners corners = other.corners(patch);
+  Box box;
+  for (const Vector3& corner : corners) box.include(corner);
+  const double reach_m = margin_m + other.bulge(patch);
   const int step = levels_.step(cell.level);
+  const int rows = levels_.nested().grid.rows(), columns = levels_.nested().grid.columns();
   for (int corner = 0; corner < 4; ++corner) {
-    offer(cell.i + (corner >> 1) * step, cell.j + (corner & 1) * step, other, patch, corners);
+    const int i = cell.i + (corner >> 1) * step, j = cell.j + (corner & 1) * step;
+    // Another cell near the patch has this corner as its first one.
+    if ((i > cell.i && i < rows - 1) || (j > cell.j && j < columns - 1)) continue;
+    const int sample = i * columns + j;
+    const double least_m = std::min(reach_m, offered_distance_m(sample));
+    if (!(box.squared_distance(levels_.sample(sample)) < least_m * least_m)) continue;
+    offer(i, j, other, patch, corners);
   }
 }
 
@@ -90,49 +122,58 @@ void NearPoints::offer(int i, int j, const SurfaceLevels& other, const LevelCell
   const Grid& grid = levels_.nested().grid;
   const int sample = i * grid.columns() + j;
   const Vector3 point = levels_.sample(sample);
-  const bool known = indexed_at_[sample] == generation_;
-  if (known && distance_bound(point, corners) >= near_[index_[sample]].gap_m) return;
   const NearestOnCell on = nearest_on_cell(point, corners);
-  if (!known) {
+  if (on.distance >= offered_distance_m(sample)) return;
+  if (indexed_at_[sample] != generation_) {
     if (near_.size() == near_point_limit) {
       overflow_ = true;
       return;
     }
-    indexed_at_[sample] = generation_;
-    index_[sample] = static_cast<int>(near_.size());
-    near_.push_back(
-        {sample, grid.u.parameters[i], grid.v.parameters[j], 0.0, 0.0, point, Vector3::UnitY(), infinity});
+    add_sample({sample, grid.u.parameters[i], grid.v.parameters[j], 0.0, 0.0, point});
   }
-  // Until compute_nearest() is called, the gap is the distance from the sample to the other surface's
-  // triangles.
-  NearPoint& near = near_[index_[sample]];
-  if (on.distance >= near.gap_m) return;
   const auto between = [](const std::vector<double>& parameters, int at, int to, double fraction) {
     return parameters[at] + fraction * (parameters[to] - parameters[at]);
   };
   const Grid& patch_grid = other.nested().grid;
-  const int step = other.step(patch.level);
+  const int step = other.step(patch.level), index = index_[sample];
+  NearPoint& near = near_[index];
   near.gap_m = on.distance;
   near.other_u = between(patch_grid.u.parameters, patch.i, patch.i + step, on.u);
   near.other_v = between(patch_grid.v.parameters, patch.j, patch.j + step, on.v);
+  if (is_followed(index)) followed_[index].is_nearest = false;
 }
 
 double NearPoints::offered_distance_m(int sample) const {
   SPOONBILL_ASSERT_DEBUG(sample >= 0 &&
                          sample < levels_.nested().grid.rows() * levels_.nested().grid.columns());
-  return indexed_at_[sample] == generation_ ? near_[index_[sample]].gap_m : infinity;
+  if (indexed_at_[sample] != generation_) return infinity;
+  const int index = index_[sample];
+  // A cell deviates from the exact surface, and would otherwise replace a point on it that is as near.
+  const double least_gain_m = is_followed(index) && followed_[index].is_nearest ? touch_tolerance_m : 0.0;
+  return std::max(near_[index].gap_m - least_gain_m, 0.0);
 }
 
-void NearPoints::compute_nearest(const SurfaceLevels& other, double outside, double margin_m) {
+namespace {
+
+// Largest depth at which a sample is still followed, in margins. A sample that is far behind a wall may be in
+// front of another one.
+constexpr double deepest_followed = 4.0;
+
+}  // namespace
+
+void NearPoints::compute_nearest(const SurfaceLevels& other, double outside, double margin_m,
+                                 double reach_m) {
   SPOONBILL_ASSERT(std::abs(outside) == 1.0);
-  SPOONBILL_ASSERT(margin_m >= 0.0);
-  for (NearPoint& near : near_) {
-    const NearestPoint nearest =
-        nearest_point(other.pieces(), near.point_m, near.other_u, near.other_v, &budget_);
-    near.other_u = nearest.u;
-    near.other_v = nearest.v;
-    near.normal = outside * unit_normal(other.surface(), nearest.u, nearest.v);
-    near.gap_m = (near.point_m - nearest.at.position_m).dot(near.normal);
+  SPOONBILL_ASSERT(margin_m >= 0.0 && reach_m >= margin_m);
+  candidates_.clear();
+  for (std::size_t n = 0; n < near_.size(); ++n) {
+    NearPoint& near = near_[n];
+    const bool is_known = n < followed_.size() && followed_[n].is_nearest;
+    near.gap_m = outside * (is_known ? followed_[n].height_m : find_nearest(other, near));
+    near.normal *= outside;
+    if (!(near.gap_m > reach_m || near.gap_m < -deepest_followed * margin_m)) {
+      candidates_.push_back({near.sample, near.other_u, near.other_v});
+    }
   }
   keep_if([&](const NearPoint& near) { return !(near.gap_m > margin_m); });
 }
@@ -198,34 +239,70 @@ void NearPoints::add_between_samples(const NearPoints& other, double outside) {
     const double gap_m = -deepest.depth_m;
     const double around_m =
         std::min({near.gap_m, smallest_gap_around(at.u, at.v), other.smallest_gap_around(at.s, at.t)});
-    near_.push_back(
-        {-1, at.u, at.v, at.s, at.t, deepest.pair.first_m, deepest.normal, gap_m, around_m - gap_m});
+    near_.push_back({-1, at.u, at.v, at.s, at.t, deepest.pair.first_m, deepest.pair.second_m, deepest.normal,
+                     gap_m, around_m - gap_m});
     least_gap_m_ = std::min(least_gap_m_, -deepest.depth_m);
   }
 }
 
+namespace {
+
+// Samples are followed only if the surfaces move so slowly that cells need not be searched in this number of
+// ticks. Otherwise the larger reach of the search would cost more than it saves.
+constexpr int least_followed = 16;
+
+int control_points(const NestedGrid& nested) {
+  return nested.grid.u.knots.control_point_count() * nested.grid.v.knots.control_point_count();
+}
+
+}  // namespace
+
 SurfaceProximity::SurfaceProximity(const NestedGrid& first, const NestedGrid& second)
-    : first_(first), second_(second), cells_(first_.levels(), second_.levels()) {}
+    : first_(first),
+      second_(second),
+      cells_(first_.levels(), second_.levels()),
+      first_motion_(control_points(first)),
+      second_motion_(control_points(second)) {}
 
 void SurfaceProximity::find(const Surface& first, const Surface& second, double margin_m,
-                            double second_outside) {
+                            double second_outside, const Pose& frame) {
   SPOONBILL_ASSERT(margin_m >= 0.0);
   SPOONBILL_ASSERT(std::abs(second_outside) == 1.0);
   if (first_.begin(first)) cells_.invalidate_first();
   if (second_.begin(second)) cells_.invalidate_second();
-  cells_.update();
-  missing_cells_ = false;
-  const ElementTree &one = cells_.first_tree(), &other = cells_.second_tree();
-  if (one.box(one.root()).gap(other.box(other.root())) > margin_m) return;
-  for (const CellPair& pair : cells_.find_within(margin_m)) {
-    first_.offer_corners(pair.first, second_.levels(), pair.second);
-    second_.offer_corners(pair.second, first_.levels(), pair.first);
+  const double moved_m = first_motion_.since_m(first.net, frame) + second_motion_.since_m(second.net, frame);
+  const bool is_searched = margin_m + moved_m <= searched_m_;
+  ++finds_;
+  if (!is_searched) {
+    const bool is_slow = least_followed * moved_m <= finds_ * margin_m;
+    searched_m_ = is_slow ? 2.0 * margin_m : margin_m;
+    finds_ = 0;
+    first_motion_.remember(first.net, frame);
+    second_motion_.remember(second.net, frame);
   }
-  missing_cells_ = cells_.overflow();
-  first_.compute_nearest(second_.levels(), second_outside, margin_m);
-  second_.compute_nearest(first_.levels(), 1.0, margin_m);
+  first_.follow(second_.levels());
+  second_.follow(first_.levels());
+  if (!is_searched) search_cells(searched_m_);
+  // Candidates remain so until the next search of cells, because they may come near again.
+  const double reach_m = is_searched ? infinity : searched_m_;
+  first_.compute_nearest(second_.levels(), second_outside, margin_m, reach_m);
+  second_.compute_nearest(first_.levels(), 1.0, margin_m, reach_m);
   first_.add_between_samples(second_, second_outside);
   second_.add_between_samples(first_, 1.0);
+  if (overflow()) searched_m_ = -1.0;  // candidates may be missing
+}
+
+void SurfaceProximity::search_cells(double reach_m) {
+  ++cell_searches_;
+  missing_cells_ = false;
+  cells_.update();
+  const ElementTree &one = cells_.first_tree(), &other = cells_.second_tree();
+  if (one.box(one.root()).gap(other.box(other.root())) > reach_m) return;
+  for (const CellPair& pair : cells_.find_within(reach_m)) {
+    first_.offer_corners(pair.first, second_.levels(), pair.second, reach_m);
+    second_.offer_corners(pair.second, first_.levels(), pair.first, reach_m);
+  }
+  missing_cells_ = cells_.overflow();
 }
 
 double SurfaceProximity::least_gap_m() const {

@@ -8,6 +8,7 @@
 
 #include "engine/collision/levels/cell_pairs.h"
 #include "engine/collision/levels/surface_levels.h"
+#include "engine/collision/proximity/net_motion.h"
 #include "engine/collision/surfaces/pair_polish.h"
 
 namespace spoonbill {
@@ -25,6 +26,7 @@ struct NearPoint {
   double u = 0.0, v = 0.0;  // parameters of the point on its own surface
   double other_u = 0.0, other_v = 0.0;
   Vector3 point_m = Vector3::Zero();
+  Vector3 other_m = Vector3::Zero();  // nearest point of the other surface
   Vector3 normal = Vector3::UnitY();  // unit outward normal of the other surface
   double gap_m = 0.0;                 // distance along the normal; negative inside the other body
   // For a point between samples: how much smaller its gap is than those of the samples around it on both
@@ -41,18 +43,25 @@ class NearPoints {
   // Removes all points. Returns false if the surface has not moved since the last call.
   bool begin(const Surface& surface);
 
-  // Compares the corners of a cell with `patch`, a cell of the other surface, and remembers the nearest point
-  // for each corner. The other surface may be the same surface.
-  void offer_corners(const LevelCell& cell, SurfaceLevels& other, const LevelCell& patch);
+  // Finds the nearest points of the candidates of the last compute_nearest(), each from its last nearest
+  // point. `other` must be the same surface as then; it may have moved and changed its shape.
+  void follow(const SurfaceLevels& other);
+  // Compares corners of a cell with `patch`, a cell of the other surface, and remembers the nearest point for
+  // each corner. Must be called for all cells that may be within `margin_m` of the patch: a corner that is
+  // shared by cells is compared only with one of them. Corners farther than the margin from the exact surface
+  // over the patch may be left out.
+  void offer_corners(const LevelCell& cell, SurfaceLevels& other, const LevelCell& patch, double margin_m);
   // Compares the sample (i, j) of the finest grid with `patch`, a cell of the other surface with the given
-  // corners, and remembers the nearest point.
+  // corners, and remembers the nearest point. The other surface may be the same surface.
   void offer(int i, int j, const SurfaceLevels& other, const LevelCell& patch, const PatchCorners& corners);
-  // Returns the distance of a sample from the nearest cell with which it has been compared; infinite if it
-  // has been compared with no cell. A cell is treated as two triangles.
+  // Returns the distance within which a cell replaces the nearest point of a sample: the distance to the
+  // nearest cell so far; infinite if the sample has been compared with no cell. A cell is treated as two
+  // triangles.
   double offered_distance_m(int sample) const;
   // Replaces each sample's nearest point by the nearest point of the exact other surface. Removes samples
-  // beyond the margin. `outside` is -1 if the other surface's du x dv points inward, else 1.
-  void compute_nearest(const SurfaceLevels& other, double outside, double margin_m);
+  // beyond the margin; those within `reach_m`, which is at least the margin, are candidates for follow().
+  // `outside` is -1 if the other surface's du x dv points inward, else 1.
+  void compute_nearest(const SurfaceLevels& other, double outside, double margin_m, double reach_m);
   // Adds the locally nearest points between samples, where the surfaces may be nearer to each other than at
   // any sample. `other` holds the points of the other surface, which may be this one.
   void add_between_samples(const NearPoints& other, double outside);
@@ -87,6 +96,22 @@ class NearPoints {
   int evaluations() const { return proximity_evaluation_limit - budget_.evaluations_left; }
 
  private:
+  // Sample that may be near the other surface, and the parameters of its last nearest point.
+  struct Candidate {
+    int sample;
+    double other_u, other_v;
+  };
+  // Sample whose nearest point follow() has found.
+  struct FollowedSample {
+    double height_m;  // distance of the sample in front of the nearest point, along du x dv
+    bool is_nearest;  // false once a nearer cell has been found
+  };
+
+  void add_sample(const NearPoint& near);
+  bool is_followed(int index) const { return index < static_cast<int>(followed_.size()); }
+  // Replaces the other surface's point by the nearest one, and the normal by the unit vector along du x dv.
+  // The gap becomes the distance. Returns the distance in front of the nearest point, along du x dv.
+  double find_nearest(const SurfaceLevels& other, NearPoint& near);
   bool is_local_deepest(const NearPoint& near) const;
   // Returns the largest distance of a sample of the grid from the samples around it, m.
   double find_spacing_m(int sample);
@@ -95,24 +120,30 @@ class NearPoints {
   std::vector<int> index_;                 // for each sample, its index in near_
   std::vector<std::uint32_t> indexed_at_;  // value of generation_ when each entry of index_ was set
   std::vector<NearPoint> near_;
+  std::vector<Candidate> candidates_;
+  std::vector<FollowedSample> followed_;  // for the first points of near_
   std::uint32_t generation_ = 0;
   PolishBudget budget_{0};  // surface points that may still be evaluated until the next begin()
   double least_gap_m_ = 0.0;
   bool overflow_ = false;
 };
 
-// Proximity search of two surfaces. Not thread-safe. Allocates only on construction. The grids must outlive
-// the search.
+// Proximity search of two surfaces. Searches cells up to twice the margin, so that while the surfaces move
+// slowly, the samples found are only followed, and cells are searched again once the surfaces may have moved
+// by the margin. Not thread-safe. Allocates only on construction. The grids must outlive the search.
 class SurfaceProximity {
  public:
   SurfaceProximity(const NestedGrid& first, const NestedGrid& second);
   SurfaceProximity(const SurfaceProximity&) = delete;
   SurfaceProximity& operator=(const SurfaceProximity&) = delete;
 
-  // Finds all points within `margin_m` of the other surface. The surfaces must have the grids' knots and
-  // bound bodies. On the first surface, du x dv must point outward. `second_outside` is 1 if it points
-  // outward on the second surface too, and -1 if it points inward, as on a mirrored surface.
-  void find(const Surface& first, const Surface& second, double margin_m, double second_outside = 1.0);
+  // Finds all points within `margin_m` of the other surface, and samples that have sunk deeper into the other
+  // body, down to four margins. The surfaces must have the grids' knots and bound bodies. On the first
+  // surface, du x dv must point outward. `second_outside` is 1 if it points outward on the second surface
+  // too, and -1 if it points inward, as on a mirrored surface. The motion of the surfaces is measured
+  // relative to `frame`, which should be the pose of one of them if it is rigid.
+  void find(const Surface& first, const Surface& second, double margin_m, double second_outside = 1.0,
+            const Pose& frame = {});
 
   // Removes the first surface's points for which `keep_first` returns false, and the second surface's points
   // for which `keep_second` returns false. Both functions may modify the point.
@@ -134,10 +165,19 @@ class SurfaceProximity {
   // first_points(), second_evaluations() the number for second_points().
   int first_evaluations() const { return first_.evaluations(); }
   int second_evaluations() const { return second_.evaluations(); }
+  // Returns how many calls of find() have searched cells.
+  int cell_searches() const { return cell_searches_; }
 
  private:
+  // Compares cells within `reach_m` of each other.
+  void search_cells(double reach_m);
+
   NearPoints first_, second_;
   CellPairs cells_;
+  NetMotion first_motion_, second_motion_;  // since the last search of cells
+  double searched_m_ = -1.0;                // reach of the last search of cells; -1 before the first
+  int finds_ = 0;                           // number of calls of find() since the last search of cells
+  int cell_searches_ = 0;
   bool missing_cells_ = false;
 };
 

@@ -184,9 +184,10 @@ NearestPoint descend_to_nearest(const PiecewiseSurface& surface, const Vector3& 
   problem.parameters = {problem.knots[0]->into_domain(u), problem.knots[1]->into_domain(v)};
   SurfacePoint at = evaluate_within(budget, surface, problem.parameters[0], problem.parameters[1]);
   double distance = (at.position_m - point).norm(), damping = least_damping;
+  const double least_promise = budget != nullptr ? budget->least_gain_m : least_promise_m;
   for (int steps = 0; steps < max_polish_steps && distance > least_polish_gain_m; ++steps) {
     const Vector3 difference = at.position_m - point;
-    problem.least_promise = least_promise_m * distance;
+    problem.least_promise = least_promise * distance;
     problem.gradient << difference.dot(at.du), difference.dot(at.dv);
     problem.curvature = first_form(at) + along(at, difference);
     problem.speed << at.du.norm(), at.dv.norm();
@@ -354,7 +355,7 @@ DeepestPair deepest_pair(const PiecewiseSurface& first, const PiecewiseSurface& 
   DepthPoint best = evaluate_depth(first, second, from, outside, budget);
   Problem<2> problem;
   problem.knots = {&first.u->knots(), &first.v->knots()};
-  problem.least_promise = least_promise_m;
+  problem.least_promise = budget != nullptr ? budget->least_gain_m : least_promise_m;
   double damping = least_damping;
   for (int steps = 0; steps < max_polish_steps && !(best.depth > enough_m); ++steps) {
     problem.parameters = {best.at.u, best.at.v};

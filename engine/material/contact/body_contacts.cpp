@@ -13,9 +13,10 @@ namespace {
 // tick, so they may move slightly more or less than the constrained points. Closing at most half of a gap in
 // a substep leaves a margin for this difference. A push starts from the force of the last substep, so a
 // moderate rate of correction suffices; a faster one would shake bodies at rest.
-constexpr ContactPace body_pace{0.5, 400.0};
+constexpr double body_closing = 0.5;
+constexpr ContactPace body_pace{body_closing, 400.0};
 // Pace of contacts whose overlaps separate() corrects.
-constexpr ContactPace separated_pace{0.5, 0.0};
+constexpr ContactPace separated_pace{body_closing, 0.0};
 
 // Rate at which separate() corrects an overlap. A correction against the force of a collision adds energy, so
 // it is slow. Points that push the same nodes correct together, so the part of an overlap that is corrected
@@ -56,6 +57,19 @@ double mutual_frame_compliance(const LatticeView& first, const LatticeView& seco
 
 double mutual_friction(const BodyPoint& first, const BodyPoint& second) {
   return std::min(first.point.friction(*first.lattice), second.point.friction(*second.lattice));
+}
+
+// Bound of the sum of the absolute weights of an embedded point. Weights sum to 1; some are slightly
+// negative.
+constexpr double most_absolute_weight = 1.5;
+
+double find_mobility(const BodyPoint& point) {
+  double most = 0.0;
+  for (int i = 0; i < point.point.count; ++i) {
+    const auto inverse_mass = static_cast<double>(point.lattice->inverse_mass(point.point.node[i]));
+    most = std::max(most, std::abs(static_cast<double>(point.point.weight[i])) * inverse_mass);
+  }
+  return most;
 }
 
 // Limits a contact force of the last tick to what push and friction allow with the present normal. A force
@@ -132,6 +146,8 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
            .base_m = gap_m - difference_m - moved,
            .difference_m = difference_m,
            .added_gap_m = gap_m,
+           .first_mobility = find_mobility(first),
+           .second_mobility = find_mobility(second),
            .friction = friction,
            .moved_by = by_solvers ? MovedBy::solvers : MovedBy::springs,
            .separates = separates,
@@ -176,21 +192,50 @@ bool BodyContacts::has_constraint_between_solvers() const {
                      [](const Constraint& constraint) { return constraint.moved_by == MovedBy::solvers; });
 }
 
+double BodyContacts::find_gap_m(std::span<const LatticeView> lattices, const Constraint& constraint) {
+  const Vector3 apart = constraint.first.displacement_m(lattices[constraint.first_body]) -
+                        constraint.second.displacement_m(lattices[constraint.second_body]);
+  return constraint.base_m + constraint.normal.dot(apart);
+}
+
+Vector3 BodyContacts::find_relative_m_per_s(std::span<const LatticeView> lattices,
+                                            const Constraint& constraint) {
+  return constraint.first.velocity_m_per_s(lattices[constraint.first_body]) -
+         constraint.second.velocity_m_per_s(lattices[constraint.second_body]);
+}
+
 void BodyContacts::start(std::span<const LatticeView> lattices, double h_s) {
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[c];
-    if (constraint.moved_by != MovedBy::springs || constraint.force_n.isZero(0.0)) continue;
-    push(lattices, constraint, h_s * constraint.force_n);
+    if (constraint.moved_by != MovedBy::springs) continue;
+    constraint.gap_m = find_gap_m(lattices, constraint);
+    constraint.spare_m_per_s = -infinity;
+    if (!constraint.force_n.isZero(0.0)) push(lattices, constraint, h_s * constraint.force_n);
+  }
+  changed_m_per_s_.fill(0.0);
+  for (int c = 0; c < count_; ++c) {
+    Constraint& constraint = constraints_[c];
+    if (constraint.moved_by != MovedBy::springs || !constraint.force_n.isZero(0.0)) continue;
+    if (!(constraint.gap_m > 0.0)) continue;
+    const double separation = find_relative_m_per_s(lattices, constraint).dot(constraint.normal);
+    constraint.spare_m_per_s = separation + constraint.gap_m * body_closing / h_s;
   }
 }
 
 void BodyContacts::push(std::span<const LatticeView> lattices, Constraint& constraint,
                         const Vector3& impulse) {
-  constraint.first.push(lattices[constraint.first_body], impulse);
-  constraint.second.push(lattices[constraint.second_body], -impulse);
+  const auto first = static_cast<std::size_t>(constraint.first_body);
+  const auto second = static_cast<std::size_t>(constraint.second_body);
+  constraint.first.push(lattices[first], impulse);
+  constraint.second.push(lattices[second], -impulse);
   if (constraint.moved_by == MovedBy::springs) {
-    impulse_ns_[static_cast<std::size_t>(constraint.first_body)] += impulse;
-    impulse_ns_[static_cast<std::size_t>(constraint.second_body)] -= impulse;
+    impulse_ns_[first] += impulse;
+    impulse_ns_[second] -= impulse;
+    const double size_ns = impulse.norm();
+    changed_m_per_s_[first] +=
+        size_ns * (most_absolute_weight * constraint.first_mobility + frame_compliance(lattices[first]));
+    changed_m_per_s_[second] +=
+        size_ns * (most_absolute_weight * constraint.second_mobility + frame_compliance(lattices[second]));
   }
   constraint.acted = true;
 }
@@ -200,6 +245,12 @@ void BodyContacts::pass(std::span<const LatticeView> lattices, const ContactPass
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[pass.is_reversed ? count_ - 1 - c : c];
     if (constraint.moved_by != pass.moved_by) continue;
+    if (pass.moved_by == MovedBy::solvers) {
+      constraint.gap_m = find_gap_m(lattices, constraint);
+    } else if (constraint.spare_m_per_s >
+               changed_m_per_s_[constraint.first_body] + changed_m_per_s_[constraint.second_body]) {
+      continue;
+    }
     const auto cap = static_cast<double>(std::min(caps[constraint.first_body], caps[constraint.second_body]));
     solve(lattices, constraint, pass.h_s, cap);
   }
@@ -210,12 +261,11 @@ void BodyContacts::separate(std::span<const LatticeView> lattices, double h_s,
   const double part = std::min(max_separation, separation_per_s * h_s);
   for (int c = 0; c < count_; ++c) {
     const Constraint& constraint = constraints_[c];
-    if (!constraint.separates || constraint.sample < 0) continue;
+    // At most a part of a gap closes in a substep.
+    if (!constraint.separates || constraint.sample < 0 || constraint.gap_m > 0.0) continue;
     const auto first = static_cast<std::size_t>(constraint.first_body);
     const auto second = static_cast<std::size_t>(constraint.second_body);
-    const Vector3 apart =
-        constraint.first.displacement_m(lattices[first]) - constraint.second.displacement_m(lattices[second]);
-    const double gap_m = constraint.base_m + constraint.normal.dot(apart);
+    const double gap_m = find_gap_m(lattices, constraint);
     if (!(gap_m < 0.0)) continue;
     const double cap = static_cast<double>(std::min(caps_m_per_s[first], caps_m_per_s[second]));
     const double speed = std::min(-gap_m * part / h_s, cap);
@@ -244,10 +294,7 @@ void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& cons
     constraint.force_n.setZero();
     return;
   }
-  const Vector3 apart = constraint.first.displacement_m(first) - constraint.second.displacement_m(second);
-  const Vector3 relative =
-      constraint.first.velocity_m_per_s(first) - constraint.second.velocity_m_per_s(second);
-  const ContactPush state{constraint.base_m + constraint.normal.dot(apart), constraint.normal, relative,
+  const ContactPush state{constraint.gap_m, constraint.normal, find_relative_m_per_s(lattices, constraint),
                           1.0 / compliance};
   const Vector3 started = h * constraint.force_n;
   const double started_push = started.dot(constraint.normal);
@@ -258,6 +305,7 @@ void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& cons
   const Vector3 drag = state.drag(constraint.friction * pushed, started_push * constraint.normal - started);
   const Vector3 impulse = pushed * constraint.normal - drag;
   constraint.force_n = impulse / h;
+  constraint.spare_m_per_s = -infinity;
   push(lattices, constraint, impulse - started);
 }
 

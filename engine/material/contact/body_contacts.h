@@ -142,7 +142,13 @@ class BodyContacts {
     double base_m = 0.0;        // gap minus the part due to displacements since rest
     double difference_m = 0.0;  // gap that the search found, minus the gap of the constraint
     double added_gap_m = 0.0;   // gap when the constraint was added
-    double friction = 0.0;      // the smaller coefficient of the two surfaces
+    double gap_m = 0.0;         // gap at the last start()
+    // Separation speed at the last start() above the smallest admissible one, for a constraint without a
+    // force. While it is larger than what pushes can have changed, the constraint does not act.
+    double spare_m_per_s = 0.0;
+    // Largest velocity change of a node per impulse on each point, 1/kg, without frames.
+    double first_mobility = 0.0, second_mobility = 0.0;
+    double friction = 0.0;  // the smaller coefficient of the two surfaces
     MovedBy moved_by = MovedBy::springs;
     bool separates = false;  // whether separate() corrects an overlap, instead of the push
     int sample = -1;
@@ -152,6 +158,8 @@ class BodyContacts {
 
     ContactKey key() const { return {first_body, second_body, sample}; }
   };
+  static double find_gap_m(std::span<const LatticeView> lattices, const Constraint& constraint);
+  static Vector3 find_relative_m_per_s(std::span<const LatticeView> lattices, const Constraint& constraint);
   void solve(std::span<const LatticeView> lattices, Constraint& constraint, double h, double cap);
   void push(std::span<const LatticeView> lattices, Constraint& constraint, const Vector3& impulse);
 
@@ -165,6 +173,8 @@ class BodyContacts {
   KeptValues<Kept> kept_;  // of the last tick
   // Impulses on each body since begin() of the constraints that substeps solve, N s.
   std::array<Vector3, lattice_capacity> impulse_ns_;
+  // Bound of how much pushes have changed the velocity of a point of each body since start(), m/s.
+  std::array<double, lattice_capacity> changed_m_per_s_{};
   int count_ = 0;
   bool has_searched_ = false;  // whether a tick has begun since forget()
 };

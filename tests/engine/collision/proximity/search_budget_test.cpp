@@ -55,7 +55,7 @@ TEST(SearchBudget, OfTwoCrumpledSurfacesIsKept) {
 
 TEST(SearchBudget, OfACrumpledSurfaceAgainstItselfIsKept) {
   const Surface rest = ellipsoid_tube(40, 40), now = crumpled_tube(3, 40, 40);
-  const NestedGrid nested = grid_of(rest);
+  const NestedGrid nested = make_nested_grid(rest.u, rest.v, 2).value();
   SelfProximity proximity(nested, rest, 0.0005);
   proximity.find(now, crumpled_m);
   EXPECT_TRUE(proximity.overflow());

@@ -129,8 +129,10 @@ TEST(SurfaceCollider, AgreesWithDenseSampling) {
       ASSERT_TRUE(result.found) << trial << " distance " << reference;
       EXPECT_LE(-result.nearest.depth_m, reference + 2e-5) << trial;
     }
-    const Vector3 on_surface = evaluate(surface, result.nearest.u, result.nearest.v).position_m;
-    EXPECT_LT((on_surface - result.nearest.point_m).norm(), 1e-12);
+    if (result.found) {
+      const Vector3 on_surface = evaluate(surface, result.nearest.u, result.nearest.v).position_m;
+      EXPECT_LT((on_surface - result.nearest.point_m).norm(), 1e-12);
+    }
     EXPECT_FALSE(result.overflow) << trial;
   }
 }
