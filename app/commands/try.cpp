@@ -18,6 +18,7 @@
 #include "app/session/run_log.h"
 #include "app/session/session.h"
 #include "engine/base/text.h"
+#include "engine/trial/body_measures.h"
 #include "engine/trial/trial.h"
 #include "engine/trial/trial_report.h"
 #include "haptic/recording_lines.h"
@@ -38,6 +39,29 @@ struct TryOptions {
   bool json = false;
 };
 
+TrialRows make_trial_rows(const Trial& trial, const Simulation& simulation) {
+  TrialRows rows;
+  rows.phase = trial_phase_names[static_cast<std::size_t>(trial.phase())];
+  if (const std::optional<double> turned_deg = trial.turned_deg(simulation)) {
+    rows.tilt =
+        decimals_text(*turned_deg, 1) + "° of " + decimals_text(simulation.scene().trial->angle_deg, 1) + "°";
+  }
+  rows.is_settled = trial.is_settled();
+  rows.largest_speed_m_per_s = trial.largest_speed_m_per_s();
+  rows.largest_overlap_m = trial.largest_penetration_m();
+  const std::vector<Body>& bodies = simulation.scene().bodies;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    if (bodies[b].kind == BodyKind::fixed) {
+      rows.bodies.push_back({bodies[b].name, "fixed"});
+      continue;
+    }
+    const SpringLattice& lattice = simulation.lattice(static_cast<int>(b));
+    rows.inverted_cells += measure_cells(lattice).inverted_cells;
+    rows.bodies.push_back({bodies[b].name, lattice.material().name + ", " + grams_text(lattice.mass_kg())});
+  }
+  return rows;
+}
+
 // Draws the frames of a trial on several threads and writes them. Used by one thread.
 class TrialPictures {
  public:
@@ -49,17 +73,17 @@ class TrialPictures {
   }
 
   // Draws the present state if a frame is due.
-  Status draw(Session& session) {
+  Status draw(const Trial& trial, Session& session) {
     find_next_frame(session);
     const bool is_due =
         frame_tick(next_frame_) == session.simulation.tick() && next_frame_ % options_.every == 0;
-    return is_due ? paint(session) : Status();
+    return is_due ? paint(trial, session) : Status();
   }
 
   // Draws the state at the end, unless it is drawn already, as the frame whose time comes next.
-  Status draw_end(Session& session) {
+  Status draw_end(const Trial& trial, Session& session) {
     find_next_frame(session);
-    return last_painted_ == next_frame_ ? Status() : paint(session);
+    return last_painted_ == next_frame_ ? Status() : paint(trial, session);
   }
 
   Status finish() {
@@ -76,12 +100,13 @@ class TrialPictures {
     while (frame_tick(next_frame_) < session.simulation.tick()) ++next_frame_;
   }
 
-  Status paint(Session& session) {
+  Status paint(const Trial& trial, Session& session) {
     if (crew_.is_full()) {
       if (Status written = write_oldest(); !written) return written;
     }
     PaintingJob job =
         make_painting_job(next_frame_, session, framed_, {options_.size.width, options_.size.height});
+    job.panel.trial = make_trial_rows(trial, session.simulation);
     session.flags = tick_flag_none;
     crew_.start(std::move(job));
     last_painted_ = next_frame_;
@@ -127,7 +152,7 @@ Result<EndedTrial> run_trial(const TryOptions& options, Session& session, TrialP
                    "stopped after " + std::to_string(session.simulation.tick()) + " ticks"};
     }
     if (pictures) {
-      if (Status drawn = pictures->draw(session); !drawn) return drawn.error();
+      if (Status drawn = pictures->draw(trial, session); !drawn) return drawn.error();
     }
     if (const std::optional<Command> command = trial.next_command()) {
       if (Status applied = session.simulation.apply(*command); !applied) return applied.error();
@@ -145,7 +170,7 @@ Result<EndedTrial> run_trial(const TryOptions& options, Session& session, TrialP
     if (tick % 10 == 0) progress.show(std::min(tick, expected_ms), expected_ms);
   }
   if (pictures) {
-    if (Status drawn = pictures->draw_end(session); !drawn) return drawn.error();
+    if (Status drawn = pictures->draw_end(trial, session); !drawn) return drawn.error();
     if (Status finished = pictures->finish(); !finished) return finished.error();
   }
   if (log) {
@@ -190,8 +215,10 @@ void add_trial_facts(FactSheet& facts, const EndedTrial& ended, const Session& s
   facts.add("Substeps", std::to_string(simulation.substeps()) + " a tick", "substeps", simulation.substeps());
   const double factor = ended.elapsed_s > 0.0 ? trial.time_s() / ended.elapsed_s : 0.0;
   facts.add("Speed", decimals_text(factor, 2) + " times real time", "real_time_factor", factor);
-  facts.add("Settled", trial.is_settled() ? "yes" : "no, the bodies still move", "settled",
-            trial.is_settled());
+  const std::string unsettled = "no, a node moved faster than " +
+                                decimals_text(1e3 * settled_speed_m_per_s, 1) + " mm/s in the last " +
+                                decimals_text(settled_time_s, 1) + " s";
+  facts.add("Settled", trial.is_settled() ? "yes" : unsettled, "settled", trial.is_settled());
   facts.add("Largest speed", decimals_text(1e3 * trial.largest_speed_m_per_s(), 3) + " mm/s",
             "largest_speed_m_per_s", trial.largest_speed_m_per_s());
   facts.add("Largest overlap", short_length_text(trial.largest_penetration_m()), "largest_penetration_m",

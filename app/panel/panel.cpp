@@ -63,6 +63,7 @@ void draw_title(const PanelModel& model, const Theme& theme, PanelAnswer& answer
   ImGui::TextUnformatted(model.title.c_str());
   ImGui::PopFont();
   ImGui::TextColored(colour::quiet_ink, "%.2f s", model.time_s);
+  if (model.trial) return;
 
   const ImGuiStyle& style = ImGui::GetStyle();
   const auto width = [&](const char* name) {
@@ -259,6 +260,12 @@ void draw_view(const PanelModel& model, const Theme& theme, PanelAnswer& answer)
   if (changed) answer.requests.emplace_back(ChangeView{overlays_command(overlays, see_through)});
 }
 
+void draw_flags(const PanelModel& model) {
+  for (const std::string& text : flag_texts(model.flags)) {
+    ImGui::TextColored(colour::warning, "%s", text.c_str());
+  }
+}
+
 void draw_device(const PanelModel& model, const Theme& theme, PanelAnswer& answer) {
   {
     const RowGroup group(("Device: " + model.device).c_str(), theme);
@@ -278,13 +285,28 @@ void draw_device(const PanelModel& model, const Theme& theme, PanelAnswer& answe
     fact_row("Rate", rounded_text(model.rate_hz, 0, model.rate_is_nominal ? " Hz (nominal)" : " Hz") + ", " +
                          std::to_string(model.substeps) + (model.substeps == 1 ? " substep" : " substeps"));
   }
-  for (const std::string& text : flag_texts(model.flags)) {
-    ImGui::TextColored(colour::warning, "%s", text.c_str());
-  }
+  draw_flags(model);
   ImGui::PushTextWrapPos(0.0F);
   if (!model.safety_text.empty()) ImGui::TextColored(colour::warning, "%s", model.safety_text.c_str());
   if (!model.drawing_text.empty()) ImGui::TextColored(colour::quiet_ink, "%s", model.drawing_text.c_str());
   ImGui::PopTextWrapPos();
+}
+
+void draw_trial(const PanelModel& model, const TrialRows& trial, const Theme& theme) {
+  if (const RowGroup group("Trial", theme); group) {
+    fact_row("Phase", trial.phase);
+    if (!trial.tilt.empty()) fact_row("Tilt", trial.tilt);
+    fact_row("Speed", rounded_text(1e3 * trial.largest_speed_m_per_s, 2, " mm/s") +
+                          (trial.is_settled ? ", settled" : ", moving"));
+    fact_row("Overlap", rounded_text(1e3 * trial.largest_overlap_m, 3, " mm at most"));
+    fact_row("Inverted", count_text(static_cast<std::size_t>(trial.inverted_cells), "cell", "cells"));
+    fact_row("Substeps", std::to_string(model.substeps) + " per tick");
+    fact_row("Responds", slowness_text(model.inertia_scale));
+  }
+  if (const RowGroup group("Bodies", theme); group) {
+    for (const TrialRows::BodyRow& body : trial.bodies) fact_row(body.name.c_str(), body.text);
+  }
+  draw_flags(model);
 }
 
 }  // namespace
@@ -315,11 +337,15 @@ PanelAnswer draw_panel(const PanelModel& model, const Theme& theme, const Rectan
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
                    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
   draw_title(model, theme, answer);
-  draw_tool(model, theme, answer);
-  draw_material(model, theme, answer);
-  draw_fixtures(model, theme, answer);
-  draw_view(model, theme, answer);
-  draw_device(model, theme, answer);
+  if (model.trial) {
+    draw_trial(model, *model.trial, theme);
+  } else {
+    draw_tool(model, theme, answer);
+    draw_material(model, theme, answer);
+    draw_fixtures(model, theme, answer);
+    draw_view(model, theme, answer);
+    draw_device(model, theme, answer);
+  }
   ImGui::End();
   ImGui::PopFont();
   return answer;

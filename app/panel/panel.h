@@ -1,4 +1,5 @@
-// The panel: tool, material, fixtures, view and device, in the order of work.
+// The panel: tool, material, fixtures, view and device, in the order of work; in frames of a trial, what it
+// has found so far.
 #pragma once
 
 #include <optional>
@@ -13,6 +14,21 @@
 #include "render/view_settings.h"
 
 namespace spoonbill {
+
+// State of a trial, which the panel of its frames shows instead of the tool and the device. All texts are for
+// people.
+struct TrialRows {
+  std::string phase;
+  std::string tilt;  // empty if nothing turns
+  bool is_settled = false;
+  double largest_speed_m_per_s = 0.0;
+  double largest_overlap_m = 0.0;
+  int inverted_cells = 0;
+  struct BodyRow {
+    std::string name, text;
+  };
+  std::vector<BodyRow> bodies;
+};
 
 // Contents of the panel, as plain data. Made once a frame from a snapshot and the settings; the panel has no
 // access to the simulation.
@@ -52,6 +68,7 @@ struct PanelModel {
   std::optional<bool> force_on;  // whether the device's force is on; empty in a replay, which has no device
   std::string safety_text;       // reasons for a limited device force, one per line
   std::string drawing_text;      // details omitted from the picture
+  std::optional<TrialRows> trial;
 };
 
 // Makes the panel's contents. `snapshot` must be of the same session and tick as `facts`. `view` has the

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "engine/base/assert.h"
@@ -227,6 +228,14 @@ void Trial::record_forces(const Simulation& simulation) {
       ring[(ticks_ - 1) % mean_ticks] = now;
     }
   }
+}
+
+std::optional<double> Trial::turned_deg(const Simulation& simulation) const {
+  if (!turn_) return std::nullopt;
+  const std::optional<Pose> pose = simulation.rigid_pose(turn_->body);
+  if (!pose) return std::nullopt;
+  const double sine = pose->orientation.vec().dot(turn_->axis);
+  return 360.0 / std::numbers::pi * std::atan2(sine, pose->orientation.w());
 }
 
 Trial::MeanForces Trial::find_mean_forces(std::size_t body) const {

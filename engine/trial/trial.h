@@ -65,6 +65,8 @@ class Trial {
   // Largest overlap of two bodies in the trial so far (Simulation::largest_overlap_m()).
   double largest_penetration_m() const { return largest_penetration_m_; }
   double time_s() const { return static_cast<double>(ticks_) * tick_s; }
+  // Angle by which the body that turns has turned, in degrees; empty if nothing turns.
+  std::optional<double> turned_deg(const Simulation& simulation) const;
 
   // Means over the last mean_force_s, or over the trial if it is shorter.
   static constexpr double mean_force_s = 0.5;

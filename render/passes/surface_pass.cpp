@@ -6,8 +6,15 @@
 namespace spoonbill {
 namespace {
 
+// Distance by which a translucent surface is moved toward the eye for the depth test. Bodies that rest on
+// each other may overlap by 0.05 mm, which is more along a grazing sight, and would show through each other
+// in patches.
+constexpr float translucent_lift_m = 3e-4f;
+
 constexpr const char* body_vertex_source = R"(
 uniform mat4 world_to_clip;
+uniform vec3 eye;
+uniform float lift;
 layout(location = 0) in float x;
 layout(location = 1) in float y;
 layout(location = 2) in float z;
@@ -20,6 +27,10 @@ void main() {
   position = vec3(x, y, z);
   normal = vec3(nx, ny, nz);
   gl_Position = world_to_clip * vec4(position, 1.0);
+  if (lift > 0.0) {
+    vec4 lifted = world_to_clip * vec4(position + normalize(eye - position) * lift, 1.0);
+    gl_Position.z = lifted.z / lifted.w * gl_Position.w;
+  }
 }
 )";
 
@@ -93,6 +104,7 @@ void SurfacePass::set_uniforms(const Program& program, const FrameView& view, co
   program.set("roughness", look.roughness);
   program.set("metalness", look.metalness);
   program.set("translucency", look.translucency);
+  program.set("lift", look.translucency > 0.0f ? translucent_lift_m : 0.0f);
   program.set("key_map", 0);
   program.set("shadowed", shadow != nullptr ? 1 : 0);
   if (shadow == nullptr) return;

@@ -1,7 +1,5 @@
-// Compares pictures with the approved pictures in screenshots/ by their worst block of 16 x 16 pixels. The
-// pictures show a bend in the default view, the stages of a contact, and presses into materials. A picture
-// that differs is written to picture-failures/ of the build folder, with the approved picture and their
-// difference. tests/approve replaces the approved pictures by those that the program draws.
+// Compares pictures with the approved pictures: a bend in the default view, the stages of a contact, presses
+// into materials, lattices and merged patches.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -22,23 +20,16 @@
 #include "engine/merging/merge.h"
 #include "haptic/virtual_device.h"
 #include "render/image.h"
+#include "tests/pictures/approved.h"
 #include "tests/render/compare.h"
-#include "tests/render/read_png.h"
 
 namespace spoonbill {
 namespace {
-
-// Largest allowed mean difference of a block's channels, in 8-bit steps. Pictures of rasterisers on other
-// processors differ by less than a third of this limit. The smallest change that must be detected makes a
-// difference of more than twice this limit.
-constexpr double tolerance = 2.0;
 
 constexpr int width_px = 1280, height_px = 720;
 
 const std::filesystem::path recording_folder = SPOONBILL_ASSETS "/recordings";
 const std::filesystem::path model_folder = SPOONBILL_ASSETS "/models";
-const std::filesystem::path approved_folder = SPOONBILL_SCREENSHOTS;
-const std::filesystem::path failure_folder = SPOONBILL_PICTURE_FAILURES;
 
 using Edit = std::function<void(ViewSettings&, PanelModel&)>;
 
@@ -162,27 +153,7 @@ class MomentPictures : public ::testing::Test {
 
   static Image picture(const Moment& moment, const Edit& edit = {}) { return paint(stage_of(moment), edit); }
 
-  static void compare(const std::string& name, const Image& actual) {
-    const auto approved_file = approved_folder / (name + ".png");
-    if (std::getenv("SPOONBILL_APPROVE") != nullptr) {
-      ASSERT_TRUE(write_png(approved_file, actual));
-      return;
-    }
-    const auto approved = read_png(approved_file);
-    ASSERT_TRUE(approved) << approved.error().message << "; look at the picture, then run tests/approve";
-    const auto difference = worst_block_difference(approved.value(), actual);
-    ASSERT_TRUE(difference) << difference.error().message;
-    if (difference->worst <= tolerance) return;
-    std::filesystem::create_directories(failure_folder);
-    ASSERT_TRUE(write_png(failure_folder / (name + ".expected.png"), approved.value()));
-    ASSERT_TRUE(write_png(failure_folder / (name + ".actual.png"), actual));
-    ASSERT_TRUE(write_png(failure_folder / (name + ".difference.png"),
-                          difference_picture(approved.value(), actual).value()));
-    FAIL() << name << " differs by " << difference->worst << " in the block at " << difference->x_px << ", "
-           << difference->y_px << "; see " << failure_folder.string();
-  }
-
-  static void compare_moment(const Moment& moment) { compare(moment.name, picture(moment)); }
+  static void compare_moment(const Moment& moment) { compare_with_approved(moment.name, picture(moment)); }
 
   // Returns the difference that each edit makes in the picture.
   static std::vector<double> changes(const Moment& moment, const std::vector<Edit>& edits) {
@@ -218,12 +189,12 @@ TEST_F(BendPictures, Settled) {
 }
 
 TEST_F(BendPictures, SettledWithLatticeAndControlNet) {
-  compare("bend-lattice", picture(settled, [](ViewSettings& view, PanelModel& panel) {
-            view.overlays.lattice = view.overlays.control_net = true;
-            view.see_through_body = true;
-            panel.overlays = view.overlays;
-            panel.see_through_body = true;
-          }));
+  compare_with_approved("bend-lattice", picture(settled, [](ViewSettings& view, PanelModel& panel) {
+                          view.overlays.lattice = view.overlays.control_net = true;
+                          view.see_through_body = true;
+                          panel.overlays = view.overlays;
+                          panel.see_through_body = true;
+                        }));
 }
 
 TEST_F(BendPictures, WhatMustShowShows) {
@@ -242,10 +213,10 @@ TEST_F(BendPictures, WhatMustShowShows) {
   }
   const std::vector<double> change = changes(pushed, edits);
   EXPECT_EQ(change[0], 0.0);  // an edit that changes nothing leaves the picture equal
-  EXPECT_GT(change[1], tolerance) << "a light moved by 5 degrees";
-  EXPECT_GT(change[2], tolerance) << "one changed label";
+  EXPECT_GT(change[1], picture_tolerance) << "a light moved by 5 degrees";
+  EXPECT_GT(change[2], picture_tolerance) << "one changed label";
   for (std::size_t overlay = 3; overlay < change.size(); ++overlay) {
-    EXPECT_GT(change[overlay], tolerance) << "missing overlay " << overlay - 3;
+    EXPECT_GT(change[overlay], picture_tolerance) << "missing overlay " << overlay - 3;
   }
 }
 
@@ -307,7 +278,7 @@ using LatticePictures = MomentPictures;
 
 TEST_F(LatticePictures, CellsOfJelly) {
   const Stage stage = stage_of_document(document_of("jelly"));
-  compare("jelly-cells", paint(stage, {}));
+  compare_with_approved("jelly-cells", paint(stage, {}));
 }
 
 // Draws two patches with different counts of control points and different knots, and the merged patch.
@@ -336,12 +307,12 @@ class MergePictures : public MomentPictures {
 
 TEST_F(MergePictures, HandleAndBowl) {
   const Stage stage = stage_of_document(parts());
-  compare("spoon-parts", paint(stage, {}));
+  compare_with_approved("spoon-parts", paint(stage, {}));
 }
 
 TEST_F(MergePictures, Spoon) {
   const Stage stage = stage_of_document(spoon());
-  compare("spoon-merged", paint(stage, {}));
+  compare_with_approved("spoon-merged", paint(stage, {}));
 }
 
 }  // namespace
