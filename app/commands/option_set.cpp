@@ -4,6 +4,7 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <sstream>
+#include <type_traits>
 
 #include "app/console.h"
 #include "engine/base/text.h"
@@ -49,6 +50,23 @@ std::function<void(const Text&)> throwing(const std::string& name,
   };
 }
 
+// Returns a check that a text is a number in the range.
+template <class Number>
+CLI::Validator within(Range<Number> range) {
+  const auto check = [range](const std::string& text) -> std::string {
+    const std::string limits =
+        number_text(static_cast<double>(range.low)) + " to " + number_text(static_cast<double>(range.high));
+    Number number{};
+    if (!CLI::detail::lexical_cast(text, number)) {
+      const char* const kind = std::is_integral_v<Number> ? "whole number" : "number";
+      return "'" + excerpt(text) + "' is not a " + kind + ", which must be from " + limits;
+    }
+    const bool is_within = range.low <= number && number <= range.high;
+    return is_within ? std::string() : text + " is outside the range " + limits;
+  };
+  return CLI::Validator("").operation([check](std::string& text) { return check(text); });
+}
+
 }  // namespace
 
 CommandOption CommandOption::require() const {
@@ -60,15 +78,15 @@ CommandOption CommandOption::show_as(const std::string& form) const {
   return *this;
 }
 CommandOption CommandOption::limit(Range<int> range) const {
-  option_->check(CLI::Range(range.low, range.high).description(""));
+  option_->check(within(range));
   return *this;
 }
 CommandOption CommandOption::limit(Range<double> range) const {
-  option_->check(CLI::Range(range.low, range.high).description(""));
+  option_->check(within(range));
   return *this;
 }
 CommandOption CommandOption::limit(Range<std::uint64_t> range) const {
-  option_->check(CLI::Range(range.low, range.high).description(""));
+  option_->check(within(range));
   return *this;
 }
 CommandOption CommandOption::need(CommandOption other) const {

@@ -296,6 +296,12 @@ bool BodyPairContact::find(const IndexedBody& first, const IndexedBody& second) 
       proximity_);
 }
 
+void BodyPairContact::forget() {
+  if (const auto* const surfaces = std::get_if<std::unique_ptr<SurfaceProximity>>(&proximity_)) {
+    (*surfaces)->forget();
+  }
+}
+
 std::optional<SurfaceSpot> BodyPairContact::deepest_on_first(const BodyState& first) const {
   if (const auto* const meshes = std::get_if<std::unique_ptr<MeshProximity>>(&proximity_)) {
     return find_deepest((*meshes)->surface_samples(), first.mapping());
@@ -327,7 +333,8 @@ BodySelfContact::BodySelfContact(const BodyState& body) {
 bool BodySelfContact::add_contacts(const IndexedBody& body, BodyContacts& contacts) const {
   if (!proximity_) return true;
   const auto cell_m = static_cast<double>(body.state->lattice.cell_size_m());
-  proximity_->find(body.state->mapping().current(), contact_margin_cells * cell_m);
+  const double motion_m = 2.0 * tick_s * body.state->fastest_m_per_s();
+  proximity_->find(body.state->mapping().current(), std::max(contact_margin_cells * cell_m, motion_m));
   if (const TrimmedArea* const trim = body.state->trim.get()) {
     proximity_->keep_if([&](const NearPoint& near) {
       return trim->contains(near.u, near.v) && trim->contains(near.other_u, near.other_v);

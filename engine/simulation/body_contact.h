@@ -48,7 +48,7 @@ bool resolve_shell_gap(const ShellOrSolid& of, const ShellOrSolid& other, double
 inline constexpr double body_depth_limit_cells = 0.07;
 
 // Gap below which a constraint is added for a point, in lattice cells of the coarser body that is deformable.
-// It is about the movement in one tick. Bodies that move faster get a larger margin.
+// It is about the movement in one tick. Faster bodies get a larger margin.
 inline constexpr double contact_margin_cells = 0.08;
 
 // State of a body, and its index in the simulation.
@@ -75,6 +75,8 @@ class BodyPairContact {
   // Finds the points on the skin of each body that are near the skin of the other. Returns false if a
   // capacity was exceeded.
   bool find(const IndexedBody& first, const IndexedBody& second);
+  // Forgets what earlier calls of find() have found. Must be called before the bodies jump.
+  void forget();
   // Smallest gap that the last find() found, negative where the bodies overlap; infinite if they are not
   // near.
   double least_gap_m() const {

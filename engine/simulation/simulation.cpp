@@ -484,6 +484,7 @@ Status Simulation::restore(const ShapeState& shape) {
     body.update_skin();
   }
   state_->ground_contact.forget();
+  for (BodyPairContact& pair : state_->pairs) pair.forget();
   state_->between.forget();
   state_->searched.forget();
   state_->tool.contact.release();

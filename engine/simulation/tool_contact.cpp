@@ -165,6 +165,12 @@ void ToolContact::find(BodyContact& contact, const BodyState& body, const Tool& 
   const double thickness = body.shell_thickness_m;
   // A trimmed surface is open: a tool can get inside through its holes.
   const bool closed = !(thickness > 0.0) && !body.trim;
+  const Box box = bounding_box(body.mapping().current().net);
+  if (shape_.is_beyond(box.centre(), 0.5 * box.size(), margin + thickness)) {
+    contact.collision = {};
+    contact.collider.clear_near_samples();
+    return;
+  }
   contact.collision = contact.collider.collide(body.mapping().current(), shape_, margin + thickness, closed);
   if (thickness > 0.0) select_shell_face(contact, body, margin);
 }

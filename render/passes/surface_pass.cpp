@@ -7,8 +7,8 @@ namespace spoonbill {
 namespace {
 
 // Distance by which a translucent surface is moved toward the eye for the depth test. Bodies that rest on
-// each other may overlap by 0.05 mm, which is more along a grazing sight, and would show through each other
-// in patches.
+// each other may overlap by 0.05 mm, which is more along a grazing line of sight, and would show through each
+// other in patches.
 constexpr float translucent_lift_m = 3e-4f;
 
 constexpr const char* body_vertex_source = R"(

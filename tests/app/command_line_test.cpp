@@ -81,7 +81,11 @@ TEST(CommandLine, SaysWhatIsWrongAndWhereHelpIs) {
        "'7' is not a length with a unit, like 5mm (mm, cm, m or in); see"},
       {{"change", model, "reverse", "v", "--tolerance", "0", "--out", out},
        "must be from 1e-06 mm to 100 mm; see"},
-      {{"change", model, "reverse", "v", "--body", "none", "--out", out}, "not in range 1 to 1000"}};
+      {{"change", model, "reverse", "v", "--body", "none", "--out", out},
+       "'none' is not a whole number, which must be from 1 to 1000"},
+      {{"change", model, "reverse", "v", "--body", "1001", "--out", out},
+       "1001 is outside the range 1 to 1000"},
+      {{"try", model, "--seconds", "2s"}, "'2s' is not a number, which must be from 0 to 600"}};
   for (const auto& [arguments, told] : wrong) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.code, exit_wrong_use) << told;

@@ -155,9 +155,9 @@ double NearPoints::offered_distance_m(int sample) const {
 
 namespace {
 
-// Largest depth at which a sample is still followed, in margins. A sample that is far behind a wall may be in
-// front of another one.
-constexpr double deepest_followed = 4.0;
+// Largest depth at which a sample is still followed, as a multiple of the reach. A sample that is far behind
+// a wall may be in front of another one.
+constexpr double deepest_followed = 2.0;
 
 }  // namespace
 
@@ -171,7 +171,9 @@ void NearPoints::compute_nearest(const SurfaceLevels& other, double outside, dou
     const bool is_known = n < followed_.size() && followed_[n].is_nearest;
     near.gap_m = outside * (is_known ? followed_[n].height_m : find_nearest(other, near));
     near.normal *= outside;
-    if (!(near.gap_m > reach_m || near.gap_m < -deepest_followed * margin_m)) {
+    // A sample beside the rim of a shell may be far from it at a small gap.
+    const double most_m = near.gap_m < 0.0 ? deepest_followed * reach_m : reach_m;
+    if ((near.point_m - near.other_m).norm() <= most_m) {
       candidates_.push_back({near.sample, near.other_u, near.other_v});
     }
   }
@@ -248,7 +250,7 @@ void NearPoints::add_between_samples(const NearPoints& other, double outside) {
 namespace {
 
 // Samples are followed only if the surfaces move so slowly that cells need not be searched in this number of
-// ticks. Otherwise the larger reach of the search would cost more than it saves.
+// calls. Otherwise the larger reach of the search would cost more than it saves.
 constexpr int least_followed = 16;
 
 int control_points(const NestedGrid& nested) {
@@ -273,34 +275,48 @@ void SurfaceProximity::find(const Surface& first, const Surface& second, double 
   const double moved_m = first_motion_.since_m(first.net, frame) + second_motion_.since_m(second.net, frame);
   const bool is_searched = margin_m + moved_m <= searched_m_;
   ++finds_;
+  bool is_fresh = false;
   if (!is_searched) {
+    // Surfaces that have jumped may now be near in other places.
+    is_fresh = !(moved_m <= searched_m_);
+    if (is_fresh) forget();
     const bool is_slow = least_followed * moved_m <= finds_ * margin_m;
-    searched_m_ = is_slow ? 2.0 * margin_m : margin_m;
+    searched_m_ = is_slow && !is_crowded_ ? 2.0 * margin_m : margin_m;
     finds_ = 0;
     first_motion_.remember(first.net, frame);
     second_motion_.remember(second.net, frame);
   }
   first_.follow(second_.levels());
   second_.follow(first_.levels());
-  if (!is_searched) search_cells(searched_m_);
+  if (!is_searched) search_cells(searched_m_, is_fresh);
   // Candidates remain so until the next search of cells, because they may come near again.
   const double reach_m = is_searched ? infinity : searched_m_;
   first_.compute_nearest(second_.levels(), second_outside, margin_m, reach_m);
   second_.compute_nearest(first_.levels(), 1.0, margin_m, reach_m);
   first_.add_between_samples(second_, second_outside);
   second_.add_between_samples(first_, 1.0);
-  if (overflow()) searched_m_ = -1.0;  // candidates may be missing
+  if (!overflow()) return;
+  is_crowded_ = true;
+  searched_m_ = -1.0;  // candidates may be missing
 }
 
-void SurfaceProximity::search_cells(double reach_m) {
+void SurfaceProximity::forget() {
+  first_.forget();
+  second_.forget();
+  searched_m_ = -1.0;
+}
+
+void SurfaceProximity::search_cells(double reach_m, bool is_fresh) {
   ++cell_searches_;
   missing_cells_ = false;
   cells_.update();
   const ElementTree &one = cells_.first_tree(), &other = cells_.second_tree();
   if (one.box(one.root()).gap(other.box(other.root())) > reach_m) return;
+  // Bodies that begin in each other have samples that are deeper than the reach.
+  const double corner_m = is_fresh ? infinity : reach_m;
   for (const CellPair& pair : cells_.find_within(reach_m)) {
-    first_.offer_corners(pair.first, second_.levels(), pair.second, reach_m);
-    second_.offer_corners(pair.second, first_.levels(), pair.first, reach_m);
+    first_.offer_corners(pair.first, second_.levels(), pair.second, corner_m);
+    second_.offer_corners(pair.second, first_.levels(), pair.first, corner_m);
   }
   missing_cells_ = cells_.overflow();
 }

@@ -46,6 +46,8 @@ class NearPoints {
   // Finds the nearest points of the candidates of the last compute_nearest(), each from its last nearest
   // point. `other` must be the same surface as then; it may have moved and changed its shape.
   void follow(const SurfaceLevels& other);
+  // Removes all candidates.
+  void forget() { candidates_.clear(); }
   // Compares corners of a cell with `patch`, a cell of the other surface, and remembers the nearest point for
   // each corner. Must be called for all cells that may be within `margin_m` of the patch: a corner that is
   // shared by cells is compared only with one of them. Corners farther than the margin from the exact surface
@@ -59,8 +61,9 @@ class NearPoints {
   // triangles.
   double offered_distance_m(int sample) const;
   // Replaces each sample's nearest point by the nearest point of the exact other surface. Removes samples
-  // beyond the margin; those within `reach_m`, which is at least the margin, are candidates for follow().
-  // `outside` is -1 if the other surface's du x dv points inward, else 1.
+  // beyond the margin. Samples within `reach_m`, which is at least the margin, are candidates for follow(),
+  // and so are samples up to twice as deep inside the other body. `outside` is -1 if the other surface's du x
+  // dv points inward, else 1.
   void compute_nearest(const SurfaceLevels& other, double outside, double margin_m, double reach_m);
   // Adds the locally nearest points between samples, where the surfaces may be nearer to each other than at
   // any sample. `other` holds the points of the other surface, which may be this one.
@@ -138,12 +141,16 @@ class SurfaceProximity {
   SurfaceProximity& operator=(const SurfaceProximity&) = delete;
 
   // Finds all points within `margin_m` of the other surface, and samples that have sunk deeper into the other
-  // body, down to four margins. The surfaces must have the grids' knots and bound bodies. On the first
-  // surface, du x dv must point outward. `second_outside` is 1 if it points outward on the second surface
-  // too, and -1 if it points inward, as on a mirrored surface. The motion of the surfaces is measured
+  // body, down to four margins. A sample in a groove narrower than two margins may be found on the farther
+  // wall only, until cells are searched again. The surfaces must have the grids' knots and bound bodies. On
+  // the first surface, du x dv must point outward. `second_outside` is 1 if it points outward on the second
+  // surface too, and -1 if it points inward, as on a mirrored surface. The motion of the surfaces is measured
   // relative to `frame`, which should be the pose of one of them if it is rigid.
   void find(const Surface& first, const Surface& second, double margin_m, double second_outside = 1.0,
             const Pose& frame = {});
+
+  // Forgets what earlier calls of find() have found. Must be called before surfaces jump or are replaced.
+  void forget();
 
   // Removes the first surface's points for which `keep_first` returns false, and the second surface's points
   // for which `keep_second` returns false. Both functions may modify the point.
@@ -169,8 +176,8 @@ class SurfaceProximity {
   int cell_searches() const { return cell_searches_; }
 
  private:
-  // Compares cells within `reach_m` of each other.
-  void search_cells(double reach_m);
+  // Compares cells within `reach_m` of each other. A fresh search follows no candidates.
+  void search_cells(double reach_m, bool is_fresh);
 
   NearPoints first_, second_;
   CellPairs cells_;
@@ -179,6 +186,7 @@ class SurfaceProximity {
   int finds_ = 0;                           // number of calls of find() since the last search of cells
   int cell_searches_ = 0;
   bool missing_cells_ = false;
+  bool is_crowded_ = false;  // whether a search of twice the margin has exceeded a capacity
 };
 
 }  // namespace spoonbill

@@ -105,13 +105,6 @@ CollisionResult SurfaceCollider::collide(const Surface& surface, const ToolShape
   SPOONBILL_ASSERT(!tool.is_solid() || tool.distance_field != nullptr);
   CollisionResult result;
   moved_ |= levels_.begin(surface, samples);
-  const Box box = bounding_box(surface.net);
-  if (tool.is_beyond(box.centre(), 0.5 * box.size(), margin_m)) {
-    near_.clear();
-    cells_.clear();
-    finest_.clear();
-    return result;
-  }
   find_nearest(tool, margin_m, Proof::deepest, result);
   collect_near_samples(tool, margin_m, result);
   result.nearest = contact_at(surface, best_);

@@ -108,6 +108,8 @@ class SurfaceCollider {
   Clearance clearance(const Surface& surface, const ToolShape& tool);
 
   const std::vector<NearSample>& near_samples() const { return near_; }
+  // Removes the samples near the last tool. For a tool that is known to be far from the surface.
+  void clear_near_samples() { near_.clear(); }
 
   // Returns the levels of detail of the surface in the last collide(). For tests and overlays.
   SurfaceLevels& levels() { return levels_; }

@@ -44,6 +44,7 @@ void PairStages::add_contacts(const Surface& first, const Surface& second, const
                               const PairResult& result, ContactStages& stages) {
   const bool near = std::isfinite(result.distance_m);
   if (!result.touching && !near) return;
+  proximity_->forget();  // the surfaces may be others than those of the last call
   proximity_->find(first, second, query.reach_m);
   stages.overflow |= proximity_->overflow();
   for (const NearPoint& point : proximity_->first_points()) {

@@ -59,17 +59,15 @@ double mutual_friction(const BodyPoint& first, const BodyPoint& second) {
   return std::min(first.point.friction(*first.lattice), second.point.friction(*second.lattice));
 }
 
-// Bound of the sum of the absolute weights of an embedded point. Weights sum to 1; some are slightly
-// negative.
-constexpr double most_absolute_weight = 1.5;
-
-double find_mobility(const BodyPoint& point) {
-  double most = 0.0;
+PointMobility find_mobility(const BodyPoint& point) {
+  PointMobility found;
   for (int i = 0; i < point.point.count; ++i) {
+    const double weight = std::abs(static_cast<double>(point.point.weight[i]));
     const auto inverse_mass = static_cast<double>(point.lattice->inverse_mass(point.point.node[i]));
-    most = std::max(most, std::abs(static_cast<double>(point.point.weight[i])) * inverse_mass);
+    found.node_per_kg = std::max(found.node_per_kg, weight * inverse_mass);
+    found.absolute_weight += weight;
   }
-  return most;
+  return found;
 }
 
 // Limits a contact force of the last tick to what push and friction allow with the present normal. A force
@@ -233,11 +231,18 @@ void BodyContacts::push(std::span<const LatticeView> lattices, Constraint& const
     impulse_ns_[second] -= impulse;
     const double size_ns = impulse.norm();
     changed_m_per_s_[first] +=
-        size_ns * (most_absolute_weight * constraint.first_mobility + frame_compliance(lattices[first]));
+        size_ns * (constraint.first_mobility.node_per_kg + frame_compliance(lattices[first]));
     changed_m_per_s_[second] +=
-        size_ns * (most_absolute_weight * constraint.second_mobility + frame_compliance(lattices[second]));
+        size_ns * (constraint.second_mobility.node_per_kg + frame_compliance(lattices[second]));
   }
   constraint.acted = true;
+}
+
+bool BodyContacts::may_act(const Constraint& constraint) const {
+  const double changed_m_per_s =
+      constraint.first_mobility.absolute_weight * changed_m_per_s_[constraint.first_body] +
+      constraint.second_mobility.absolute_weight * changed_m_per_s_[constraint.second_body];
+  return !(constraint.spare_m_per_s > changed_m_per_s);
 }
 
 void BodyContacts::pass(std::span<const LatticeView> lattices, const ContactPass& pass) {
@@ -247,8 +252,7 @@ void BodyContacts::pass(std::span<const LatticeView> lattices, const ContactPass
     if (constraint.moved_by != pass.moved_by) continue;
     if (pass.moved_by == MovedBy::solvers) {
       constraint.gap_m = find_gap_m(lattices, constraint);
-    } else if (constraint.spare_m_per_s >
-               changed_m_per_s_[constraint.first_body] + changed_m_per_s_[constraint.second_body]) {
+    } else if (!may_act(constraint)) {
       continue;
     }
     const auto cap = static_cast<double>(std::min(caps[constraint.first_body], caps[constraint.second_body]));
@@ -261,7 +265,8 @@ void BodyContacts::separate(std::span<const LatticeView> lattices, double h_s,
   const double part = std::min(max_separation, separation_per_s * h_s);
   for (int c = 0; c < count_; ++c) {
     const Constraint& constraint = constraints_[c];
-    // At most a part of a gap closes in a substep.
+    // The constraint lets at most a part of a gap close. Where other pushes close it all the same, the
+    // overlap is corrected from the next substep on.
     if (!constraint.separates || constraint.sample < 0 || constraint.gap_m > 0.0) continue;
     const auto first = static_cast<std::size_t>(constraint.first_body);
     const auto second = static_cast<std::size_t>(constraint.second_body);

@@ -21,6 +21,14 @@ struct BodyPoint {
   EmbeddedPoint point;
 };
 
+// How the velocities of nodes and of an embedded point depend on each other.
+struct PointMobility {
+  // Largest velocity change of a node per impulse on the point, 1/kg, without frames.
+  double node_per_kg = 0.0;
+  // Sum of the absolute weights. The point's velocity changes at most by this multiple of the nodes' changes.
+  double absolute_weight = 0.0;
+};
+
 // Contacts between two bodies, or of a body with itself: velocity constraints between points of
 // their surfaces, which are solved after the contacts of tools. Impulses are equal and opposite, so momentum
 // is conserved. A push on the lattice of a soft tool also acts on its frame (see MovingFrame).
@@ -146,8 +154,7 @@ class BodyContacts {
     // Separation speed at the last start() above the smallest admissible one, for a constraint without a
     // force. While it is larger than what pushes can have changed, the constraint does not act.
     double spare_m_per_s = 0.0;
-    // Largest velocity change of a node per impulse on each point, 1/kg, without frames.
-    double first_mobility = 0.0, second_mobility = 0.0;
+    PointMobility first_mobility, second_mobility;
     double friction = 0.0;  // the smaller coefficient of the two surfaces
     MovedBy moved_by = MovedBy::springs;
     bool separates = false;  // whether separate() corrects an overlap, instead of the push
@@ -160,6 +167,8 @@ class BodyContacts {
   };
   static double find_gap_m(std::span<const LatticeView> lattices, const Constraint& constraint);
   static Vector3 find_relative_m_per_s(std::span<const LatticeView> lattices, const Constraint& constraint);
+  // Returns whether the pushes since start() may have made a constraint act that did not act then.
+  bool may_act(const Constraint& constraint) const;
   void solve(std::span<const LatticeView> lattices, Constraint& constraint, double h, double cap);
   void push(std::span<const LatticeView> lattices, Constraint& constraint, const Vector3& impulse);
 
@@ -173,7 +182,7 @@ class BodyContacts {
   KeptValues<Kept> kept_;  // of the last tick
   // Impulses on each body since begin() of the constraints that substeps solve, N s.
   std::array<Vector3, lattice_capacity> impulse_ns_;
-  // Bound of how much pushes have changed the velocity of a point of each body since start(), m/s.
+  // Bound of how much pushes have changed the velocity of a node of each body since start(), m/s.
   std::array<double, lattice_capacity> changed_m_per_s_{};
   int count_ = 0;
   bool has_searched_ = false;  // whether a tick has begun since forget()

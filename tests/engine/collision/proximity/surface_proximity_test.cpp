@@ -108,6 +108,29 @@ TEST(SurfaceProximity, FollowsBodiesThatTurnTogether) {
   EXPECT_EQ(followed.cell_searches(), 2);
 }
 
+// A body that jumps through the other one has no points left from before.
+TEST(SurfaceProximity, FollowsNothingThatJumps) {
+  const Surface body = ellipsoid_tube(12, 12);
+  const NestedGrid grid = fine_grid(body);
+  const auto other_at = [&](double y) {
+    return at_pose(body, {Vector3(0.0, y, 0.0), Quaternion::Identity()});
+  };
+  for (const bool is_told : {false, true}) {
+    SurfaceProximity followed(grid, grid);
+    for (int t = 0; t < 20; ++t) followed.find(body, other_at(0.0199), near_m);
+    EXPECT_FALSE(followed.first_points().empty());
+    if (is_told) followed.forget();
+    SurfaceProximity fresh(grid, grid);
+    followed.find(body, other_at(-0.0199), near_m);
+    fresh.find(body, other_at(-0.0199), near_m);
+    ASSERT_EQ(followed.first_points().size(), fresh.first_points().size());
+    for (std::size_t p = 0; p < fresh.first_points().size(); ++p) {
+      EXPECT_EQ(followed.first_points()[p].sample, fresh.first_points()[p].sample);
+      EXPECT_EQ(followed.first_points()[p].gap_m, fresh.first_points()[p].gap_m);
+    }
+  }
+}
+
 TEST(NetMotion, IsThatOfTheFarthestControlPointInTheFrame) {
   const Surface body = ellipsoid_tube(8, 8);
   NetMotion motion(body.net.rows * body.net.columns);

@@ -129,10 +129,8 @@ TEST(SurfaceCollider, AgreesWithDenseSampling) {
       ASSERT_TRUE(result.found) << trial << " distance " << reference;
       EXPECT_LE(-result.nearest.depth_m, reference + 2e-5) << trial;
     }
-    if (result.found) {
-      const Vector3 on_surface = evaluate(surface, result.nearest.u, result.nearest.v).position_m;
-      EXPECT_LT((on_surface - result.nearest.point_m).norm(), 1e-12);
-    }
+    const Vector3 on_surface = evaluate(surface, result.nearest.u, result.nearest.v).position_m;
+    EXPECT_LT((on_surface - result.nearest.point_m).norm(), 1e-12);
     EXPECT_FALSE(result.overflow) << trial;
   }
 }

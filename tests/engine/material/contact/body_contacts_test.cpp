@@ -121,6 +121,26 @@ TEST(BodyContacts, APushIsPassedOnWithinASubstep) {
   }
 }
 
+// A point beyond its cell has negative weights, and moves farther than any node when a node is pushed.
+TEST(BodyContacts, APushIsPassedOnToAPointBeyondItsCell) {
+  Row row(3);
+  row.set_velocity(0, 1.0);
+  BodyPoint beyond = row.point(1);
+  beyond.point.count = 2;
+  beyond.point.weight[0] = 3.0f;
+  beyond.point.weight[1] = -2.0f;
+  BodyPoint pushed = row.point(1);
+  pushed.point.count = 1;
+  pushed.point.weight[0] = 1.0f;
+  BodyContacts contacts(4);
+  ASSERT_TRUE(contacts.add(pushed, row.point(0), Vector3::UnitX(), 1e-6, infinitely_deep, 0));
+  // The pushed node gets 0.11 m/s, and the point beyond it three times as much.
+  ASSERT_TRUE(contacts.add(row.point(2), beyond, Vector3::UnitX(), 4e-5, infinitely_deep, 1));
+  contacts.begin();
+  substep(contacts, row);
+  EXPECT_TRUE(contacts.acted(1, 2));
+}
+
 TEST(BodyContacts, AGapIsTakenOverLittleByLittle) {
   Row row(2);
   BodyContacts contacts(4);
