@@ -15,6 +15,7 @@ class NetMotion {
 
   // Remembers the control points relative to `frame`. There must be as many as on construction.
   void remember(const ControlNet& net, const Pose& frame);
+  void forget() { is_known_ = false; }
   // Returns an upper bound of how far a point of the surface has moved relative to the frame since
   // remember(), m; infinite before. Not a number if a control point is not finite. A point of a B-spline
   // surface is a weighted mean of control points, so it moves no farther than one of them.

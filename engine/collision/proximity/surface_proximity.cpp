@@ -303,6 +303,8 @@ void SurfaceProximity::find(const Surface& first, const Surface& second, double 
 void SurfaceProximity::forget() {
   first_.forget();
   second_.forget();
+  first_motion_.forget();
+  second_motion_.forget();
   searched_m_ = -1.0;
 }
 

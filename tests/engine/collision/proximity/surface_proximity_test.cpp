@@ -108,26 +108,32 @@ TEST(SurfaceProximity, FollowsBodiesThatTurnTogether) {
   EXPECT_EQ(followed.cell_searches(), 2);
 }
 
-// A body that jumps through the other one has no points left from before.
-TEST(SurfaceProximity, FollowsNothingThatJumps) {
+void expect_equal(const std::vector<NearPoint>& found, const std::vector<NearPoint>& expected) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t p = 0; p < expected.size(); ++p) {
+    EXPECT_EQ(found[p].sample, expected[p].sample);
+    EXPECT_EQ(found[p].gap_m, expected[p].gap_m);
+  }
+}
+
+// After a jump through the other body, and after forget(), nothing is left from before: the results are those
+// of a fresh search, bit for bit, deep samples included.
+TEST(SurfaceProximity, FollowsNothingThatJumpsOrIsForgotten) {
   const Surface body = ellipsoid_tube(12, 12);
   const NestedGrid grid = fine_grid(body);
   const auto other_at = [&](double y) {
     return at_pose(body, {Vector3(0.0, y, 0.0), Quaternion::Identity()});
   };
-  for (const bool is_told : {false, true}) {
-    SurfaceProximity followed(grid, grid);
-    for (int t = 0; t < 20; ++t) followed.find(body, other_at(0.0199), near_m);
+  for (const bool jumps : {false, true}) {
+    SurfaceProximity followed(grid, grid), fresh(grid, grid);
+    for (int t = 0; t < 20; ++t) followed.find(body, other_at(0.0125 + 1e-6 * t), near_m);
     EXPECT_FALSE(followed.first_points().empty());
-    if (is_told) followed.forget();
-    SurfaceProximity fresh(grid, grid);
-    followed.find(body, other_at(-0.0199), near_m);
-    fresh.find(body, other_at(-0.0199), near_m);
-    ASSERT_EQ(followed.first_points().size(), fresh.first_points().size());
-    for (std::size_t p = 0; p < fresh.first_points().size(); ++p) {
-      EXPECT_EQ(followed.first_points()[p].sample, fresh.first_points()[p].sample);
-      EXPECT_EQ(followed.first_points()[p].gap_m, fresh.first_points()[p].gap_m);
-    }
+    if (!jumps) followed.forget();
+    const Surface last = other_at(jumps ? -0.0125 : 0.01252);
+    followed.find(body, last, near_m);
+    fresh.find(body, last, near_m);
+    expect_equal(followed.first_points(), fresh.first_points());
+    expect_equal(followed.second_points(), fresh.second_points());
   }
 }
 
