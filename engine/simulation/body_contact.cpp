@@ -286,7 +286,8 @@ bool BodyPairContact::find(const IndexedBody& first, const IndexedBody& second) 
   };
   const double cell = std::max(size_of_cells(*first.state), size_of_cells(*second.state));
   const double motion_m = tick_s * (first.state->fastest_m_per_s() + second.state->fastest_m_per_s());
-  const double margin_m = std::max(contact_margin_cells * cell, motion_m);
+  // Points that come within reach during a tick need their constraints one tick earlier.
+  const double margin_m = std::max(contact_margin_cells * cell, 2.0 * motion_m);
   deepest_new_m_ = std::max(deepest_new_cells * cell, motion_m);
   return std::visit(
       [&](const auto& proximity) {
