@@ -65,10 +65,10 @@ struct PanelModel {
   bool rate_is_nominal = true;  // true in lock-step, where no clock measures the rate
   int substeps = 0;
   std::uint32_t flags = tick_flag_none;
-  std::optional<bool> force_on;  // whether the device's force is on; empty in a replay, which has no device
-  std::string safety_text;       // reasons for a limited device force, one per line
-  std::string drawing_text;      // details omitted from the picture
-  std::optional<TrialRows> trial;
+  std::optional<bool> force_on;    // whether the device's force is on; empty in a replay, which has no device
+  std::string safety_text;         // reasons for a limited device force, one per line
+  std::string drawing_text;        // details omitted from the picture
+  std::optional<TrialRows> trial;  // only in frames of a trial
 };
 
 // Makes the panel's contents. `snapshot` must be of the same session and tick as `facts`. `view` has the

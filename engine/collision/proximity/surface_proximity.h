@@ -141,11 +141,12 @@ class SurfaceProximity {
   SurfaceProximity& operator=(const SurfaceProximity&) = delete;
 
   // Finds all points within `margin_m` of the other surface, and samples that have sunk deeper into the other
-  // body, down to four margins. A sample in a groove narrower than two margins may be found on the farther
-  // wall only, until cells are searched again. The surfaces must have the grids' knots and bound bodies. On
-  // the first surface, du x dv must point outward. `second_outside` is 1 if it points outward on the second
-  // surface too, and -1 if it points inward, as on a mirrored surface. The motion of the surfaces is measured
-  // relative to `frame`, which should be the pose of one of them if it is rigid.
+  // body: down to two margins, or four while the surfaces move slowly. A sample in a groove narrower than two
+  // margins may be found on the farther wall only, until cells are searched again. The surfaces must have the
+  // grids' knots and bound bodies. On the first surface, du x dv must point outward. `second_outside` is 1 if
+  // it points outward on the second surface too, and -1 if it points inward, as on a mirrored surface. The
+  // motion of the surfaces is measured relative to `frame`, which should be the pose of one of them if it is
+  // rigid.
   void find(const Surface& first, const Surface& second, double margin_m, double second_outside = 1.0,
             const Pose& frame = {});
 
