@@ -60,12 +60,15 @@ double tip_height_m(const LiveFrame& frame) {
   return lowest;
 }
 
-// Presses the end of the handle down by more than a millimetre, for 60 ticks at least, and releases it.
+// Presses the end of the handle down by more than a millimetre, in 100 ticks at least, and releases it. The
+// hand moves slowly: at once, on a busy machine, it would move so far from tick to tick that it slips past
+// the handle.
 void stroke(Live& live) {
   const double before = tip_height_m(live->frame());
-  live.aim(at(0.05, 0.0));
-  ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return frame.facts.in_stroke; }));
-  wait_ticks(*live, 60);
+  for (int step = 0; step <= 10; ++step) {
+    live.aim(at(0.05, 0.02 - 0.002 * step));
+    wait_ticks(*live, 10);
+  }
   ASSERT_TRUE(wait_for(*live, [&](const LiveFrame& frame) { return tip_height_m(frame) < before - 1e-3; }));
   live.aim(at(0.05, 0.03));
   ASSERT_TRUE(wait_for(*live, [](const LiveFrame& frame) { return !frame.facts.in_stroke; }));
