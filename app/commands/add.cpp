@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -24,22 +25,10 @@ struct AddOptions {
   OutputOptions how;
   std::vector<std::filesystem::path> models;
   std::vector<Pose> poses;
-  std::vector<std::string> fixed;  // names of bodies, as they are in the new document
+  std::vector<std::string> fixed, rigid, held;  // names of bodies, as they are in the new document
   std::filesystem::path out;
   bool json = false;
 };
-
-// Moves a body with its loads and the motions of its supports.
-void move_body(const Pose& pose, Body& body) {
-  body.surface = placed(std::move(body.surface), pose);
-  for (Load& load : body.loads) {
-    if (auto* const force = std::get_if<ForceLoad>(&load)) force->force_n = pose.orientation * force->force_n;
-    if (auto* const force = std::get_if<PointLoad>(&load)) force->force_n = pose.orientation * force->force_n;
-  }
-  for (Support& support : body.supports) {
-    if (support.motion) support.motion->displacement_m = pose.orientation * support.motion->displacement_m;
-  }
-}
 
 // Returns the name, with a number appended if it is taken.
 std::string make_unique(const std::string& name, const std::vector<std::string>& taken) {
@@ -88,20 +77,62 @@ std::string describe_left_out(const Document& document, const std::string& sourc
   return rest.empty() ? rest : source + ": left out: " + rest + "; they are those of the first model";
 }
 
-Status fix_bodies(const std::vector<std::string>& names, Document& document) {
+// Makes the named bodies rigid, each by `change`. `option` is the option that names them.
+Status make_rigid(const std::vector<std::string>& names, const char* option, Document& document,
+                  const std::function<void(Body&)>& change) {
   for (const std::string& name : names) {
     const auto body = std::find_if(document.scene.bodies.begin(), document.scene.bodies.end(),
                                    [&](const Body& candidate) { return candidate.name == name; });
     if (body == document.scene.bodies.end()) {
       std::string known;
       for (const Body& each : document.scene.bodies) known += (known.empty() ? "" : ", ") + each.name;
-      return Error{ErrorCode::unknown, "--fixed: no body is called '" + name + "'; choose from " + known,
-                   "--fixed"};
+      return Error{ErrorCode::unknown, option + (": no body is called '" + name + "'; choose from " + known),
+                   option};
     }
-    body->kind = BodyKind::fixed;
+    change(*body);
     if (Status checked = check_kind(*body); !checked) return checked.error().in("body \"" + name + "\"");
   }
   return {};
+}
+
+Status choose_kinds(const AddOptions& options, Document& document) {
+  std::vector<std::string> all = options.fixed;
+  all.insert(all.end(), options.rigid.begin(), options.rigid.end());
+  all.insert(all.end(), options.held.begin(), options.held.end());
+  std::sort(all.begin(), all.end());
+  if (const auto twice = std::adjacent_find(all.begin(), all.end()); twice != all.end()) {
+    return Error{ErrorCode::inconsistent,
+                 "'" + *twice + "' is named twice; name it in one of --fixed, --rigid and --held", "--fixed"};
+  }
+  const auto fix = [](Body& body) {
+    body.kind = BodyKind::fixed;
+    body.hand.reset();
+  };
+  const auto free = [](Body& body) {
+    body.kind = BodyKind::rigid;
+    body.hand.reset();
+  };
+  const auto hold = [](Body& body) {
+    body.kind = BodyKind::rigid;
+    if (!body.hand) body.hand.emplace();
+  };
+  if (Status made = make_rigid(options.fixed, "--fixed", document, fix); !made) return made;
+  if (Status made = make_rigid(options.rigid, "--rigid", document, free); !made) return made;
+  return make_rigid(options.held, "--held", document, hold);
+}
+
+// Appends an option that takes names of bodies.
+void add_names_option(const OptionSet& parser, const char* option, std::vector<std::string>& names,
+                      const char* help) {
+  parser
+      .add_parsed_list(
+          option,
+          [&names](const std::vector<std::string>& given) -> Status {
+            names = given;
+            return {};
+          },
+          help)
+      .show_as("NAME");
 }
 
 Status add_models(const AddOptions& options, Console& console) {
@@ -127,7 +158,8 @@ Status add_models(const AddOptions& options, Console& console) {
   sum->name = options.out.stem().string();
   const int bodies = static_cast<int>(sum->scene.bodies.size());
   if (Status count = check_range("the number of bodies", bodies, body_count_range); !count) return count;
-  if (Status fixed = fix_bodies(options.fixed, *sum); !fixed) return fixed;
+  if (Status chosen = choose_kinds(options, *sum); !chosen) return chosen;
+  if (const std::string note = drop_unfit_trial(sum->scene); !note.empty()) notes.push_back(note);
   const InterruptWatch until_written;
   if (Status written = write_document(*sum, options.out, options.how); !written) return written;
   FactSheet facts;
@@ -171,15 +203,12 @@ CommandEntry add_add(OptionSet root) {
           "--pose "
           "moves the first model, and so on; default: none")
       .show_as("POSE");
-  parser
-      .add_parsed_list(
-          "--fixed",
-          [options](const std::vector<std::string>& names) -> Status {
-            options->fixed = names;
-            return {};
-          },
-          "Name of a body that becomes rigid and fixed; may be repeated. Default: none")
-      .show_as("NAME");
+  add_names_option(parser, "--fixed", options->fixed,
+                   "Name of a body that becomes rigid and fixed; may be repeated. Default: none");
+  add_names_option(parser, "--rigid", options->rigid,
+                   "Name of a body that becomes rigid and free; may be repeated. Default: none");
+  add_names_option(parser, "--held", options->held,
+                   "Name of a body that becomes rigid and held by a hand; may be repeated. Default: none");
   add_force_option(parser, options->how);
   add_document_output(parser, options->out).require();
   add_json_option(parser, options->json);

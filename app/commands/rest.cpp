@@ -88,8 +88,8 @@ Status rest(const RestOptions& options, Console& console) {
   std::vector<Surface> bent;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Body& body = scene.bodies[b];
-    if (body.kind == BodyKind::fixed) {
-      facts.add("Body", body.name + ", fixed", "", nullptr);
+    if (body.kind != BodyKind::deformable) {
+      facts.add("Body", body.name + ", " + body_kind_names[static_cast<std::size_t>(body.kind)], "", nullptr);
       bent.push_back(body.surface);
       continue;
     }

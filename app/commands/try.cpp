@@ -51,8 +51,10 @@ TrialRows make_trial_rows(const Trial& trial, const Simulation& simulation) {
   rows.largest_overlap_m = trial.largest_penetration_m();
   const std::vector<Body>& bodies = simulation.scene().bodies;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    if (bodies[b].kind == BodyKind::fixed) {
-      rows.bodies.push_back({bodies[b].name, "fixed"});
+    if (bodies[b].kind != BodyKind::deformable) {
+      const RigidDynamics* const rigid = simulation.rigid_dynamics(static_cast<int>(b));
+      const std::string kind = kind_text(bodies[b]);
+      rows.bodies.push_back({bodies[b].name, rigid ? kind + ", " + grams_text(rigid->mass().mass_kg) : kind});
       continue;
     }
     const SpringLattice& lattice = simulation.lattice(static_cast<int>(b));
@@ -179,10 +181,11 @@ Result<EndedTrial> run_trial(const TryOptions& options, Session& session, TrialP
   return ended;
 }
 
-void add_trial_body(FactSheet& facts, const TrialBodyReport& body, BodyKind kind, Json& list) {
-  facts.add("Body", body.name + (kind == BodyKind::fixed ? ", fixed" : ""), "", nullptr);
+void add_trial_body(FactSheet& facts, const TrialBodyReport& body, const Body& source, Json& list) {
+  const bool deforms = source.kind == BodyKind::deformable;
+  facts.add("Body", body.name + (deforms ? "" : ", " + kind_text(source)), "", nullptr);
   facts.add("  Centre of mass", position_text(body.centre_of_mass_m), "", nullptr);
-  if (kind == BodyKind::deformable) {
+  if (deforms) {
     facts.add("  Volume", percent_text(body.volume_ratio) + " of that at rest", "", nullptr);
     facts.add(
         "  Cells",
@@ -196,7 +199,7 @@ void add_trial_body(FactSheet& facts, const TrialBodyReport& body, BodyKind kind
                 newtons_text(body.contact_force_n.norm()) + " of other bodies",
             "", nullptr);
   list.push_back({{"name", body.name},
-                  {"kind", body_kind_names[static_cast<std::size_t>(kind)]},
+                  {"kind", body_kind_names[static_cast<std::size_t>(source.kind)]},
                   {"centre_of_mass_m", components_json(body.centre_of_mass_m)},
                   {"volume_ratio", body.volume_ratio},
                   {"smallest_jacobian", body.smallest_jacobian},
@@ -229,7 +232,7 @@ void add_trial_facts(FactSheet& facts, const EndedTrial& ended, const Session& s
   facts.add("", "", "stopped", ended.held ? Json() : Json(ended.held.error().message));
   Json list = Json::array();
   for (std::size_t b = 0; b < report.bodies.size(); ++b) {
-    add_trial_body(facts, report.bodies[b], simulation.scene().bodies[b].kind, list);
+    add_trial_body(facts, report.bodies[b], simulation.scene().bodies[b], list);
   }
   facts.add("", "", "bodies", list);
 }
@@ -290,7 +293,8 @@ CommandEntry add_try(OptionSet root) {
   parser.set_footer(
       "Gives all bodies their true inertia and lets gravity act; without gravity in the document, standard\n"
       "gravity along -y. The document's \"trial\" may name a body that is lowered until others bear its\n"
-      "weight, and a fixed body that then turns. The bodies settle before the turn, for 10 s at most. "
+      "weight, and a fixed or held body that then turns. The bodies settle before the turn, for 10 s at "
+      "most. "
       "Bodies\n"
       "have settled when no node has moved faster than 0.1 mm/s for 0.2 s. A trial that cannot hold a body,\n"
       "or in which nothing bears the lowered body within 30 s, ends with an error.\n"

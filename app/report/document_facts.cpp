@@ -15,6 +15,12 @@
 #include "engine/inspection/surface_check.h"
 
 namespace spoonbill {
+
+std::string kind_text(const Body& body) {
+  return body_kind_names[static_cast<std::size_t>(body.kind)] +
+         std::string(body.hand ? ", held by a hand" : "");
+}
+
 namespace {
 
 // Numbers of sample points per direction. A trimmed surface gets fewer, because cutting cells along trim
@@ -163,10 +169,12 @@ std::string three_text(const double (&values)[3], double scale, int decimals) {
          " / " + decimals_text(scale * values[2], decimals);
 }
 
-Json add_fixed_body(FactSheet& facts, const std::string& suffix, const std::optional<BodyMass>& mass) {
-  facts.add("Kind" + suffix, "fixed: rigid, without a lattice", "", nullptr);
+// Adds a body without a lattice.
+Json add_rigid_body(FactSheet& facts, const std::string& suffix, const Body& body,
+                    const std::optional<BodyMass>& mass) {
+  facts.add("Kind" + suffix, kind_text(body) + ": without a lattice", "", nullptr);
   if (mass) facts.add("Mass" + suffix, grams_text(mass->mass_kg()), "", nullptr);
-  Json json = {{"kind", "fixed"}};
+  Json json = {{"kind", body_kind_names[static_cast<std::size_t>(body.kind)]}};
   if (mass) json["mass_kg"] = mass->mass_kg();
   return json;
 }
@@ -316,7 +324,7 @@ void add_cell_facts(FactSheet& facts, const Simulation& simulation,
   Json list = Json::array();
   std::size_t mapped = 0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    if (bodies[b].kind == BodyKind::fixed) continue;
+    if (bodies[b].kind != BodyKind::deformable) continue;
     const bool has_map = bodies[b].lattice.feature_map && mapped < maps.size();
     const FeatureMapReport* map = has_map ? &maps[mapped++] : nullptr;
     const std::string suffix = bodies.size() == 1 ? "" : " of " + bodies[b].name;
@@ -329,7 +337,7 @@ void add_elasticity_facts(FactSheet& facts, const Simulation& simulation) {
   Json all = Json::array();
   const std::vector<Body>& bodies = simulation.scene().bodies;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    if (bodies[b].kind == BodyKind::fixed) continue;
+    if (bodies[b].kind != BodyKind::deformable) continue;
     const LatticeReport& report = simulation.report(static_cast<int>(b));
     const std::string suffix = bodies.size() == 1 ? "" : " of " + bodies[b].name;
     facts.add("Achieved E" + suffix, three_text(report.youngs_modulus_ratio, 100.0, 1) + " % along x, y, z",
@@ -353,8 +361,8 @@ void add_simulation_facts(FactSheet& facts, const Snapshot& snapshot, const std:
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const std::string suffix = bodies.size() == 1 ? "" : " of " + bodies[b].name;
     const std::optional<BodyMass> mass = compute_body_mass(bodies[b]);
-    list.push_back(bodies[b].kind == BodyKind::fixed
-                       ? add_fixed_body(facts, suffix, mass)
+    list.push_back(bodies[b].kind != BodyKind::deformable
+                       ? add_rigid_body(facts, suffix, bodies[b], mass)
                        : add_simulated_body(facts, suffix, snapshot.bodies[b], mass));
     is_whole = is_whole && mass;
     mass_kg += mass ? mass->mass_kg() : 0.0;

@@ -16,6 +16,9 @@
 
 namespace spoonbill {
 
+// Returns "deformable", "fixed", "rigid", or "rigid, held by a hand".
+std::string kind_text(const Body& body);
+
 // Returns the box around a grid of points on the surface, accurate to about a thousandth of the size of the
 // box. For a trimmed surface it is the box around the area that the loops keep; invalid loops are ignored.
 Box extent_of(const Surface& surface, const std::vector<TrimLoop>& trims = {});

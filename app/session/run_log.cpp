@@ -74,13 +74,18 @@ void RunLog::add_body(const Session& session, int body, std::string_view phase) 
   const SpringLattice& lattice = simulation.lattice(body);
   const Vector3& gravity = simulation.scene().sculpting.gravity_m_per_s2;
   const std::optional<Pose> pose = simulation.rigid_pose(body);
+  const RigidDynamics* const rigid = simulation.rigid_dynamics(body);
   append_start(text_, simulation.tick(), logged.name, logged.kind);
-  if (pose) {
+  if (rigid) {
+    append_pose(text_, rigid->pose());
+    append_vector(text_, rigid->centre_m());
+    append_csv_number(text_, simulation.fastest_m_per_s(body));
+  } else if (pose) {
     const Body& at_rest = simulation.scene().bodies[static_cast<std::size_t>(body)];
     if (logged.rest.x != at_rest.surface.net.x || logged.rest.y != at_rest.surface.net.y ||
         logged.rest.z != at_rest.surface.net.z) {
       logged.rest = at_rest.surface.net;
-      logged.at_rest = find_rigid_mass(at_rest, at_rest.surface);
+      logged.at_rest = find_fixed_mass(at_rest, at_rest.surface);
     }
     append_pose(text_, *pose);
     append_vector(text_, pose->position_m + pose->orientation * logged.at_rest.centre_m);
@@ -96,10 +101,17 @@ void RunLog::add_body(const Session& session, int body, std::string_view phase) 
   append_csv_number(text_, simulation.contact_area_m2(body));
   append_vector(text_, ground_n);
   Vector3 support_n = Vector3::Zero();
-  if (pose) support_n = -contact_n - ground_n - logged.at_rest.mass_kg * gravity;
+  if (rigid) {
+    support_n = rigid->hand_impulse_ns() / tick_s;
+  } else if (pose) {
+    support_n = -contact_n - ground_n - logged.at_rest.mass_kg * gravity;
+  }
   for (int s = 0; s < logged.support_count; ++s) support_n += simulation.support_force_n(s, body);
   append_vector(text_, support_n);
-  if (pose) {
+  if (rigid) {
+    append_empty(text_, 1);
+    append_csv_number(text_, rigid->energy_j(gravity));
+  } else if (pose) {
     append_empty(text_, 2);
   } else {
     append_csv_number(text_, measure_cells(lattice).inverted_cells);

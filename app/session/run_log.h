@@ -20,7 +20,8 @@ enum class LoggedTool { none, with_force };
 // columns are:
 //
 // - tick, time_s; body: the name of the body, or "tool"; kind: that of the body, or "tool"
-// - x_m to qz: pose of a fixed body, which maps its rest shape to the present one, or of the tool's proxy
+// - x_m to qz: pose of a fixed or rigid body, which maps its rest shape to the present one, or of the tool's
+//   proxy
 // - centre_x_m to centre_z_m: centre of mass
 // - largest_speed_m_per_s: highest speed of a node; a body that is lowered counts as at rest
 // - contact_x_n to contact_z_n: force of all other bodies and of the tool on the body; for the tool, the
@@ -28,9 +29,10 @@ enum class LoggedTool { none, with_force };
 // - contact_area_m2: area on which contacts push the body (Simulation::contact_area_m2())
 // - ground_x_n to ground_z_n: force of the ground on the body
 // - support_x_n to support_z_n: force of the body's supports on it; for a fixed body, the force that holds
-//   it. Fixing planes are not included
+//   it; for a held body, the force of the hand. Fixing planes are not included
 // - inverted_cells
-// - energy_j: kinetic, gravitational and elastic energy; empty for a body that creeps or flows
+// - energy_j: kinetic, gravitational and elastic energy, without that of a hand's spring; empty for a fixed
+//   body, and for one that creeps or flows
 // - phase: the part of a trial
 //
 // A field that has no meaning for a row is empty.

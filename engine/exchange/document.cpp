@@ -66,6 +66,11 @@ std::optional<Body> read_body(FieldReader reader, int version) {
   if (!surface || !reader.status().ok()) return std::nullopt;
   Body body{std::move(name), *std::move(surface), std::move(material), lattice};
   body.kind = kind;
+  if (reader.has("hand")) {
+    FieldReader hand_reader = reader.inner("hand");
+    body.hand = read_fields<HandSpring>(hand_reader);
+    hand_reader.finish();
+  }
   read_loads_and_supports(reader, body);
   if (reader.has("shell_thickness_mm")) {
     body.shell_thickness_m = reader.length_m("shell_thickness_mm", shell_thickness_range_m);
@@ -74,8 +79,17 @@ std::optional<Body> read_body(FieldReader reader, int version) {
   body.trims = std::move(trims);
   if (version > 1 && reader.has("solid")) body.solid = reader.text("solid");
   if (const Status status = check_kind(body); !status.ok()) {
-    reader.refuse(status.error().field, "must be missing, because the body is fixed; or make it deformable",
+    const bool is_hand = status.error().field == std::string("hand");
+    reader.refuse(status.error().field,
+                  is_hand ? "must be missing, because the body is not rigid; or make it rigid"
+                          : "must be missing, because the body is not deformable; or make it deformable",
                   status.error().code);
+  }
+  if (reader.has("pose")) {
+    FieldReader pose_reader = reader.inner("pose");
+    const BodyPlacement placement = read_fields<BodyPlacement>(pose_reader);
+    pose_reader.finish();
+    if (reader.status().ok()) move_body(placement.pose(), body);
   }
   reader.finish();
   if (!reader.status().ok()) return std::nullopt;
@@ -154,6 +168,10 @@ Json body_to_json(const Body& body) {
   json["surface"] = surface_to_json(body.surface);
   add_trims(body.trims, json["surface"]);
   add_fields(body.material, json["material"]);
+  if (body.hand) {
+    json["hand"] = Json::object();  // the fields with default values are not written
+    add_fields(*body.hand, json["hand"]);
+  }
   if (body.kind == BodyKind::deformable) add_lattice_request(body.lattice, json["lattice"]);
   for (const Load& load : body.loads) json["loads"].push_back(load_to_json(load));
   for (const Support& support : body.supports) json["supports"].push_back(support_to_json(support));

@@ -17,8 +17,11 @@
 //        "flow_rate_per_s": 240,
 //        "hardening": 0.1, "stiffening": 2, "friction": 0.3,     each optional, 0
 //        "relaxing_share": 0.5, "relaxation_time_s": 30},        optional, no creep
-//      "kind": "fixed",               optional, "deformable"; a fixed body has no lattice, regions, loads or
-//                                     supports
+//      "kind": "fixed",               optional, "deformable"; a fixed or "rigid" body has no lattice,
+//                                     regions, loads or supports
+//      "hand": {"stiffness_n_per_m": 300, "turn_stiffness_nm_per_rad": 1},     optional, a rigid body is free
+//      "pose": {"position_mm": [0, 20, 0], "axis": [0, 0, 1], "angle_deg": 15},    optional, none; applied
+//                                     when the body is read, and not written again (BodyPlacement)
 //      "lattice": {"node_budget": 2000,                          or "nodes": [4, 8, 60]
 //        "feature_map": {"draws_per_node": 500, "first_rate": 0.1, "last_rate": 0.01,
 //          "first_neighbourhood": 2, "last_neighbourhood": 1, "seed": 1},      optional

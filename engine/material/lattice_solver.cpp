@@ -194,9 +194,10 @@ struct Relaxation {
   Vector3 frame_m = Vector3::Zero();
 
   std::size_t count() const { return lattices.size(); }
-  // A lattice is moved by an implicit solver, by a prescribed motion, or by its springs.
+  // A lattice is moved by an implicit solver, as a rigid body, or by its springs.
   bool has_solver(std::size_t at) const { return lattices[at].implicit_solver != nullptr; }
   bool is_rigid(std::size_t at) const { return lattices[at].rigid_motion != nullptr; }
+  RigidDynamics* dynamics(std::size_t at) const { return lattices[at].dynamics; }
   bool has_springs(std::size_t at) const { return !has_solver(at) && !is_rigid(at); }
   SpringLattice& lattice(std::size_t at) const { return *lattices[at].lattice; }
 };
@@ -219,9 +220,41 @@ int count_weights(const Substep& substep) {
   return substep.index % stride == 0 ? std::min(stride, substep.count - substep.index) : 0;
 }
 
+// Returns the target of the hand at the start of a substep. In a tick, the hand turns by so little that its
+// orientation may be interpolated linearly.
+HoldTarget find_hold_target(const RigidMotion& motion, const Vector3& rest_centre_m, double fraction,
+                            double time_s) {
+  const Pose &from = motion.start, &to = motion.end;
+  const Vector3 start = from.position_m + from.orientation * rest_centre_m;
+  const Vector3 end = to.position_m + to.orientation * rest_centre_m;
+  const double sign = from.orientation.dot(to.orientation) < 0.0 ? -1.0 : 1.0;
+  HoldTarget target;
+  target.pose.orientation.coeffs() =
+      (1.0 - fraction) * from.orientation.coeffs() + fraction * sign * to.orientation.coeffs();
+  target.pose.orientation.normalize();
+  target.pose.position_m = start + fraction * (end - start) - target.pose.orientation * rest_centre_m;
+  target.velocity_m_per_s = (end - start) / time_s;
+  target.spin_rad_per_s = 2.0 * sign / time_s * (to.orientation * from.orientation.conjugate()).vec();
+  return target;
+}
+
+void kick_rigid_bodies(const Relaxation& relaxation, const Substep& substep) {
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    RigidDynamics* const dynamics = relaxation.dynamics(at);
+    if (dynamics == nullptr) continue;
+    const RelaxedLattice& relaxed = relaxation.lattices[at];
+    const HoldTarget target =
+        find_hold_target(*relaxed.rigid_motion, dynamics->mass().centre_m,
+                         static_cast<double>(substep.index) / substep.count, relaxation.time_s);
+    dynamics->kick(relaxation.view[at], static_cast<double>(substep.h), relaxed.gravity_m_per_s2,
+                   relaxation.drag_per_s[at], relaxed.hand, target);
+  }
+}
+
 void kick(Relaxation& relaxation, const Substep& substep) {
   const float h = substep.h;
   const int weights = count_weights(substep);
+  kick_rigid_bodies(relaxation, substep);
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) continue;
     const SpringLattice& lattice = relaxation.lattice(at);
@@ -406,10 +439,15 @@ Vector3 rigid_displacement(const Pose& pose, const Vector3& rest_m) {
   return pose.position_m + pose.orientation * rest_m - rest_m;
 }
 
-// Sets the velocities of the nodes of rigid bodies for the tick.
-void begin_rigid_motions(const Relaxation& relaxation) {
+// Starts the tick of rigid bodies: sets the velocities of the nodes of those with a prescribed motion.
+void begin_rigid_motions(Relaxation& relaxation) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.is_rigid(at)) continue;
+    if (RigidDynamics* const dynamics = relaxation.dynamics(at)) {
+      relaxation.view[at].rigid = dynamics;
+      dynamics->begin_tick(relaxation.view[at]);
+      continue;
+    }
     const RigidMotion& motion = *relaxation.lattices[at].rigid_motion;
     const std::vector<Vector3>& nodes = relaxation.lattice(at).mesh().nodes;
     for (std::size_t n = 0; n < nodes.size(); ++n) {
@@ -420,10 +458,15 @@ void begin_rigid_motions(const Relaxation& relaxation) {
   }
 }
 
-// Moves the nodes of rigid bodies to `fraction` of their motion in the tick. They move along straight lines,
-// as their velocities say.
-void move_rigid_bodies(const Relaxation& relaxation, double fraction) {
+// Moves rigid bodies by a substep. Nodes with a prescribed motion move along straight lines, as their
+// velocities say.
+void move_rigid_bodies(const Relaxation& relaxation, const Substep& substep) {
+  const double fraction = static_cast<double>(substep.index + 1) / substep.count;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    if (RigidDynamics* const dynamics = relaxation.dynamics(at)) {
+      dynamics->drift(relaxation.view[at], static_cast<double>(substep.h));
+      continue;
+    }
     if (!relaxation.is_rigid(at) || !relaxation.lattices[at].rigid_motion->moves) continue;
     const RigidMotion& motion = *relaxation.lattices[at].rigid_motion;
     const std::vector<Vector3>& nodes = relaxation.lattice(at).mesh().nodes;
@@ -505,6 +548,7 @@ int drift(Relaxation& relaxation, float h) {
 Substeps choose_substeps(const Relaxation& relaxation, const RelaxSettings& settings) {
   Substeps most{1, false};
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    if (relaxation.dynamics(at)) most.count = std::max(most.count, settings.substeps);
     if (!relaxation.has_springs(at)) continue;
     const Substeps required = choose_substeps(relaxation.lattice(at), settings);
     if (required.slowed) most.slowed_lattice = static_cast<int>(at);
@@ -642,6 +686,12 @@ void end_implicit_steps(const Relaxation& relaxation, GroundContacts* ground) {
   }
 }
 
+// Returns the cap of a rigid body, which limits only how fast contacts correct an overlap.
+float rigid_speed_cap(const Relaxation& relaxation, std::size_t at, float h) {
+  if (relaxation.dynamics(at) == nullptr) return std::numeric_limits<float>::infinity();
+  return static_cast<float>(speed_cap_cells) * relaxation.lattice(at).cell_size_m() / h;
+}
+
 }  // namespace
 
 RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,
@@ -660,8 +710,8 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   report.at_fault = substeps.slowed_lattice;
   const float h = static_cast<float>(settings.time_s / substeps.count);
   for (std::size_t at = 0; at < lattices.size(); ++at) {
-    relaxation.cap[at] = relaxation.is_rigid(at) ? std::numeric_limits<float>::infinity()
-                                                 : speed_cap(relaxation.lattice(at), h);
+    relaxation.cap[at] =
+        relaxation.is_rigid(at) ? rigid_speed_cap(relaxation, at, h) : speed_cap(relaxation.lattice(at), h);
   }
   report.speed_capped = begin_supports(relaxation);
   begin_rigid_motions(relaxation);
@@ -683,7 +733,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     }
     if (soft) move_soft_tool(relaxation, *soft);
     move_supported_nodes(relaxation, static_cast<double>(s + 1) / substeps.count);
-    move_rigid_bodies(relaxation, static_cast<double>(s + 1) / substeps.count);
+    move_rigid_bodies(relaxation, substep);
     if (between && between->count() > 0) separate_bodies(relaxation, *between, h);
   }
   end_implicit_steps(relaxation, ground);

@@ -11,6 +11,7 @@
 #include "engine/material/contact/contact_constraints.h"
 #include "engine/material/contact/ground_contacts.h"
 #include "engine/material/implicit/implicit_solver.h"
+#include "engine/material/rigid/rigid_dynamics.h"
 #include "engine/material/springs/spring_lattice.h"
 
 namespace spoonbill {
@@ -65,8 +66,8 @@ struct RelaxSettings {
   bool is_critically_damped = false;  // true if each body is critically damped, see critical_damping_per_s()
 };
 
-// Prescribed motion of a rigid body through a tick. The poses map the rest position of a node to its
-// position.
+// Prescribed motion of a rigid body, or of the hand that holds it, through a tick. The poses map the rest
+// position of a node to its position.
 struct RigidMotion {
   Pose start, end;
   bool moves = false;  // false if both poses are the same
@@ -81,8 +82,12 @@ struct RelaxedLattice {
   ImplicitSolver* implicit_solver = nullptr;
   std::span<SupportedNodes> supports = {};
   // Motion of a rigid body; null for a deformable body. The lattice of a rigid body is the frame to which its
-  // surface is attached (rigid_frame()). All of its nodes are fixed, and they follow the motion.
+  // surface is attached (rigid_frame()). Its nodes follow the motion, unless `dynamics` moves them.
   const RigidMotion* rigid_motion = nullptr;
+  // Dynamics of a rigid body that contacts can move; null for any other body. `hand` is the spring by which a
+  // hand, which follows `rigid_motion`, holds the body; null if the body is free.
+  RigidDynamics* dynamics = nullptr;
+  const HandSpring* hand = nullptr;
 };
 
 // Results of relax() for one tick.
@@ -104,7 +109,8 @@ struct TouchingTool {
 // Advances at most lattice_capacity lattices by one tick, in as many substeps as the stiffest one needs. A
 // lattice with an implicit solver takes one implicit step per tick, which computes its velocities without the
 // contacts. The lattice moves with these velocities in each substep, and the contacts change them. If all
-// lattices have implicit solvers, a tick takes one substep.
+// lattices have implicit solvers, a tick takes one substep. Rigid bodies that contacts can move take the
+// substeps of the settings at least.
 //
 // In each substep the tools act in their order, then bodies on each other, then the ground. A soft tool moves
 // after the bodies have acted on it. A tool that touches only implicitly stepped lattices acts once, at the

@@ -1,5 +1,7 @@
 #include "engine/scene/body.h"
 
+#include <Eigen/Geometry>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <variant>
@@ -23,6 +25,21 @@ Status check_point(const Load& load, std::size_t index, const Surface& surface) 
 }
 
 }  // namespace
+
+Pose BodyPlacement::pose() const {
+  return {position_m, Quaternion(Eigen::AngleAxisd(angle_deg * std::numbers::pi / 180.0, axis))};
+}
+
+void move_body(const Pose& pose, Body& body) {
+  body.surface = placed(std::move(body.surface), pose);
+  for (Load& load : body.loads) {
+    if (auto* const force = std::get_if<ForceLoad>(&load)) force->force_n = pose.orientation * force->force_n;
+    if (auto* const force = std::get_if<PointLoad>(&load)) force->force_n = pose.orientation * force->force_n;
+  }
+  for (Support& support : body.supports) {
+    if (support.motion) support.motion->displacement_m = pose.orientation * support.motion->displacement_m;
+  }
+}
 
 Status check_feature_map(const FeatureMapSettings& settings) {
   return check_fields("feature_map: ", settings);
@@ -68,14 +85,19 @@ Status check_loads(const Body& body) {
 }
 
 Status check_kind(const Body& body) {
-  if (body.kind != BodyKind::fixed) return {};
+  if (body.hand && body.kind != BodyKind::rigid) {
+    return Error{ErrorCode::inconsistent,
+                 "a hand holds only a rigid body; remove hand, or make the body rigid", "hand"};
+  }
+  if (body.kind == BodyKind::deformable) return {};
   const char* const field = !body.regions.empty()    ? "regions"
                             : !body.loads.empty()    ? "loads"
                             : !body.supports.empty() ? "supports"
                                                      : nullptr;
   if (field == nullptr) return {};
   return Error{ErrorCode::inconsistent,
-               std::string("a fixed body has no ") + field + "; remove them, or make the body deformable",
+               std::string("a ") + body_kind_names[static_cast<std::size_t>(body.kind)] + " body has no " +
+                   field + "; remove them, or make the body deformable",
                field};
 }
 

@@ -74,10 +74,28 @@ struct LatticeRequest {
 inline constexpr Range<int> node_budget_range{50, 40000};
 inline constexpr Range<int> node_count_range{2, 64};  // number of nodes in each direction
 
-// Kind of a body in a simulation. A deformable body has a lattice. A fixed body is rigid and has none: it
-// stays where it is, unless TurnBody (scene.h) turns it, and nothing that touches it can move it.
-enum class BodyKind { deformable, fixed };
-inline constexpr const char* body_kind_names[] = {"deformable", "fixed"};
+// Kind of a body in a simulation. A deformable body has a lattice. Fixed and rigid bodies have none. A fixed
+// body stays where it is, unless TurnBody (scene.h) turns it, and nothing that touches it can move it. A
+// rigid body has a mass and moves freely, or a hand holds it by a spring (HandSpring).
+enum class BodyKind { deformable, fixed, rigid };
+inline constexpr const char* body_kind_names[] = {"deformable", "fixed", "rigid"};
+
+// Critically damped spring by which a hand holds a rigid body where it is, or where TurnBody turns it. The
+// defaults are those of a loosely held spoon.
+struct HandSpring {
+  double stiffness_n_per_m = 300.0;
+  double turn_stiffness_nm_per_rad = 1.0;
+};
+inline constexpr Range<double> hand_spring_range_n_per_m{0.1, 1e5};
+inline constexpr Range<double> hand_turn_spring_range_nm_per_rad{1e-4, 1e3};
+
+template <>
+inline constexpr auto fields_of<HandSpring> = std::to_array<Field<HandSpring>>({
+    number_field("stiffness_n_per_m", &HandSpring::stiffness_n_per_m, hand_spring_range_n_per_m).optional(),
+    number_field("turn_stiffness_nm_per_rad", &HandSpring::turn_stiffness_nm_per_rad,
+                 hand_turn_spring_range_nm_per_rad)
+        .optional(),
+});
 
 // A solid bounded by one tube (periodic in u, closed by a pole at both ends of v) or one ring (periodic in u
 // and v). With a shell thickness, the body is instead a thin shell behind one surface (shell_lattice.h).
@@ -85,7 +103,7 @@ struct Body {
   std::string name;
   Surface surface;
   Material material;       // material of the body outside its regions
-  LatticeRequest lattice;  // ignored if the body is fixed
+  LatticeRequest lattice;  // ignored unless the body is deformable
   // Parts of the body with their own material or friction. Where parts overlap, the later part applies.
   std::vector<MaterialRegion> regions = {};
   std::vector<Load> loads = {};
@@ -96,17 +114,40 @@ struct Body {
   // Name of the CAD solid that has this body as a face; empty if the body is not a face of a solid.
   std::string solid = {};
   BodyKind kind = BodyKind::deformable;
+  std::optional<HandSpring> hand = {};  // of a rigid body that a hand holds; empty for any other body
 };
 
 inline constexpr Range<int> control_point_count_range{2, 200};  // number of control points in each direction
 inline constexpr Range<double> shell_thickness_range_m{1e-5, 0.1};
+
+// Placement of a body in a document: the body is turned about an axis through the origin, then moved. Reading
+// a document moves the body there (move_body()), and writing it states the moved surface without a placement.
+struct BodyPlacement {
+  Vector3 position_m = Vector3::Zero();
+  Vector3 axis = Vector3::UnitX();  // unit vector; a positive angle is counter-clockwise seen against it
+  double angle_deg = 0.0;
+
+  Pose pose() const;
+};
+inline constexpr Range<double> placement_angle_range_deg{-360.0, 360.0};
+
+template <>
+inline constexpr auto fields_of<BodyPlacement> = std::to_array<Field<BodyPlacement>>({
+    position_field("position_mm", &BodyPlacement::position_m).optional(),
+    direction_field("axis", &BodyPlacement::axis).optional(),
+    number_field("angle_deg", &BodyPlacement::angle_deg, placement_angle_range_deg).optional(),
+});
+
+// Moves a body with its loads and the motions of its supports.
+void move_body(const Pose& pose, Body& body);
 
 // Returns an error that names the first field out of range, with its value and its range.
 Status check_feature_map(const FeatureMapSettings& settings);
 Status check_lattice_request(const LatticeRequest& lattice);
 // Checks the numbers of loads and supports, and that point loads are within the surface's domain.
 Status check_loads(const Body& body);
-// Refuses a fixed body with regions, loads or supports, which would have no effect.
+// Refuses a fixed or rigid body with regions, loads or supports, which would have no effect, and a hand at a
+// body that is not rigid.
 Status check_kind(const Body& body);
 
 // Returns the area within the body's trim loops; null if the body has no trims.

@@ -43,9 +43,10 @@ Status check_symmetry(const Symmetry& symmetry) {
 
 namespace {
 
-// Checks that a body has this name and is of this kind. The error is about the field of the trial that names
-// the body. An empty name passes.
-Status check_named_body(const Scene& scene, const std::string& name, BodyKind kind, const char* field) {
+// Checks that a body has this name and that `fits` accepts it. `wanted` says what the body must be. The error
+// is about the field of the trial that names the body. An empty name passes.
+Status check_named_body(const Scene& scene, const std::string& name, const char* field, const char* wanted,
+                        bool (*fits)(const Body&)) {
   if (name.empty()) return {};
   const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(),
                                  [&](const Body& candidate) { return candidate.name == name; });
@@ -53,11 +54,9 @@ Status check_named_body(const Scene& scene, const std::string& name, BodyKind ki
     return Error{ErrorCode::unknown, "trial: " + std::string(field) + ": no body is called \"" + name + "\"",
                  field};
   }
-  if (body->kind == kind) return {};
+  if (fits(*body)) return {};
   return Error{ErrorCode::inconsistent,
-               "trial: " + std::string(field) + ": the body \"" + name + "\" must be " +
-                   body_kind_names[static_cast<std::size_t>(kind)],
-               field};
+               "trial: " + std::string(field) + ": the body \"" + name + "\" must be " + wanted, field};
 }
 
 }  // namespace
@@ -66,11 +65,14 @@ Status check_trial(const Scene& scene) {
   if (!scene.trial) return {};
   const TrialPlan& plan = *scene.trial;
   if (Status status = check_fields("trial: ", plan); !status.ok()) return status;
-  if (Status status = check_named_body(scene, plan.lowered_body, BodyKind::deformable, "lowered_body");
+  const auto deforms = [](const Body& body) { return body.kind == BodyKind::deformable; };
+  const auto turns = [](const Body& body) { return body.kind == BodyKind::fixed || body.hand.has_value(); };
+  if (Status status = check_named_body(scene, plan.lowered_body, "lowered_body", "deformable", deforms);
       !status.ok()) {
     return status;
   }
-  return check_named_body(scene, plan.turned_body, BodyKind::fixed, "turned_body");
+  return check_named_body(scene, plan.turned_body, "turned_body", "fixed, or rigid and held by a hand",
+                          turns);
 }
 
 std::string drop_unfit_trial(Scene& scene) {

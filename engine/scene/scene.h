@@ -47,11 +47,11 @@ Vector3 mirror_point(const Symmetry& symmetry, const Vector3& point_m);
 Pose mirror_pose(const Symmetry& symmetry, const Pose& pose);
 
 // How a trial of the scene runs (engine/trial): a body such as food is lowered until others bear its weight,
-// comes to rest, and then a fixed body such as a spoon is turned.
+// comes to rest, and then a body such as a spoon is turned.
 struct TrialPlan {
   std::string lowered_body;              // name of the body that is lowered first; empty: none
   double lowering_speed_m_per_s = 0.01;  // along gravity
-  std::string turned_body;               // name of the fixed body that turns; empty: none
+  std::string turned_body;               // name of the fixed or held body that turns; empty: none
   Vector3 point_m = Vector3::Zero();     // point of the axis of the turn
   Vector3 axis = Vector3::UnitX();       // unit vector; a positive angle is counter-clockwise seen against it
   double angle_deg = 0.0;
@@ -128,8 +128,8 @@ Status check_body_count(const Scene& scene);
 // Returns an error that names the first field out of range, with its value and its range.
 Status check_sculpting(const Sculpting& sculpting);
 Status check_symmetry(const Symmetry& symmetry);
-// Checks the numbers of a trial, that its bodies are in the scene, and that the turned body is fixed and the
-// lowered body is not.
+// Checks the numbers of a trial, that its bodies are in the scene, that the turned body is fixed or held by a
+// hand, and that the lowered body is deformable.
 Status check_trial(const Scene& scene);
 // Removes the trial if check_trial() fails, for example because a body was removed or renamed. Returns a note
 // about it; empty if the trial stays.
@@ -172,8 +172,8 @@ struct RefineKnots {
   int body = 0;  // index in the scene
 };
 
-// Turns a fixed body about an axis. It starts and stops within turn_ramp_s each, at constant angular
-// acceleration. A turn that has not ended is replaced.
+// Turns a fixed body, or the hand that holds a rigid one, about an axis. It starts and stops within
+// turn_ramp_s each, at constant angular acceleration. A turn that has not ended is replaced.
 struct TurnBody {
   int body = 0;  // index in the scene
   Vector3 point_m = Vector3::Zero();
@@ -181,7 +181,7 @@ struct TurnBody {
   double angle_deg = 0.0;
   double speed_deg_per_s = 30.0;
 };
-// Lowers a body level, along gravity, until contacts bear its weight, and then lets it go.
+// Lowers a deformable body level, along gravity, until contacts bear its weight, and then lets it go.
 struct LowerBody {
   int body = 0;  // index in the scene
   double speed_m_per_s = 0.01;

@@ -1,11 +1,13 @@
 #include "engine/simulation/body_contact.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "engine/base/assert.h"
 #include "engine/simulation/simulation.h"
+#include "engine/simulation/support_points.h"
 
 namespace spoonbill {
 namespace {
@@ -76,7 +78,7 @@ double corrected_gap_m(double gap_m, const Vector3& normal, const SkinPoint& fir
 
 // Returns whether the body stands still in this tick. Its points then need no embedding.
 bool stands_still(const BodyState& body) {
-  return body.rigid && !body.rigid->motion().moves;
+  return body.rigid && !body.rigid->moves();
 }
 
 // Returns a point that does not move.
@@ -142,31 +144,80 @@ EmbeddedPoint find_embedding(const BodyMapping& mapping, const NearPoint& near) 
   return near.sample >= 0 ? mapping.sample(near.sample) : mapping.at(near.u, near.v);
 }
 
+namespace {
+
+// Numbers of points between the samples of rigid bodies begin here. Surfaces have fewer samples.
+constexpr int first_number_between = 1 << 24;
+
+// Selection of the points on which two rigid bodies rest (SupportPoints), for each part of the surfaces with
+// about the same normal. Flat faces would otherwise need hundreds of constraints.
+class RestingPoints {
+ public:
+  void offer(int index, const NearPoint& near) {
+    for (std::size_t p = 0; p < count_; ++p) {
+      if (parts_[p].normal().dot(near.normal) < least_cosine) continue;
+      return parts_[p].offer(index, near.point_m, near.gap_m);
+    }
+    if (count_ == parts_.size()) {
+      is_complete_ = false;
+      return;
+    }
+    parts_[count_] = SupportPoints(near.normal);
+    parts_[count_++].offer(index, near.point_m, near.gap_m);
+  }
+  // All points count if the surfaces have more parts than the capacity.
+  bool contains(int index) const {
+    if (!is_complete_) return true;
+    return std::any_of(parts_.begin(), parts_.begin() + static_cast<std::ptrdiff_t>(count_),
+                       [&](const SupportPoints& part) {
+                         return std::any_of(part.supports().begin(), part.supports().end(),
+                                            [&](const auto& support) { return support.index == index; });
+                       });
+  }
+
+ private:
+  static constexpr double least_cosine = 0.9994;  // 2 degrees
+  std::array<SupportPoints, 12> parts_;
+  std::size_t count_ = 0;
+  bool is_complete_ = true;
+};
+
+}  // namespace
+
 bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::vector<NearPoint>& points,
-                     double deepest_new_m, BodyContacts& contacts) {
+                     double deepest_new_m, BodyContacts& contacts, const NormalCones& cones) {
   const SpringLattice& cells = from.state->rigid ? to.state->lattice : from.state->lattice;
-  const double least_lead_m = least_lead_cells * static_cast<double>(cells.cell_size_m());
+  const bool both_rigid = from.state->rigid && to.state->rigid;
+  const double least_lead_m = both_rigid ? 0.0 : least_lead_cells * static_cast<double>(cells.cell_size_m());
+  const Quaternion turn = from.state->rigid ? from.state->rigid->pose().orientation : Quaternion::Identity();
+  const auto is_left_out = [&](const NearPoint& near) {
+    if (near.sample < 0) return near.lead_m < least_lead_m;
+    if (!both_rigid) return false;
+    const BodyMapping& mapping = from.state->mapping();
+    const int columns = mapping.nested().grid.columns();
+    return mapping.find_twin(near.sample / columns, near.sample % columns) != near.sample ||
+           !cones.allow(near.sample, turn, near.normal);
+  };
+  RestingPoints resting;
+  for (std::size_t p = 0; both_rigid && p < points.size(); ++p) {
+    if (!is_left_out(points[p])) resting.offer(static_cast<int>(p), points[p]);
+  }
   bool complete = true;
-  for (const NearPoint& near : points) {
-    if (near.sample < 0 && near.lead_m < least_lead_m) continue;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const NearPoint& near = points[p];
+    if (is_left_out(near) || (both_rigid && !resting.contains(static_cast<int>(p)))) continue;
     const SkinPoint own = find_own_skin_point(from, near), other = find_other_skin_point(to, near);
-    complete &=
-        contacts.add(own.point, other.point, near.normal,
-                     corrected_gap_m(near.gap_m, near.normal, own, other), deepest_new_m, near.sample);
+    // A rigid body that rolls touches between samples, at a point that the next tick finds from the same
+    // sample.
+    const int number =
+        both_rigid && near.sample < 0 ? first_number_between + near.nearest_sample : near.sample;
+    complete &= contacts.add(own.point, other.point, near.normal,
+                             corrected_gap_m(near.gap_m, near.normal, own, other), deepest_new_m, number);
   }
   return complete;
 }
 
 namespace {
-
-bool add_contacts_of(const IndexedBody& first, const IndexedBody& second, const SurfaceProximity& proximity,
-                     double deepest_new_m, BodyContacts& contacts) {
-  const bool first_complete =
-      add_near_points(first, second, proximity.first_points(), deepest_new_m, contacts);
-  const bool second_complete =
-      add_near_points(second, first, proximity.second_points(), deepest_new_m, contacts);
-  return first_complete && second_complete;
-}
 
 bool add_contacts_of(const IndexedBody& first, const IndexedBody& second, const MeshProximity& proximity,
                      double deepest_new_m, BodyContacts& contacts) {
@@ -278,11 +329,16 @@ BodyPairContact::BodyPairContact(const BodyState& first, const BodyState& second
   } else {
     proximity_ = std::make_unique<SurfaceProximity>(grid, second.mapping().nested());
   }
+  if (!first.rigid || !second.rigid) return;
+  first_cones_ = NormalCones(first.mapping(), first.shell_thickness_m > 0.0);
+  second_cones_ = NormalCones(second.mapping(), second.shell_thickness_m > 0.0);
 }
 
 bool BodyPairContact::find(const IndexedBody& first, const IndexedBody& second) {
-  const auto size_of_cells = [](const BodyState& body) {
-    return body.rigid ? 0.0 : static_cast<double>(body.lattice.cell_size_m());
+  // The frames of rigid bodies have a length like that of cells, which is used between two such bodies.
+  const bool both_rigid = first.state->rigid && second.state->rigid;
+  const auto size_of_cells = [&](const BodyState& body) {
+    return body.rigid && !both_rigid ? 0.0 : static_cast<double>(body.lattice.cell_size_m());
   };
   const double cell = std::max(size_of_cells(*first.state), size_of_cells(*second.state));
   const double motion_m = tick_s * (first.state->fastest_m_per_s() + second.state->fastest_m_per_s());
@@ -317,11 +373,14 @@ std::optional<SurfaceSpot> BodyPairContact::deepest_on_second() const {
 
 bool BodyPairContact::add_contacts(const IndexedBody& first, const IndexedBody& second,
                                    BodyContacts& contacts) const {
-  return std::visit(
-      [&](const auto& proximity) {
-        return add_contacts_of(first, second, *proximity, deepest_new_m_, contacts);
-      },
-      proximity_);
+  if (const auto* const meshes = std::get_if<std::unique_ptr<MeshProximity>>(&proximity_))
+    return add_contacts_of(first, second, **meshes, deepest_new_m_, contacts);
+  const SurfaceProximity& surfaces = **std::get_if<std::unique_ptr<SurfaceProximity>>(&proximity_);
+  const bool first_complete =
+      add_near_points(first, second, surfaces.first_points(), deepest_new_m_, contacts, first_cones_);
+  const bool second_complete =
+      add_near_points(second, first, surfaces.second_points(), deepest_new_m_, contacts, second_cones_);
+  return first_complete && second_complete;
 }
 
 BodySelfContact::BodySelfContact(const BodyState& body) {

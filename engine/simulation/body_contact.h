@@ -15,6 +15,7 @@
 #include "engine/collision/solids/surface_contact.h"
 #include "engine/material/contact/body_contacts.h"
 #include "engine/simulation/body_state.h"
+#include "engine/simulation/normal_cones.h"
 
 namespace spoonbill {
 
@@ -61,9 +62,10 @@ struct IndexedBody {
 EmbeddedPoint find_embedding(const BodyMapping& mapping, const NearPoint& near);
 
 // Adds a constraint for each of `points`, which are points of the body `from` near the body `to`. Both may be
-// the same body. `deepest_new_m` is that of BodyContacts::add(). Returns false if a capacity was exceeded.
+// the same body. `deepest_new_m` is that of BodyContacts::add(). `cones` are those of a rigid body `from`
+// near another rigid body; the default for any other. Returns false if a capacity was exceeded.
 bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::vector<NearPoint>& points,
-                     double deepest_new_m, BodyContacts& contacts);
+                     double deepest_new_m, BodyContacts& contacts, const NormalCones& cones = {});
 
 // Contact of two bodies. Owned by the simulation, which rebuilds it when the mapping of either body is
 // replaced. find() and add_contacts() allocate nothing.
@@ -93,6 +95,7 @@ class BodyPairContact {
  private:
   // On the heap, because a proximity search cannot be moved.
   std::variant<std::unique_ptr<SurfaceProximity>, std::unique_ptr<MeshProximity>> proximity_;
+  NormalCones first_cones_, second_cones_;
   double deepest_new_m_ = 0.0;  // largest depth of a point that had no contact before the last find()
 };
 

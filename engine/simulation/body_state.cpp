@@ -6,6 +6,7 @@
 #include "engine/base/text.h"
 #include "engine/material/lattice/body_lattice.h"
 #include "engine/material/lattice_solver.h"
+#include "engine/material/rigid/rigid_mass.h"
 
 namespace spoonbill {
 namespace {
@@ -66,7 +67,10 @@ std::vector<std::uint8_t> find_nodes_behind(const SpringLattice& lattice,
 }
 
 void BodyState::fix_nodes_behind(const std::vector<FixingPlane>& planes) {
-  if (rigid) return fix(std::vector<std::uint8_t>(lattice.mesh().nodes.size(), 1));
+  if (rigid) {
+    const std::uint8_t is_fixed = rigid->dynamics() ? 0 : 1;
+    return fix(std::vector<std::uint8_t>(lattice.mesh().nodes.size(), is_fixed));
+  }
   std::vector<std::uint8_t> nodes = find_nodes_behind(lattice, planes);
   supports.claim_nodes(lattice, nodes);
   fix(std::move(nodes));
@@ -82,7 +86,7 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
   if (!materials.ok()) return materials.error();
   Result<SpringLattice> lattice = SpringLattice::make(mesh.value(), materials.value(), set);
   if (!lattice.ok()) return lattice.error();
-  const bool is_rigid = body.kind == BodyKind::fixed;
+  const bool is_rigid = body.kind != BodyKind::deformable;
   Result<std::optional<ImplicitSolver>> solver = std::optional<ImplicitSolver>();
   if (!is_rigid) solver = make_implicit_solver(lattice.value(), mesh->nodes, set);
   if (!solver.ok()) return solver.error();
@@ -103,7 +107,17 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
   state.trim = std::move(trim).value();
   state.loads = std::move(loads).value();
   state.supports = std::move(supports).value();
-  if (is_rigid) state.rigid.emplace();
+  if (body.kind == BodyKind::fixed) state.rigid.emplace();
+  if (body.kind == BodyKind::rigid) {
+    const std::optional<RigidMass> mass = compute_rigid_mass(body);
+    if (!mass) {
+      return Error{ErrorCode::degenerate,
+                   "the body has no mass that can be computed; a rigid body must be closed, or have a shell "
+                   "thickness",
+                   "kind"};
+    }
+    state.rigid.emplace(RigidDynamics(*mass, state.lattice.mesh()), body.hand);
+  }
   state.fix_nodes_behind(planes);
   state.set_implicit_solver(std::move(solver).value());
   return state;

@@ -39,13 +39,18 @@ struct BodyState {
   BodySupports supports = {};
   double shell_thickness_m = 0.0;                // 0 for a solid
   std::shared_ptr<const TrimmedArea> trim = {};  // area within the trims; null without trims
-  // Pose of a rigid body, whose lattice is its frame (rigid_frame()); empty for a deformable body.
+  // Pose and motion of a rigid body, whose lattice is its frame (rigid_frame()); empty for a deformable body.
   std::optional<RigidBody> rigid = {};
   // Speed at which the body is lowered until contacts bear its weight; 0 for any other body.
   double lowering_m_per_s = 0.0;
 
-  // Fixes the nodes behind the planes, then the nodes of the supports; frees all others. All nodes of a rigid
-  // body stay fixed.
+  // is_immovable() returns whether the body is rigid and nothing that touches it can move it,
+  // is_movable_rigid() whether it is rigid and moves with its dynamics.
+  bool is_immovable() const { return rigid && rigid->dynamics() == nullptr; }
+  bool is_movable_rigid() const { return rigid && rigid->dynamics() != nullptr; }
+
+  // Fixes the nodes behind the planes, then the nodes of the supports; frees all others. Planes have no
+  // effect on rigid bodies: all nodes of one without dynamics are fixed, and none of one with dynamics.
   void fix_nodes_behind(const std::vector<FixingPlane>& planes);
   // Sets the fixed nodes, one byte per node.
   void fix(std::vector<std::uint8_t> nodes) {
@@ -73,6 +78,7 @@ struct BodyState {
   const ImplicitSolver* solver() const { return implicit_solver ? &*implicit_solver : nullptr; }
   // Sets the inertia scale for substeps of about step_s.
   void set_inertia(double scale, double step_s) {
+    if (rigid && rigid->dynamics()) rigid->dynamics()->set_inertia_scale(scale);
     lattice.set_inertia(scale, step_s);
     if (!implicit_solver) return;
     implicit_solver->set_inertia_scale(scale);
@@ -93,7 +99,7 @@ struct BodyState {
   // Returns the triangles of a soft mesh tool; null for any other body.
   const MeshMapping* mesh() const { return std::get_if<MeshMapping>(&skin); }
 
-  // Returns the highest speed of a node. For a rigid body, it is that of the last tick in which it moved.
+  // Returns the highest speed of a node. For a fixed body, it is that of the last tick in which it moved.
   double fastest_m_per_s() const {
     double square = 0.0;
     for (int n = 0; n < lattice.mesh().node_count(); ++n) {

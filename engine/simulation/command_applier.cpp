@@ -21,6 +21,10 @@ std::vector<BodySelfContact> make_self_contacts(const std::vector<BodyState>& bo
   return self;
 }
 
+std::vector<RigidGroundContact> make_rigid_ground_contacts(std::span<const BodyState> bodies) {
+  return {bodies.begin(), bodies.end()};
+}
+
 BodyContacts make_contact_buffer() {
   // Largest number of constraints. Two handles pressed against each other need some hundreds.
   constexpr int capacity = 8192;
@@ -130,7 +134,12 @@ Status CommandApplier::operator()(const SetMaterial& command) {
   if (!solver.ok()) return solver.error();
   body.set_lattice(std::move(lattice).value());
   body.set_implicit_solver(std::move(solver).value());
-  state.scene.bodies[index].material = command.material;
+  Material& material = state.scene.bodies[index].material;
+  if (body.is_movable_rigid()) {
+    body.rigid->dynamics()->scale_mass(command.material.density_kg_per_m3 / material.density_kg_per_m3);
+    body.rigid->dynamics()->begin_tick(body.lattice.view());
+  }
+  material = command.material;
   update_inertia(state);
   release();
   return {};
@@ -162,7 +171,7 @@ Status CommandApplier::operator()(const KeepShape&) {
     state.bodies[b].supports.rebase(state.bodies[b].lattice, lattices[b]);
     state.bodies[b].set_lattice(std::move(lattices[b]));
     state.bodies[b].set_implicit_solver(std::move(solvers[b]));
-    if (state.bodies[b].rigid) state.bodies[b].rigid->place({});
+    if (state.bodies[b].rigid) state.bodies[b].rigid->keep_shape(state.bodies[b].lattice.mesh());
   }
   update_inertia(state);
   set_mappings(std::move(mappings));
@@ -200,9 +209,9 @@ Status CommandApplier::operator()(const TurnBody& command) {
   if (Status status = check_body(command.body); !status.ok()) return status;
   if (Status status = check_fields("turn_body: ", command); !status.ok()) return status;
   std::optional<RigidBody>& rigid = state.bodies[static_cast<std::size_t>(command.body)].rigid;
-  if (!rigid) {
-    return Error{ErrorCode::inconsistent, "turn_body: the body is deformable; only a fixed body turns",
-                 "body"};
+  if (!rigid || rigid->is_free()) {
+    return Error{ErrorCode::inconsistent,
+                 "turn_body: only a fixed body turns, or a rigid one that a hand holds", "body"};
   }
   rigid->turn(command);
   return {};
@@ -212,9 +221,9 @@ Status CommandApplier::operator()(const LowerBody& command) {
   if (Status status = check_body(command.body); !status.ok()) return status;
   if (Status status = check_fields("lower_body: ", command); !status.ok()) return status;
   BodyState& body = state.bodies[static_cast<std::size_t>(command.body)];
-  if (body.lattice.has_fixed_nodes()) {
-    return Error{ErrorCode::inconsistent, "lower_body: the body is fixed; only a free body is lowered",
-                 "body"};
+  if (body.rigid || body.lattice.has_fixed_nodes()) {
+    return Error{ErrorCode::inconsistent,
+                 "lower_body: the body is fixed or rigid; only a free deformable body is lowered", "body"};
   }
   if (state.scene.sculpting.gravity_m_per_s2.isZero(0.0)) {
     return Error{ErrorCode::missing, "lower_body: without gravity nothing is lowered", "gravity_m_per_s2"};
@@ -279,6 +288,7 @@ void CommandApplier::make_contacts() {
   state.searched = SearchedShapes(state.bodies);
   state.ground_contact =
       BodyGroundContact(state.scene_bodies().first(state.scene.ground ? state.scene.bodies.size() : 0));
+  state.rigid_ground = make_rigid_ground_contacts(state.scene_bodies());
 }
 
 }  // namespace spoonbill

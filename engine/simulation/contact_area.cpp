@@ -74,13 +74,17 @@ double find_contact_area_m2(const Simulation::State& state, int body) {
   for (const BodyState& each : state.stepped_bodies()) {
     if (!each.rigid) cell_m = std::max(cell_m, static_cast<double>(each.lattice.cell_size_m()));
   }
+  if (cell_m == 0.0) cell_m = static_cast<double>(own.lattice.cell_size_m());
   const double reach_m = reach_cells * cell_m;
   PushedSamples pushed(own.mapping());
   const auto add = [&](int sample) { pushed.add(sample); };
   state.between.visit_pushed_samples(body, reach_m, add);
   state.tool.contact.constraints().visit_pushed_samples(body, add);
   if (state.scene.symmetry.on) state.mirrored.contact.constraints().visit_pushed_samples(body, add);
-  if (state.scene.ground && !state.ground_contact.contacts().impulse_ns(body).isZero(0.0)) {
+  const bool is_on_ground =
+      state.scene.ground && !(state.ground_contact.contacts().impulse_ns(body).isZero(0.0) &&
+                              state.between.ground_impulse_ns(body).isZero(0.0));
+  if (is_on_ground) {
     pushed.add_near_ground(*state.scene.ground, reach_m);
   }
   return pushed.area_m2();

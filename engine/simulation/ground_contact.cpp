@@ -210,6 +210,7 @@ BodyGroundContact::BodyFootings BodyGroundContact::make_footings(const BodyState
   // make() cannot fail, because the mapping already has a grid of these knots.
   BodyFootings result{
       SkinHeights::make(skin.u, skin.v).value(), static_cast<double>(body.lattice.cell_size_m()), {}, {}, {}};
+  if (body.rigid) return result;
   const std::vector<AttachedSamples> attached = attach_samples(body, result.heights);
   const bool boxed = is_boxed(mesh);
   for (int n = 0; n < mesh.node_count(); ++n) {

@@ -23,6 +23,8 @@ class SkinHeights {
 
   int rows() const { return nested_.grid.rows(); }
   int columns() const { return nested_.grid.columns(); }
+  const std::vector<double>& u_parameters() const { return nested_.grid.u.parameters; }
+  const std::vector<double>& v_parameters() const { return nested_.grid.v.parameters; }
   double u(int row) const { return nested_.grid.u.parameters[static_cast<std::size_t>(row)]; }
   double v(int column) const { return nested_.grid.v.parameters[static_cast<std::size_t>(column)]; }
 
@@ -52,8 +54,8 @@ class SkinHeights {
 // Largest penetration of a resting body's skin into the ground, in lattice cells.
 inline constexpr double ground_depth_limit_cells = 0.01;
 
-// Ground contact of all bodies. Owned by the simulation, which rebuilds it when the mapping of a body is
-// replaced. find() allocates nothing.
+// Ground contact of deformable bodies (see RigidGroundContact for others). Owned by the simulation, which
+// rebuilds it when the mapping of a body is replaced. find() allocates nothing.
 class BodyGroundContact {
  public:
   explicit BodyGroundContact(std::span<const BodyState> bodies);

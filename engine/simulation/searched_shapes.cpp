@@ -26,9 +26,9 @@ bool SearchedShapes::still_hold(std::span<const BodyState> bodies) const {
   if (known_count_ != bodies.size()) return false;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const BodyState& body = bodies[b];
-    if (body.rigid && body.rigid->motion().moves) return false;
+    if (body.is_immovable() && body.rigid->motion().moves) return false;
     const double most_m =
-        body.rigid ? 0.0 : searched_motion_cells * static_cast<double>(body.lattice.cell_size_m());
+        body.is_immovable() ? 0.0 : searched_motion_cells * static_cast<double>(body.lattice.cell_size_m());
     const std::vector<Vector3>& nodes = displacements_m_[b];
     for (std::size_t n = 0; n < nodes.size(); ++n) {
       const Vector3 moved_m = body.lattice.displacement(static_cast<int>(n)) - nodes[n];

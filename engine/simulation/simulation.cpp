@@ -68,6 +68,8 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
   std::vector<BodyPairContact> pairs = make_pairs(bodies);
   std::vector<BodySelfContact> self = make_self_contacts(bodies);
   BodyGroundContact ground_contact({bodies.data(), scene.ground ? scene.bodies.size() : 0});
+  std::vector<RigidGroundContact> rigid_ground =
+      make_rigid_ground_contacts({bodies.data(), scene.bodies.size()});
   std::vector<std::shared_ptr<const ToolBody>> retired_bodies = {find_model_body(scene.tool)};
   const double scene_size_m = measure_size_m(bodies, scene.bodies.size());
   auto made = std::make_unique<State>(State{std::move(scene),
@@ -80,6 +82,7 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
                                             std::move(pairs),
                                             std::move(self),
                                             std::move(ground_contact),
+                                            std::move(rigid_ground),
                                             false,
                                             0.0,
                                             scene_size_m,
@@ -115,7 +118,10 @@ void update_inertia(Simulation::State& s) {
   for (BodyState& body : bodies) {
     if (!is_fixed(body)) shared = std::max(shared, own_scale(body));
   }
-  for (BodyState& body : bodies) body.set_inertia(is_fixed(body) ? own_scale(body) : shared, step_s);
+  const auto is_held = [&](const BodyState& body) {
+    return is_fixed(body) || (body.rigid && body.rigid->hand() != nullptr);
+  };
+  for (BodyState& body : bodies) body.set_inertia(is_held(body) ? own_scale(body) : shared, step_s);
 }
 
 Status Simulation::apply(const Command& command) {
@@ -136,7 +142,7 @@ void visit_pairs(Simulation::State& s, const Visit& visit) {
   auto pair = s.pairs.begin();
   for (std::size_t second = 1; second < s.stepped_count(); ++second) {
     for (std::size_t first = 0; first < second; ++first, ++pair) {
-      if (s.bodies[first].rigid && s.bodies[second].rigid) continue;
+      if (s.bodies[first].is_immovable() && s.bodies[second].is_immovable()) continue;
       visit(*pair, IndexedBody{static_cast<int>(first), &s.bodies[first]},
             IndexedBody{static_cast<int>(second), &s.bodies[second]}, is_tool(s, second));
     }
@@ -180,6 +186,11 @@ void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
   for (std::size_t b = 0; b < s.stepped_count(); ++b) {
     s.pairs_overflow |= !s.self[b].add_contacts({static_cast<int>(b), &s.bodies[b]}, s.between);
   }
+  for (std::size_t b = 0; s.scene.ground && b < s.rigid_ground.size(); ++b) {
+    s.pairs_overflow |=
+        !s.rigid_ground[b].add_contacts({static_cast<int>(b), &s.bodies[b]}, *s.scene.ground,
+                                        s.scene.sculpting.gravity_m_per_s2, tick_s, s.between);
+  }
   s.between.begin();
 }
 
@@ -193,9 +204,13 @@ void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
     BodyState& body = s.bodies[b];
     body.loads.apply(body.lattice, body.solver());
     const double end_s = static_cast<double>(s.tick + 1) * tick_s;
-    lattices[b] = {&body.lattice, sculpting.gravity_m_per_s2, body.solver(),
+    lattices[b] = {&body.lattice,
+                   sculpting.gravity_m_per_s2,
+                   body.solver(),
                    body.supports.begin_tick(body.lattice, end_s, tick_s),
-                   body.rigid ? &body.rigid->motion() : nullptr};
+                   body.rigid ? &body.rigid->motion() : nullptr,
+                   body.rigid ? body.rigid->dynamics() : nullptr,
+                   body.rigid ? body.rigid->hand() : nullptr};
   }
   const RelaxSettings settings{s.tick, s.substeps, tick_s, sculpting.drag_per_s,
                                sculpting.is_critically_damped};
@@ -225,6 +240,17 @@ void lower(Simulation::State& s, std::size_t index) {
   body.hold.keep_pose(body.lattice, body.solver(), body.lowering_m_per_s * tick_s * down);
 }
 
+// Puts a rigid body back where it was at the start of the tick, at rest, if it has no finite pose, or if it
+// is free and keeps its place. Returns true if its pose was not finite.
+bool hold_rigid(BodyState& body, bool keeps_place) {
+  if (!body.is_movable_rigid()) return false;
+  const bool is_lost = !body.rigid->is_finite();
+  if (!is_lost && !(keeps_place && body.rigid->is_free())) return false;
+  body.rigid->return_to_start();
+  body.rigid->dynamics()->begin_tick(body.lattice.view());
+  return is_lost;
+}
+
 // Keeps the bodies in the scene. Call after everything else has moved them; BodyHold::begin() must have been
 // called at the start of the tick.
 void hold_bodies(Simulation::State& s) {
@@ -232,7 +258,10 @@ void hold_bodies(Simulation::State& s) {
   const double reach_m = reach_fraction * s.scene_size_m;
   for (std::size_t b = 0; b < s.scene.bodies.size(); ++b) {
     BodyState& body = s.bodies[b];
-    if (body.rigid) continue;
+    if (body.rigid) {
+      if (hold_rigid(body, keeps_place(s.scene))) s.limited_body = static_cast<int>(b);
+      continue;
+    }
     ImplicitSolver* const solver = body.solver();
     if (body.hold.limit(body.lattice, solver, reach_m)) {
       s.limited_body = static_cast<int>(b);
@@ -300,7 +329,7 @@ Reaction Simulation::advance(const ToolInput& input) {
   }
   hold_bodies(s);
   for (std::size_t b = 0; b < s.stepped_count(); ++b) {
-    if (s.bodies[b].rigid && !s.bodies[b].rigid->motion().moves) continue;
+    if (s.bodies[b].rigid && !s.bodies[b].rigid->moves()) continue;
     s.bodies[b].update_skin();
   }
   measure_residuals(s);
@@ -363,6 +392,11 @@ std::optional<Pose> Simulation::rigid_pose(int body) const {
   const std::optional<RigidBody>& rigid = state_->bodies[static_cast<std::size_t>(body)].rigid;
   return rigid ? std::optional(rigid->pose()) : std::nullopt;
 }
+const RigidDynamics* Simulation::rigid_dynamics(int body) const {
+  SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
+  const std::optional<RigidBody>& rigid = state_->bodies[static_cast<std::size_t>(body)].rigid;
+  return rigid ? rigid->dynamics() : nullptr;
+}
 double Simulation::fastest_m_per_s(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
   return state_->bodies[static_cast<std::size_t>(body)].fastest_m_per_s();
@@ -383,7 +417,8 @@ double Simulation::largest_overlap_m() const {
 Vector3 Simulation::ground_force_n(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
   if (!state_->scene.ground) return Vector3::Zero();
-  return state_->ground_contact.contacts().impulse_ns(body) / tick_s;
+  return (state_->ground_contact.contacts().impulse_ns(body) + state_->between.ground_impulse_ns(body)) /
+         tick_s;
 }
 int Simulation::substeps() const {
   return state_->substeps;
@@ -461,16 +496,19 @@ ShapeState Simulation::shape() const {
 void Simulation::write_shape(ShapeState& shape) const {
   shape.lattices.resize(state_->scene.bodies.size());
   shape.poses.resize(state_->scene.bodies.size());
+  shape.hands.resize(state_->scene.bodies.size());
   for (std::size_t b = 0; b < shape.lattices.size(); ++b) {
     state_->bodies[b].lattice.write_shape(shape.lattices[b]);
-    if (state_->bodies[b].rigid) shape.poses[b] = state_->bodies[b].rigid->pose();
+    if (!state_->bodies[b].rigid) continue;
+    shape.poses[b] = state_->bodies[b].rigid->pose();
+    shape.hands[b] = state_->bodies[b].rigid->motion().end;
   }
 }
 
 Status Simulation::restore(const ShapeState& shape) {
   const DenormalsFlushed flushed;
   bool fits = shape.lattices.size() == state_->scene.bodies.size() &&
-              shape.poses.size() == state_->scene.bodies.size();
+              shape.poses.size() == state_->scene.bodies.size() && shape.hands.size() == shape.poses.size();
   for (std::size_t b = 0; fits && b < shape.lattices.size(); ++b) {
     fits = shape.lattices[b].size() == state_->bodies[b].lattice.shape_size();
   }
@@ -478,7 +516,10 @@ Status Simulation::restore(const ShapeState& shape) {
   for (std::size_t b = 0; b < shape.lattices.size(); ++b) {
     BodyState& body = state_->bodies[b];
     body.lattice.set_shape(shape.lattices[b]);
-    if (body.rigid) body.rigid->place(shape.poses[b]);
+    if (body.rigid) {
+      body.rigid->place(shape.poses[b]);
+      if (body.rigid->hand()) body.rigid->place_hand(shape.hands[b]);
+    }
     body.lowering_m_per_s = 0.0;
     if (body.solver()) body.solver()->adopt_shape(body.lattice);
     body.update_skin();

@@ -13,6 +13,7 @@
 #include "engine/base/result.h"
 #include "engine/bspline/surface.h"
 #include "engine/material/lattice/feature_map.h"
+#include "engine/material/rigid/rigid_dynamics.h"
 #include "engine/material/springs/spring_lattice.h"
 #include "engine/scene/scene.h"
 #include "engine/simulation/snapshot.h"
@@ -48,6 +49,7 @@ struct Reaction {
 struct ShapeState {
   std::vector<std::vector<float>> lattices;  // shape of each body's lattice
   std::vector<Pose> poses = {};              // pose of each body that is rigid; the default pose for others
+  std::vector<Pose> hands = {};              // pose of the hand that holds each body; the default for others
   friend bool operator==(const ShapeState&, const ShapeState&) = default;
 };
 
@@ -145,8 +147,11 @@ class Simulation {
   // Returns the area of a body's surface on which contacts pushed in the last tick (contact_area.h).
   // Allocates.
   double contact_area_m2(int body) const;
-  // Returns the pose of a fixed body, which maps its rest shape to the present one; empty for any other body.
+  // Returns the pose of a fixed or rigid body, which maps its rest shape to the present one; empty for a
+  // deformable body.
   std::optional<Pose> rigid_pose(int body) const;
+  // Returns the dynamics of a rigid body; null for any other body.
+  const RigidDynamics* rigid_dynamics(int body) const;
   // Returns the highest speed of a node of a body.
   double fastest_m_per_s(int body = 0) const;
   // Returns true while a body is being turned or lowered.

@@ -11,6 +11,7 @@
 #include "engine/simulation/body_contact.h"
 #include "engine/simulation/body_state.h"
 #include "engine/simulation/ground_contact.h"
+#include "engine/simulation/rigid_ground_contact.h"
 #include "engine/simulation/searched_shapes.h"
 #include "engine/simulation/simulation.h"
 #include "engine/simulation/snapshot.h"
@@ -44,9 +45,10 @@ struct Simulation::State {
   HeldTool tool;
   HeldTool mirrored;
   BodyContacts between;
-  std::vector<BodyPairContact> pairs;  // all pairs: (0, 1), (0, 2), (1, 2), ...; see make_pairs()
-  std::vector<BodySelfContact> self;   // self-contact of each body
-  BodyGroundContact ground_contact;    // contacts of the scene's bodies; empty without a ground
+  std::vector<BodyPairContact> pairs;            // all pairs: (0, 1), (0, 2), (1, 2), ...; see make_pairs()
+  std::vector<BodySelfContact> self;             // self-contact of each body
+  BodyGroundContact ground_contact;              // contacts of the scene's bodies; empty without a ground
+  std::vector<RigidGroundContact> rigid_ground;  // contacts of each of the scene's bodies
   bool pairs_overflow = false;
   double tool_gap_m = 0.0;    // smallest gap between a soft tool and a body; infinite if none is near
   double scene_size_m = 0.0;  // diagonal of the box around the bodies at rest
@@ -76,6 +78,7 @@ struct Simulation::State {
 
 std::vector<BodyPairContact> make_pairs(const std::vector<BodyState>& bodies);
 std::vector<BodySelfContact> make_self_contacts(const std::vector<BodyState>& bodies);
+std::vector<RigidGroundContact> make_rigid_ground_contacts(std::span<const BodyState> bodies);
 // Makes the memory for the constraints between all bodies.
 BodyContacts make_contact_buffer();
 

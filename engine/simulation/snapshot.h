@@ -97,7 +97,7 @@ struct BodySnapshot {
   ResidualSnapshot residual = {};  // only for bodies with a surface
   MeshSnapshot mesh = {};          // only for soft meshes, which have no surface
   double shell_thickness_m = 0.0;  // thickness behind the surface; 0 for a solid
-  bool is_rigid = false;           // true for a fixed body, whose lattice is only a frame
+  bool is_rigid = false;           // true for a fixed or rigid body, whose lattice is only a frame
 
   bool is_mesh() const { return mesh.triangles != nullptr; }
 };

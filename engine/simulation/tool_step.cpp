@@ -27,6 +27,7 @@ void smooth(Simulation::State& s, const HeldTool& held) {
   constexpr double least_reach_cells = 2.5;
   const int number = held.contact.deepest_body();
   BodyState& body = s.bodies[static_cast<std::size_t>(number)];
+  if (body.rigid) return;
   const CollisionResult& collision = held.contact.collision(number);
   const ContactConstraints& constraints = held.contact.constraints();
   const bool rests_on_it = constraints.acted() || (collision.found && collision.nearest.depth_m >= 0.0);
@@ -56,11 +57,14 @@ const ToolKernel& find_kernel(ToolAction action) {
 
 namespace {
 
-// Returns the stiffness of the spring between hand and tool. If any body has an implicit solver, a hand
-// without coupling also gets a spring, because a stiff body does not yield to a rigidly held tool.
+// Returns the stiffness of the spring between hand and tool. If any body has an implicit solver, or is rigid
+// and moves, a hand without coupling also gets a spring, because such a body does not yield to a rigidly held
+// tool.
 double choose_coupling(const Simulation::State& s, double wanted_n_per_m) {
   constexpr double hold_n_per_m = 1000.0;
-  const auto is_stiff = [](const BodyState& body) { return body.solver() != nullptr; };
+  const auto is_stiff = [](const BodyState& body) {
+    return body.solver() != nullptr || body.is_movable_rigid();
+  };
   if (wanted_n_per_m > 0.0) return wanted_n_per_m;
   return std::any_of(s.bodies.begin(), s.bodies.end(), is_stiff) ? hold_n_per_m : 0.0;
 }

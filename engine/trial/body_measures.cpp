@@ -32,7 +32,7 @@ CellShapes measure_cells(const SpringLattice& lattice) {
   return shape;
 }
 
-RigidMass find_rigid_mass(const Body& body, const Surface& surface) {
+RigidMass find_fixed_mass(const Body& body, const Surface& surface) {
   Body present = body;
   present.surface = surface;
   const std::optional<BodyMass> mass = compute_body_mass(present);

@@ -7,6 +7,7 @@
 
 #include "engine/base/geometry.h"
 #include "engine/bspline/surface.h"
+#include "engine/material/rigid/rigid_mass.h"
 #include "engine/material/springs/spring_lattice.h"
 #include "engine/material/statics/static_body.h"
 #include "engine/scene/body.h"
@@ -21,13 +22,9 @@ struct CellShapes {
 };
 CellShapes measure_cells(const SpringLattice& lattice);
 
-// Mass and centre of mass of a fixed body. If its mass cannot be computed, the mass is 0 and the centre is
-// that of its area. `surface` is the body's present surface.
-struct RigidMass {
-  double mass_kg = 0.0;
-  Vector3 centre_m = Vector3::Zero();
-};
-RigidMass find_rigid_mass(const Body& body, const Surface& surface);
+// Returns the mass and centre of mass of a fixed body. If its mass cannot be computed, the mass is 0 and the
+// centre is that of its area. `surface` is the body's present surface.
+RigidMass find_fixed_mass(const Body& body, const Surface& surface);
 
 // Finds the kinetic, gravitational and elastic energy of a deformable body. Keeps the body's cells from call
 // to call, until its lattice or its material changes. Has one owner, on one thread.

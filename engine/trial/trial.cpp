@@ -27,8 +27,15 @@ bool is_deformable(const Body& body) {
   return body.kind == BodyKind::deformable;
 }
 
-Vector3 momentum_ns(const SpringLattice& lattice) {
-  const MassCentre centre = find_mass_centre(lattice);
+bool is_movable(const Body& body) {
+  return body.kind != BodyKind::fixed;
+}
+
+Vector3 momentum_ns(const Simulation& simulation, int body) {
+  if (!is_movable(simulation.scene().bodies[static_cast<std::size_t>(body)])) return Vector3::Zero();
+  if (const RigidDynamics* const rigid = simulation.rigid_dynamics(body))
+    return rigid->mass().mass_kg * rigid->velocity_m_per_s();
+  const MassCentre centre = find_mass_centre(simulation.lattice(body));
   return centre.mass_kg * centre.velocity_m_per_s;
 }
 
@@ -103,12 +110,12 @@ const char* describe_failure(std::uint32_t flags) {
 }  // namespace
 
 Result<Scene> make_trial_scene(Scene scene, std::optional<double> tilt_deg) {
-  if (std::none_of(scene.bodies.begin(), scene.bodies.end(), is_deformable)) {
-    return Error{ErrorCode::missing, "all bodies are fixed; a trial needs a deformable one", "kind"};
+  if (std::none_of(scene.bodies.begin(), scene.bodies.end(), is_movable)) {
+    return Error{ErrorCode::missing, "all bodies are fixed; a trial needs a deformable or rigid one", "kind"};
   }
   if (tilt_deg) {
     if (!scene.trial || scene.trial->turned_body.empty()) {
-      return Error{ErrorCode::missing, "nothing is tilted; name the fixed body in trial.turned_body",
+      return Error{ErrorCode::missing, "nothing is tilted; name a fixed or held body in trial.turned_body",
                    "turned_body"};
     }
     scene.trial->angle_deg = *tilt_deg;
@@ -176,7 +183,7 @@ Status Trial::follow(const Simulation& simulation, std::uint32_t flags) {
   phase_s_ += tick_s;
   largest_speed_m_per_s_ = 0.0;
   for (std::size_t b = 0; b < forces_.size(); ++b) {
-    if (!is_deformable(simulation.scene().bodies[b])) continue;
+    if (!is_movable(simulation.scene().bodies[b])) continue;
     largest_speed_m_per_s_ =
         std::max(largest_speed_m_per_s_, simulation.fastest_m_per_s(static_cast<int>(b)));
   }
@@ -218,9 +225,8 @@ Status Trial::follow(const Simulation& simulation, std::uint32_t flags) {
 void Trial::record_forces(const Simulation& simulation) {
   for (std::size_t b = 0; b < forces_.size(); ++b) {
     const int body = static_cast<int>(b);
-    const bool deforms = is_deformable(simulation.scene().bodies[b]);
     const Forces now{simulation.contact_force_n(body), simulation.ground_force_n(body),
-                     deforms ? momentum_ns(simulation.lattice(body)) : Vector3(Vector3::Zero())};
+                     momentum_ns(simulation, body)};
     std::vector<Forces>& ring = forces_[b];
     if (ring.size() < mean_ticks) {
       ring.push_back(now);

@@ -27,8 +27,8 @@ inline constexpr Range<double> trial_seconds_range{0.0, 600.0};
 // Returns the scene as a trial simulates it: with the true inertia of all bodies, without the drag that helps
 // sculpting, with bodies free to move, and with a point as the tool. A scene without gravity gets standard
 // gravity along -y. `tilt_deg` replaces the angle of the plan. Fails if a tilt is given but nothing turns, if
-// nothing deforms, and if a body is a liquid: if its yield stress, which is Young's modulus times the yield
-// strain, is under 0.3 of the pressure that its own height causes.
+// all bodies are fixed, and if a body is a liquid: if its yield stress, which is Young's modulus times the
+// yield strain, is under 0.3 of the pressure that its own height causes.
 Result<Scene> make_trial_scene(Scene scene, std::optional<double> tilt_deg);
 
 // Fails if a support or a plane holds the body that the trial would lower.
@@ -60,7 +60,7 @@ class Trial {
   TrialPhase phase() const { return phase_; }
   // Returns whether the bodies have settled by now.
   bool is_settled() const { return still_s_ >= settled_time_s; }
-  // Highest speed of a node of a deformable body in the last tick, m/s.
+  // Highest speed in the last tick of a node of a body that is not fixed, m/s.
   double largest_speed_m_per_s() const { return largest_speed_m_per_s_; }
   // Largest overlap of two bodies in the trial so far (Simulation::largest_overlap_m()).
   double largest_penetration_m() const { return largest_penetration_m_; }
@@ -73,7 +73,7 @@ class Trial {
   struct MeanForces {
     Vector3 contact_n = Vector3::Zero();  // of all other bodies on the body
     Vector3 ground_n = Vector3::Zero();
-    Vector3 inertial_n = Vector3::Zero();  // rate of change of the momentum of a deformable body
+    Vector3 inertial_n = Vector3::Zero();  // rate of change of the momentum of a body that is not fixed
   };
   MeanForces find_mean_forces(std::size_t body) const;
 

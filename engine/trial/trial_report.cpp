@@ -30,10 +30,13 @@ TrialBodyReport report_on_body(const Trial& trial, const Simulation& simulation,
   report.contact_force_n = mean.contact_n;
   Vector3 others_n = mean.ground_n + mean.contact_n - mean.inertial_n;
   double mass_kg = lattice.mass_kg();
-  if (body.kind == BodyKind::fixed) {
-    const RigidMass rigid = find_rigid_mass(body, simulation.surface(number));
-    report.centre_of_mass_m = rigid.centre_m;
-    mass_kg = rigid.mass_kg;
+  if (const RigidDynamics* const rigid = simulation.rigid_dynamics(number)) {
+    report.centre_of_mass_m = rigid->centre_m();
+    mass_kg = rigid->mass().mass_kg;
+  } else if (body.kind == BodyKind::fixed) {
+    const RigidMass fixed = find_fixed_mass(body, simulation.surface(number));
+    report.centre_of_mass_m = fixed.centre_m;
+    mass_kg = fixed.mass_kg;
   } else {
     const CellShapes cells = measure_cells(lattice);
     report.centre_of_mass_m = find_mass_centre(lattice).position_m;
@@ -48,7 +51,8 @@ TrialBodyReport report_on_body(const Trial& trial, const Simulation& simulation,
 
 // Returns whether anything but contacts and the ground can hold a body.
 bool is_held(const Simulation& simulation, std::size_t index) {
-  return simulation.scene().bodies[index].kind == BodyKind::fixed ||
+  const Body& body = simulation.scene().bodies[index];
+  return body.kind == BodyKind::fixed || body.hand.has_value() ||
          simulation.lattice(static_cast<int>(index)).has_fixed_nodes();
 }
 
@@ -63,6 +67,10 @@ TrialReport report_on(const Trial& trial, const Simulation& simulation) {
     if (!is_held(simulation, b)) report.bodies.back().support_force_n.setZero();
     report.inverted_cells += report.bodies.back().inverted_cells;
     if (simulation.scene().bodies[b].kind == BodyKind::fixed) continue;
+    if (const RigidDynamics* const rigid = simulation.rigid_dynamics(static_cast<int>(b))) {
+      if (report.energy_j) *report.energy_j += rigid->energy_j(gravity);
+      continue;
+    }
     report.inertia_scale = std::max(report.inertia_scale, simulation.inertia_scale(static_cast<int>(b)));
     const SpringLattice& lattice = simulation.lattice(static_cast<int>(b));
     const std::optional<double> energy_j = EnergyMeter().find_energy_j(lattice, gravity);

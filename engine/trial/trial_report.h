@@ -14,7 +14,7 @@ namespace spoonbill {
 struct TrialBodyReport {
   std::string name;
   Vector3 centre_of_mass_m = Vector3::Zero();
-  // volume_ratio and smallest_jacobian compare a lattice with its rest shape; both are 1 for a fixed body.
+  // volume_ratio and smallest_jacobian compare a lattice with its rest shape; both are 1 for any other body.
   // The Jacobian is the least volume at a corner of a cell, divided by its value at rest.
   double volume_ratio = 1.0;
   double smallest_jacobian = 1.0;
@@ -31,8 +31,8 @@ struct TrialReport {
   std::vector<TrialBodyReport> bodies;
   int inverted_cells = 0;
   double inertia_scale = 1.0;  // largest of all bodies; 1 unless the scene is not a trial
-  // Kinetic, gravitational and elastic energy of the deformable bodies, J. Empty if a material is plastic or
-  // creeps, because its elastic energy is then not a function of the shape.
+  // Kinetic, gravitational and elastic energy of the deformable and rigid bodies, J. Empty if a material is
+  // plastic or creeps, because its elastic energy is then not a function of the shape.
   std::optional<double> energy_j;
 };
 

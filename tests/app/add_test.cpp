@@ -60,6 +60,36 @@ TEST(Add, MakesABodyFixed) {
   EXPECT_EQ(sum.scene.bodies[1].kind, BodyKind::fixed);
 }
 
+TEST(Add, MakesBodiesRigid) {
+  const Workplace place;
+  const std::string model = place.text("model.json"), out = place.text("out.json");
+  const std::string name = read_document(model).value().scene.bodies[0].name;
+  ASSERT_EQ(run({"add", model, model, "--rigid", name, "--held", name + "-2", "--out", out}).code, exit_done);
+  const Document sum = read_document(out).value();
+  EXPECT_EQ(sum.scene.bodies[0].kind, BodyKind::rigid);
+  EXPECT_FALSE(sum.scene.bodies[0].hand);
+  EXPECT_EQ(sum.scene.bodies[1].kind, BodyKind::rigid);
+  EXPECT_TRUE(sum.scene.bodies[1].hand);
+  // A body has one kind.
+  const Outcome twice =
+      run({"add", model, "--rigid", name, "--fixed", name, "--out", place.text("two.json")});
+  EXPECT_EQ(twice.code, exit_failed);
+  EXPECT_TRUE(is_clean_failure(twice)) << twice.err;
+}
+
+// A trial that lowers a body which can no longer be lowered is left out, so that the document can be read.
+TEST(Add, LeavesOutATrialThatDoesNotFit) {
+  const Workplace place;
+  const std::string jelly = std::string(SPOONBILL_ASSETS) + "/models/jelly-on-spoon.json";
+  const std::string out = place.text("out.json");
+  const Outcome outcome = run({"add", jelly, "--rigid", "jelly", "--out", out, "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  EXPECT_EQ(json_of(outcome.out)["remarks"].size(), 1u);
+  const auto sum = read_document(out);
+  ASSERT_TRUE(sum.ok()) << sum.error().message;
+  EXPECT_FALSE(sum->scene.trial);
+}
+
 TEST(Add, RefusesWrongUse) {
   const Workplace place;
   loaded_document(place);

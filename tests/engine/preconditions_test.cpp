@@ -8,6 +8,7 @@
 #include "engine/bspline/blending_matrix.h"
 #include "engine/bspline/change_knots.h"
 #include "engine/bspline/grid.h"
+#include "engine/bspline/quadrature.h"
 #include "engine/bspline/trim_loop.h"
 #include "engine/collision/meshes/box_tree.h"
 #include "engine/collision/meshes/triangle_mesh.h"

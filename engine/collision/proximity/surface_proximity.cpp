@@ -242,7 +242,7 @@ void NearPoints::add_between_samples(const NearPoints& other, double outside) {
     const double around_m =
         std::min({near.gap_m, smallest_gap_around(at.u, at.v), other.smallest_gap_around(at.s, at.t)});
     near_.push_back({-1, at.u, at.v, at.s, at.t, deepest.pair.first_m, deepest.pair.second_m, deepest.normal,
-                     gap_m, around_m - gap_m});
+                     gap_m, around_m - gap_m, near_[s].sample});
     least_gap_m_ = std::min(least_gap_m_, -deepest.depth_m);
   }
 }

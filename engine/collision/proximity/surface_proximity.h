@@ -32,6 +32,7 @@ struct NearPoint {
   // For a point between samples: how much smaller its gap is than those of the samples around it on both
   // surfaces.
   double lead_m = 0.0;
+  int nearest_sample = -1;  // for a point between samples: index of the sample from which it was found
 };
 
 // Collects the points of one surface that are near another surface. Call the functions in the order of their

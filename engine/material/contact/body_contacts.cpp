@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/assert.h"
+#include "engine/material/rigid/rigid_dynamics.h"
 #include "engine/material/springs/spring_lattice.h"
 
 namespace spoonbill {
@@ -28,12 +29,23 @@ constexpr double separation_per_s = 200.0, max_separation = 0.1;
 // surfaces would overlap.
 constexpr double taken_over_in_tick = 0.18;
 
-// Returns the relative velocity change of two points per impulse between them, 1/kg. Within one body, the
-// impulses overlap in the nodes that both points use.
+bool is_of_frame(const BodyPoint& point) {
+  return point.lattice != nullptr && point.lattice->mesh().is_frame;
+}
+
+// Returns whether the point is of a rigid body that contacts can move.
+bool is_of_moving_frame(const BodyPoint& point) {
+  return is_of_frame(point) && !point.lattice->has_fixed_nodes();
+}
+
+double own_compliance(const BodyPoint& point) {
+  return point.lattice == nullptr || is_of_frame(point) ? 0.0 : point.point.compliance(*point.lattice);
+}
+
+// Returns the relative velocity change of two points per impulse between them, 1/kg, without rigid bodies.
+// Within one body, the impulses overlap in the nodes that both points use.
 double mutual_compliance(const BodyPoint& first, const BodyPoint& second) {
-  if (first.body != second.body) {
-    return first.point.compliance(*first.lattice) + second.point.compliance(*second.lattice);
-  }
+  if (first.body != second.body) return own_compliance(first) + own_compliance(second);
   const SpringLattice& lattice = *first.lattice;
   double sum = 0.0;
   for (int i = 0; i < first.point.count; ++i) {
@@ -70,6 +82,20 @@ PointMobility find_mobility(const BodyPoint& point) {
   return found;
 }
 
+Vector3 displacement_m(const BodyPoint& point) {
+  return point.lattice == nullptr ? Vector3(Vector3::Zero()) : point.point.displacement_m(*point.lattice);
+}
+
+// Returns the view of a body; an empty one for the ground.
+const LatticeView& view_of(std::span<const LatticeView> lattices, int body) {
+  static const LatticeView ground;
+  return body == ground_index ? ground : lattices[static_cast<std::size_t>(body)];
+}
+
+double cap_of(std::span<const float> caps_m_per_s, int body) {
+  return body == ground_index ? infinity : static_cast<double>(caps_m_per_s[static_cast<std::size_t>(body)]);
+}
+
 // Limits a contact force of the last tick to what push and friction allow with the present normal. A force
 // that pulls or is not a number becomes zero.
 Vector3 limit_to_cone(const Vector3& force_n, const Vector3& normal, double friction) {
@@ -86,6 +112,7 @@ BodyContacts::BodyContacts(int capacity)
     : constraints_(static_cast<std::size_t>(capacity)), kept_(constraints_.size()) {
   SPOONBILL_ASSERT(capacity >= 0);
   impulse_ns_.fill(Vector3::Zero());
+  ground_impulse_ns_.fill(Vector3::Zero());
 }
 
 void BodyContacts::clear(std::span<const SpringLattice* const> lattices) {
@@ -93,8 +120,9 @@ void BodyContacts::clear(std::span<const SpringLattice* const> lattices) {
   for (int c = 0; c < count_; ++c) {
     const Constraint& constraint = constraints_[c];
     if (constraint.sample < 0) continue;
-    const Vector3 apart = constraint.first.displacement_m(*lattices[constraint.first_body]) -
-                          constraint.second.displacement_m(*lattices[constraint.second_body]);
+    Vector3 apart = constraint.first.displacement_m(*lattices[constraint.first_body]);
+    if (constraint.second_body != ground_index)
+      apart -= constraint.second.displacement_m(*lattices[constraint.second_body]);
     const double gap_m = constraint.base_m + constraint.normal.dot(apart);
     if (!std::isfinite(gap_m)) continue;
     kept_.add(constraint.key(), {constraint.force_n, constraint.normal, gap_m});
@@ -109,9 +137,21 @@ void BodyContacts::forget() {
   has_searched_ = false;
 }
 
-bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Vector3& found_normal,
-                       double found_gap_m, double deepest_new_m, int sample) {
+bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m,
+                       double deepest_new_m, int sample) {
   SPOONBILL_ASSERT_DEBUG(first.lattice != nullptr && second.lattice != nullptr);
+  return add(first, second, normal, gap_m, deepest_new_m, sample, mutual_friction(first, second));
+}
+
+bool BodyContacts::add_on_ground(const BodyPoint& point, const Vector3& normal, double gap_m,
+                                 double ground_friction, int sample) {
+  SPOONBILL_ASSERT_DEBUG(is_of_moving_frame(point) && sample >= 0);
+  const double friction = std::min(ground_friction, point.point.friction(*point.lattice));
+  return add(point, BodyPoint{ground_index}, normal, gap_m, infinity, sample, friction);
+}
+
+bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Vector3& found_normal,
+                       double found_gap_m, double deepest_new_m, int sample, double friction) {
   SPOONBILL_ASSERT_DEBUG(std::abs(found_normal.squaredNorm() - 1.0) < 1e-5);
   const ContactKey key{first.body, second.body, sample};
   const Kept* const kept = sample >= 0 ? kept_.find(key) : nullptr;
@@ -120,20 +160,24 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
   const Vector3 normal = is_folded ? kept->normal : found_normal;
   const double gap_m = is_folded ? kept->gap_m : found_gap_m;
   if (count_ == static_cast<int>(constraints_.size())) return false;
-  // A rigid body next to an implicitly stepped one counts as such a one.
-  const auto is_rigid = [](const BodyPoint& point) { return point.lattice->mesh().is_frame; };
-  const auto has_springs = [&](const BodyPoint& point) {
-    return !point.lattice->moved_by_solver() && !is_rigid(point);
+  // A body with a prescribed motion next to an implicitly stepped one counts as such a one.
+  const auto is_by_solver = [](const BodyPoint& point) {
+    return point.lattice != nullptr && point.lattice->moved_by_solver();
   };
-  const bool by_solvers = !has_springs(first) && !has_springs(second);
-  const double moved =
-      normal.dot(first.point.displacement_m(*first.lattice) - second.point.displacement_m(*second.lattice));
+  const auto moves_in_substeps = [&](const BodyPoint& point) {
+    return is_of_moving_frame(point) ||
+           (point.lattice != nullptr && !is_by_solver(point) && !is_of_frame(point));
+  };
+  const auto is_rigid = [](const BodyPoint& point) { return point.lattice == nullptr || is_of_frame(point); };
+  const bool by_solvers = !moves_in_substeps(first) && !moves_in_substeps(second);
+  const double moved = normal.dot(displacement_m(first) - displacement_m(second));
   const double compliance = mutual_compliance(first, second);
-  const double friction = mutual_friction(first, second);
-  const bool separates = !by_solvers && !first.lattice->moved_by_solver() &&
-                         !second.lattice->moved_by_solver() && compliance > 0.0;
-  const double difference_m =
-      separates && kept != nullptr ? (1.0 - taken_over_in_tick) * (gap_m - kept->gap_m) : 0.0;
+  const bool yields = compliance > 0.0 || is_of_moving_frame(first) || is_of_moving_frame(second);
+  const bool separates = !by_solvers && !is_by_solver(first) && !is_by_solver(second) && yields;
+  const bool is_between_rigid = is_rigid(first) && is_rigid(second);
+  const double difference_m = separates && kept != nullptr && !is_between_rigid
+                                  ? (1.0 - taken_over_in_tick) * (gap_m - kept->gap_m)
+                                  : 0.0;
   Constraint& added = constraints_[count_++];
   added = {.first_body = first.body,
            .second_body = second.body,
@@ -170,6 +214,7 @@ void BodyContacts::keep() {
 void BodyContacts::begin() {
   for (int c = 0; c < count_; ++c) constraints_[c].acted = false;
   impulse_ns_.fill(Vector3::Zero());
+  ground_impulse_ns_.fill(Vector3::Zero());
   has_searched_ = true;
 }
 
@@ -191,15 +236,35 @@ bool BodyContacts::has_constraint_between_solvers() const {
 }
 
 double BodyContacts::find_gap_m(std::span<const LatticeView> lattices, const Constraint& constraint) {
-  const Vector3 apart = constraint.first.displacement_m(lattices[constraint.first_body]) -
-                        constraint.second.displacement_m(lattices[constraint.second_body]);
+  const Vector3 apart = constraint.first.displacement_m(view_of(lattices, constraint.first_body)) -
+                        constraint.second.displacement_m(view_of(lattices, constraint.second_body));
   return constraint.base_m + constraint.normal.dot(apart);
 }
 
 Vector3 BodyContacts::find_relative_m_per_s(std::span<const LatticeView> lattices,
                                             const Constraint& constraint) {
-  return constraint.first.velocity_m_per_s(lattices[constraint.first_body]) -
-         constraint.second.velocity_m_per_s(lattices[constraint.second_body]);
+  return constraint.first.velocity_m_per_s(view_of(lattices, constraint.first_body)) -
+         constraint.second.velocity_m_per_s(view_of(lattices, constraint.second_body));
+}
+
+void BodyContacts::find_response(std::span<const LatticeView> lattices, Constraint& constraint) {
+  const LatticeView& first = view_of(lattices, constraint.first_body);
+  const LatticeView& second = view_of(lattices, constraint.second_body);
+  double along_per_kg = 0.0, across_per_kg = 0.0;
+  const auto add_response_of = [&](const LatticeView& view, const EmbeddedPoint& point,
+                                   PointMobility& mobility) {
+    if (view.rigid == nullptr) return;
+    const Vector3 at_m = point.offset_m(*view.rigid);
+    along_per_kg += view.rigid->compliance(at_m, constraint.normal);
+    across_per_kg += view.rigid->slide_compliance(at_m, constraint.normal);
+    mobility = {view.rigid->largest_compliance(), 1.0};
+  };
+  add_response_of(first, constraint.first, constraint.first_mobility);
+  add_response_of(second, constraint.second, constraint.second_mobility);
+  const double of_frames_per_kg = mutual_frame_compliance(first, second);
+  constraint.shift_per_kg = constraint.compliance + along_per_kg;
+  constraint.normal_per_kg = constraint.shift_per_kg + of_frames_per_kg;
+  constraint.slide_per_kg = constraint.compliance + across_per_kg + of_frames_per_kg;
 }
 
 void BodyContacts::start(std::span<const LatticeView> lattices, double h_s) {
@@ -208,6 +273,7 @@ void BodyContacts::start(std::span<const LatticeView> lattices, double h_s) {
     if (constraint.moved_by != MovedBy::springs) continue;
     constraint.gap_m = find_gap_m(lattices, constraint);
     constraint.spare_m_per_s = -infinity;
+    find_response(lattices, constraint);
     if (!constraint.force_n.isZero(0.0)) push(lattices, constraint, h_s * constraint.force_n);
   }
   changed_m_per_s_.fill(0.0);
@@ -224,16 +290,20 @@ void BodyContacts::push(std::span<const LatticeView> lattices, Constraint& const
                         const Vector3& impulse) {
   const auto first = static_cast<std::size_t>(constraint.first_body);
   const auto second = static_cast<std::size_t>(constraint.second_body);
-  constraint.first.push(lattices[first], impulse);
-  constraint.second.push(lattices[second], -impulse);
+  const LatticeView& one = view_of(lattices, constraint.first_body);
+  const LatticeView& other = view_of(lattices, constraint.second_body);
+  constraint.first.push(one, impulse);
+  constraint.second.push(other, -impulse);
   if (constraint.moved_by == MovedBy::springs) {
-    impulse_ns_[first] += impulse;
-    impulse_ns_[second] -= impulse;
+    if (constraint.second_body == ground_index) {
+      ground_impulse_ns_[first] += impulse;
+    } else {
+      impulse_ns_[first] += impulse;
+      impulse_ns_[second] -= impulse;
+    }
     const double size_ns = impulse.norm();
-    changed_m_per_s_[first] +=
-        size_ns * (constraint.first_mobility.node_per_kg + frame_compliance(lattices[first]));
-    changed_m_per_s_[second] +=
-        size_ns * (constraint.second_mobility.node_per_kg + frame_compliance(lattices[second]));
+    changed_m_per_s_[first] += size_ns * (constraint.first_mobility.node_per_kg + frame_compliance(one));
+    changed_m_per_s_[second] += size_ns * (constraint.second_mobility.node_per_kg + frame_compliance(other));
   }
   constraint.acted = true;
 }
@@ -252,10 +322,11 @@ void BodyContacts::pass(std::span<const LatticeView> lattices, const ContactPass
     if (constraint.moved_by != pass.moved_by) continue;
     if (pass.moved_by == MovedBy::solvers) {
       constraint.gap_m = find_gap_m(lattices, constraint);
+      find_response(lattices, constraint);
     } else if (!may_act(constraint)) {
       continue;
     }
-    const auto cap = static_cast<double>(std::min(caps[constraint.first_body], caps[constraint.second_body]));
+    const double cap = std::min(cap_of(caps, constraint.first_body), cap_of(caps, constraint.second_body));
     solve(lattices, constraint, pass.h_s, cap);
   }
 }
@@ -268,15 +339,14 @@ void BodyContacts::separate(std::span<const LatticeView> lattices, double h_s,
     // The constraint lets at most a part of a gap close. Where other pushes close it all the same, the
     // overlap is corrected from the next substep on.
     if (!constraint.separates || constraint.sample < 0 || constraint.gap_m > 0.0) continue;
-    const auto first = static_cast<std::size_t>(constraint.first_body);
-    const auto second = static_cast<std::size_t>(constraint.second_body);
     const double gap_m = find_gap_m(lattices, constraint);
     if (!(gap_m < 0.0)) continue;
-    const double cap = static_cast<double>(std::min(caps_m_per_s[first], caps_m_per_s[second]));
+    const int first = constraint.first_body, second = constraint.second_body;
+    const double cap = std::min(cap_of(caps_m_per_s, first), cap_of(caps_m_per_s, second));
     const double speed = std::min(-gap_m * part / h_s, cap);
-    const Vector3 impulse = speed / constraint.compliance * constraint.normal;
-    constraint.first.shift(lattices[first], impulse, h_s);
-    constraint.second.shift(lattices[second], -impulse, h_s);
+    const Vector3 impulse = speed / constraint.shift_per_kg * constraint.normal;
+    constraint.first.shift(view_of(lattices, first), impulse, h_s);
+    constraint.second.shift(view_of(lattices, second), -impulse, h_s);
   }
 }
 
@@ -292,15 +362,12 @@ void BodyContacts::shorten_solver_pass(double fraction) {
 
 void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& constraint, double h,
                          double cap) {
-  const LatticeView& first = lattices[constraint.first_body];
-  const LatticeView& second = lattices[constraint.second_body];
-  const double compliance = constraint.compliance + mutual_frame_compliance(first, second);
-  if (compliance == 0.0) {
+  if (constraint.normal_per_kg == 0.0) {
     constraint.force_n.setZero();
     return;
   }
   const ContactPush state{constraint.gap_m, constraint.normal, find_relative_m_per_s(lattices, constraint),
-                          1.0 / compliance};
+                          1.0 / constraint.normal_per_kg, 1.0 / constraint.slide_per_kg};
   const Vector3 started = h * constraint.force_n;
   const double started_push = started.dot(constraint.normal);
   const ContactPace& pace = constraint.separates ? separated_pace : body_pace;

@@ -13,12 +13,15 @@
 
 namespace spoonbill {
 
+// Index that stands for the ground instead of a body.
+inline constexpr int ground_index = lattice_capacity;
+
 // A point of a body. `body` is the index of the body's lattice in the views passed to pass(). A point without
 // nodes stands still.
 struct BodyPoint {
   int body = 0;
   const SpringLattice* lattice = nullptr;
-  EmbeddedPoint point;
+  EmbeddedPoint point = {};
 };
 
 // How the velocities of nodes and of an embedded point depend on each other.
@@ -54,8 +57,8 @@ class BodyContacts {
   // The gap of a constraint follows the points that the lattices move. A new search finds a slightly
   // different gap, because the surfaces do not follow these points exactly and the normal has turned. If a
   // constraint took over the difference at once, a collision would leave overlaps, and separate() would add
-  // energy by correcting them against its forces. Therefore, a constraint between bodies with springs keeps
-  // its own gap, and takes over a part of the difference in each tick.
+  // energy by correcting them against its forces. Therefore, a constraint of a body with springs keeps its
+  // own gap, and takes over a part of the difference in each tick. Between rigid bodies, gaps are exact.
   //
   // A surface may fold locally, as beside the pole of a pressed tube. Its normal then points inwards there,
   // and a point outside seems to be deep inside. A point that is deeper than `deepest_new_m` and had no
@@ -64,6 +67,10 @@ class BodyContacts {
   // forget().
   bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m,
            double deepest_new_m, int sample);
+  // Adds a constraint that keeps a point of a rigid body on the side of the ground to which `normal` points.
+  // GroundContacts holds the contacts of deformable bodies.
+  bool add_on_ground(const BodyPoint& point, const Vector3& normal, double gap_m, double ground_friction,
+                     int sample);
 
   // Keeps the constraints of the last tick for the next one, which needs no new search, as if they were added
   // again. Bodies must not have turned or moved noticeably since the constraints were added, and inverse
@@ -107,22 +114,25 @@ class BodyContacts {
   bool has_constraint_between_solvers() const;
 
   int count() const { return count_; }
-  // Returns the impulse of all constraints on a body since begin(), N s, for a tick of `time_s`. Constraints
+  // Returns the impulse of all other bodies on a body since begin(), N s, for a tick of `time_s`. Constraints
   // of a body with itself have no effect on it.
   Vector3 impulse_ns(int body, double time_s) const;
+  // Returns the impulse of the ground on a rigid body since begin(), N s.
+  const Vector3& ground_impulse_ns(int body) const { return ground_impulse_ns_[body]; }
   // Returns whether any constraint of a body, or between two bodies, has acted since begin().
   bool acted(int body) const;
   bool acted(int body, int other) const;
   // Sets to 1 the bytes in `touched` of the nodes of a body on which a constraint has acted.
   void mark_touched(int body, std::uint8_t* touched) const;
 
-  // Calls visit(sample) for each sample of a body that a constraint has pushed since begin(), or that was
-  // closer than `reach_m` when its constraint was added.
+  // Calls visit(sample) for each sample of a body that a constraint with another body has pushed since
+  // begin(), or that was closer than `reach_m` when its constraint was added.
   template <class Visit>
   void visit_pushed_samples(int body, double reach_m, const Visit& visit) const {
     for (int c = 0; c < count_; ++c) {
       const Constraint& constraint = constraints_[static_cast<std::size_t>(c)];
       if (constraint.first_body != body || constraint.sample < 0) continue;
+      if (constraint.second_body == ground_index) continue;
       if (constraint.added_gap_m < reach_m || (constraint.acted && !constraint.force_n.isZero(0.0))) {
         visit(constraint.sample);
       }
@@ -146,11 +156,16 @@ class BodyContacts {
     int first_body = 0, second_body = 0;
     EmbeddedPoint first, second;
     Vector3 normal = Vector3::UnitY();
-    double compliance = 0.0;    // relative velocity change of the points per impulse, 1/kg, without frames
-    double base_m = 0.0;        // gap minus the part due to displacements since rest
-    double difference_m = 0.0;  // gap that the search found, minus the gap of the constraint
-    double added_gap_m = 0.0;   // gap when the constraint was added
-    double gap_m = 0.0;         // gap at the last start()
+    // Relative velocity change of the points per impulse, 1/kg, without frames and rigid bodies.
+    double compliance = 0.0;
+    // Found by the last find_response():
+    double shift_per_kg = 0.0;   // the same with rigid bodies
+    double normal_per_kg = 0.0;  // the same with rigid bodies and frames, along the normal
+    double slide_per_kg = 0.0;   // the same with rigid bodies and frames, at most across the normal
+    double base_m = 0.0;         // gap minus the part due to displacements since rest
+    double difference_m = 0.0;   // gap that the search found, minus the gap of the constraint
+    double added_gap_m = 0.0;    // gap when the constraint was added
+    double gap_m = 0.0;          // gap at the last start()
     // Separation speed at the last start() above the smallest admissible one, for a constraint without a
     // force. While it is larger than what pushes can have changed, the constraint does not act.
     double spare_m_per_s = 0.0;
@@ -165,6 +180,10 @@ class BodyContacts {
 
     ContactKey key() const { return {first_body, second_body, sample}; }
   };
+  bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m,
+           double deepest_new_m, int sample, double friction);
+  // Finds how the bodies of a constraint respond to it in the present substep.
+  static void find_response(std::span<const LatticeView> lattices, Constraint& constraint);
   static double find_gap_m(std::span<const LatticeView> lattices, const Constraint& constraint);
   static Vector3 find_relative_m_per_s(std::span<const LatticeView> lattices, const Constraint& constraint);
   // Returns whether the pushes since start() may have made a constraint act that did not act then.
@@ -181,9 +200,9 @@ class BodyContacts {
   std::vector<Constraint> constraints_;
   KeptValues<Kept> kept_;  // of the last tick
   // Impulses on each body since begin() of the constraints that substeps solve, N s.
-  std::array<Vector3, lattice_capacity> impulse_ns_;
+  std::array<Vector3, lattice_capacity> impulse_ns_, ground_impulse_ns_;
   // Bound of how much pushes have changed the velocity of a node of each body since start(), m/s.
-  std::array<double, lattice_capacity> changed_m_per_s_{};
+  std::array<double, lattice_capacity + 1> changed_m_per_s_{};
   int count_ = 0;
   bool has_searched_ = false;  // whether a tick has begun since forget()
 };

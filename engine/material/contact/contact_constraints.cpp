@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/assert.h"
+#include "engine/material/rigid/rigid_dynamics.h"
 
 namespace spoonbill {
 namespace {
@@ -185,13 +186,20 @@ void ContactConstraints::locate(const LatticeView& lattice, Constraint& constrai
     constraint.normal = distance > 0.0 ? Vector3(from_centre / distance) : Vector3::Zero();
     constraint.gap_m = distance - motion_.radius_m;
   }
+  constraint.slide_compliance = constraint.compliance;
+  const bool is_push = constraint.kind != Kind::grip && !constraint.normal.isZero(0.0);
+  if (lattice.rigid == nullptr || !is_push || !motion_.body_yields) return;
+  const Vector3 arm_m = constraint.point.offset_m(*lattice.rigid);
+  constraint.compliance = lattice.rigid->compliance(arm_m, constraint.normal);
+  constraint.slide_compliance = lattice.rigid->slide_compliance(arm_m, constraint.normal);
 }
 
 ContactPush ContactConstraints::find_push(const LatticeView& lattice, const Constraint& constraint,
                                           const ToolState& tool) const {
   return {constraint.gap_m, constraint.normal,
           constraint.point.velocity_m_per_s(lattice) - tool.velocity_m_per_s,
-          1.0 / (constraint.compliance + response_compliance_)};
+          1.0 / (constraint.compliance + response_compliance_),
+          1.0 / (constraint.slide_compliance + response_compliance_)};
 }
 
 void ContactConstraints::solve_push(const LatticeView& lattice, Constraint& constraint, ToolState& tool,

@@ -153,9 +153,11 @@ class ContactConstraints {
     Vector3 position_m = Vector3::Zero();  // position of the constrained point
     // Unit vector from the tool to a pushed point; zero at the centre of the tool's sphere, and for grips.
     Vector3 normal = Vector3::Zero();
-    double gap_m = 0.0;       // distance of a pushed point from the tool; negative inside the tool
-    double compliance = 0.0;  // velocity change of the point per impulse, 1/kg; 0 if the body does not yield
-    double friction = 0.0;    // friction coefficient of the body's surface; tools have none
+    double gap_m = 0.0;  // distance of a pushed point from the tool; negative inside the tool
+    // Velocity change of the point per impulse, 1/kg; 0 if the body does not yield. For a rigid body, it is
+    // that along the normal of a push; `slide_compliance` is the largest across the normal.
+    double compliance = 0.0, slide_compliance = 0.0;
+    double friction = 0.0;  // friction coefficient of the body's surface; tools have none
     int key = changing_point_key;
     bool is_implicit = false;  // true if an implicit solver steps the lattice
     // True if a push starts from the force of the last substep. False for grips, for changing_point_key, and

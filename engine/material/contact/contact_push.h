@@ -21,10 +21,11 @@ inline constexpr double max_correction = 0.7;
 // State of a contact between two points before the drift of a substep, and the impulse that keeps the points
 // from passing each other.
 struct ContactPush {
-  double gap_m;      // distance of the points; negative if they penetrate
-  Vector3 normal;    // unit vector along which the points separate
-  Vector3 relative;  // separation velocity, m/s
-  double mass_kg;    // effective mass, which is 1 / the sum of the points' compliances (1/kg)
+  double gap_m;                    // distance of the points; negative if they penetrate
+  Vector3 normal;                  // unit vector along which the points separate
+  Vector3 relative;                // separation velocity, m/s
+  double mass_kg;                  // effective mass, which is 1 / the sum of the points' compliances (1/kg)
+  double slide_mass_kg = mass_kg;  // the same for sliding; smaller where it depends on the direction
 
   // Returns the smallest admissible separation speed, m/s. Points with a gap may approach but must not pass
   // each other. A penetration is partly corrected, at `cap_m_per_s` at most.
@@ -42,7 +43,7 @@ struct ContactPush {
   // has already acted. Subtract it from the normal impulse. By Coulomb's law, the limit is the friction
   // coefficient times the normal impulse.
   Vector3 drag(double max_ns, const Vector3& started_ns = Vector3::Zero()) const {
-    const Vector3 stop = started_ns + mass_kg * (relative - relative.dot(normal) * normal);
+    const Vector3 stop = started_ns + slide_mass_kg * (relative - relative.dot(normal) * normal);
     const double size = stop.norm();
     return (size > max_ns ? max_ns / size : 1.0) * stop;
   }

@@ -505,7 +505,7 @@ Result<LatticeMesh> rigid_frame(const Surface& surface) {
 }
 
 Result<LatticeMesh> make_body_lattice(const Body& body, const FeatureMapWatch& watch) {
-  if (body.kind == BodyKind::fixed) {
+  if (body.kind != BodyKind::deformable) {
     const Status closed = body.shell_thickness_m ? Status() : check_closed(body.surface);
     return closed.ok() ? rigid_frame(body.surface) : closed.error();
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/material/rigid/rigid_dynamics.h"
+
 namespace spoonbill {
 namespace {
 
@@ -72,7 +74,14 @@ double EmbeddedPoint::compliance(const SpringLattice& lattice) const {
 }
 
 double EmbeddedPoint::compliance(const LatticeView& lattice) const {
+  if (lattice.rigid) return lattice.rigid->any_compliance(offset_m(*lattice.rigid));
   return sum_compliance(*this, [&](int at) { return lattice.inverse_mass[at]; });
+}
+
+Vector3 EmbeddedPoint::offset_m(const RigidDynamics& rigid) const {
+  Vector3 sum = Vector3::Zero();
+  for (int i = 0; i < count; ++i) sum += static_cast<double>(weight[i]) * rigid.offset_m(node[i]);
+  return sum;
 }
 
 double EmbeddedPoint::friction(const SpringLattice& lattice) const {
@@ -103,6 +112,7 @@ Vector3 EmbeddedPoint::velocity_m_per_s(const LatticeView& lattice) const {
 }
 
 void EmbeddedPoint::shift(const LatticeView& lattice, const Vector3& impulse, double time_s) const {
+  if (lattice.rigid) return lattice.rigid->shift(lattice, offset_m(*lattice.rigid), impulse, time_s);
   for (int i = 0; i < count; ++i) {
     const int n = node[i];
     const Vector3 by = time_s * static_cast<double>(weight[i] * lattice.inverse_mass[n]) * impulse;
@@ -118,6 +128,7 @@ void EmbeddedPoint::shift(const LatticeView& lattice, const Vector3& impulse, do
 }
 
 void EmbeddedPoint::push(const LatticeView& lattice, const Vector3& impulse) const {
+  if (lattice.rigid) return lattice.rigid->push(lattice, offset_m(*lattice.rigid), impulse);
   for (int i = 0; i < count; ++i) {
     const int n = node[i];
     const double fraction = static_cast<double>(weight[i]) * static_cast<double>(lattice.inverse_mass[n]);

@@ -44,7 +44,10 @@ struct EmbeddedPoint {
   // Velocity change of the point per impulse, 1/kg, relative to the lattice's frame; 0 if all of its nodes
   // are fixed.
   double compliance(const SpringLattice& lattice) const;
+  // For a rigid body that contacts can move, this is an upper bound.
   double compliance(const LatticeView& lattice) const;
+  // Offset of the point from the centre of mass of a rigid body that contacts can move, m.
+  Vector3 offset_m(const RigidDynamics& rigid) const;
   // Returns the weighted mean of the nodes' friction coefficients, limited to the range of these
   // coefficients.
   double friction(const SpringLattice& lattice) const;
@@ -52,11 +55,11 @@ struct EmbeddedPoint {
   Vector3 displacement_m(const LatticeView& lattice) const;
   // Velocity in the world frame.
   Vector3 velocity_m_per_s(const LatticeView& lattice) const;
-  // Distributes an impulse, N s, to the nodes. Also pushes the lattice's frame.
+  // Distributes an impulse, N s, to the nodes, or pushes the rigid body. Also pushes the lattice's frame.
   void push(const LatticeView& lattice, const Vector3& impulse) const;
   // Moves the nodes in the direction of an impulse, without changing velocities: each by its part of the
-  // impulse times its inverse mass times `time_s`. The second nodes of seam pairs stay behind (see
-  // join_seam_positions()).
+  // impulse times its inverse mass times `time_s`. Moves a rigid body as a whole. The second nodes of seam
+  // pairs stay behind (see join_seam_positions()).
   void shift(const LatticeView& lattice, const Vector3& impulse, double time_s) const;
   // Calls visit(node, part) for each node and its part of an impulse.
   template <class Visit>

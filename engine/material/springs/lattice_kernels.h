@@ -67,7 +67,8 @@ struct CreepRule {
   float time_s = 0.0f;
 };
 
-struct MovingFrame;  // see engine/material/lattice/embedded_point.h
+struct MovingFrame;   // see engine/material/lattice/embedded_point.h
+class RigidDynamics;  // see engine/material/rigid/rigid_dynamics.h
 
 // View of arrays that a SpringLattice owns.
 struct LatticeView {
@@ -115,7 +116,8 @@ struct LatticeView {
   float* power_z = nullptr;
   // Added to the vector of the power iteration at each step, so that no mode vanishes from it.
   const float* power_noise = nullptr;
-  MovingFrame* frame = nullptr;  // frame of a soft tool; null for other lattices
+  MovingFrame* frame = nullptr;    // frame of a soft tool; null for other lattices
+  RigidDynamics* rigid = nullptr;  // motion of a rigid body that contacts can move; null for other lattices
 };
 
 // Parameters of one drift of the nodes.

@@ -65,6 +65,8 @@ Json rewritten_schema(Json schema) {
   all["plane"] = with_description_of<FixingPlane>(all["plane"]);
   all["ground"] = with_description_of<Ground>(all["ground"]);
   all["symmetry"] = with_description_of<Symmetry>(all["symmetry"]);
+  all["hand"] = with_description_of<HandSpring>(all["hand"]);
+  all["pose"] = with_description_of<BodyPlacement>(all["pose"]);
   all["trial"] = with_description_of<TrialPlan>(all["trial"]);
   all["sculpting"] = with_description_of<Sculpting>(all["sculpting"]);
   all["load"] = variant_schema<Load>("kind");

@@ -98,6 +98,45 @@ TEST(Document, KeepsTheKindOfABodyAndTheTrial) {
             Refusal(ErrorCode::out_of_range, "trial.turn_speed_deg_per_s"));
 }
 
+// The placement is applied when a document is read, and is not written again.
+TEST(Document, PlacesABodyAndKeepsTheHandThatHoldsIt) {
+  Document document = sample_document();
+  Body& body = document.scene.bodies[0];
+  body.regions.clear();
+  body.loads.clear();
+  body.supports.clear();
+  body.kind = BodyKind::rigid;
+  body.hand = HandSpring{120.0, 0.5};
+  const Json json = document_to_json(document);
+  const Document same = document_from_json(json, "text").value();
+  EXPECT_EQ(same.scene.bodies[0].kind, BodyKind::rigid);
+  ASSERT_TRUE(same.scene.bodies[0].hand);
+  EXPECT_EQ(same.scene.bodies[0].hand->stiffness_n_per_m, 120.0);
+  EXPECT_EQ(same.scene.bodies[0].hand->turn_stiffness_nm_per_rad, 0.5);
+
+  document.scene.bodies[0].hand = HandSpring{};
+  EXPECT_TRUE(document_from_json(document_to_json(document), "text").value().scene.bodies[0].hand);
+
+  Json placed = json;
+  placed["body"]["pose"] = {{"position_mm", {10, 0, 0}}, {"axis", {0, 0, 1}}, {"angle_deg", 90}};
+  const auto read = document_from_json(placed, "text");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  const Vector3 before = body.surface.net.point(1, 2), after = read->scene.bodies[0].surface.net.point(1, 2);
+  EXPECT_LT((after - Vector3(0.01 - before.y(), before.x(), before.z())).norm(), 1e-12);
+  EXPECT_FALSE(document_to_json(read.value())["body"].contains("pose"));
+
+  Json skew = placed;
+  skew["body"]["pose"]["axis"] = {0, 0, 0};
+  EXPECT_FALSE(document_from_json(skew, "text").ok());
+  Json loose = json;
+  loose["body"]["hand"]["stiffness_n_per_m"] = 0;
+  EXPECT_EQ(Refusal(document_from_json(loose, "text")),
+            Refusal(ErrorCode::out_of_range, "body.hand.stiffness_n_per_m"));
+  Json fixed = json;
+  fixed["body"]["kind"] = "fixed";
+  EXPECT_EQ(Refusal(document_from_json(fixed, "text")), Refusal(ErrorCode::inconsistent, "body.hand"));
+}
+
 TEST(Document, KeepsTheCellsOfALattice) {
   Document document = sample_document();
   EXPECT_FALSE(document_to_json(document)["body"]["lattice"].contains("cells"))
