@@ -293,11 +293,9 @@ CommandEntry add_try(OptionSet root) {
   parser.set_footer(
       "Gives all bodies their true inertia and lets gravity act; without gravity in the document, standard\n"
       "gravity along -y. The document's \"trial\" may name a body that is lowered until others bear its\n"
-      "weight, and a fixed or held body that then turns. The bodies settle before the turn, for 10 s at "
-      "most. "
-      "Bodies\n"
-      "have settled when no node has moved faster than 0.1 mm/s for 0.2 s. A trial that cannot hold a body,\n"
-      "or in which nothing bears the lowered body within 30 s, ends with an error.\n"
+      "weight, and a fixed or held body that then turns. The bodies settle before the turn, for 10 s at\n"
+      "most. Bodies have settled when no node has moved faster than 0.1 mm/s for 0.2 s. A trial that cannot\n"
+      "hold a body, or in which nothing bears the lowered body within 30 s, ends with an error.\n"
       "Example: spoonbill try assets/models/jelly-on-spoon.json --tilt 10deg --out output/tilt");
   parser.add_option("DOCUMENT", options->model, "Document (.json)").require();
   parser

@@ -80,8 +80,8 @@ inline constexpr Range<int> node_count_range{2, 64};  // number of nodes in each
 enum class BodyKind { deformable, fixed, rigid };
 inline constexpr const char* body_kind_names[] = {"deformable", "fixed", "rigid"};
 
-// Critically damped spring by which a hand holds a rigid body where it is, or where TurnBody turns it. The
-// defaults are those of a loosely held spoon.
+// Spring by which a hand holds a rigid body where it is, or where TurnBody turns it. It is critically damped,
+// and more so in turns about axes of little inertia. The defaults are a choice for a loosely held spoon.
 struct HandSpring {
   double stiffness_n_per_m = 300.0;
   double turn_stiffness_nm_per_rad = 1.0;

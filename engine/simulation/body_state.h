@@ -78,7 +78,7 @@ struct BodyState {
   const ImplicitSolver* solver() const { return implicit_solver ? &*implicit_solver : nullptr; }
   // Sets the inertia scale for substeps of about step_s.
   void set_inertia(double scale, double step_s) {
-    if (rigid && rigid->dynamics()) rigid->dynamics()->set_inertia_scale(scale);
+    if (is_movable_rigid()) rigid->dynamics()->set_inertia_scale(scale);
     lattice.set_inertia(scale, step_s);
     if (!implicit_solver) return;
     implicit_solver->set_inertia_scale(scale);

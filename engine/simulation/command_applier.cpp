@@ -137,7 +137,7 @@ Status CommandApplier::operator()(const SetMaterial& command) {
   Material& material = state.scene.bodies[index].material;
   if (body.is_movable_rigid()) {
     body.rigid->dynamics()->scale_mass(command.material.density_kg_per_m3 / material.density_kg_per_m3);
-    body.rigid->dynamics()->begin_tick(body.lattice.view());
+    body.rigid->dynamics()->place_nodes(body.lattice.view());
   }
   material = command.material;
   update_inertia(state);

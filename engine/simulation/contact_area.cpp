@@ -81,10 +81,7 @@ double find_contact_area_m2(const Simulation::State& state, int body) {
   state.between.visit_pushed_samples(body, reach_m, add);
   state.tool.contact.constraints().visit_pushed_samples(body, add);
   if (state.scene.symmetry.on) state.mirrored.contact.constraints().visit_pushed_samples(body, add);
-  const bool is_on_ground =
-      state.scene.ground && !(state.ground_contact.contacts().impulse_ns(body).isZero(0.0) &&
-                              state.between.ground_impulse_ns(body).isZero(0.0));
-  if (is_on_ground) {
+  if (!find_ground_impulse_ns(state, body).isZero(0.0)) {
     pushed.add_near_ground(*state.scene.ground, reach_m);
   }
   return pushed.area_m2();

@@ -70,7 +70,7 @@ double spacing_at(const std::vector<double>& parameters, int index) {
 }  // namespace
 
 RigidGroundContact::RigidGroundContact(const BodyState& body) {
-  if (!body.rigid || body.rigid->dynamics() == nullptr) return;
+  if (!body.is_movable_rigid()) return;
   const Surface& surface = body.mapping().current();
   // make() cannot fail, because the mapping already has a grid of these knots.
   heights_ = SkinHeights::make(surface.u, surface.v).value();

@@ -25,7 +25,7 @@ class SearchedShapes {
   void remember(std::span<const BodyState> bodies);
   void forget() { known_count_ = 0; }
   // Returns whether no node of these bodies has moved farther than searched_motion_cells since remember(),
-  // and no rigid body has moved or is about to move.
+  // and no fixed body has turned or is about to turn.
   bool still_hold(std::span<const BodyState> bodies) const;
 
   // Calls visit(const double*, count) with the state on which the next tick depends.

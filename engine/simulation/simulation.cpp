@@ -124,6 +124,11 @@ void update_inertia(Simulation::State& s) {
   for (BodyState& body : bodies) body.set_inertia(is_held(body) ? own_scale(body) : shared, step_s);
 }
 
+Vector3 find_ground_impulse_ns(const Simulation::State& s, int body) {
+  if (!s.scene.ground) return Vector3::Zero();
+  return s.ground_contact.contacts().impulse_ns(body) + s.between.ground_impulse_ns(body);
+}
+
 Status Simulation::apply(const Command& command) {
   const DenormalsFlushed flushed;  // every thread then computes the same bits
   const Status applied = std::visit(CommandApplier{*state_}, command);
@@ -223,8 +228,7 @@ constexpr double reach_fraction = 1.0;
 
 // Impulse of the ground and of other bodies on a body in the last tick, N s.
 Vector3 contact_impulse_ns(const Simulation::State& s, int body) {
-  const Vector3 between = s.between.impulse_ns(body, tick_s);
-  return s.scene.ground ? Vector3(between + s.ground_contact.contacts().impulse_ns(body)) : between;
+  return s.between.impulse_ns(body, tick_s) + find_ground_impulse_ns(s, body);
 }
 
 // Lowers a body level by the distance of a tick, unless contacts bear its weight: then lets it go.
@@ -247,7 +251,7 @@ bool hold_rigid(BodyState& body, bool keeps_place) {
   const bool is_lost = !body.rigid->is_finite();
   if (!is_lost && !(keeps_place && body.rigid->is_free())) return false;
   body.rigid->return_to_start();
-  body.rigid->dynamics()->begin_tick(body.lattice.view());
+  body.rigid->dynamics()->place_nodes(body.lattice.view());
   return is_lost;
 }
 
@@ -416,9 +420,7 @@ double Simulation::largest_overlap_m() const {
 }
 Vector3 Simulation::ground_force_n(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
-  if (!state_->scene.ground) return Vector3::Zero();
-  return (state_->ground_contact.contacts().impulse_ns(body) + state_->between.ground_impulse_ns(body)) /
-         tick_s;
+  return find_ground_impulse_ns(*state_, body) / tick_s;
 }
 int Simulation::substeps() const {
   return state_->substeps;

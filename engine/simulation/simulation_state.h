@@ -88,6 +88,9 @@ BodyContacts make_contact_buffer();
 // tool or settings; may allocate.
 void update_inertia(Simulation::State& state);
 
+// Impulse of the ground on a body of the scene in the last tick, N s.
+Vector3 find_ground_impulse_ns(const Simulation::State& state, int body);
+
 // Bodies and tool in a tick, as ToolKernel::constrain() receives them.
 struct ToolTouch {
   std::span<const BodyState> bodies;

@@ -57,7 +57,6 @@ class SupportPoints {
   static constexpr std::size_t count = 1 + tilt_directions.size() * tilts_rad.size();
 
   // Several supports may have the same point.
-  std::array<Support, count>& supports() { return supports_; }
   const std::array<Support, count>& supports() const { return supports_; }
 
  private:

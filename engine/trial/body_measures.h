@@ -22,8 +22,8 @@ struct CellShapes {
 };
 CellShapes measure_cells(const SpringLattice& lattice);
 
-// Returns the mass and centre of mass of a fixed body. If its mass cannot be computed, the mass is 0 and the
-// centre is that of its area. `surface` is the body's present surface.
+// Returns the mass and centre of mass of a fixed body, without its inertia. If its mass cannot be computed,
+// the mass is 0 and the centre is that of its area. `surface` is the body's present surface.
 RigidMass find_fixed_mass(const Body& body, const Surface& surface);
 
 // Finds the kinetic, gravitational and elastic energy of a deformable body. Keeps the body's cells from call

@@ -1,4 +1,4 @@
-// Contacts of bodies with each other and with themselves.
+// Contacts of bodies with each other and with themselves, and of rigid bodies with the ground.
 #pragma once
 
 #include <array>

@@ -174,8 +174,6 @@ void ContactConstraints::exchange(const LatticeView& lattice, Constraint& constr
 
 void ContactConstraints::locate(const LatticeView& lattice, Constraint& constraint,
                                 const ToolState& tool) const {
-  // A grip lasts for many ticks, in which the inertia of its lattice may change.
-  constraint.compliance = motion_.body_yields ? constraint.point.compliance(lattice) : 0.0;
   constraint.position_m = constraint.rest_m + constraint.point.displacement_m(lattice);
   const Vector3 from_centre = constraint.position_m - tool.position_m;
   if (constraint.kind == Kind::plane_push) {
@@ -186,12 +184,17 @@ void ContactConstraints::locate(const LatticeView& lattice, Constraint& constrai
     constraint.normal = distance > 0.0 ? Vector3(from_centre / distance) : Vector3::Zero();
     constraint.gap_m = distance - motion_.radius_m;
   }
-  constraint.slide_compliance = constraint.compliance;
+  // A grip lasts for many ticks, in which the inertia of its lattice may change.
   const bool is_push = constraint.kind != Kind::grip && !constraint.normal.isZero(0.0);
-  if (lattice.rigid == nullptr || !is_push || !motion_.body_yields) return;
-  const Vector3 arm_m = constraint.point.offset_m(*lattice.rigid);
-  constraint.compliance = lattice.rigid->compliance(arm_m, constraint.normal);
-  constraint.slide_compliance = lattice.rigid->slide_compliance(arm_m, constraint.normal);
+  if (!motion_.body_yields) {
+    constraint.compliance = constraint.slide_compliance = 0.0;
+  } else if (lattice.rigid != nullptr && is_push) {
+    const Vector3 arm_m = constraint.point.offset_m(*lattice.rigid);
+    constraint.compliance = lattice.rigid->compliance(arm_m, constraint.normal);
+    constraint.slide_compliance = lattice.rigid->slide_compliance(arm_m, constraint.normal);
+  } else {
+    constraint.compliance = constraint.slide_compliance = constraint.point.compliance(lattice);
+  }
 }
 
 ContactPush ContactConstraints::find_push(const LatticeView& lattice, const Constraint& constraint,

@@ -50,7 +50,7 @@ struct ContactPush {
 };
 
 // Kind of solver that advances the lattices of a contact. `solvers`: the contact is solved once a tick,
-// because each lattice is stepped implicitly, or is the frame of a rigid body beside one that is. `springs`:
+// because each lattice is stepped implicitly, or is the frame of a fixed body beside one that is. `springs`:
 // at least one lattice is stepped explicitly by its springs, and the contact is solved in each substep.
 enum class MovedBy { springs, solvers };
 

@@ -1,4 +1,4 @@
-// Contacts of bodies with the ground.
+// Contacts of deformable bodies with the ground.
 #pragma once
 
 #include <cstddef>

@@ -54,7 +54,10 @@ class RigidDynamics {
   // Multiplies the inertia, but neither the weight nor any other force.
   void set_inertia_scale(double scale);
 
+  // Starts a tick: places the nodes, and begins to sum up the impulse of the hand.
   void begin_tick(const LatticeView& view);
+  // Sets the positions and velocities of the frame's nodes. Call after a change outside a substep.
+  void place_nodes(const LatticeView& view);
   // Accelerates the body by gravity, and by the hand if there is one, in a substep of h_s. The spring and its
   // damper are implicit in the velocity. `drag_per_s` damps the motion of a free body, without a change of
   // static forces. Call before the contacts are solved.
@@ -93,7 +96,6 @@ class RigidDynamics {
   Eigen::Matrix3d inertia_of(const Quaternion& orientation) const;  // about the centre, scaled
   Vector3 spin_of(const Quaternion& orientation, const Vector3& angular_momentum) const;
   void move_centre_to(const Vector3& centre_m, const Quaternion& orientation);
-  void place_nodes(const LatticeView& view);
   void set_node_velocities(const LatticeView& view) const;
   void adopt_frame(const LatticeMesh& frame);
 

@@ -311,12 +311,17 @@ TEST(RigidBody, RestsOnASoftBody) {
   EXPECT_LT(overlap_m, 5e-5);
 }
 
+// A block that a weak hand holds.
+Scene held_block(double height_m) {
+  Scene scene;
+  scene.bodies = {rigid_block({0.0, height_m, 0.0}, 0.3)};
+  scene.bodies[0].hand = HandSpring{50.0, 0.02};
+  return scene;
+}
+
 // A hand spring of the stiffness k yields to the weight by m g / k, and turns with the hand.
 TEST(HeldBody, SagsByItsWeightAndFollowsTheHand) {
-  Scene scene;
-  scene.bodies = {rigid_block({0.0, 0.1, 0.0}, 0.3)};
-  scene.bodies[0].hand = HandSpring{50.0, 0.02};
-  Simulation simulation = make_trial_of(scene);
+  Simulation simulation = make_trial_of(held_block(0.1));
   run(simulation, 600);
   const RigidDynamics& block = *simulation.rigid_dynamics(0);
   const double weight_n = block.mass().mass_kg * standard_gravity_m_per_s2;
@@ -342,9 +347,7 @@ TEST(HeldBody, SagsByItsWeightAndFollowsTheHand) {
 
 // Ground and hand share the weight, and the hand's force includes how its spring responds to the ground.
 TEST(HeldBody, IsBorneByTheGroundAndTheHand) {
-  Scene scene;
-  scene.bodies = {rigid_block({0.0, 0.004, 0.0}, 0.3)};
-  scene.bodies[0].hand = HandSpring{50.0, 0.02};
+  Scene scene = held_block(0.004);
   scene.ground = ground_with(0.3);
   scene.ground->point_m.y() = 5e-4;  // the hand presses the block upon the ground
   Simulation simulation = make_trial_of(scene);
@@ -359,10 +362,7 @@ TEST(HeldBody, IsBorneByTheGroundAndTheHand) {
 
 // Keeping the shape changes neither pose nor hand nor mass.
 TEST(HeldBody, KeepsItsPlaceWhenItsShapeIsKept) {
-  Scene scene;
-  scene.bodies = {rigid_block({0.0, 0.1, 0.0}, 0.3)};
-  scene.bodies[0].hand = HandSpring{50.0, 0.02};
-  Simulation simulation = make_trial_of(scene);
+  Simulation simulation = make_trial_of(held_block(0.1));
   TurnBody turn;
   turn.point_m = {0.02, 0.1, 0.0};
   turn.axis = Vector3::UnitZ();
