@@ -186,7 +186,7 @@ CommandEntry add_add(OptionSet root) {
       "move\n"
       "them. Bodies keep their materials and lattices. A body whose name is taken gets a number.\n"
       "Example: spoonbill add assets/models/jelly.json assets/models/spoon-bowl.json \\\n"
-      "  --pose 137mm,16mm,0,1,0,0,0 --fixed bowl --out served.json");
+      "  --pose 134mm,16mm,0,1,0,0,0 --fixed bowl --out served.json");
   parser.add_option("MODEL", options->models, "Documents (.json), 1 to 64").require();
   parser
       .add_parsed_list(

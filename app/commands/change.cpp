@@ -112,8 +112,8 @@ CommandEntry add_change(OptionSet root) {
   const OptionSet parser = root.add_command("change", "Split, close, reverse or refine a body's surface");
   parser.set_footer(
       "Changes:\n" + list_changes() +
-      "A parameter is in the knot domain, which `spoonbill info` shows. Regions, loads and supports are\n"
-      "kept by insert, remove, degree, simplify and close, and dropped by the other changes.\n"
+      "A parameter is in the knot domain, which `spoonbill info` shows. Regions, loads, supports and\n"
+      "the rim are kept by insert, remove, degree, simplify and close, and dropped by the other changes.\n"
       "Example: spoonbill change assets/models/spoon-handle.json split v=50 --out halves.json");
   parser.add_option("MODEL", options->model, "Document (.json)").require();
   parser

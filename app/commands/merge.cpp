@@ -441,8 +441,8 @@ CommandEntry add_merge(OptionSet root) {
       "Closed bodies that do not touch are opened at their nearest ends and bridged. A joint that already\n"
       "has the requested continuity is exact; elsewhere control points are added beside the joint until\n"
       "the error is within the tolerance. Trimmed bodies are resampled up to their trims; discs and rings\n"
-      "are resampled about their centre. Material and tool are those of the first model; regions, loads\n"
-      "and supports are dropped.\n"
+      "are resampled about their centre. Material and tool are those of the first model; regions, loads,\n"
+      "supports and rims are dropped.\n"
       "Example: spoonbill merge assets/models/spoon-handle.json assets/models/spoon-bowl.json --out "
       "spoon.json");
   parser.add_option("MODEL", options->models, "Documents (.json), 1 to 64").require();

@@ -47,6 +47,7 @@ struct NewShape {
   // reach cannot touch itself, unless it folds.
   double reach_m = 0.0;
   int degree = 3;
+  double requested_radius_m = 0.0;  // smallest radius that the sizes ask for; 0: none
 };
 
 // One subcommand of `spoonbill new`, and the function that makes its shape after parsing.
@@ -88,7 +89,7 @@ std::shared_ptr<std::vector<double>> add_size(OptionSet parser, std::size_t coun
 Result<NewShape> make_stock_shape(const StockShapeSize& size) {
   auto shape = stock_shape(size);
   if (!shape) return shape.error();
-  return NewShape{std::move(shape).value(), {}, reach_m(size), stock_shape_degree(size)};
+  return NewShape{std::move(shape).value(), {}, reach_m(size), stock_shape_degree(size), reach_m(size)};
 }
 
 NewKind add_sphere(OptionSet root) {
@@ -185,6 +186,40 @@ NewKind add_torus(OptionSet root) {
             size.ring_radius_m = ring->value_or(size.ring_radius_m);
             size.tube_radius_m = tube->value_or(size.tube_radius_m);
             return make_stock_shape(size);
+          }};
+}
+
+NewKind add_bowl(OptionSet root) {
+  const OptionSet parser =
+      root.add_command("bowl", "Bowl of a spoon, with its back at -x and its front at +x");
+  const LengthOption length = add_length(parser, "--length", "Outer length along x; default: 60mm");
+  const LengthOption width =
+      add_length(parser, "--width",
+                 "Outer width along z, at least a quarter and at most 4 times the length; default: 42mm");
+  const LengthOption depth =
+      add_length(parser, "--depth",
+                 "Depth of the inside below the highest point of the rim; default: 10mm, at most half the "
+                 "shorter side");
+  const LengthOption rim =
+      add_length(parser, "--rim",
+                 "Thickness of the round rim and of the wall; default: 1mm, at least a hundredth and at "
+                 "most a tenth of the shorter side");
+  const auto pitch = std::make_shared<double>(0.0);
+  add_parsed_option(
+      parser, "--pitch", "ANGLE",
+      [](const std::string& text) { return parse_angle_deg(text, bowl_pitch_range_deg); },
+      [pitch](double angle_deg) { *pitch = angle_deg; },
+      "Angle by which the front is lifted, such as -10deg; default: 0, range: -60deg to 60deg");
+  return {parser, [=] {
+            BowlSize size;
+            size.length_m = length->value_or(size.length_m);
+            size.width_m = width->value_or(size.width_m);
+            size.depth_m = depth->value_or(size.depth_m);
+            size.rim_m = rim->value_or(size.rim_m);
+            size.pitch_deg = *pitch;
+            auto made = make_stock_shape(size);
+            if (made) made->requested_radius_m = 0.0;  // the rim's shoulders are rounder than asked for
+            return made;
           }};
 }
 
@@ -417,8 +452,8 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   auto fitted = fit_new_shape(options, made.value(), fit, console);
   if (!fitted) return fitted.error();
   const std::string name = options.name.empty() ? kind.parser.name() : options.name;
-  const Document document =
-      starting_document(name, fitted->surface, material.value(), made->shell_thickness_m);
+  Document document = starting_document(name, fitted->surface, material.value(), made->shell_thickness_m);
+  document.scene.bodies.front().rim = made->shape.rim;
   if (Status written = write_document(document, options.out, options.how); !written) return written;
 
   FactSheet facts;
@@ -426,7 +461,7 @@ Status make_new(const NewOptions& options, const NewKind& kind, Console& console
   facts.add("Kind", kind.parser.name(), "kind", kind.parser.name());
   add_size_fact(facts, extent_of(fitted->surface));
   add_shape_facts(facts, made->shape, fitted.value(), fit.tolerance_m);
-  add_radius_facts(facts, fitted->surface, made->reach_m);
+  add_radius_facts(facts, fitted->surface, made->requested_radius_m);
   std::vector<std::string> notes;
   if (made->shape.is_closed() && made->shape.v.periodic) {
     notes.emplace_back("a ring is sculpted in a box of cells, because a lattice cannot follow its shape");
@@ -470,9 +505,9 @@ CommandEntry add_new(OptionSet root) {
       "shape. `spoonbill new KIND --help` lists the sizes of a kind; each has a unit: mm, cm, m or in.\n"
       "Example: spoonbill new box --size 60x40x20mm --rounding 3mm --out box.json");
   parser.require_command();
-  std::vector<NewKind> kinds = {add_sphere(parser), add_box(parser),   add_cylinder(parser),
-                                add_cone(parser),   add_plate(parser), add_torus(parser),
-                                add_tube(parser),   add_lathe(parser), add_loft(parser)};
+  std::vector<NewKind> kinds = {add_sphere(parser), add_box(parser),   add_cylinder(parser), add_cone(parser),
+                                add_plate(parser),  add_torus(parser), add_bowl(parser),     add_tube(parser),
+                                add_lathe(parser),  add_loft(parser)};
   for (const NewKind& kind : kinds) add_shape_options(kind.parser, *options);
   return {parser, [options, kinds = std::move(kinds)](Console& console) {
             const auto chosen = std::find_if(kinds.begin(), kinds.end(),

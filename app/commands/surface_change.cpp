@@ -318,13 +318,17 @@ std::string list_changes() {
 }
 
 void drop_surface_features(Body& body, std::vector<std::string>& notes) {
-  if (!body.regions.empty() || !body.loads.empty() || !body.supports.empty()) {
-    notes.push_back("regions, loads and supports of \"" + body.name +
-                    "\" were dropped: their positions refer to the old surface");
-  }
-  body.regions.clear();
-  body.loads.clear();
-  body.supports.clear();
+  std::string dropped;
+  const auto drop = [&](auto& features, const char* what) {
+    if (!features.empty()) dropped += (dropped.empty() ? "" : ", ") + std::string(what);
+    features.clear();
+  };
+  drop(body.regions, "regions");
+  drop(body.loads, "loads");
+  drop(body.supports, "supports");
+  drop(body.rim, "rim");
+  if (dropped.empty()) return;
+  notes.push_back("\"" + body.name + "\" lost its " + dropped + ": the positions refer to the old surface");
 }
 
 void adapt_thickness(Body& body, const Surface& before, std::vector<std::string>& notes) {

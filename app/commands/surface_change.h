@@ -18,7 +18,7 @@ struct ChangedSurfaces {
   std::vector<Surface> surfaces;  // two after a split of an open direction, otherwise one
   std::vector<TrimLoop> trims = {};
   double deviation_m = 0.0;      // bound of the deviation; 0 if the change is exact
-  bool keeps_parameters = true;  // false if regions, loads and supports would move on the surface
+  bool keeps_parameters = true;  // false if regions, loads, supports and rim would move
 };
 
 enum class ChangeKind { split, insert, remove, degree, simplify, reverse, exchange, seam, close, cap, open };
@@ -47,8 +47,8 @@ Result<ChangedSurfaces> change_surface(const Surface& surface, const std::vector
 // Returns one line per change for --help.
 std::string list_changes();
 
-// Removes regions, loads and supports, because their positions refer to the surface that is replaced. Adds a
-// note if the body had any.
+// Removes regions, loads, supports and the rim, because their positions refer to the surface that is
+// replaced. Adds a note if the body had any.
 void drop_surface_features(Body& body, std::vector<std::string>& notes);
 
 // Adapts the shell thickness of a body whose surface was `before`. A body that has become a closed solid

@@ -39,6 +39,10 @@ struct TryOptions {
   bool json = false;
 };
 
+std::string outside_text(const Spill& spill) {
+  return decimals_text(100.0 * spill.outside_fraction, 1) + " % outside the rim";
+}
+
 TrialRows make_trial_rows(const Trial& trial, const Simulation& simulation) {
   TrialRows rows;
   rows.phase = trial_phase_names[static_cast<std::size_t>(trial.phase())];
@@ -60,6 +64,7 @@ TrialRows make_trial_rows(const Trial& trial, const Simulation& simulation) {
     const SpringLattice& lattice = simulation.lattice(static_cast<int>(b));
     rows.inverted_cells += measure_cells(lattice).inverted_cells;
     rows.bodies.push_back({bodies[b].name, lattice.material().name + ", " + grams_text(lattice.mass_kg())});
+    if (const Spill* const spill = trial.spill(b)) rows.bodies.push_back({"", outside_text(*spill)});
   }
   return rows;
 }
@@ -181,6 +186,22 @@ Result<EndedTrial> run_trial(const TryOptions& options, Session& session, TrialP
   return ended;
 }
 
+void add_spill(FactSheet& facts, const Spill& spill, Json& json) {
+  const auto when_text = [](const std::optional<double>& time_s, const char* what, const char* has_not) {
+    return time_s ? std::string(what) + " after " + decimals_text(*time_s, 2) + " s" : std::string(has_not);
+  };
+  facts.add("  Rim",
+            outside_text(spill) + ", " + decimals_text(100.0 * spill.spilled_fraction, 1) +
+                " % also below it; " + when_text(spill.first_spill_s, "spilled", "has not spilled") + ", " +
+                when_text(spill.left_s, "left", "has not left"),
+            "", nullptr);
+  const auto time_json = [](const std::optional<double>& time_s) { return time_s ? Json(*time_s) : Json(); };
+  json["outside_fraction"] = spill.outside_fraction;
+  json["spilled_fraction"] = spill.spilled_fraction;
+  json["first_spill_s"] = time_json(spill.first_spill_s);
+  json["left_s"] = time_json(spill.left_s);
+}
+
 void add_trial_body(FactSheet& facts, const TrialBodyReport& body, const Body& source, Json& list) {
   const bool deforms = source.kind == BodyKind::deformable;
   facts.add("Body", body.name + (deforms ? "" : ", " + kind_text(source)), "", nullptr);
@@ -207,6 +228,7 @@ void add_trial_body(FactSheet& facts, const TrialBodyReport& body, const Body& s
                   {"support_force_n", components_json(body.support_force_n)},
                   {"ground_force_n", components_json(body.ground_force_n)},
                   {"contact_force_n", components_json(body.contact_force_n)}});
+  if (body.spill) add_spill(facts, *body.spill, list.back());
 }
 
 void add_trial_facts(FactSheet& facts, const EndedTrial& ended, const Session& session) {
@@ -296,6 +318,10 @@ CommandEntry add_try(OptionSet root) {
       "weight, and a fixed or held body that then turns. The bodies settle before the turn, for 10 s at\n"
       "most. Bodies have settled when no node has moved faster than 0.1 mm/s for 0.2 s. A trial that cannot\n"
       "hold a body, or in which nothing bears the lowered body within 30 s, ends with an error.\n"
+      "If the body that bears the others has a known rim (rim_uv), like one from `spoonbill new bowl`, the\n"
+      "report says how much of each is outside the rim, when it spilled (more than 1 % of its mass is "
+      "outside\n"
+      "the rim and below its plane) and when it left (its centre of mass is outside).\n"
       "Example: spoonbill try assets/models/jelly-on-spoon.json --tilt 10deg --out output/tilt");
   parser.add_option("DOCUMENT", options->model, "Document (.json)").require();
   parser

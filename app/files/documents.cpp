@@ -60,14 +60,15 @@ double round_down(double number) {
   return std::floor(number / unit) * unit;
 }
 
-const std::array<StockShapeKind, 6>& all_stock_shapes() {
-  static const std::array<StockShapeKind, 6> all = {{
+const std::array<StockShapeKind, 7>& all_stock_shapes() {
+  static const std::array<StockShapeKind, 7> all = {{
       {"Sphere", {{"Radius", 30.0}}},
       {"Box", {{"Along x", 60.0}, {"Along y", 40.0}, {"Along z", 20.0}, {"Rounding", 3.0}}},
       {"Cylinder", {{"Radius", 20.0}, {"Height", 60.0}, {"Rounding", 3.0}}},
       {"Cone", {{"Radius", 30.0}, {"Height", 60.0}, {"Rounding", 4.0}}},
       {"Plate", {{"Along x", 100.0}, {"Along z", 60.0}, {"Thickness", 5.0}, {"Corners", 8.0}}},
       {"Sheet", {{"Along x", 100.0}, {"Along z", 60.0}, {"Thickness", 2.0}}},
+      {"Bowl", {{"Length", 60.0}, {"Width", 42.0}, {"Depth", 10.0}, {"Rim", 2.0}}},
   }};
   return all;
 }
@@ -92,6 +93,8 @@ SizedStockShape size_stock_shape(std::size_t kind, const std::vector<double>& m)
       return {PlateSize{m[0], m[1], m[2], m[3]}};
     case 5:
       return {SheetSize{m[0], m[1]}, m[2]};
+    case 6:
+      return {BowlSize{m[0], m[1], m[2], m[3]}};
     default:
       SPOONBILL_ASSERT(!"a row of all_stock_shapes() without a case");
       return {SphereSize{m[0]}};
@@ -245,11 +248,15 @@ Result<Document> make_stock_shape_document(const StockShapeChoice& choice, const
   if (!shape) return shape.error();
   ShapeFit fit;
   fit.degree = stock_shape_degree(sized.size);
-  fit.tolerance_m = std::min(stock_shape_tolerance_m, 10.0 * default_tolerance_m(shape.value()));
+  // A fifth of the reach keeps the two sides of a thin wall apart.
+  fit.tolerance_m = std::min(
+      {stock_shape_tolerance_m, 10.0 * default_tolerance_m(shape.value()), 0.2 * reach_m(sized.size)});
   auto fitted = fit_shape(shape.value(), fit);
   if (!fitted) return fitted.error();
-  return starting_document(lower_case(all_stock_shapes()[choice.kind].name), std::move(fitted->surface),
-                           material, sized.shell_thickness_m);
+  Document document = starting_document(lower_case(all_stock_shapes()[choice.kind].name),
+                                        std::move(fitted->surface), material, sized.shell_thickness_m);
+  document.scene.bodies.front().rim = shape->rim;
+  return document;
 }
 
 Result<Document> make_cad_document(const CadModel& model, const std::string& name) {

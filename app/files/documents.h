@@ -60,9 +60,9 @@ struct StockShapeChoice {
 
 StockShapeChoice default_stock_shape(std::size_t kind);
 
-// Returns a document around the stock shape. The surface deviates from the exact shape by at most 0.1 mm.
-// This tolerance needs few control points, so a tick can be computed in a millisecond. The error names a size
-// that is out of range.
+// Returns a document around the stock shape; a bowl is not pitched. The surface deviates from the exact shape
+// by at most 0.1 mm. This tolerance needs few control points, so a tick can be computed in a millisecond. The
+// error names a size that is out of range.
 Result<Document> make_stock_shape_document(const StockShapeChoice& choice, const Material& material);
 
 // Returns a document with one body of modelling clay per surface. All other settings are those that

@@ -142,6 +142,9 @@ Json add_body_facts(FactSheet& facts, const std::string& label, const Body& body
   add_trim_facts(facts, body, json);
   facts.add("Material", material_text(body.material), "", nullptr);
   add_region_facts(facts, body, json);
+  if (!body.rim.empty())
+    facts.add("Rim", "known, " + std::to_string(body.rim.size()) + " corners", "", nullptr);
+  json["rim_corners"] = body.rim.size();
   return json;
 }
 

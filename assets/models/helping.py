@@ -51,8 +51,8 @@ def helping(centre_mm):
 
 
 def trial(name, lattice, centre_mm, bearer, axis_point_mm, friction):
-    """A document in which a helping of soft gelatin is lowered from a centre onto a fixed body, given by its name, surface
-    and material. The body then turns about an axis along z. Both bodies get the friction."""
+    """A document in which a helping of soft gelatin is lowered from a centre onto a fixed body, given by its name, surface,
+    material and, if it has one, rim. The body then turns about an axis along z. Both bodies get the friction."""
     return {
         "spoonbill_document": 3,
         "name": name,
@@ -67,6 +67,7 @@ def trial(name, lattice, centre_mm, bearer, axis_point_mm, friction):
                 "name": bearer["name"],
                 "kind": "fixed",
                 "surface": bearer["surface"],
+                **({"rim_uv": bearer["rim_uv"]} if "rim_uv" in bearer else {}),
                 "material": dict(material(bearer["material"]), friction=friction),
             }
         ],

@@ -10,7 +10,8 @@ from helping import trial
 
 FRICTION = 0.1  # a choice: no trustworthy coefficient of gelatin on steel is published
 
-spoon = {"name": "spoon", "surface": model("spoon-bowl")["body"]["surface"], "material": "steel-304"}
+bowl = model("spoon-bowl")["body"]
+spoon = {"name": "spoon", "surface": bowl["surface"], "rim_uv": bowl["rim_uv"], "material": "steel-304"}
 LATTICE = {"nodes": [12, 6, 10], "cells": "box"}  # no cell is flat, so a tick takes few substeps
 
-write(trial("jelly-on-spoon", LATTICE, (137.0, 9.0, 0.0), spoon, (137.0, 0.0, 0.0), FRICTION))
+write(trial("jelly-on-spoon", LATTICE, (134.0, 9.0, 0.0), spoon, (134.0, 0.0, 0.0), FRICTION))

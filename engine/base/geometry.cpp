@@ -41,4 +41,14 @@ Status check_unit(const std::string& field, const Vector3& vector) {
                field + " has length " + number_text(length) + ", must be a unit vector", field};
 }
 
+bool is_inside(const Vector2& point, std::span<const Vector2> polygon) {
+  bool inside = false;
+  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
+    const Vector2 &a = polygon[i], &b = polygon[j];
+    if ((a.y() > point.y()) == (b.y() > point.y())) continue;
+    if (point.x() < a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
+  }
+  return inside;
+}
+
 }  // namespace spoonbill

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <iterator>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -134,5 +135,8 @@ auto box_about(const Points& points) {
   for (const auto& point : points) box.include(point);
   return box;
 }
+
+// Returns true if a point is inside a polygon, which may cross itself: by the even-odd rule.
+bool is_inside(const Vector2& point, std::span<const Vector2> polygon);
 
 }  // namespace spoonbill

@@ -40,6 +40,23 @@ void read_loads_and_supports(FieldReader& reader, Body& body) {
             [&](FieldReader& item) { body.supports.push_back(read_support(item)); });
 }
 
+void read_rim(FieldReader& reader, Body& body) {
+  reader.ignore("rim_uv");
+  if (!reader.has("rim_uv")) return;
+  for (const Json& item : reader.list("rim_uv", rim_corner_count_range)) {
+    Vector2& corner = body.rim.emplace_back(Vector2::Zero());
+    const bool is_point = read_parameters(item, corner.x(), corner.y());
+    const KnotVector &u = body.surface.u, &v = body.surface.v;
+    if (is_point && Range<double>{u.domain_start(), u.domain_end()}.contains(corner.x()) &&
+        Range<double>{v.domain_start(), v.domain_end()}.contains(corner.y())) {
+      continue;
+    }
+    reader.refuse("rim_uv[" + std::to_string(body.rim.size() - 1) + "]",
+                  "must be 2 numbers, the parameters u and v of a point of the surface");
+    return;
+  }
+}
+
 BodyKind read_kind(FieldReader& reader) {
   if (!reader.has("kind")) return BodyKind::deformable;
   return static_cast<BodyKind>(reader.choose("kind", body_kind_names));
@@ -77,6 +94,7 @@ std::optional<Body> read_body(FieldReader reader, int version) {
   }
   body.regions = read_material_regions(reader);
   body.trims = std::move(trims);
+  read_rim(reader, body);
   if (version > 1 && reader.has("solid")) body.solid = reader.text("solid");
   if (const Status status = check_kind(body); !status.ok()) {
     const bool is_hand = status.error().field == std::string("hand");
@@ -177,6 +195,9 @@ Json body_to_json(const Body& body) {
   for (const Support& support : body.supports) json["supports"].push_back(support_to_json(support));
   if (body.shell_thickness_m) json["shell_thickness_mm"] = length_to_json(*body.shell_thickness_m);
   add_material_regions(body.regions, json);
+  for (const Vector2& corner : body.rim) {
+    json["rim_uv"].push_back(Json::array({number_to_json(corner.x()), number_to_json(corner.y())}));
+  }
   if (!body.solid.empty()) json["solid"] = body.solid;
   return json;
 }

@@ -34,6 +34,8 @@
 //      "supports": [{"region": {...},                            optional
 //        "motion": {"kind": "ramp", "way_mm": [0, 5, 0], "duration_s": 2}}],     optional, at rest
 //      "shell_thickness_mm": 2,                                optional, a solid; see shell_lattice.h
+//      "rim_uv": [[0, 0], [0, 1], ...],                        optional, no known rim; corners of a closed
+//                                                              line on the surface (Body::rim)
 //      "solid": "bracket"},                                    optional; bodies that share the name are faces
 //                                                              of one solid of a CAD model
 //    "other_bodies": [{"name": ...}, ...],                       optional; each as "body", at most 999; a

@@ -75,13 +75,6 @@ std::optional<KnotVector> read_direction(FieldReader reader) {
   return direction;
 }
 
-bool read_parameters(const Json& json, double& u, double& v) {
-  if (!json.is_array() || json.size() != 2 || !json[0].is_number() || !json[1].is_number()) return false;
-  u = json[0].get<double>();
-  v = json[1].get<double>();
-  return parameter_range.contains(u) && parameter_range.contains(v);
-}
-
 std::optional<TrimLoop> read_trim(FieldReader reader, const Surface& surface) {
   std::optional<KnotVector> knots = read_knot_vector(reader, trim_control_point_count_range);
   const char* field = "control_points_uv";
@@ -191,6 +184,13 @@ void add_trims(const std::vector<TrimLoop>& trims, Json& surface_json) {
       points.push_back(Json::array({number_to_json(loop.u[i]), number_to_json(loop.v[i])}));
     }
   }
+}
+
+bool read_parameters(const Json& json, double& u, double& v) {
+  if (!json.is_array() || json.size() != 2 || !json[0].is_number() || !json[1].is_number()) return false;
+  u = json[0].get<double>();
+  v = json[1].get<double>();
+  return parameter_range.contains(u) && parameter_range.contains(v);
 }
 
 Json position_to_json(const Vector3& position_m) {

@@ -31,6 +31,8 @@ void add_knot_vector(const KnotVector& knots, Json& json);
 // Converts a list of three lengths. Returns false if the value is not a list of three lengths, or if a length
 // is outside position_range_m.
 bool read_point(const Json& json, Vector3& point_m);
+// Reads a list of two numbers. Returns false if the value is not such a list, or if a number is out of range.
+bool read_parameters(const Json& json, double& u, double& v);
 Json position_to_json(const Vector3& position_m);
 
 }  // namespace spoonbill

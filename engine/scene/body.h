@@ -111,6 +111,9 @@ struct Body {
   std::optional<double> shell_thickness_m = {};
   // Trim loops around the part of the surface that is drawn and touched (trimmed_area.h).
   std::vector<TrimLoop> trims = {};
+  // Corners of a closed line on the surface, as parameters (u, v): the rim of a body that bears food. The
+  // line is straight in the parameters between one corner and the next. Empty if the body has no known rim.
+  std::vector<Vector2> rim = {};
   // Name of the CAD solid that has this body as a face; empty if the body is not a face of a solid.
   std::string solid = {};
   BodyKind kind = BodyKind::deformable;
@@ -119,6 +122,7 @@ struct Body {
 
 inline constexpr Range<int> control_point_count_range{2, 200};  // number of control points in each direction
 inline constexpr Range<double> shell_thickness_range_m{1e-5, 0.1};
+inline constexpr Range<int> rim_corner_count_range{3, 1000};
 
 // Placement of a body in a document: the body is turned about an axis through the origin, then moved. Reading
 // a document moves the body there (move_body()), and writing it states the moved surface without a placement.

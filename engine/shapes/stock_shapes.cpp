@@ -393,6 +393,9 @@ Result<ExactShape> make_shape(const SheetSize& size) {
 Result<ExactShape> make_shape(const TorusSize& size) {
   return torus_shape(size);
 }
+Result<ExactShape> make_shape(const BowlSize& size) {
+  return bowl_shape(size);
+}
 
 double shape_reach(const SphereSize& size) {
   return size.radius_m;
@@ -415,6 +418,9 @@ double shape_reach(const SheetSize&) {
 }
 double shape_reach(const TorusSize& size) {
   return std::min(size.tube_radius_m, size.ring_radius_m - size.tube_radius_m);
+}
+double shape_reach(const BowlSize& size) {
+  return bowl_reach_m(size);
 }
 
 }  // namespace

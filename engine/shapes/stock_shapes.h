@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "engine/base/result.h"
+#include "engine/shapes/bowl.h"
 #include "engine/shapes/exact_shape.h"
 
 namespace spoonbill {
@@ -80,7 +81,7 @@ struct SheetSize {
 
 // Sizes of any stock shape, which determine its kind.
 using StockShapeSize =
-    std::variant<SphereSize, BoxSize, CylinderSize, ConeSize, PlateSize, SheetSize, TorusSize>;
+    std::variant<SphereSize, BoxSize, CylinderSize, ConeSize, PlateSize, SheetSize, TorusSize, BowlSize>;
 
 // Makes a stock shape. Refuses a size that is out of range, and names the size.
 Result<ExactShape> stock_shape(const StockShapeSize& size);

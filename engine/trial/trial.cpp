@@ -152,7 +152,10 @@ Status check_trial_start(const Simulation& simulation) {
 }
 
 Trial::Trial(const Scene& scene, const TrialSettings& settings)
-    : plan_(scene.trial.value_or(TrialPlan())), settings_(settings), forces_(scene.bodies.size()) {
+    : plan_(scene.trial.value_or(TrialPlan())),
+      settings_(settings),
+      spills_(scene),
+      forces_(scene.bodies.size()) {
   SPOONBILL_ASSERT(trial_seconds_range.contains(settings.seconds));
   if (!plan_.lowered_body.empty()) {
     lower_ = LowerBody{find_body(scene, plan_.lowered_body), plan_.lowering_speed_m_per_s};
@@ -219,6 +222,7 @@ Status Trial::follow(const Simulation& simulation, std::uint32_t flags) {
     case TrialPhase::done:
       break;
   }
+  spills_.follow(simulation, time_s(), phase_ == TrialPhase::done);
   return {};
 }
 

@@ -9,6 +9,7 @@
 #include "engine/base/result.h"
 #include "engine/scene/scene.h"
 #include "engine/simulation/simulation.h"
+#include "engine/trial/spill.h"
 
 namespace spoonbill {
 
@@ -68,6 +69,9 @@ class Trial {
   // Angle by which the body that turns has turned, in degrees; empty if nothing turns.
   std::optional<double> turned_deg(const Simulation& simulation) const;
 
+  // Returns what of a body is outside the rim; null if the body has not been inside a rim.
+  const Spill* spill(std::size_t body) const { return spills_.find(body); }
+
   // Means over the last mean_force_s, or over the trial if it is shorter.
   static constexpr double mean_force_s = 0.5;
   struct MeanForces {
@@ -94,6 +98,7 @@ class Trial {
   std::uint64_t ticks_ = 0;
   double phase_s_ = 0.0, still_s_ = 0.0;
   double largest_speed_m_per_s_ = 0.0, largest_penetration_m_ = 0.0;
+  SpillWatch spills_;
   std::vector<std::vector<Forces>> forces_;  // the last ticks of each body, in a ring
 };
 

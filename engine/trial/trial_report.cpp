@@ -28,6 +28,7 @@ TrialBodyReport report_on_body(const Trial& trial, const Simulation& simulation,
   report.name = body.name;
   report.ground_force_n = mean.ground_n;
   report.contact_force_n = mean.contact_n;
+  if (const Spill* const spill = trial.spill(index)) report.spill = *spill;
   Vector3 others_n = mean.ground_n + mean.contact_n - mean.inertial_n;
   double mass_kg = lattice.mass_kg();
   if (const RigidDynamics* const rigid = simulation.rigid_dynamics(number)) {

@@ -7,6 +7,7 @@
 
 #include "engine/base/geometry.h"
 #include "engine/simulation/simulation.h"
+#include "engine/trial/spill.h"
 #include "engine/trial/trial.h"
 
 namespace spoonbill {
@@ -25,6 +26,7 @@ struct TrialBodyReport {
   Vector3 support_force_n = Vector3::Zero();
   Vector3 ground_force_n = Vector3::Zero();
   Vector3 contact_force_n = Vector3::Zero();
+  std::optional<Spill> spill;  // empty if the body has not been inside a rim
 };
 
 struct TrialReport {

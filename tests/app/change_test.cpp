@@ -180,7 +180,7 @@ TEST(ChangeCommand, SaysWhatItLeavesOut) {
   EXPECT_EQ(remarks({"change", grip, "split", "v=40", "--out", out, "--json"}), 3U);
   EXPECT_EQ(remarks({"change", grip, "insert", "v=40", "--out", out, "--json"}), 0U);
   EXPECT_EQ(remarks({"change", handle, "split", "v=40", "--out", out, "--json"}), 2U);
-  EXPECT_EQ(remarks({"merge", grip, bowl, "--out", out, "--json"}), 1U);
+  EXPECT_EQ(remarks({"merge", grip, bowl, "--out", out, "--json"}), 2U);  // also the rim of the bowl
 }
 
 }  // namespace

@@ -166,6 +166,48 @@ TEST(New, TorusIsSculptedInABoxOfCells) {
   EXPECT_NE(info.out.find("a box of cells"), std::string::npos);
 }
 
+// A bowl knows its rim. The bundled bowl of a spoon was made by this command, and then moved.
+TEST(New, ABowlHasARim) {
+  const Workplace place;
+  const Outcome outcome = run({"new", "bowl", "--length", "60mm", "--width", "38mm", "--depth", "8mm",
+                               "--rim", "2mm", "--out", place.text("bowl.json"), "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  const Json facts = json_of(outcome.out);
+  for (const auto& [axis, size_mm] : {std::pair(0, 60.0), {1, 10.0}, {2, 38.0}}) {
+    EXPECT_NEAR(facts["size_mm"][axis], size_mm, 0.05);
+  }
+  EXPECT_FALSE(facts.contains("asked_radius_m"));
+  const Body made = read_document(place.path("bowl.json"))->scene.bodies[0];
+  const Body bundled = read_document(SPOONBILL_ASSETS "/models/spoon-bowl.json")->scene.bodies[0];
+  EXPECT_EQ(made.rim.size(), 4u);
+  EXPECT_EQ(made.rim, bundled.rim);
+  for (double u = 0.0; u < 1.0; u += 0.05) {
+    for (double v = 0.0; v <= 1.0; v += 0.05) {
+      const Vector3 moved = position(made.surface, u, v) + Vector3(0.134, 0.0, 0.0);
+      EXPECT_LT((moved - position(bundled.surface, u, v)).norm(), 1e-8);
+    }
+  }
+  const Outcome pitched =
+      run({"new", "bowl", "--pitch", "-10deg", "--out", place.text("pitched.json"), "--json"});
+  ASSERT_EQ(pitched.code, exit_done) << pitched.err;
+  const Surface down = read_document(place.path("pitched.json"))->scene.bodies[0].surface;
+  EXPECT_LT(position(down, 0.0, 1.0).y(), -0.005);
+}
+
+// A rim stays where the parameters of the surface stay, and goes with a warning where they do not.
+TEST(New, TheRimOfABowlGoesWithItsSurface) {
+  const Workplace place;
+  ASSERT_EQ(run({"new", "bowl", "--out", place.text("bowl.json")}).code, exit_done);
+  const auto rim_after = [&](std::vector<std::string> change) {
+    const Outcome outcome = run(with({"change", place.text("bowl.json")},
+                                     with(std::move(change), {"--out", place.text("out.json"), "--force"})));
+    EXPECT_EQ(outcome.code, exit_done) << outcome.err;
+    return read_document(place.path("out.json"))->scene.bodies[0].rim.size();
+  };
+  EXPECT_EQ(rim_after({"degree", "v", "4"}), 4u);
+  EXPECT_EQ(rim_after({"reverse", "u"}), 0u);
+}
+
 TEST(New, RefusesWhatMakesNoShape) {
   const Workplace place;
   place.write("old.json", "precious");
@@ -183,6 +225,8 @@ TEST(New, RefusesWhatMakesNoShape) {
            {"new", "torus", "--ring", "1cm", "--tube", "2cm"},
            {"new", "plate", "--size", "100x60mm", "--thickness", "40mm"},
            {"new", "plate", "--size", "100x60mm", "--corner", "1mm"},
+           {"new", "bowl", "--depth", "22mm"},
+           {"new", "bowl", "--rim", "0.1mm"},
            {"new", "box", "--size", "60x40x20mm", "--tolerance", "0.00001mm"},
            {"new", "sphere", "--material", "cheese"},
            {"new", "sphere", "--material", "silicone"}}) {

@@ -259,16 +259,6 @@ Result<TopoDS_Wire> make_wire(const TrimLoop& loop, const SplineGeometry& geomet
   return wire.Wire();
 }
 
-bool is_inside(const Eigen::Vector2d& point, const Polygon& polygon) {
-  bool inside = false;
-  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-    const Eigen::Vector2d &a = polygon[i], &b = polygon[j];
-    if ((a.y() > point.y()) == (b.y() > point.y())) continue;
-    if (point.x() < a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
-  }
-  return inside;
-}
-
 struct Outline {
   Polygon polygon;
   double area = 0.0;  // negative for a hole

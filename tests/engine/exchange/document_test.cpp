@@ -137,6 +137,24 @@ TEST(Document, PlacesABodyAndKeepsTheHandThatHoldsIt) {
   EXPECT_EQ(Refusal(document_from_json(fixed, "text")), Refusal(ErrorCode::inconsistent, "body.hand"));
 }
 
+TEST(Document, KeepsTheRimOfABody) {
+  Document document = sample_document();
+  Body& body = document.scene.bodies[0];
+  const Vector2 corner(body.surface.u.domain_start(), body.surface.v.domain_end());
+  body.rim = {corner, Vector2(body.surface.u.domain_end(), corner.y()),
+              Vector2(corner.x(), 0.5 * corner.y())};
+  const Json json = document_to_json(document);
+  EXPECT_EQ(document_from_json(json, "text").value().scene.bodies[0].rim, body.rim);
+  for (const Json& wrong : {Json::parse("[[0, 0], [0, 0]]"), Json::parse("[[0, 0], [0, 0], [0]]"),
+                            Json::parse("[[0, 0], [0, 0], [0, 1e6]]"), Json::parse("{}")}) {
+    Json refused = json;
+    refused["body"]["rim_uv"] = wrong;
+    const auto read = document_from_json(refused, "text");
+    ASSERT_FALSE(read.ok()) << wrong;
+    EXPECT_EQ(read.error().field.rfind("body.rim_uv", 0), 0u) << read.error().field;
+  }
+}
+
 TEST(Document, KeepsTheCellsOfALattice) {
   Document document = sample_document();
   EXPECT_FALSE(document_to_json(document)["body"]["lattice"].contains("cells"))

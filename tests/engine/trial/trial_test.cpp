@@ -116,6 +116,10 @@ TEST(Trial, JellySlidesOffATiltedSpoon) {
   EXPECT_EQ(result.report.inverted_cells, 0);
   const TrialBodyReport &jelly = result.report.bodies[0], &spoon = result.report.bodies[1];
   EXPECT_LT(jelly.centre_of_mass_m.y(), spoon.centre_of_mass_m.y() - 0.02);
+  ASSERT_TRUE(jelly.spill.has_value());
+  EXPECT_FALSE(spoon.spill.has_value());
+  EXPECT_DOUBLE_EQ(jelly.spill->outside_fraction, 1.0);
+  EXPECT_TRUE(jelly.spill->first_spill_s && jelly.spill->left_s);
 }
 
 // The height of the centre of mass changes by what a falling body without contact loses.

@@ -1,0 +1,63 @@
+#include "engine/trial/rim.h"
+
+#include <algorithm>
+
+namespace spoonbill {
+namespace {
+
+// Number of points on a rim. The chords between those of a spoon's rim are within 0.02 mm of it.
+constexpr int point_count = 192;
+constexpr double coincident_m = 1e-9;
+// Smallest area of a usable rim, as a fraction of its squared length.
+constexpr double least_area_fraction = 1e-4;
+
+// Returns points along the line; neighbours are further apart than coincident_m.
+std::vector<Vector3> sample_line(const Surface& surface, const std::vector<Vector2>& corners) {
+  const int steps = std::max(1, point_count / static_cast<int>(corners.size()));
+  const auto at = [&](const Vector2& corner) { return position(surface, corner.x(), corner.y()); };
+  std::vector<Vector3> points;
+  points.reserve(static_cast<std::size_t>(steps) * corners.size());
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const Vector2 &from = corners[k], &to = corners[(k + 1) % corners.size()];
+    const bool is_one_point = (at(from) - at(to)).norm() <= coincident_m;
+    for (int s = 0; s < (is_one_point ? 1 : steps); ++s) {
+      const Vector3 point = at(from + (to - from) * s / steps);
+      if (points.empty() || (point - points.back()).norm() > coincident_m) points.push_back(point);
+    }
+  }
+  while (points.size() > 1 && (points.front() - points.back()).norm() <= coincident_m) points.pop_back();
+  return points;
+}
+
+}  // namespace
+
+std::optional<Rim> Rim::on_surface(const Surface& surface, const std::vector<Vector2>& corners,
+                                   const Vector3& up) {
+  const std::vector<Vector3> points = sample_line(surface, corners);
+  Rim rim;
+  double length = 0.0;
+  Vector3 area = Vector3::Zero();
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const Vector3 &a = points[k], &b = points[(k + 1) % points.size()];
+    const double chord = (b - a).norm();
+    length += chord;
+    rim.centre_m_ += chord * 0.5 * (a + b);
+    area += 0.5 * (a - points.front()).cross(b - points.front());
+  }
+  if (!(area.norm() > least_area_fraction * length * length)) return std::nullopt;
+  rim.centre_m_ /= length;
+  rim.normal_ = area.normalized();
+  if (rim.normal_.dot(up) < 0.0) rim.normal_ = -rim.normal_;
+  rim.across_ = rim.normal_.unitOrthogonal();
+  rim.along_ = rim.normal_.cross(rim.across_);
+  for (const Vector3& point : points) rim.outline_m_.push_back(rim.projected(point));
+  rim.box_m_ = box_about(rim.outline_m_);
+  return rim;
+}
+
+bool Rim::is_outside(const Vector3& point_m) const {
+  const Vector2 point = projected(point_m);
+  return box_m_.squared_distance(point) > 0.0 || !is_inside(point, outline_m_);
+}
+
+}  // namespace spoonbill

@@ -1,0 +1,40 @@
+// The rim of a body that bears food: a closed line, its plane, and what is outside and below it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/base/geometry.h"
+#include "engine/bspline/surface.h"
+
+namespace spoonbill {
+
+// A rim in space. Plain data; used by one thread.
+class Rim {
+ public:
+  // Makes the rim of a body from the corners of a line on its present surface (Body::rim). Two successive
+  // corners at one point in space, such as two at a pole or both ends of a ring, are not connected through
+  // the surface. The normal of the rim's plane is the direction in which the rim's projection has the largest
+  // area (Newell 1972), on the side of `up`. Returns nothing if the line encloses no area.
+  static std::optional<Rim> on_surface(const Surface& surface, const std::vector<Vector2>& corners,
+                                       const Vector3& up);
+
+  const Vector3& normal() const { return normal_; }
+  // Returns the height of a point above the plane of the rim, which goes through its centre, m.
+  double height_m(const Vector3& point_m) const { return normal_.dot(point_m - centre_m_); }
+  // Returns true if a point, projected along the normal, is outside the rim.
+  bool is_outside(const Vector3& point_m) const;
+
+ private:
+  Rim() = default;
+  Vector2 projected(const Vector3& point_m) const {
+    return {across_.dot(point_m - centre_m_), along_.dot(point_m - centre_m_)};
+  }
+
+  Vector3 centre_m_ = Vector3::Zero(), normal_ = Vector3::UnitY(), across_ = Vector3::UnitX(),
+          along_ = Vector3::UnitZ();
+  std::vector<Vector2> outline_m_;
+  Box2 box_m_;  // around the outline
+};
+
+}  // namespace spoonbill

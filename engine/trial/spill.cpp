@@ -1,0 +1,117 @@
+#include "engine/trial/spill.h"
+
+#include <algorithm>
+#include <string>
+
+#include "engine/simulation/body_hold.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr std::uint64_t calls_between_measures = 5;
+// Cosine of the angle between a rim's normal and the vertical above which the rim's plane tells what is
+// below: 78 degrees.
+constexpr double least_upright = 0.2;
+
+int find_bearer(const Scene& scene) {
+  const TrialPlan plan = scene.trial.value_or(TrialPlan());
+  const std::vector<Body>& bodies = scene.bodies;
+  auto bearer = std::find_if(bodies.begin(), bodies.end(), [&](const Body& body) {
+    return body.name == plan.turned_body && !body.rim.empty();
+  });
+  if (bearer == bodies.end()) {
+    bearer = std::find_if(bodies.begin(), bodies.end(), [&](const Body& body) {
+      return body.name != plan.lowered_body && !body.rim.empty();
+    });
+  }
+  return bearer == bodies.end() ? -1 : static_cast<int>(bearer - bodies.begin());
+}
+
+// Returns the least height of a surface's control points along the unit vector `up`, m.
+double find_lowest_m(const Surface& surface, const Vector3& up) {
+  double lowest = infinity;
+  for (int i = 0; i < surface.net.rows; ++i) {
+    for (int j = 0; j < surface.net.columns; ++j) lowest = std::min(lowest, up.dot(surface.net.point(i, j)));
+  }
+  return lowest;
+}
+
+// Tells where points are relative to a rim and the body that has it.
+struct Border {
+  const Rim& rim;
+  Vector3 up;
+  bool is_upright;
+  double lowest_m;  // of the body, along `up`
+
+  bool is_fallen(const Vector3& point_m) const { return !is_upright && up.dot(point_m) < lowest_m; }
+  bool is_outside(const Vector3& point_m) const { return is_fallen(point_m) || rim.is_outside(point_m); }
+  bool is_below(const Vector3& point_m) const { return is_fallen(point_m) || rim.height_m(point_m) < 0.0; }
+};
+
+// Sets the fractions of a deformable body.
+void measure_fractions(const Border& border, const SpringLattice& lattice, Spill& spill) {
+  double mass_kg = 0.0, outside_kg = 0.0, spilled_kg = 0.0;
+  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+    const auto node_kg = static_cast<double>(lattice.mass(n));
+    const Vector3 node = lattice.position(n);
+    mass_kg += node_kg;
+    if (!border.is_outside(node)) continue;
+    outside_kg += node_kg;
+    if (border.is_below(node)) spilled_kg += node_kg;
+  }
+  spill.outside_fraction = outside_kg / mass_kg;
+  spill.spilled_fraction = spilled_kg / mass_kg;
+}
+
+}  // namespace
+
+SpillWatch::SpillWatch(const Scene& scene)
+    : bearer_(find_bearer(scene)), is_watched_(scene.bodies.size()), spills_(scene.bodies.size()) {
+  if (bearer_ < 0) return;
+  const Vector3& gravity = scene.sculpting.gravity_m_per_s2;
+  if (!gravity.isZero(0.0)) up_ = -gravity.normalized();
+  normal_ = up_;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Body& body = scene.bodies[b];
+    is_watched_[b] = static_cast<int>(b) != bearer_ && body.kind != BodyKind::fixed && !body.hand;
+  }
+}
+
+const Spill* SpillWatch::find(std::size_t body) const {
+  return spills_[body] ? &*spills_[body] : nullptr;
+}
+
+void SpillWatch::follow(const Simulation& simulation, double time_s, bool now) {
+  const bool is_due = calls_++ % calls_between_measures == 0;
+  if (bearer_ >= 0 && (is_due || now)) measure(simulation, time_s);
+}
+
+void SpillWatch::measure(const Simulation& simulation, double time_s) {
+  const Surface& surface = simulation.surface(bearer_);
+  const auto rim =
+      Rim::on_surface(surface, simulation.scene().bodies[static_cast<std::size_t>(bearer_)].rim, normal_);
+  if (!rim) return;
+  // The normal keeps its side while the body turns, even beyond a right angle.
+  normal_ = rim->normal();
+  const Border border{*rim, up_, normal_.dot(up_) > least_upright, find_lowest_m(surface, up_)};
+  for (std::size_t b = 0; b < spills_.size(); ++b) {
+    if (!is_watched_[b]) continue;
+    const int body = static_cast<int>(b);
+    const RigidDynamics* const rigid = simulation.rigid_dynamics(body);
+    const Vector3 centre = rigid ? rigid->centre_m() : find_mass_centre(simulation.lattice(body)).position_m;
+    const bool is_out = border.is_outside(centre);
+    if (!spills_[b] && is_out) continue;
+    if (!spills_[b]) spills_[b] = Spill();
+    Spill& spill = *spills_[b];
+    if (rigid) {
+      spill.outside_fraction = is_out ? 1.0 : 0.0;
+      spill.spilled_fraction = is_out && border.is_below(centre) ? 1.0 : 0.0;
+    } else {
+      measure_fractions(border, simulation.lattice(body), spill);
+    }
+    if (!spill.first_spill_s && spill.spilled_fraction > spill_limit_fraction) spill.first_spill_s = time_s;
+    if (!spill.left_s && is_out) spill.left_s = time_s;
+  }
+}
+
+}  // namespace spoonbill
