@@ -145,8 +145,14 @@ void linearise_and_follow(SpringLattice& lattice, const LatticeView& view, Linea
   if (square > 0.0f && std::isfinite(square)) lattice.set_fastest_square(static_cast<double>(square));
 }
 
-// Returns the speed cap in m/s (see speed_cap_cells) for substeps of `h` seconds.
-float speed_cap(const SpringLattice& lattice, float h) {
+// Returns the speed cap in m/s for substeps of `h` seconds (see speed_cap_cells and
+// RelaxSettings::is_real_time).
+float speed_cap(const SpringLattice& lattice, float h, bool is_real_time) {
+  if (is_real_time) {
+    const float by_substep = static_cast<float>(speed_cap_cells) / h;
+    return lattice.cell_size_m() *
+           std::min(by_substep, static_cast<float>(extrapolation_cap_cells) / lattice.damping_time_s());
+  }
   const auto longest = static_cast<float>(2.0 / lattice.fastest_frequency());
   return static_cast<float>(speed_cap_cells) * lattice.cell_size_m() /
          std::max({h, longest, lattice.damping_time_s()});
@@ -710,8 +716,9 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   report.at_fault = substeps.slowed_lattice;
   const float h = static_cast<float>(settings.time_s / substeps.count);
   for (std::size_t at = 0; at < lattices.size(); ++at) {
-    relaxation.cap[at] =
-        relaxation.is_rigid(at) ? rigid_speed_cap(relaxation, at, h) : speed_cap(relaxation.lattice(at), h);
+    relaxation.cap[at] = relaxation.is_rigid(at)
+                             ? rigid_speed_cap(relaxation, at, h)
+                             : speed_cap(relaxation.lattice(at), h, settings.is_real_time);
   }
   report.speed_capped = begin_supports(relaxation);
   begin_rigid_motions(relaxation);

@@ -48,6 +48,7 @@ inline constexpr double stability_fraction = 0.85;
 // Waves cross a cell in about 2 / w, so nodes stay below about a tenth of the wave speed. An impact strains
 // even a soft, undamped body by no more than its springs can restore.
 inline constexpr double speed_cap_cells = 0.1;
+inline constexpr double extrapolation_cap_cells = 0.5;
 
 // Longest motion of a node since the linearisation, in cells, before the springs are linearised again within
 // the tick. The linearised strain of a spring has an error of about half the square of the angle by which the
@@ -64,6 +65,9 @@ struct RelaxSettings {
   double time_s = 1e-3;     // duration of the tick
   double drag_per_s = 0.0;  // mass-proportional drag; the least drag if `is_critically_damped`
   bool is_critically_damped = false;  // true if each body is critically damped, see critical_damping_per_s()
+  // True if nothing slows the bodies down. Nodes may then move by speed_cap_cells in a substep, however
+  // slowly waves cross a cell, and by extrapolation_cap_cells in the damping time.
+  bool is_real_time = false;
 };
 
 // Prescribed motion of a rigid body, or of the hand that holds it, through a tick. The poses map the rest

@@ -217,8 +217,8 @@ void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
                    body.rigid ? body.rigid->dynamics() : nullptr,
                    body.rigid ? body.rigid->hand() : nullptr};
   }
-  const RelaxSettings settings{s.tick, s.substeps, tick_s, sculpting.drag_per_s,
-                               sculpting.is_critically_damped};
+  const RelaxSettings settings{
+      s.tick, s.substeps, tick_s, sculpting.drag_per_s, sculpting.is_critically_damped, sculpting.real_time};
   s.relaxed = relax({lattices.data(), s.stepped_count()}, settings, tools, &s.between,
                     s.scene.ground ? &s.ground_contact.contacts() : nullptr);
 }

@@ -104,6 +104,22 @@ TEST(Trial, ABlockSlidesOffASlipperyPlate) {
   EXPECT_GT(result.report.bodies[0].centre_of_mass_m.norm(), slid_m);
 }
 
+// A soft block falls by 50 mm and hits a plate at 1 m/s. Its nodes then move relative to each other by more
+// than a tenth of a cell in the damping time.
+TEST(Trial, ABlockFallsOntoAPlate) {
+  Body block = soft_block(0.3);
+  move_body({Vector3(0.0, 0.05, 0.0), Quaternion::Identity()}, block);
+  Scene scene = block_over_plate(0.3, 0.0);
+  scene.bodies[0] = block;
+  scene.trial.reset();
+  Simulation simulation = make_simulation(scene);
+  const RunTrial result = run_trial(simulation, {0.05, 0.4});
+  ASSERT_TRUE(result.held.ok()) << result.held.error().message;
+  EXPECT_EQ(result.report.inverted_cells, 0);
+  EXPECT_LT(result.report.bodies[0].centre_of_mass_m.y(), 0.02);
+  EXPECT_GT(result.report.bodies[0].centre_of_mass_m.y(), 0.003);
+}
+
 // The bundled jelly slides over the front rim of its spoon and falls. It never enters the spoon.
 TEST(Trial, JellySlidesOffATiltedSpoon) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
