@@ -38,37 +38,47 @@ double mismatch_limit(int period) {
   return std::min(largest_mismatch, 0.5 * phase_error * phase_error);
 }
 
-bool vibrates(const VibrationState& state, const VibrationLimits& limits, int period) {
-  const int periods = count_periods(period);
-  const int ticks = periods * period;
-  if (state.count < static_cast<std::uint64_t>(ticks)) return false;
-  // Sums of |f(t) - f(t - L)|^2, and of the squared displacement of the hand over L ticks (see vibration.h).
-  double change = 0.0, moved_m2 = 0.0;
-  double energy = 0.0, newest_energy = 0.0, oldest_energy = 0.0;  // sums of |a(t)|^2, see vibration.h
+// Energies of the force in the last periods, as sums of |a(t)|^2 (see vibration.h).
+struct Energies {
+  double all = 0.0, newest = 0.0, oldest = 0.0;
+};
+
+Energies find_energies(const VibrationState& state, int period, int periods) {
+  Energies energies;
   const int third = periods / 3;
   for (int p = 0; p < periods; ++p) {
     Vector3 sum = Vector3::Zero();
     double squares = 0.0;
     for (int k = p * period; k < (p + 1) * period; ++k) {
-      const VibrationState::Sample& sample = at(state, k);
-      sum += sample.force_n;
-      squares += sample.force_n.squaredNorm();
-      if (p + 1 == periods) continue;
-      const VibrationState::Sample& before = at(state, k + period);
-      change += (sample.force_n - before.force_n).squaredNorm();
-      moved_m2 += (sample.position_m - before.position_m).squaredNorm();
+      const Vector3& force_n = at(state, k).force_n;
+      sum += force_n;
+      squares += force_n.squaredNorm();
     }
     const double of_period = std::max(0.0, squares - sum.squaredNorm() / period);
-    energy += of_period;
-    if (p < third) newest_energy += of_period;
-    if (p >= periods - third) oldest_energy += of_period;
+    energies.all += of_period;
+    if (p < third) energies.newest += of_period;
+    if (p >= periods - third) energies.oldest += of_period;
   }
-  const double mean_energy = energy / ticks;
-  const int pairs = ticks - period;
+  return energies;
+}
+
+bool vibrates(const VibrationState& state, const VibrationLimits& limits, int period) {
+  const int periods = count_periods(period);
+  const int ticks = periods * period, pairs = ticks - period;
+  if (state.count < static_cast<std::uint64_t>(ticks)) return false;
+  const Energies energies = find_energies(state, period, periods);
+  const double mean_energy = energies.all / ticks;
   if (!(mean_energy > limits.quiet_force_n * limits.quiet_force_n)) return false;
+  const double lasting_energy = lasting_fraction * mean_energy * (periods / 3) * period;
+  if (!(std::min(energies.newest, energies.oldest) >= lasting_energy)) return false;
+  // Sums of |f(t) - f(t - L)|^2, and of the squared displacement of the hand over L ticks (see vibration.h).
+  double change = 0.0, moved_m2 = 0.0;
+  for (int k = 0; k < pairs; ++k) {
+    const VibrationState::Sample &sample = at(state, k), &before = at(state, k + period);
+    change += (sample.force_n - before.force_n).squaredNorm();
+    moved_m2 += (sample.position_m - before.position_m).squaredNorm();
+  }
   if (!(change / pairs < mismatch_limit(period) * 2.0 * mean_energy)) return false;
-  const double lasting_energy = lasting_fraction * mean_energy * third * period;
-  if (!(std::min(newest_energy, oldest_energy) >= lasting_energy)) return false;
   const double reversing_n = reversing_fraction * limits.maximum_force_n;
   return mean_energy > reversing_n * reversing_n || moved_m2 / pairs < pattern_m * pattern_m;
 }
