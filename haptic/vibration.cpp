@@ -38,7 +38,8 @@ double mismatch_limit(int period) {
   return std::min(largest_mismatch, 0.5 * phase_error * phase_error);
 }
 
-// Energies of the force in the last periods, as sums of |a(t)|^2 (see vibration.h).
+// Energies of the force in the last periods, in their newest third and in their oldest third, as sums of
+// |a(t)|^2 (see vibration.h).
 struct Energies {
   double all = 0.0, newest = 0.0, oldest = 0.0;
 };

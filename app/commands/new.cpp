@@ -196,10 +196,10 @@ NewKind add_bowl(OptionSet root) {
   const LengthOption width =
       add_length(parser, "--width",
                  "Outer width along z, at least a quarter and at most 4 times the length; default: 42mm");
-  const LengthOption depth =
-      add_length(parser, "--depth",
-                 "Depth of the inside below the highest point of the rim; default: 10mm, at most half the "
-                 "shorter side");
+  const LengthOption depth = add_length(parser, "--depth",
+                                        "Depth of the inside below the highest point of the rim; default: "
+                                        "10mm, at least a fiftieth and at most half the "
+                                        "shorter side");
   const LengthOption rim =
       add_length(parser, "--rim",
                  "Thickness of the round rim and of the wall; default: 1mm, at least a hundredth and at "

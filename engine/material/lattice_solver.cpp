@@ -191,7 +191,8 @@ void compute_forces(const SpringLattice& lattice, const LatticeView& view, float
 struct Relaxation {
   std::span<const RelaxedLattice> lattices;
   std::array<LatticeView, lattice_capacity> view;
-  std::array<float, lattice_capacity> cap{};  // m/s
+  std::array<float, lattice_capacity> cap{};       // of the nodes' speeds, m/s
+  std::array<float, lattice_capacity> push_cap{};  // of what contacts and supports prescribe, m/s
   std::array<Drifted, lattice_capacity> drifted{};
   std::array<double, lattice_capacity> drag_per_s{};
   double time_s = 0.0;  // duration of the tick, s
@@ -401,7 +402,7 @@ void move_soft_tool(Relaxation& relaxation, const TouchingTool& tool) {
 // Returns the largest speed with which contacts may correct an overlap of each lattice.
 std::array<float, lattice_capacity> find_push_caps(const Relaxation& relaxation) {
   std::array<float, lattice_capacity> caps{};
-  for (std::size_t at = 0; at < relaxation.count(); ++at) caps[at] = 0.5f * relaxation.cap[at];
+  for (std::size_t at = 0; at < relaxation.count(); ++at) caps[at] = 0.5f * relaxation.push_cap[at];
   return caps;
 }
 
@@ -491,7 +492,7 @@ bool begin_supports(Relaxation& relaxation) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const RelaxedLattice& relaxed = relaxation.lattices[at];
     if (relaxed.supports.empty()) continue;
-    const double reach_m = static_cast<double>(relaxation.cap[at]) * relaxation.time_s;
+    const double reach_m = static_cast<double>(relaxation.push_cap[at]) * relaxation.time_s;
     limited |= limit_support_motion(relaxed.supports, *relaxed.lattice, reach_m);
     set_support_velocities(relaxed.supports, relaxation.view[at], relaxation.time_s);
   }
@@ -687,7 +688,7 @@ void end_implicit_steps(const Relaxation& relaxation, GroundContacts* ground) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const RelaxedLattice& relaxed = relaxation.lattices[at];
     if (!relaxed.implicit_solver) continue;
-    const double cap = 0.5 * static_cast<double>(relaxation.cap[at]);
+    const double cap = 0.5 * static_cast<double>(relaxation.push_cap[at]);
     relaxed.implicit_solver->end_step(*relaxed.lattice, {ground, ground_contacts(ground, at), cap});
   }
 }
@@ -705,7 +706,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   SPOONBILL_ASSERT(!lattices.empty() && lattices.size() <= static_cast<std::size_t>(lattice_capacity));
   SPOONBILL_ASSERT(settings.substeps >= 1 && settings.time_s > 0.0);
   SPOONBILL_ASSERT(settings.drag_per_s >= 0.0);
-  Relaxation relaxation{lattices, {}, {}, {}, {}, settings.time_s, {}, Vector3::Zero()};
+  Relaxation relaxation{lattices, {}, {}, {}, {}, {}, settings.time_s, {}, Vector3::Zero()};
   const bool flows = settings.tick % 2 == 1;
   for (std::size_t at = 0; at < lattices.size(); ++at) relaxation.view[at] = lattices[at].lattice->view();
   const Substeps substeps = begin_springs(relaxation, settings, !flows);
@@ -716,9 +717,13 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   report.at_fault = substeps.slowed_lattice;
   const float h = static_cast<float>(settings.time_s / substeps.count);
   for (std::size_t at = 0; at < lattices.size(); ++at) {
-    relaxation.cap[at] = relaxation.is_rigid(at)
-                             ? rigid_speed_cap(relaxation, at, h)
-                             : speed_cap(relaxation.lattice(at), h, settings.is_real_time);
+    if (relaxation.is_rigid(at)) {
+      relaxation.cap[at] = relaxation.push_cap[at] = rigid_speed_cap(relaxation, at, h);
+      continue;
+    }
+    relaxation.push_cap[at] = speed_cap(relaxation.lattice(at), h, false);
+    relaxation.cap[at] =
+        settings.is_real_time ? speed_cap(relaxation.lattice(at), h, true) : relaxation.push_cap[at];
   }
   report.speed_capped = begin_supports(relaxation);
   begin_rigid_motions(relaxation);

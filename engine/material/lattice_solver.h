@@ -46,7 +46,9 @@ inline constexpr double stability_fraction = 0.85;
 // fixed nodes.
 //
 // Waves cross a cell in about 2 / w, so nodes stay below about a tenth of the wave speed. An impact strains
-// even a soft, undamped body by no more than its springs can restore.
+// even a soft, undamped body by no more than its springs can restore. In real time, where a body that falls
+// may hit another one faster than that, the cap is a tenth of a cell a substep, and extrapolation_cap_cells
+// in the damping time, so that damping does not extrapolate a spring through zero length.
 inline constexpr double speed_cap_cells = 0.1;
 inline constexpr double extrapolation_cap_cells = 0.5;
 
@@ -65,8 +67,8 @@ struct RelaxSettings {
   double time_s = 1e-3;     // duration of the tick
   double drag_per_s = 0.0;  // mass-proportional drag; the least drag if `is_critically_damped`
   bool is_critically_damped = false;  // true if each body is critically damped, see critical_damping_per_s()
-  // True if nothing slows the bodies down. Nodes may then move by speed_cap_cells in a substep, however
-  // slowly waves cross a cell, and by extrapolation_cap_cells in the damping time.
+  // True if bodies have their real inertia. Nodes may then be faster, see speed_cap_cells; contacts and
+  // supports may not.
   bool is_real_time = false;
 };
 

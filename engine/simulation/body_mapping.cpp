@@ -145,43 +145,56 @@ void search_cells_around(const LatticeMesh& mesh, int node, const Vector3& point
   }
 }
 
-// Attaches a point to a cell that does not contain it: the point follows the linear map that is nearest to
-// the motion of the corners, and therefore every rigid motion. Returns false if the corners lie in a plane.
-bool weigh_by_mean_motion(const CellCorners& corners, const Vector3& point, std::array<double, 8>& weights) {
-  constexpr double flat_fraction = 1e-3;  // smallest relative extent, squared, of a cell that is not flat
+// A cell, and weights of its corners.
+struct WeighedCell {
+  std::array<int, 3> cell{};
+  std::array<double, 8> weights{};
+  double size = std::numeric_limits<double>::infinity();  // sum of the magnitudes of the weights
+};
+
+// Weighs the corners of a cell that does not contain the point, so that the point follows the linear map that
+// is nearest to the motion of the corners, and therefore every rigid motion. `size` stays infinite if the
+// corners lie in a plane.
+WeighedCell weigh_by_mean_motion(const LatticeMesh& mesh, const std::array<int, 3>& cell,
+                                 const Vector3& point) {
+  constexpr double plane_fraction = 1e-6;  // smallest relative extent, squared, of corners that span space
+  const CellCorners corners = mesh.cell(cell[0], cell[1], cell[2]);
+  WeighedCell weighed{cell};
   Vector3 centre = Vector3::Zero();
   for (const Vector3& corner : corners) centre += corner / 8.0;
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   for (const Vector3& corner : corners) moments += (corner - centre) * (corner - centre).transpose();
-  const double scale = moments.trace() / 3.0;
-  if (!(moments.determinant() > flat_fraction * scale * scale * scale)) return false;
+  const double trace = moments.trace();
+  if (!(moments.determinant() > plane_fraction * trace * trace * trace)) return weighed;
   const Vector3 pull = moments.inverse() * (point - centre);
-  for (std::size_t c = 0; c < 8; ++c) weights[c] = 0.125 + pull.dot(corners[c] - centre);
-  return true;
+  weighed.size = 0.0;
+  for (std::size_t c = 0; c < 8; ++c) {
+    weighed.weights[c] = 0.125 + pull.dot(corners[c] - centre);
+    weighed.size += std::abs(weighed.weights[c]);
+  }
+  return weighed;
 }
 
-// Returns the cell with this corner whose centre is nearest to the point.
-std::array<int, 3> find_nearest_cell(const LatticeMesh& mesh, int node, const Vector3& point) {
+// Finds the cell with this corner that needs the smallest weights.
+void weigh_cells_around(const LatticeMesh& mesh, int node, const Vector3& point, WeighedCell& best) {
   const auto [ni, nj, nk] = mesh.grid_index(node);
-  std::array<int, 3> nearest{};
-  double least = std::numeric_limits<double>::infinity();
   for (int i = std::max(0, ni - 1); i <= std::min(ni, mesh.count[0] - 2); ++i) {
     for (int j = std::max(0, nj - 1); j <= std::min(nj, mesh.count[1] - 2); ++j) {
       for (int k = std::max(0, nk - 1); k <= std::min(nk, mesh.count[2] - 2); ++k) {
-        const double distance = (trilinear(mesh.cell(i, j, k), 0.5, 0.5, 0.5) - point).squaredNorm();
-        if (!(distance < least)) continue;
-        least = distance;
-        nearest = {i, j, k};
+        const WeighedCell weighed = weigh_by_mean_motion(mesh, {i, j, k}, point);
+        if (weighed.size < (1.0 - 1e-9) * best.size) best = weighed;
       }
     }
   }
-  return nearest;
 }
+
+// Largest sum of the magnitudes of a point's weights. Larger weights would amplify the motions of nodes.
+constexpr double largest_weights = 16.0;
 
 // Embeds a point in a cell. Considers the cells around the nearest node and around that node's twin across a
 // seam, and chooses the one that contains the point or, if none does, the one nearest to it. If the chosen
-// cell is more than one cell size away, the point follows the mean motion of the cell nearest to it, or the
-// nearest node alone if that cell is flat.
+// cell is more than one cell size away, the point follows the mean motion of one of these cells, or the
+// nearest node alone if that would take too large weights.
 EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
   int nearest = 0;
   double least = std::numeric_limits<double>::infinity();
@@ -192,20 +205,25 @@ EmbeddedPoint embed_point(const LatticeMesh& mesh, const Vector3& point) {
       nearest = n;
     }
   }
+  const int twin = mesh.twin(nearest);
   CellLocation best;
   best.outside = std::numeric_limits<double>::infinity();
   std::array<int, 3> cell{};
   search_cells_around(mesh, nearest, point, best, cell);
-  if (mesh.twin(nearest) != nearest) search_cells_around(mesh, mesh.twin(nearest), point, best, cell);
+  if (twin != nearest) search_cells_around(mesh, twin, point, best, cell);
   EmbeddedPoint embedded;
   if (!(best.outside < 1.0)) {
-    cell = find_nearest_cell(mesh, nearest, point);
-    if (!weigh_by_mean_motion(mesh.cell(cell[0], cell[1], cell[2]), point, best.weights)) {
+    WeighedCell weighed;
+    weigh_cells_around(mesh, nearest, point, weighed);
+    if (twin != nearest) weigh_cells_around(mesh, twin, point, weighed);
+    if (!(weighed.size <= largest_weights)) {
       embedded.count = 1;
       embedded.node[0] = nearest;
       embedded.weight[0] = 1.0f;
       return embedded;
     }
+    cell = weighed.cell;
+    best.weights = weighed.weights;
   }
   embedded.count = 8;
   for (int c = 0; c < 8; ++c) {

@@ -1,5 +1,6 @@
 // Mappings from a lattice to a skin, which is a B-spline surface or a triangle mesh. Points of the skin are
-// embedded in the lattice's cells by fixed trilinear weights.
+// embedded in the lattice's cells by fixed weights: trilinear ones, or those of a linear map for points far
+// outside the cells.
 #pragma once
 
 #include <cstdint>

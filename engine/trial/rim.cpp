@@ -5,7 +5,8 @@
 namespace spoonbill {
 namespace {
 
-// Number of points on a rim. The chords between those of a spoon's rim are within 0.02 mm of it.
+// Number of points on a rim whose corners are all apart. The two poles of a bowl leave half of them; the
+// chords between these are within 0.02 mm of the rim.
 constexpr int point_count = 192;
 constexpr double coincident_m = 1e-9;
 // Smallest area of a usable rim, as a fraction of its squared length.

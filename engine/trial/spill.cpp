@@ -100,7 +100,8 @@ void SpillWatch::measure(const Simulation& simulation, double time_s) {
     const RigidDynamics* const rigid = simulation.rigid_dynamics(body);
     const Vector3 centre = rigid ? rigid->centre_m() : find_mass_centre(simulation.lattice(body)).position_m;
     const bool is_out = border.is_outside(centre);
-    if (!spills_[b] && is_out) continue;
+    const bool is_borne = !is_out && up_.dot(centre) > border.lowest_m;
+    if (!spills_[b] && !is_borne) continue;
     if (!spills_[b]) spills_[b] = Spill();
     Spill& spill = *spills_[b];
     if (rigid) {

@@ -27,7 +27,8 @@ struct Spill {
 
 // Watches the free bodies of a trial and the rim of the body that bears them: the trial's turned body or, if
 // that has no rim, the first other body with a rim, but not the lowered one. A body is watched from when its
-// centre of mass is inside the rim. Has one owner, which calls follow() after each tick. Allocates.
+// centre of mass is inside the rim and above the lowest point of that body. Has one owner, which calls
+// follow() after each tick. Allocates.
 class SpillWatch {
  public:
   explicit SpillWatch(const Scene& scene);

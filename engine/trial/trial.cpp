@@ -194,6 +194,7 @@ Status Trial::follow(const Simulation& simulation, std::uint32_t flags) {
   still_s_ = largest_speed_m_per_s_ <= settled_speed_m_per_s ? still_s_ + tick_s : 0.0;
   record_forces(simulation);
   if (const char* const failure = describe_failure(flags)) {
+    spills_.follow(simulation, time_s(), true);
     return Error{ErrorCode::not_converged, name_body_at_fault(simulation) + "stopped after " +
                                                std::to_string(ticks_) + " ticks: " + failure +
                                                "; use a coarser lattice or a stiffer material"};

@@ -1,6 +1,7 @@
 #include "engine/material/lattice/embedded_point.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/material/rigid/rigid_dynamics.h"
 
@@ -143,7 +144,7 @@ void EmbeddedPoint::push(const LatticeView& lattice, const Vector3& impulse) con
 
 void EmbeddedPoint::mark(std::uint8_t* touched) const {
   for (int i = 0; i < count; ++i) {
-    if (weight[i] > min_significant_weight) touched[node[i]] = 1;
+    if (std::abs(weight[i]) > min_significant_weight) touched[node[i]] = 1;
   }
 }
 

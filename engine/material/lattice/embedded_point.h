@@ -23,8 +23,7 @@ inline double frame_compliance(const LatticeView& lattice) {
   return lattice.frame ? lattice.frame->compliance : 0.0;
 }
 
-// A weighted sum of nodes. Weights sum to 1; some may be slightly negative where the surface bulges out of
-// its cells.
+// A weighted sum of nodes. Weights sum to 1; some are negative where the surface is outside its cells.
 struct EmbeddedPoint {
   static constexpr int capacity = 32;
   int count = 0;

@@ -111,7 +111,7 @@ CellLocation locate_in_cell(const CellCorners& corners, const Vector3& point) {
     is_found = move.cwiseAbs().maxCoeff() < 1e-12;
   }
   if (!is_found) {
-    // Newton's method may also end at the rounding error of the map, or not at all.
+    // A miss of the size of rounding errors is accepted.
     const Vector3 miss = point - trilinear(corners, local.x(), local.y(), local.z());
     if (!(miss.norm() < 1e-9 * (corners[7] - corners[0]).norm())) return location;
   }
