@@ -196,10 +196,10 @@ NewKind add_bowl(OptionSet root) {
   const LengthOption width =
       add_length(parser, "--width",
                  "Outer width along z, at least a quarter and at most 4 times the length; default: 42mm");
-  const LengthOption depth = add_length(parser, "--depth",
-                                        "Depth of the inside below the highest point of the rim; default: "
-                                        "10mm, at least a fiftieth and at most half the "
-                                        "shorter side");
+  const LengthOption depth =
+      add_length(parser, "--depth",
+                 "Depth of the inside below the highest point of the rim; default: 10mm, "
+                 "at least a fiftieth and at most half of the shorter side");
   const LengthOption rim =
       add_length(parser, "--rim",
                  "Thickness of the round rim and of the wall; default: 1mm, at least a hundredth and at "
@@ -218,7 +218,7 @@ NewKind add_bowl(OptionSet root) {
             size.rim_m = rim->value_or(size.rim_m);
             size.pitch_deg = *pitch;
             auto made = make_stock_shape(size);
-            if (made) made->requested_radius_m = 0.0;  // the rim's shoulders are rounder than asked for
+            if (made) made->requested_radius_m = 0.0;  // no size asks for the radius of the rim's shoulders
             return made;
           }};
 }

@@ -319,8 +319,7 @@ CommandEntry add_try(OptionSet root) {
       "most. Bodies have settled when no node has moved faster than 0.1 mm/s for 0.2 s. A trial that cannot\n"
       "hold a body, or in which nothing bears the lowered body within 30 s, ends with an error.\n"
       "If the body that bears the others has a known rim (rim_uv), like one from `spoonbill new bowl`, the\n"
-      "report says how much of each is outside the rim, when it spilled (more than 1 % of its mass is "
-      "outside\n"
+      "report says how much of each is outside it, when it spilled (more than 1 % of its mass is outside\n"
       "the rim and below its plane) and when it left (its centre of mass is outside).\n"
       "Example: spoonbill try assets/models/jelly-on-spoon.json --tilt 10deg --out output/tilt");
   parser.add_option("DOCUMENT", options->model, "Document (.json)").require();

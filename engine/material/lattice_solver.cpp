@@ -145,14 +145,15 @@ void linearise_and_follow(SpringLattice& lattice, const LatticeView& view, Linea
   if (square > 0.0f && std::isfinite(square)) lattice.set_fastest_square(static_cast<double>(square));
 }
 
-// Returns the speed cap in m/s for substeps of `h` seconds (see speed_cap_cells and
-// RelaxSettings::is_real_time).
-float speed_cap(const SpringLattice& lattice, float h, bool is_real_time) {
-  if (is_real_time) {
-    const float by_substep = static_cast<float>(speed_cap_cells) / h;
-    return lattice.cell_size_m() *
-           std::min(by_substep, static_cast<float>(extrapolation_cap_cells) / lattice.damping_time_s());
-  }
+// Returns the speed cap in real time, m/s (see speed_cap_cells), for substeps of `h` seconds.
+float real_time_speed_cap(const SpringLattice& lattice, float h) {
+  const float by_substep = static_cast<float>(speed_cap_cells) / h;
+  const float by_damping = static_cast<float>(extrapolation_cap_cells) / lattice.damping_time_s();
+  return lattice.cell_size_m() * std::min(by_substep, by_damping);
+}
+
+// Returns the speed cap in m/s (see speed_cap_cells) for substeps of `h` seconds.
+float speed_cap(const SpringLattice& lattice, float h) {
   const auto longest = static_cast<float>(2.0 / lattice.fastest_frequency());
   return static_cast<float>(speed_cap_cells) * lattice.cell_size_m() /
          std::max({h, longest, lattice.damping_time_s()});
@@ -721,9 +722,9 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
       relaxation.cap[at] = relaxation.push_cap[at] = rigid_speed_cap(relaxation, at, h);
       continue;
     }
-    relaxation.push_cap[at] = speed_cap(relaxation.lattice(at), h, false);
+    relaxation.push_cap[at] = speed_cap(relaxation.lattice(at), h);
     relaxation.cap[at] =
-        settings.is_real_time ? speed_cap(relaxation.lattice(at), h, true) : relaxation.push_cap[at];
+        settings.is_real_time ? real_time_speed_cap(relaxation.lattice(at), h) : relaxation.push_cap[at];
   }
   report.speed_capped = begin_supports(relaxation);
   begin_rigid_motions(relaxation);

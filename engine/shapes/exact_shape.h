@@ -34,7 +34,7 @@ struct ExactShape {
   // from `flat_from` to the end of the domain. Each value must be one of `v.breaks`; it is empty if that end
   // is not flat.
   std::optional<double> flat_to = {}, flat_from = {};
-  std::vector<Vector2> rim = {};  // corners, as (u, v), of the rim of a bowl (Body::rim in body.h)
+  std::vector<Vector2> rim = {};  // corners of a bowl's rim, as (u, v) (Body::rim); empty for other shapes
   std::function<Vector3(double u, double v)> at;
 
   bool is_closed() const { return u.periodic && (v.periodic || (pole_at_start && pole_at_end)); }

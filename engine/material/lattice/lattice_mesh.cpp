@@ -100,21 +100,17 @@ CellLocation locate_in_cell(const CellCorners& corners, const Vector3& point) {
   CellLocation location;
   location.outside = std::numeric_limits<double>::infinity();
   Vector3 local(0.5, 0.5, 0.5);
-  bool is_found = false;
-  for (int step = 0; step < 12 && !is_found; ++step) {
+  for (int step = 0; step < 12; ++step) {
     const Vector3 miss = point - trilinear(corners, local.x(), local.y(), local.z());
     const Eigen::Matrix3d jacobian = trilinear_jacobian(corners, local.x(), local.y(), local.z());
     if (!(std::abs(jacobian.determinant()) > 0.0)) return location;
     const Vector3 move = jacobian.inverse() * miss;
     local += move;
     if (!(local.cwiseAbs().maxCoeff() < 10.0)) return location;
-    is_found = move.cwiseAbs().maxCoeff() < 1e-12;
+    if (move.cwiseAbs().maxCoeff() < 1e-12) break;
   }
-  if (!is_found) {
-    // A miss of the size of rounding errors is accepted.
-    const Vector3 miss = point - trilinear(corners, local.x(), local.y(), local.z());
-    if (!(miss.norm() < 1e-9 * (corners[7] - corners[0]).norm())) return location;
-  }
+  const Vector3 miss = point - trilinear(corners, local.x(), local.y(), local.z());
+  if (!(miss.norm() < 1e-9 * (corners[7] - corners[0]).norm())) return location;
   location.weights = trilinear_weights(local.x(), local.y(), local.z());
   location.outside = ((local.array() - 0.5).abs() - 0.5).maxCoeff();
   return location;
