@@ -35,10 +35,36 @@ Status check_coordinates(const ControlNet& net, const std::vector<double>& value
 
 }  // namespace
 
+namespace {
+
+struct Interval {
+  double low, high;
+};
+
+// Returns the range of the values. Four ranges grow in turn, so that no comparison waits for the one before.
+Interval find_range(const std::vector<double>& values) {
+  constexpr std::size_t lane_count = 4;
+  double low[lane_count], high[lane_count];
+  std::fill_n(low, lane_count, values[0]);
+  std::fill_n(high, lane_count, values[0]);
+  const auto include = [&](std::size_t lane, double value) {
+    low[lane] = value < low[lane] ? value : low[lane];
+    high[lane] = value > high[lane] ? value : high[lane];
+  };
+  const std::size_t whole = values.size() - values.size() % lane_count;
+  for (std::size_t start = 0; start < whole; start += lane_count) {
+    for (std::size_t lane = 0; lane < lane_count; ++lane) include(lane, values[start + lane]);
+  }
+  for (std::size_t k = whole; k < values.size(); ++k) include(0, values[k]);
+  return {*std::min_element(low, low + lane_count), *std::max_element(high, high + lane_count)};
+}
+
+}  // namespace
+
 Box bounding_box(const ControlNet& net) {
-  Box box;
-  for (std::size_t k = 0; k < net.size(); ++k) box.include({net.x[k], net.y[k], net.z[k]});
-  return box;
+  if (net.size() == 0) return {};
+  const Interval x = find_range(net.x), y = find_range(net.y), z = find_range(net.z);
+  return {{x.low, y.low, z.low}, {x.high, y.high, z.high}};
 }
 
 Result<Surface> make_surface(KnotVector u, KnotVector v, ControlNet net) {

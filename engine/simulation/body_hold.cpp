@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "engine/base/assert.h"
 #include "engine/base/dense_matrices.h"
@@ -65,22 +64,26 @@ BodyHold::BodyHold(const SpringLattice& lattice) {
   const auto nodes = static_cast<std::size_t>(lattice.mesh().node_count());
   SPOONBILL_ASSERT(nodes > 0);
   for (std::vector<float>& displacements : displacements_m_) displacements.assign(nodes, 0.0f);
-  const Vector3 centre = find_mass_centre(lattice).rest_m;
+  const MassCentre centre = find_mass_centre(lattice);
+  mass_kg_ = centre.mass_kg;
+  rest_centre_m_ = centre.rest_m;
   for (const Vector3& node : lattice.mesh().nodes) {
-    rest_radius_m_ = std::max(rest_radius_m_, (node - centre).norm());
+    rest_radius_m_ = std::max(rest_radius_m_, (node - rest_centre_m_).norm());
   }
 }
 
-BodyHold::MeanPose BodyHold::measure(const SpringLattice& lattice) {
-  const MassCentre centre = find_mass_centre(lattice);
+BodyHold::MeanPose BodyHold::measure(const SpringLattice& lattice) const {
+  const int nodes = lattice.mesh().node_count();
+  Vector3 centre = Vector3::Zero();
+  for (int n = 0; n < nodes; ++n) centre += static_cast<double>(lattice.mass(n)) * lattice.position(n);
+  centre /= mass_kg_;
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-  for (int n = 0; n < lattice.mesh().node_count(); ++n) {
-    const Vector3 rest = lattice.mesh().nodes[static_cast<std::size_t>(n)] - centre.rest_m;
-    moments +=
-        static_cast<double>(lattice.mass(n)) * (lattice.position(n) - centre.position_m) * rest.transpose();
+  for (int n = 0; n < nodes; ++n) {
+    const Vector3 rest = lattice.mesh().nodes[static_cast<std::size_t>(n)] - rest_centre_m_;
+    moments += static_cast<double>(lattice.mass(n)) * (lattice.position(n) - centre) * rest.transpose();
   }
   MeanPose pose;
-  pose.centre_m = centre.position_m;
+  pose.centre_m = centre;
   if (!moments.allFinite()) return pose;
   const SingularValues parts = decompose_singular(moments);
   const double sign = (parts.left * parts.right.transpose()).determinant() < 0.0 ? -1.0 : 1.0;
@@ -90,55 +93,21 @@ BodyHold::MeanPose BodyHold::measure(const SpringLattice& lattice) {
   return pose;
 }
 
-void BodyHold::begin(const SpringLattice& lattice) {
+void BodyHold::begin(const SpringLattice& lattice, bool may_keep_pose) {
   const auto nodes = static_cast<std::size_t>(lattice.mesh().node_count());
   for (int axis = 0; axis < 3; ++axis) {
     SPOONBILL_ASSERT(displacements_m_[axis].size() == nodes);
     std::copy_n(lattice.displacements(axis), nodes, displacements_m_[axis].begin());
   }
-  if (!lattice.has_fixed_nodes()) pose_ = measure(lattice);
+  if (may_keep_pose && !lattice.has_fixed_nodes()) pose_ = measure(lattice);
 }
-
-namespace {
-
-// Smallest and largest value of a field, and whether the sum of its values is finite. A sum is not finite if
-// a value is not finite or if very large values overflow it.
-struct FieldRange {
-  float low, high;
-  bool has_finite_sum;
-};
-
-FieldRange find_range(const float* field, int count) {
-  using Lanes = float __attribute__((vector_size(16)));
-  constexpr int lane_count = 4;
-  const Lanes first = Lanes{} + field[0];
-  Lanes low = first, high = first, sum = {};
-  int i = 0;
-  for (; i + lane_count <= count; i += lane_count) {
-    Lanes values;
-    std::memcpy(&values, field + i, sizeof values);
-    low = values < low ? values : low;
-    high = values > high ? values : high;
-    sum += values;
-  }
-  for (; i < count; ++i) {
-    const Lanes value = Lanes{} + field[i];
-    low = value < low ? value : low;
-    high = value > high ? value : high;
-    sum += value;
-  }
-  return {std::min({low[0], low[1], low[2], low[3]}), std::max({high[0], high[1], high[2], high[3]}),
-          std::isfinite(sum[0] + sum[1] + sum[2] + sum[3])};
-}
-
-}  // namespace
 
 bool BodyHold::is_surely_in_reach(const SpringLattice& lattice, double reach_m) const {
   const int nodes = lattice.mesh().node_count();
   Vector3 spread_m;
   for (int axis = 0; axis < 3; ++axis) {
-    const FieldRange moves = find_range(lattice.displacements(axis), nodes);
-    const FieldRange velocities = find_range(lattice.velocities(axis), nodes);
+    const FieldRange moves = lattice.kernels().find_range(lattice.displacements(axis), nodes);
+    const FieldRange velocities = lattice.kernels().find_range(lattice.velocities(axis), nodes);
     if (!moves.has_finite_sum || !velocities.has_finite_sum) return false;
     spread_m[axis] = static_cast<double>(moves.high) - static_cast<double>(moves.low);
   }

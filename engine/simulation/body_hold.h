@@ -25,8 +25,8 @@ class BodyHold {
   // made.
   explicit BodyHold(const SpringLattice& lattice);
 
-  // Stores the displacements and the mean pose at the start of a tick.
-  void begin(const SpringLattice& lattice);
+  // Stores the displacements and, if keep_pose() may be called, the mean pose at the start of a tick.
+  void begin(const SpringLattice& lattice, bool may_keep_pose = true);
 
   // Returns false if the positions and velocities of all nodes are finite and no node is farther than
   // `reach_m` from the centre of mass. Otherwise restores the displacements at the start of the tick, with
@@ -46,12 +46,14 @@ class BodyHold {
     Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
     bool has_turn = false;  // false if the body extends in one direction only
   };
-  static MeanPose measure(const SpringLattice& lattice);
+  MeanPose measure(const SpringLattice& lattice) const;
   // Returns true if all velocities are finite and the displacements differ so little that no node can be
   // farther than `reach_m` from the centre of mass. This is the usual case and takes little time.
   bool is_surely_in_reach(const SpringLattice& lattice, double reach_m) const;
 
   std::array<std::vector<float>, 3> displacements_m_;  // at the start of the tick, by axis
+  double mass_kg_ = 0.0;
+  Vector3 rest_centre_m_ = Vector3::Zero();  // centre of mass in the rest shape
   double rest_radius_m_ = 0.0;  // largest distance of a node from the centre of mass in the rest shape
   MeanPose pose_;
 };

@@ -100,13 +100,7 @@ struct BodyState {
   const MeshMapping* mesh() const { return std::get_if<MeshMapping>(&skin); }
 
   // Returns the highest speed of a node. For a fixed body, it is that of the last tick in which it moved.
-  double fastest_m_per_s() const {
-    double square = 0.0;
-    for (int n = 0; n < lattice.mesh().node_count(); ++n) {
-      square = std::max(square, lattice.velocity(n).squaredNorm());
-    }
-    return std::sqrt(square);
-  }
+  double fastest_m_per_s() const { return lattice.fastest_m_per_s(); }
 
   // Updates the skin to the present displacements of the lattice.
   void update_skin() {

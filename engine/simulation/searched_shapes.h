@@ -2,10 +2,10 @@
 // search: the constraints of the last one follow the lattices.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
-#include "engine/base/geometry.h"
 #include "engine/simulation/body_state.h"
 
 namespace spoonbill {
@@ -32,14 +32,18 @@ class SearchedShapes {
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
     for (std::size_t b = 0; b < known_count_; ++b) {
-      const std::vector<Vector3>& nodes = displacements_m_[b];
-      visit(nodes.data()->data(), 3 * nodes.size());
+      const Field& field = displacements_m_[b];
+      for (std::size_t n = 0; n < field[0].size(); ++n) {
+        const std::array<double, 3> displacement_m = {field[0][n], field[1][n], field[2][n]};
+        visit(displacement_m.data(), displacement_m.size());
+      }
     }
   }
 
  private:
-  std::vector<std::vector<Vector3>> displacements_m_;  // of the nodes of each body
-  std::size_t known_count_ = 0;  // number of bodies of the last remember(); 0 if forgotten
+  using Field = std::array<std::vector<float>, 3>;  // by axis
+  std::vector<Field> displacements_m_;              // of the nodes of each body
+  std::size_t known_count_ = 0;                     // number of bodies of the last remember(); 0 if forgotten
 };
 
 }  // namespace spoonbill

@@ -170,7 +170,6 @@ void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
     s.between.begin();
     return;
   }
-  s.searched.remember(s.stepped_bodies());
   std::array<const SpringLattice*, lattice_capacity> lattices{};
   for (std::size_t b = 0; b < s.stepped_count(); ++b) lattices[b] = &s.stepped_bodies()[b].lattice;
   s.between.clear(lattices);
@@ -196,6 +195,7 @@ void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
         !s.rigid_ground[b].add_contacts({static_cast<int>(b), &s.bodies[b]}, *s.scene.ground,
                                         s.scene.sculpting.gravity_m_per_s2, tick_s, s.between);
   }
+  if (s.between.count() > 0) s.searched.remember(s.stepped_bodies());
   s.between.begin();
 }
 
@@ -324,7 +324,9 @@ Reaction Simulation::advance(const ToolInput& input) {
     if (body.rigid) body.rigid->begin_tick(tick_s);
   }
   find_contacts_between(s, hold);
-  for (BodyState& body : s.scene_bodies()) body.hold.begin(body.lattice);
+  for (BodyState& body : s.scene_bodies()) {
+    body.hold.begin(body.lattice, keeps_place(s.scene) || body.lowering_m_per_s > 0.0);
+  }
   relax_bodies(s, {tools.data(), both ? std::size_t{2} : std::size_t{1}});
   if (s.tool_is_soft()) turn_soft_tool(s, tools[0].motion.orientation);
   if (const auto reform = find_kernel(s.scene.tool.action).reform) {

@@ -394,7 +394,9 @@ bool is_beyond(const ToolShape& tool, const PatchCorners& corners, double distan
 
 // Returns the number of parts into which sides are to be divided, given two opposite sides of a patch.
 int count_parts(const Vector3& one_side, const Vector3& other_side, double longest_m) {
-  const double parts = std::ceil(std::max(one_side.norm(), other_side.norm()) / longest_m);
+  const double square = std::max(one_side.squaredNorm(), other_side.squaredNorm());
+  if (square <= longest_m * longest_m) return 1;
+  const double parts = std::ceil(std::sqrt(square) / longest_m);
   return static_cast<int>(std::clamp(parts, 1.0, static_cast<double>(most_parts)));
 }
 
@@ -417,14 +419,15 @@ void ToolContact::add_pushes_between_samples(int body, const BodyState& state) {
     const int first = cell.i * columns + cell.j;
     const std::array<int, 4> samples{first, first + 1, first + columns, first + columns + 1};
     PatchCorners rest, corners;
+    for (std::size_t c = 0; c < corners.size(); ++c) rest[c] = mapping.embedded_rest_m(samples[c]);
+    const int parts_u = count_parts(rest[2] - rest[0], rest[3] - rest[1], longest_m);
+    const int parts_v = count_parts(rest[1] - rest[0], rest[3] - rest[2], longest_m);
+    if (parts_u * parts_v == 1) continue;
     for (std::size_t c = 0; c < corners.size(); ++c) corners[c] = mapping.embedded_m(samples[c]);
     const double farthest_m = margin_m + levels.bulge(cell);
     if (is_beyond(shape_, corners, farthest_m)) continue;
-    for (std::size_t c = 0; c < corners.size(); ++c) rest[c] = mapping.embedded_rest_m(samples[c]);
     const PatchCorners on_surface = levels.corners(cell);
     const bool starts_at_pole = rest[0] == rest[2];  // samples at a pole share one embedding
-    const int parts_u = count_parts(rest[2] - rest[0], rest[3] - rest[1], longest_m);
-    const int parts_v = count_parts(rest[1] - rest[0], rest[3] - rest[2], longest_m);
     for (int part = 1; part < parts_u * parts_v; ++part) {
       const PatchPoint at{static_cast<double>(part / parts_v) / parts_u,
                           static_cast<double>(part % parts_v) / parts_v};

@@ -391,6 +391,8 @@ const LatticeKernels lattice_kernels = {
     kick,
     drift,
     momentum,
+    find_range,
+    find_largest_square,
     flow,
     creep,
     row_sums,

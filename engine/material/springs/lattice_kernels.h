@@ -135,6 +135,13 @@ struct Drifted {
   float moved_square = 0.0f;  // largest squared change of d + tau v since the linearisation, m^2
 };
 
+// The smallest and the largest value of a nodal field, and whether the sum of its values is finite. It is not
+// if a value is not finite, or if very large values overflow it.
+struct FieldRange {
+  float low, high;
+  bool has_finite_sum;
+};
+
 // Results that a linearisation stores: only the spring forces, which suffice if no further substep uses the
 // linearisation, or the forces and their derivatives.
 enum class Linearised { forces, tangents };
@@ -176,6 +183,11 @@ struct LatticeKernels {
   // Computes mass-weighted sums of velocity over free nodes: sum = {x, y, z, mass}. `mass` must be 0 for
   // fixed nodes.
   void (*momentum)(const LatticeView&, const float* mass, float sum[4]);
+  // Finds the range of `count` values, at least one.
+  FieldRange (*find_range)(const float* field, int count);
+  // Finds the largest x^2 + (y^2 + z^2) of the vectors of a nodal field. `padded_count` is a multiple of
+  // lattice_block.
+  double (*find_largest_square)(const float* x, const float* y, const float* z, int padded_count);
   // Flows the springs: sets L0 += rate_step * (|e| - yield) sign(e) L0 where the strain
   // e = L / (L0 J^(1/3)) - 1 is beyond yield. J is the mean volume ratio of the cells around the spring's
   // ends. L0 changes by at most a tenth in a step and stays within 1/2 to 2 of its initial value. Springs at
@@ -224,6 +236,8 @@ void join_seam_forces(const LatticeView& view);
 void kick(const LatticeView& view, float h_s, float decay);
 Drifted drift(const LatticeView& view, const Drift& drift);
 void momentum(const LatticeView& view, const float* mass, float sum[4]);
+FieldRange find_range(const float* field, int count);
+double find_largest_square(const float* x, const float* y, const float* z, int padded_count);
 
 void flow(const LatticeView& view, const FlowRule& rule);
 void creep(const LatticeView& view, int direction, const CreepRule& rule);

@@ -138,4 +138,43 @@ void momentum(const LatticeView& view, const float* mass, float sum[4]) {
   sum[3] = m[0];
 }
 
+FieldRange find_range(const float* field, int count) {
+  constexpr int lane_count = 32;
+  alignas(64) float low[lane_count], high[lane_count], sum[lane_count] = {};
+  for (int l = 0; l < lane_count; ++l) low[l] = high[l] = field[0];
+  const int whole = count - count % lane_count;
+  for (int start = 0; start < whole; start += lane_count) {
+    for (int l = 0; l < lane_count; ++l) {
+      const float value = field[start + l];
+      low[l] = value < low[l] ? value : low[l];
+      high[l] = value > high[l] ? value : high[l];
+      sum[l] += value;
+    }
+  }
+  for (int i = whole; i < count; ++i) {
+    low[0] = field[i] < low[0] ? field[i] : low[0];
+    high[0] = max(field[i], high[0]);
+    sum[0] += field[i];
+  }
+  for (int l = 1; l < lane_count; ++l) {
+    low[0] = low[l] < low[0] ? low[l] : low[0];
+    high[0] = max(high[l], high[0]);
+    sum[0] += sum[l];
+  }
+  return {low[0], high[0], __builtin_isfinite(sum[0]) != 0};
+}
+
+double find_largest_square(const float* x, const float* y, const float* z, int padded_count) {
+  alignas(64) double largest[block] = {};
+  for (int start = 0; start < padded_count; start += block) {
+    for (int l = 0; l < block; ++l) {
+      const double vx = x[start + l], vy = y[start + l], vz = z[start + l];
+      const double square = vx * vx + (vy * vy + vz * vz);
+      largest[l] = square > largest[l] ? square : largest[l];
+    }
+  }
+  for (int l = 1; l < block; ++l) largest[0] = largest[l] > largest[0] ? largest[l] : largest[0];
+  return largest[0];
+}
+
 }  // namespace spoonbill::SPOONBILL_KERNELS

@@ -390,6 +390,10 @@ double SpringLattice::volume_m3() const {
   return volume;
 }
 
+double SpringLattice::fastest_m_per_s() const {
+  return std::sqrt(kernels_->find_largest_square(vx_.data(), vy_.data(), vz_.data(), padded_count_));
+}
+
 void SpringLattice::set_displacement(int node, const Vector3& d) {
   for (const int n : {node, mesh_.twin(node)}) {
     dx_[n] = static_cast<float>(d.x());

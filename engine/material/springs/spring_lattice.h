@@ -105,6 +105,8 @@ class SpringLattice {
   std::vector<Vector3> positions() const;
   // Velocities of a soft tool's lattice are relative to the tool (see MovingFrame).
   Vector3 velocity(int node) const { return {vx_[node], vy_[node], vz_[node]}; }
+  // Returns the highest speed of a node, m/s.
+  double fastest_m_per_s() const;
   // Sets the displacement of a node and of its twin at the seam, m.
   void set_displacement(int node, const Vector3& d);
   void set_velocity(int node, const Vector3& v);
