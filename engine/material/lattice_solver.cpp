@@ -553,6 +553,26 @@ int drift(Relaxation& relaxation, float h) {
   return capped;
 }
 
+// Fraction of speed_cap_cells by which a node may move in a substep at its speed at the start of a tick. It
+// may become faster within the tick.
+constexpr double started_cap_fraction = 0.5;
+
+// Returns the number of substeps that the speeds of a lattice's nodes require in real time, at most as many
+// as substep_ceiling allows.
+int count_substeps_for_speed(const Relaxation& relaxation, std::size_t at, const RelaxSettings& settings) {
+  const LatticeView& view = relaxation.view[at];
+  const Vector3 mean = find_mean_velocity(relaxation, at);
+  double square = 0.0;
+  for (int n = 0; n < view.padded_count; ++n) {
+    const Vector3 velocity(view.vx[n], view.vy[n], view.vz[n]);
+    if (view.free_node[n] != 0.0f) square = std::max(square, (velocity - mean).squaredNorm());
+  }
+  const double reach_m =
+      started_cap_fraction * speed_cap_cells * static_cast<double>(relaxation.lattice(at).cell_size_m());
+  const double count = std::ceil(settings.time_s * std::sqrt(square) / reach_m);
+  return static_cast<int>(std::min(count, static_cast<double>(substep_ceiling * settings.substeps)));
+}
+
 Substeps choose_substeps(const Relaxation& relaxation, const RelaxSettings& settings) {
   Substeps most{1, false};
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
@@ -561,6 +581,9 @@ Substeps choose_substeps(const Relaxation& relaxation, const RelaxSettings& sett
     const Substeps required = choose_substeps(relaxation.lattice(at), settings);
     if (required.slowed) most.slowed_lattice = static_cast<int>(at);
     most.count = std::max(most.count, required.count);
+    if (settings.is_real_time) {
+      most.count = std::max(most.count, count_substeps_for_speed(relaxation, at, settings));
+    }
     most.slowed = most.slowed || required.slowed;
   }
   return most;
@@ -597,6 +620,9 @@ Linearised choose_linearisation(const SpringLattice& lattice, const RelaxSetting
 // Linearises all springs at the start of a tick and returns the substeps that the tick needs. If `follows` is
 // true, also tracks the fastest frequencies.
 Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, bool follows) {
+  for (std::size_t at = 0; at < relaxation.count() && settings.is_real_time; ++at) {
+    if (relaxation.has_springs(at)) relaxation.lattice(at).continue_displacements();
+  }
   const int expected = choose_substeps(relaxation, settings).count;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) continue;
@@ -614,6 +640,13 @@ Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, bo
     linearise(relaxation.lattice(at), relaxation.view[at], Linearised::tangents);
   }
   return substeps;
+}
+
+// Lets the nodes outside all bodies follow. In real time, they would otherwise be thrown by a sudden stop.
+void continue_velocities(Relaxation& relaxation) {
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    if (relaxation.has_springs(at)) relaxation.lattice(at).continue_velocities();
+  }
 }
 
 void flow(Relaxation& relaxation) {
@@ -740,6 +773,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     const Substep substep{s, substeps.count, h};
     kick(relaxation, substep);
     solve_contacts(relaxation, substep, tools, between, ground);
+    if (settings.is_real_time) continue_velocities(relaxation);
     if (const int capped = drift(relaxation, h); capped >= 0) {
       report.speed_capped = true;
       report.at_fault = capped;

@@ -30,9 +30,9 @@ struct SupportedNodes {
   Vector3 impulse_ns = Vector3::Zero();  // impulse of the support on the body in the tick, N s
 };
 
-// Largest factor by which strain may raise the number of substeps. If strain requires more substeps, the
-// inertia of the strained nodes is raised just enough for stability. These nodes respond more slowly, which
-// hardly shows in a damped, quasi-static body.
+// Largest factor by which strain, or in real time the speed of nodes, may raise the number of substeps. If
+// strain requires more substeps, the inertia of the strained nodes is raised just enough for stability. These
+// nodes respond more slowly, which hardly shows in a damped, quasi-static body.
 inline constexpr int substep_ceiling = 4;
 
 // Longest substep, as a fraction of the measured stability limit. The reserve is needed because the running
@@ -63,12 +63,13 @@ inline constexpr double linear_cells = 0.01;
 // ticks.
 struct RelaxSettings {
   std::uint64_t tick = 0;
-  int substeps = 1;         // number of substeps at rest; strain may multiply it by up to substep_ceiling
-  double time_s = 1e-3;     // duration of the tick
-  double drag_per_s = 0.0;  // mass-proportional drag; the least drag if `is_critically_damped`
+  int substeps = 1;                   // number of substeps at rest; see substep_ceiling
+  double time_s = 1e-3;               // duration of the tick
+  double drag_per_s = 0.0;            // mass-proportional drag; the least drag if `is_critically_damped`
   bool is_critically_damped = false;  // true if each body is critically damped, see critical_damping_per_s()
   // True if bodies have their real inertia. Nodes may then be faster, see speed_cap_cells; contacts and
-  // supports may not.
+  // supports may not. Faster nodes raise the number of substeps, and nodes outside a body follow it (see
+  // OutsideNodes).
   bool is_real_time = false;
 };
 
@@ -112,11 +113,11 @@ struct TouchingTool {
   ContactConstraints* contacts;
 };
 
-// Advances at most lattice_capacity lattices by one tick, in as many substeps as the stiffest one needs. A
-// lattice with an implicit solver takes one implicit step per tick, which computes its velocities without the
-// contacts. The lattice moves with these velocities in each substep, and the contacts change them. If all
-// lattices have implicit solvers, a tick takes one substep. Rigid bodies that contacts can move take the
-// substeps of the settings at least.
+// Advances at most lattice_capacity lattices by one tick, in as many substeps as the stiffest or fastest one
+// needs. A lattice with an implicit solver takes one implicit step per tick, which computes its velocities
+// without the contacts. The lattice moves with these velocities in each substep, and the contacts change
+// them. If all lattices have implicit solvers, a tick takes one substep. Rigid bodies that contacts can move
+// take the substeps of the settings at least.
 //
 // In each substep the tools act in their order, then bodies on each other, then the ground. A soft tool moves
 // after the bodies have acted on it. A tool that touches only implicitly stepped lattices acts once, at the

@@ -7,8 +7,11 @@
 
 #include "engine/base/assert.h"
 #include "engine/base/text.h"
+#include "engine/bspline/strip_volumes.h"
 #include "engine/bspline/surface.h"
+#include "engine/collision/surfaces/closed_surface.h"
 #include "engine/simulation/body_hold.h"
+#include "engine/simulation/body_state.h"
 
 namespace spoonbill {
 namespace {
@@ -109,6 +112,38 @@ const char* describe_failure(std::uint32_t flags) {
 
 }  // namespace
 
+namespace {
+
+bool is_soft(const Material& material) {
+  return material.plastic || material.youngs_modulus_pa < stiff_youngs_modulus_pa;
+}
+
+// A body that fills less than this fraction of the box about it keeps its cells: too many equal cells would
+// be void, and too few would be left for the body.
+constexpr double least_filling = 0.25;
+
+bool fills_its_box(const Surface& surface) {
+  const Vector3 extent = bounding_box(surface.net).extent();
+  return compute_closed_volume_m3(surface) >= least_filling * extent.prod();
+}
+
+// A block of cells that is bent into a body has flat cells along its edges, which fold first when the body
+// falls. A soft solid therefore gets equal cells if they suit it, unless its document states how its nodes
+// are placed.
+void use_equal_cells(const std::vector<FixingPlane>& planes, Body& body) {
+  if (!is_deformable(body) || body.shell_thickness_m || !body.trims.empty()) return;
+  if (!planes.empty() || !body.supports.empty() || body.lattice.counts || body.lattice.feature_map) return;
+  const bool soft = is_soft(body.material) &&
+                    std::all_of(body.regions.begin(), body.regions.end(), [](const MaterialRegion& region) {
+                      return !region.material || is_soft(*region.material);
+                    });
+  if (soft && check_closed(body.surface).ok() && fills_its_box(body.surface)) {
+    body.lattice.cells = LatticeCells::box;
+  }
+}
+
+}  // namespace
+
 Result<Scene> make_trial_scene(Scene scene, std::optional<double> tilt_deg) {
   if (std::none_of(scene.bodies.begin(), scene.bodies.end(), is_movable)) {
     return Error{ErrorCode::missing, "all bodies are fixed; a trial needs a deformable or rigid one", "kind"};
@@ -129,6 +164,7 @@ Result<Scene> make_trial_scene(Scene scene, std::optional<double> tilt_deg) {
   scene.symmetry.on = false;
   scene.tool = Tool();
   scene.tool.kind = ToolKind::point;
+  for (Body& body : scene.bodies) use_equal_cells(scene.planes, body);
   if (Status status = check_trial(scene); !status.ok()) return status.error();
   if (Status status = check_bodies_are_solid(scene); !status.ok()) return status.error();
   return scene;

@@ -26,10 +26,12 @@ struct TrialSettings {
 inline constexpr Range<double> trial_seconds_range{0.0, 600.0};
 
 // Returns the scene as a trial simulates it: with the true inertia of all bodies, without the drag that helps
-// sculpting, with bodies free to move, and with a point as the tool. A scene without gravity gets standard
-// gravity along -y. `tilt_deg` replaces the angle of the plan. Fails if a tilt is given but nothing turns, if
-// all bodies are fixed, and if a body is a liquid: if its yield stress, which is Young's modulus times the
-// yield strain, is under 0.3 of the pressure that its own height causes.
+// sculpting, with bodies free to move, and with a point as the tool. A soft solid that fills at least a
+// quarter of the box about it gets equal cells (LatticeCells::box), unless it is fixed somewhere or its
+// document states node counts or a feature map. A scene without gravity gets standard gravity along -y.
+// `tilt_deg` replaces the angle of the plan. Fails if a tilt is given but nothing turns, if all bodies are
+// fixed, and if a body is a liquid: if its yield stress, which is Young's modulus times the yield strain, is
+// under 0.3 of the pressure that its own height causes.
 Result<Scene> make_trial_scene(Scene scene, std::optional<double> tilt_deg);
 
 // Fails if a support or a plane holds the body that the trial would lower.

@@ -119,6 +119,7 @@ Result<SpringLattice> SpringLattice::make(const LatticeMesh& mesh, const Lattice
 
 void SpringLattice::allocate(const LatticeMesh& mesh) {
   mesh_ = mesh;
+  outside_ = OutsideNodes(mesh);
   // The frame of a rigid body has a single cell. Searches for contacts need a length like that of the cells
   // of deformable bodies.
   constexpr double frame_fraction = 1.0 / 16.0;
@@ -430,6 +431,14 @@ const float* SpringLattice::stabilise_strained_nodes(float h_s, float fraction) 
     for (Floats* v : {&vx_, &vy_, &vz_}) (*v)[i] *= slower;
   }
   return stable_inverse_mass_.data();
+}
+
+void SpringLattice::continue_displacements() {
+  for (Floats* field : {&dx_, &dy_, &dz_}) outside_.continue_field(free_node_.data(), field->data());
+}
+
+void SpringLattice::continue_velocities() {
+  for (Floats* field : {&vx_, &vy_, &vz_}) outside_.continue_field(free_node_.data(), field->data());
 }
 
 SpringLattice::Assembly::Assembly(const SpringLattice& lattice) {

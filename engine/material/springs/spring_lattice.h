@@ -14,6 +14,7 @@
 #include "engine/base/result.h"
 #include "engine/material/cells/cell_elasticity.h"
 #include "engine/material/lattice/lattice_mesh.h"
+#include "engine/material/lattice/outside_nodes.h"
 #include "engine/material/lattice_materials.h"
 #include "engine/material/springs/lattice_kernels.h"
 
@@ -129,6 +130,10 @@ class SpringLattice {
   // larger inertia at the same momentum. Returns the inverse inertias for this substep, valid until the next
   // call. `fraction` is the fraction of the stability limit to use.
   const float* stabilise_strained_nodes(float h_s, float fraction);
+  // Gives the free nodes outside the body the displacements, or the velocities, with which the body's motion
+  // continues there (see OutsideNodes).
+  void continue_displacements();
+  void continue_velocities();
   const float* applied_force(int axis) const { return applied_[axis].data(); }
   bool has_applied_force() const { return has_applied_force_; }
 
@@ -192,6 +197,7 @@ class SpringLattice {
   void apply_reforming(const Reforming& next);
 
   LatticeMesh mesh_;
+  OutsideNodes outside_;
   LatticeReport report_;
   const LatticeKernels* kernels_ = nullptr;
   double total_mass_ = 0.0, rest_volume_ = 0.0;

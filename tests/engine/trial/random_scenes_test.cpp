@@ -1,0 +1,216 @@
+// Drops random bodies of random materials into fixed dishes, on plates and on the ground, and shakes some of
+// the dishes. Whatever happens, the result must be finite, whole and without bodies inside each other.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/trial/trial.h"
+#include "engine/trial/trial_report.h"
+#include "tests/engine/effort.h"
+#include "tests/engine/forces/samples.h"
+
+namespace spoonbill {
+namespace {
+
+// Random numbers that are the same on every machine.
+class Dice {
+ public:
+  explicit Dice(std::uint32_t seed) : engine_(seed) {}
+
+  double between(double low, double high) { return low + (high - low) * engine_() / 4294967296.0; }
+  int below(int count) { return static_cast<int>(engine_() % static_cast<std::uint32_t>(count)); }
+  bool chance(double probability) { return between(0.0, 1.0) < probability; }
+  template <class Values>
+  const auto& choose(const Values& values) {
+    return values[static_cast<std::size_t>(below(static_cast<int>(values.size())))];
+  }
+  Vector3 direction() {
+    Vector3 vector;
+    do {
+      vector = {between(-1.0, 1.0), between(-1.0, 1.0), between(-1.0, 1.0)};
+    } while (!(vector.norm() > 0.1 && vector.norm() < 1.0));
+    return vector.normalized();
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+struct RandomScene {
+  Scene scene;
+  std::optional<TurnBody> shake;  // of the dish, to and fro
+};
+
+StockShapeSize random_size(Dice& dice) {
+  const auto mm = [&](double low, double high) { return 1e-3 * dice.between(low, high); };
+  switch (dice.below(4)) {
+    case 0:
+      return SphereSize{mm(5.0, 12.0)};
+    case 1: {
+      const Vector3 sides(mm(10.0, 25.0), mm(10.0, 25.0), mm(10.0, 25.0));
+      return BoxSize{sides, dice.between(0.05, 0.3) * sides.minCoeff()};
+    }
+    case 2: {
+      CylinderSize size{mm(5.0, 10.0), mm(10.0, 22.0), 0.0};
+      size.rounding_m = default_rounding_m(size);
+      return size;
+    }
+    default: {
+      ConeSize size{mm(6.0, 12.0), mm(10.0, 20.0), mm(2.0, 6.0), 0.0};
+      size.rounding_m = default_rounding_m(size);
+      return size;
+    }
+  }
+}
+
+Body make_dish(Dice& dice, const Material& material) {
+  Body dish;
+  if (dice.chance(0.5)) {
+    BowlSize size{0.07, 0.055, dice.between(0.005, 0.02), dice.between(0.7e-3, 2e-3)};
+    dish = stock_body("bowl", size, Vector3::Zero(), material, 300);
+    dish.rim = bowl_shape(size)->rim;
+  } else {
+    PlateSize size{0.09, 0.07, dice.between(0.7e-3, 4e-3)};
+    size.corner_m = default_corner_m(size);
+    dish = stock_body("plate", size, Vector3::Zero(), material, 300);
+  }
+  dish.kind = BodyKind::fixed;
+  return dish;
+}
+
+double highest_m(const Surface& surface) {
+  return *std::max_element(surface.net.y.begin(), surface.net.y.end());
+}
+
+// Turns a body about its middle, then moves its lowest point to a height beside the y axis.
+void drop_from(Dice& dice, double height_m, Body& body) {
+  const BodyPlacement turn{Vector3::Zero(), dice.direction(), dice.between(0.0, 180.0)};
+  move_body(turn.pose(), body);
+  const double lowest_m = *std::min_element(body.surface.net.y.begin(), body.surface.net.y.end());
+  const Vector3 move(dice.between(-8e-3, 8e-3), height_m - lowest_m, dice.between(-8e-3, 8e-3));
+  move_body({move, Quaternion::Identity()}, body);
+}
+
+RandomScene make_random_scene(std::uint32_t seed) {
+  static const std::vector<std::string> materials = bundled_material_names();
+  Dice dice(seed);
+  RandomScene random;
+  Scene& scene = random.scene;
+  const auto material = [&] {
+    Material chosen = bundled_material(dice.choose(materials));
+    if (dice.chance(0.5)) chosen.friction = dice.between(0.0, 0.6);
+    return chosen;
+  };
+  const int count = 1 + dice.below(6);
+  const bool has_dish = count > 1 && dice.chance(0.75);
+  if (has_dish) scene.bodies.push_back(make_dish(dice, material()));
+  if (!has_dish || dice.chance(0.5)) {
+    scene.ground =
+        Ground{Vector3(0.0, has_dish ? -0.04 : 0.0, 0.0), Vector3::UnitY(), dice.between(0.0, 0.6)};
+  }
+  double height_m = has_dish ? highest_m(scene.bodies[0].surface) : 0.0;
+  while (scene.bodies.size() < static_cast<std::size_t>(count)) {
+    Body body = stock_body("body " + std::to_string(scene.bodies.size()), random_size(dice), Vector3::Zero(),
+                           material(), 150 + dice.below(250));
+    if (dice.chance(0.3)) body.kind = BodyKind::rigid;
+    if (dice.chance(0.5)) body.lattice.cells = LatticeCells::box;
+    height_m += dice.between(0.5e-3, scene.bodies.size() == 1 ? 50e-3 : 10e-3);
+    drop_from(dice, height_m, body);
+    height_m = highest_m(body.surface);
+    scene.bodies.push_back(std::move(body));
+  }
+  if (has_dish && dice.chance(0.6)) {
+    const double arm_m = dice.between(0.02, 0.15), speed_m_per_s = dice.between(0.1, 1.0);
+    const double angle = dice.between(0.0, 2.0 * std::numbers::pi);
+    TurnBody shake;
+    shake.point_m = {0.0, dice.chance(0.5) ? arm_m : -arm_m, 0.0};
+    shake.axis = {std::cos(angle), 0.0, std::sin(angle)};
+    shake.angle_deg = dice.between(5.0, 30.0);
+    shake.speed_deg_per_s = std::min(360.0, speed_m_per_s / arm_m * 180.0 / std::numbers::pi);
+    random.shake = shake;
+  }
+  return random;
+}
+
+struct Outcome {
+  std::string stopped;  // what stopped the trial; empty if nothing did
+  double largest_overlap_cells = 0.0, last_overlap_cells = 0.0;
+  int inverted_cells = 0;
+  bool finite = true;
+};
+
+// Runs a scene for a second. The dish is shaken from 0.3 s to 0.7 s.
+Outcome run_scene(const RandomScene& random) {
+  constexpr int ticks = 1000, first_shaken = 300, last_shaken = 700;
+  Outcome outcome;
+  auto made = Simulation::make(make_trial_scene(random.scene, {}).value(), best_instruction_set());
+  if (!made) {
+    outcome.stopped = made.error().message;
+    return outcome;
+  }
+  Simulation& simulation = made.value();
+  double cell_m = 0.0;
+  for (std::size_t b = 0; b < random.scene.bodies.size(); ++b) {
+    if (random.scene.bodies[b].kind != BodyKind::deformable) continue;
+    cell_m = std::max(cell_m, static_cast<double>(simulation.lattice(static_cast<int>(b)).cell_size_m()));
+  }
+  Trial trial(simulation.scene(), {600.0, 600.0});
+  double direction = 1.0;
+  for (int tick = 0; tick < ticks && outcome.stopped.empty(); ++tick) {
+    if (random.shake && tick >= first_shaken && tick < last_shaken && !simulation.is_moving_bodies()) {
+      TurnBody turn = *random.shake;
+      turn.angle_deg *= direction;
+      direction = -direction;
+      EXPECT_TRUE(simulation.apply(turn).ok());
+    }
+    const Reaction reaction = simulation.advance(trial_input());
+    if (const Status held = trial.follow(simulation, reaction.flags); !held) {
+      outcome.stopped = held.error().message;
+    }
+    if (!(cell_m > 0.0)) continue;
+    outcome.last_overlap_cells = simulation.largest_overlap_m() / cell_m;
+    outcome.largest_overlap_cells = std::max(outcome.largest_overlap_cells, outcome.last_overlap_cells);
+  }
+  const TrialReport report = report_on(trial, simulation);
+  outcome.inverted_cells = report.inverted_cells;
+  outcome.finite = std::isfinite(trial.largest_speed_m_per_s());
+  for (const TrialBodyReport& body : report.bodies) {
+    outcome.finite = outcome.finite && body.centre_of_mass_m.allFinite();
+  }
+  return outcome;
+}
+
+// While stiff bodies hit each other, and while a heavy body crushes a soft one, they overlap for some ticks.
+constexpr double largest_overlap_cells = 0.4, last_overlap_limit_cells = 0.1;
+
+void expect_whole(std::uint32_t seed) {
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  const Outcome outcome = run_scene(make_random_scene(seed));
+  EXPECT_EQ(outcome.stopped, "");
+  EXPECT_TRUE(outcome.finite);
+  EXPECT_EQ(outcome.inverted_cells, 0);
+  EXPECT_LT(outcome.largest_overlap_cells, largest_overlap_cells);
+  EXPECT_LT(outcome.last_overlap_cells, last_overlap_limit_cells);
+}
+
+TEST(RandomScenes, StayWhole) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  for (const std::uint32_t seed : {6u, 8u, 17u, 19u}) expect_whole(seed);
+}
+
+TEST(RandomScenes, StayWholeInTwelve) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  if (!is_full_run()) GTEST_SKIP() << only_in_full;
+  for (const std::uint32_t seed : {0u, 1u, 2u, 4u, 5u, 7u, 10u, 12u, 14u, 18u, 21u, 22u}) expect_whole(seed);
+}
+
+}  // namespace
+}  // namespace spoonbill
