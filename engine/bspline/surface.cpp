@@ -33,10 +33,6 @@ Status check_coordinates(const ControlNet& net, const std::vector<double>& value
   return {};
 }
 
-}  // namespace
-
-namespace {
-
 struct Interval {
   double low, high;
 };

@@ -557,20 +557,25 @@ int drift(Relaxation& relaxation, float h) {
 // may become faster within the tick.
 constexpr double started_cap_fraction = 0.5;
 
-// Returns the number of substeps that the speeds of a lattice's nodes require in real time, at most as many
-// as substep_ceiling allows.
-int count_substeps_for_speed(const Relaxation& relaxation, std::size_t at, const RelaxSettings& settings) {
-  const LatticeView& view = relaxation.view[at];
-  const Vector3 mean = find_mean_velocity(relaxation, at);
-  double square = 0.0;
-  for (int n = 0; n < view.padded_count; ++n) {
-    const Vector3 velocity(view.vx[n], view.vy[n], view.vz[n]);
-    if (view.free_node[n] != 0.0f) square = std::max(square, (velocity - mean).squaredNorm());
+// Returns the number of substeps that the speeds of nodes require in real time, at most as many as
+// substep_ceiling allows.
+int count_substeps_for_speed(const Relaxation& relaxation, const RelaxSettings& settings) {
+  if (!settings.is_real_time) return 1;
+  double most = 1.0;
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    if (!relaxation.has_springs(at)) continue;
+    const LatticeView& view = relaxation.view[at];
+    const Vector3 mean = find_mean_velocity(relaxation, at);
+    double square = 0.0;
+    for (int n = 0; n < view.padded_count; ++n) {
+      const Vector3 velocity(view.vx[n], view.vy[n], view.vz[n]);
+      if (view.free_node[n] != 0.0f) square = std::max(square, (velocity - mean).squaredNorm());
+    }
+    const double reach_m =
+        started_cap_fraction * speed_cap_cells * static_cast<double>(relaxation.lattice(at).cell_size_m());
+    most = std::max(most, std::ceil(settings.time_s * std::sqrt(square) / reach_m));
   }
-  const double reach_m =
-      started_cap_fraction * speed_cap_cells * static_cast<double>(relaxation.lattice(at).cell_size_m());
-  const double count = std::ceil(settings.time_s * std::sqrt(square) / reach_m);
-  return static_cast<int>(std::min(count, static_cast<double>(substep_ceiling * settings.substeps)));
+  return static_cast<int>(std::min(most, static_cast<double>(substep_ceiling * settings.substeps)));
 }
 
 Substeps choose_substeps(const Relaxation& relaxation, const RelaxSettings& settings) {
@@ -581,9 +586,6 @@ Substeps choose_substeps(const Relaxation& relaxation, const RelaxSettings& sett
     const Substeps required = choose_substeps(relaxation.lattice(at), settings);
     if (required.slowed) most.slowed_lattice = static_cast<int>(at);
     most.count = std::max(most.count, required.count);
-    if (settings.is_real_time) {
-      most.count = std::max(most.count, count_substeps_for_speed(relaxation, at, settings));
-    }
     most.slowed = most.slowed || required.slowed;
   }
   return most;
@@ -623,7 +625,8 @@ Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, bo
   for (std::size_t at = 0; at < relaxation.count() && settings.is_real_time; ++at) {
     if (relaxation.has_springs(at)) relaxation.lattice(at).continue_displacements();
   }
-  const int expected = choose_substeps(relaxation, settings).count;
+  const int for_speed = count_substeps_for_speed(relaxation, settings);
+  const int expected = std::max(choose_substeps(relaxation, settings).count, for_speed);
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) continue;
     SpringLattice& lattice = relaxation.lattice(at);
@@ -634,7 +637,8 @@ Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, bo
       linearise(lattice, relaxation.view[at], stored);
     }
   }
-  const Substeps substeps = choose_substeps(relaxation, settings);
+  Substeps substeps = choose_substeps(relaxation, settings);
+  substeps.count = std::max(substeps.count, for_speed);
   for (std::size_t at = 0; at < relaxation.count() && substeps.count > expected; ++at) {
     if (!relaxation.has_springs(at)) continue;
     linearise(relaxation.lattice(at), relaxation.view[at], Linearised::tangents);

@@ -110,10 +110,6 @@ const char* describe_failure(std::uint32_t flags) {
   return nullptr;
 }
 
-}  // namespace
-
-namespace {
-
 bool is_soft(const Material& material) {
   return material.plastic || material.youngs_modulus_pa < stiff_youngs_modulus_pa;
 }

@@ -215,32 +215,27 @@ std::vector<int> collision_budgets() {
   return is_whole ? std::vector<int>{150, 300, 500, 800, 1500, 2500} : std::vector<int>{150, 500};
 }
 
-// With smaller cells, the loss falls to that of the material's own damping, about 1.6 %. There, the means
-// over eight directions scatter by a twentieth.
 TEST(FreeCollision, KeepsMomentumAndLosesLessEnergyWithSmallerCells) {
   if (const std::string reason = find_skip_reason(ForceRun::full); !reason.empty()) GTEST_SKIP() << reason;
-  constexpr double scatter = 0.1;
-  double first = 0.0, least = 1.0;
+  double last = 1.0;
   for (const int node_budget : collision_budgets()) {
     const Losses losses = find_losses(node_budget, {.damped = true});
     EXPECT_GT(losses.least, 0.0) << node_budget;
-    EXPECT_LT(losses.mean, (1.0 + scatter) * least) << node_budget;
-    if (first == 0.0) first = losses.mean;
-    least = std::min(least, losses.mean);
+    EXPECT_LT(losses.mean, last) << node_budget;
+    last = losses.mean;
   }
-  EXPECT_LT(least, 0.5 * first);
 }
 
 // Without damping, only contact takes energy. Contacts whose gaps do not follow the lattices, and springs
 // whose forces do not follow their lengths, would add energy, which no damping would take away. A single
-// collision may gain a percent.
+// collision may gain half a percent.
 TEST(FreeCollision, GainsNoEnergyWithoutDamping) {
   if (const std::string reason = find_skip_reason(ForceRun::full); !reason.empty()) GTEST_SKIP() << reason;
   for (const int node_budget : collision_budgets()) {
     const Losses losses = find_losses(node_budget, {.damped = false});
     EXPECT_GT(losses.mean, 0.0) << node_budget;
     EXPECT_LT(losses.mean, 0.05) << node_budget;
-    EXPECT_GT(losses.least, -0.01) << node_budget;
+    EXPECT_GT(losses.least, -0.005) << node_budget;
   }
 }
 

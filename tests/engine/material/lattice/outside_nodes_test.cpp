@@ -30,7 +30,7 @@ TEST(OutsideNodes, ContinueALinearField) {
     }
     outside.continue_field(is_free.data(), field.data());
     for (std::size_t n = 0; n < mesh->nodes.size(); ++n) {
-      // Rounding to single precision grows from layer to layer of the nodes.
+      // Values, of about 1, and weights are in single precision.
       EXPECT_NEAR(field[n], linear_field(mesh->nodes[n]), 1e-5) << n;
     }
   }
