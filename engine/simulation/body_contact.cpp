@@ -25,9 +25,9 @@ constexpr double least_lead_cells = 0.02;
 // the drawn surfaces overlap visibly where a net is too coarse for its lattice.
 constexpr double largest_fit_error_cells = 0.02;
 
-// Largest depth of a point that had no contact in the last tick, in cells. A hand moves a soft tool by less
-// in a tick. A deeper point is beside a fold of the surface.
-constexpr double deepest_new_cells = 1.0;
+// Largest depth of a point that had no contact in the last tick, in cells. Bodies that move farther in a tick
+// may get deeper; a hand moves a soft tool by less. A deeper point is beside a fold of the surface.
+constexpr double deepest_new_cells = 0.2;
 
 }  // namespace
 
@@ -394,14 +394,14 @@ bool BodySelfContact::add_contacts(const IndexedBody& body, BodyContacts& contac
   if (!proximity_) return true;
   const auto cell_m = static_cast<double>(body.state->lattice.cell_size_m());
   const double motion_m = 2.0 * tick_s * body.state->fastest_m_per_s();
+  const double deepest_new_m = std::max(deepest_new_cells * cell_m, motion_m);
   proximity_->find(body.state->mapping().current(), std::max(contact_margin_cells * cell_m, motion_m));
   if (const TrimmedArea* const trim = body.state->trim.get()) {
     proximity_->keep_if([&](const NearPoint& near) {
       return trim->contains(near.u, near.v) && trim->contains(near.other_u, near.other_v);
     });
   }
-  const bool complete =
-      add_near_points(body, body, proximity_->points(), deepest_new_cells * cell_m, contacts);
+  const bool complete = add_near_points(body, body, proximity_->points(), deepest_new_m, contacts);
   return complete && !proximity_->overflow();
 }
 

@@ -165,6 +165,7 @@ bool is_searched(const Simulation::State& s) {
 }
 
 void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
+  s.between.set_real_time(s.scene.sculpting.real_time);
   if (is_searched(s)) {
     s.between.keep();
     s.between.begin();

@@ -25,9 +25,10 @@ constexpr ContactPace separated_pace{body_closing, 0.0};
 constexpr double separation_per_s = 200.0, max_separation = 0.1;
 
 // Part of the difference between a gap that is found and the gap of its constraint that is taken over in a
-// tick. If it were taken over faster, colliding bodies would gain energy; if more slowly, their drawn
-// surfaces would overlap.
-constexpr double taken_over_in_tick = 0.18;
+// tick. If it were taken over faster, colliding bodies would gain or lose energy; if more slowly, their drawn
+// surfaces would overlap. Between soft bodies in real time, where both surfaces differ from their lattices
+// and energy matters more, half of a difference is taken over in 14 ticks, which is as long as a collision.
+constexpr double taken_over_in_tick = 0.18, taken_over_by_soft_in_real_time = 0.05;
 
 bool is_of_frame(const BodyPoint& point) {
   return point.lattice != nullptr && point.lattice->mesh().is_frame;
@@ -175,9 +176,11 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
   const bool yields = compliance > 0.0 || is_of_moving_frame(first) || is_of_moving_frame(second);
   const bool separates = !by_solvers && !is_by_solver(first) && !is_by_solver(second) && yields;
   const bool is_between_rigid = is_rigid(first) && is_rigid(second);
-  const double difference_m = separates && kept != nullptr && !is_between_rigid
-                                  ? (1.0 - taken_over_in_tick) * (gap_m - kept->gap_m)
-                                  : 0.0;
+  const bool are_both_soft = !is_rigid(first) && !is_rigid(second);
+  const double taken_over =
+      is_real_time_ && are_both_soft ? taken_over_by_soft_in_real_time : taken_over_in_tick;
+  const double difference_m =
+      separates && kept != nullptr && !is_between_rigid ? (1.0 - taken_over) * (gap_m - kept->gap_m) : 0.0;
   Constraint& added = constraints_[count_++];
   added = {.first_body = first.body,
            .second_body = second.body,
@@ -187,6 +190,7 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
            .compliance = compliance,
            .base_m = gap_m - difference_m - moved,
            .difference_m = difference_m,
+           .taken_over = taken_over,
            .added_gap_m = gap_m,
            .first_mobility = find_mobility(first),
            .second_mobility = find_mobility(second),
@@ -205,7 +209,7 @@ void BodyContacts::keep() {
       constraint.force_n.setZero();
       continue;
     }
-    const double taken_over_m = taken_over_in_tick * constraint.difference_m;
+    const double taken_over_m = constraint.taken_over * constraint.difference_m;
     constraint.difference_m -= taken_over_m;
     constraint.base_m += taken_over_m;
   }

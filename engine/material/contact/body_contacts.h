@@ -42,6 +42,9 @@ class BodyContacts {
  public:
   explicit BodyContacts(int capacity);
 
+  // Tells whether bodies have their real inertia, which is false at first. Call between ticks, before clear()
+  // or keep().
+  void set_real_time(bool is_real_time) { is_real_time_ = is_real_time; }
   // Removes the constraints, and remembers their forces and present gaps for the constraints that are added
   // next. `lattices` are those of the bodies, by BodyPoint::body.
   void clear(std::span<const SpringLattice* const> lattices);
@@ -58,7 +61,8 @@ class BodyContacts {
   // different gap, because the surfaces do not follow these points exactly and the normal has turned. If a
   // constraint took over the difference at once, a collision would leave overlaps, and separate() would add
   // energy by correcting them against its forces. Therefore, a constraint of a body with springs keeps its
-  // own gap, and takes over a part of the difference in each tick. Between rigid bodies, gaps are exact.
+  // own gap, and takes over a part of the difference in each tick: a smaller one between soft bodies in
+  // real time, which must keep their energy. Between rigid bodies, gaps are exact.
   //
   // A surface may fold locally, as beside the pole of a pressed tube. Its normal then points inwards there,
   // and a point outside seems to be deep inside. A point that is deeper than `deepest_new_m` and had no
@@ -164,6 +168,7 @@ class BodyContacts {
     double slide_per_kg = 0.0;   // the same with rigid bodies and frames, at most across the normal
     double base_m = 0.0;         // gap minus the part due to displacements since rest
     double difference_m = 0.0;   // gap that the search found, minus the gap of the constraint
+    double taken_over = 0.0;     // part of this difference that is taken over in a tick
     double added_gap_m = 0.0;    // gap when the constraint was added
     double gap_m = 0.0;          // gap at the last start()
     // Separation speed at the last start() above the smallest admissible one, for a constraint without a
@@ -205,6 +210,7 @@ class BodyContacts {
   std::array<double, lattice_capacity + 1> changed_m_per_s_{};
   int count_ = 0;
   bool has_searched_ = false;  // whether a tick has begun since forget()
+  bool is_real_time_ = false;
 };
 
 }  // namespace spoonbill

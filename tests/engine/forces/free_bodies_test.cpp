@@ -135,7 +135,7 @@ Surface with_finer_net(const Surface& surface) {
 
 struct Balls {
   bool damped = true;
-  bool coarse_nets = false;  // whether the drawn surfaces cannot follow fine lattices
+  int halvings = 1;  // of the surfaces' polynomial pieces; without any, nets cannot follow fine lattices
 };
 
 // Throws one ball off centre against another, in real time, from a direction.
@@ -146,7 +146,7 @@ Collision collide(int node_budget, const Balls& balls, const Quaternion& directi
   const SphereSize size{0.015};
   const auto ball = [&](const char* name, const Vector3& centre_m) {
     Body body = stock_body(name, size, centre_m, silicone, node_budget);
-    if (!balls.coarse_nets) body.surface = with_finer_net(body.surface);
+    for (int h = 0; h < balls.halvings; ++h) body.surface = with_finer_net(body.surface);
     return make_state(body);
   };
   Impact impact(ball("target", Vector3::Zero()), ball("thrown", direction * Vector3(0.004, 0.0302, 0.002)),
@@ -228,24 +228,32 @@ TEST(FreeCollision, KeepsMomentumAndLosesLessEnergyWithSmallerCells) {
 
 // Without damping, only contact takes energy. Contacts whose gaps do not follow the lattices, and springs
 // whose forces do not follow their lengths, would add energy, which no damping would take away. A single
-// collision may gain half a percent.
+// collision may gain 0.3 %.
 TEST(FreeCollision, GainsNoEnergyWithoutDamping) {
   if (const std::string reason = find_skip_reason(ForceRun::full); !reason.empty()) GTEST_SKIP() << reason;
   for (const int node_budget : collision_budgets()) {
     const Losses losses = find_losses(node_budget, {.damped = false});
     EXPECT_GT(losses.mean, 0.0) << node_budget;
     EXPECT_LT(losses.mean, 0.05) << node_budget;
-    EXPECT_GT(losses.least, -0.005) << node_budget;
+    EXPECT_GT(losses.least, -0.003) << node_budget;
   }
 }
 
 // The surface folds beside the pole where these balls meet, because its control net is coarser than its
 // lattice. Points outside then seem to be deep inside.
 TEST(FreeCollision, StaysBoundedWhereASurfaceFolds) {
-  const Collision collision =
-      collide(500, {.damped = false, .coarse_nets = true}, collision_directions(6)[5]);
+  const Collision collision = collide(500, {.damped = false, .halvings = 0}, collision_directions(6)[5]);
   EXPECT_TRUE(collision.touched && collision.parted);
   EXPECT_NEAR(collision.energy_lost, 0.0, 0.05);
+}
+
+// Here a surface folds for one tick, and a point outside seems to be 0.7 cells deep. If it were pushed out,
+// the collision would gain 1.3 %.
+TEST(FreeCollision, GainsNoEnergyWhereASurfaceFoldsForATick) {
+  if (const std::string reason = find_skip_reason(ForceRun::full); !reason.empty()) GTEST_SKIP() << reason;
+  const Collision collision = collide(2500, {.damped = false, .halvings = 2}, collision_directions(5)[4]);
+  EXPECT_TRUE(collision.touched && collision.parted);
+  EXPECT_GT(collision.energy_lost, -0.003);
 }
 
 }  // namespace

@@ -34,6 +34,8 @@ class Impact {
     }
     settings_.substeps = static_cast<int>(std::lround(settings_.time_s / step_s));
     for (BodyState& body : bodies_) body.set_inertia(scale, step_s);
+    settings_.is_real_time = clock == Clock::real_time;
+    contacts_.set_real_time(settings_.is_real_time);
   }
 
   void throw_at(int body, const Vector3& velocity) {
