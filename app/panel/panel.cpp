@@ -62,7 +62,9 @@ void draw_title(const PanelModel& model, const Theme& theme, PanelAnswer& answer
   ImGui::PushFont(theme.fonts.heading);
   ImGui::TextUnformatted(model.title.c_str());
   ImGui::PopFont();
-  ImGui::TextColored(colour::quiet_ink, "%.2f s", model.time_s);
+  std::string time = rounded_text(model.time_s, 2, " s");
+  if (!model.rate_is_nominal) time += ", " + percent_text(tick_s * model.rate_hz) + " of real time";
+  ImGui::TextColored(colour::quiet_ink, "%s", time.c_str());
   if (model.trial) return;
 
   const ImGuiStyle& style = ImGui::GetStyle();

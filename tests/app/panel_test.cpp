@@ -98,6 +98,7 @@ TEST(Panel, ClipsNothingAtTheUsualSizes) {
     model.region_count = 16;
     model.unheld_count = 1;
     model.force_on = true;
+    model.rate_is_nominal = false;
     frame.draw(model);
     frame.draw(model);
     const ImGuiWindow* window = ImGui::FindWindowByName("Panel");
@@ -203,6 +204,16 @@ TEST(Panel, SaysHowMuchSlowerABodyResponds) {
   EXPECT_NE(frame.draw_text(model).find("35 times slower"), std::string::npos);
   model.inertia_scale = 1.0;
   EXPECT_EQ(frame.draw_text(model).find("slower"), std::string::npos);
+}
+
+TEST(Panel, SaysHowFastTimePassesLive) {
+  Frame frame(1280, 720);
+  PanelModel model = full_model();
+  model.rate_hz = 250.0;
+  frame.draw(model);
+  EXPECT_EQ(frame.draw_text(model).find("25 %"), std::string::npos) << "no clock measures it in lock-step";
+  model.rate_is_nominal = false;
+  EXPECT_NE(frame.draw_text(model).find("25 %"), std::string::npos);
 }
 
 TEST(Panel, SwitchesRealTime) {
