@@ -25,8 +25,9 @@ constexpr double least_lead_cells = 0.02;
 // the drawn surfaces overlap visibly where a net is too coarse for its lattice.
 constexpr double largest_fit_error_cells = 0.02;
 
-// Largest depth of a point that had no contact in the last tick, in cells. Bodies that move farther in a tick
-// may get deeper; a hand moves a soft tool by less. A deeper point is beside a fold of the surface.
+// Largest depth of a point that had no contact in the last tick, in cells, or the motion of the bodies in a
+// tick if that is larger. A deeper point is beside a fold of the surface. The motion does not include that of
+// the hand, so that a few points of a soft tool may be left out if the hand is faster than about 1 m/s.
 constexpr double deepest_new_cells = 0.2;
 
 }  // namespace

@@ -26,8 +26,9 @@ constexpr double separation_per_s = 200.0, max_separation = 0.1;
 
 // Part of the difference between a gap that is found and the gap of its constraint that is taken over in a
 // tick. If it were taken over faster, colliding bodies would gain or lose energy; if more slowly, their drawn
-// surfaces would overlap. Between soft bodies in real time, where both surfaces differ from their lattices
-// and energy matters more, half of a difference is taken over in 14 ticks, which is as long as a collision.
+// surfaces would overlap. Energy matters more in real time, and more between soft bodies, because both of
+// their surfaces differ from their lattices. There, half of a difference is taken over in 14 ticks, about the
+// time for which small balls of silicone touch.
 constexpr double taken_over_in_tick = 0.18, taken_over_by_soft_in_real_time = 0.05;
 
 bool is_of_frame(const BodyPoint& point) {
@@ -176,9 +177,9 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
   const bool yields = compliance > 0.0 || is_of_moving_frame(first) || is_of_moving_frame(second);
   const bool separates = !by_solvers && !is_by_solver(first) && !is_by_solver(second) && yields;
   const bool is_between_rigid = is_rigid(first) && is_rigid(second);
-  const bool are_both_soft = !is_rigid(first) && !is_rigid(second);
+  const bool is_between_soft = !is_rigid(first) && !is_rigid(second);
   const double taken_over =
-      is_real_time_ && are_both_soft ? taken_over_by_soft_in_real_time : taken_over_in_tick;
+      is_real_time_ && is_between_soft ? taken_over_by_soft_in_real_time : taken_over_in_tick;
   const double difference_m =
       separates && kept != nullptr && !is_between_rigid ? (1.0 - taken_over) * (gap_m - kept->gap_m) : 0.0;
   Constraint& added = constraints_[count_++];

@@ -42,8 +42,8 @@ class BodyContacts {
  public:
   explicit BodyContacts(int capacity);
 
-  // Tells whether bodies have their real inertia, which is false at first. Call between ticks, before clear()
-  // or keep().
+  // Tells whether bodies have their real inertia, which is false at first. Call before the first add() of a
+  // tick; constraints that keep() retains are not affected.
   void set_real_time(bool is_real_time) { is_real_time_ = is_real_time; }
   // Removes the constraints, and remembers their forces and present gaps for the constraints that are added
   // next. `lattices` are those of the bodies, by BodyPoint::body.
@@ -61,8 +61,9 @@ class BodyContacts {
   // different gap, because the surfaces do not follow these points exactly and the normal has turned. If a
   // constraint took over the difference at once, a collision would leave overlaps, and separate() would add
   // energy by correcting them against its forces. Therefore, a constraint of a body with springs keeps its
-  // own gap, and takes over a part of the difference in each tick: a smaller one between soft bodies in
-  // real time, which must keep their energy. Between rigid bodies, gaps are exact.
+  // own gap, and takes over a part of the difference in each tick: a smaller one in real time between
+  // soft bodies, or of a soft body with itself, which must keep their energy. Between rigid bodies, gaps are
+  // exact.
   //
   // A surface may fold locally, as beside the pole of a pressed tube. Its normal then points inwards there,
   // and a point outside seems to be deep inside. A point that is deeper than `deepest_new_m` and had no
