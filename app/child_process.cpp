@@ -21,7 +21,7 @@ namespace {
 
 // A sanitizer reserves more address space than any useful limit, and reads its options from the environment.
 // A child in a sanitizer build therefore gets no memory limit and the whole environment.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef SPOONBILL_SANITIZED
 constexpr bool is_sanitized = true;
 #else
 constexpr bool is_sanitized = false;

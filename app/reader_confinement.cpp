@@ -17,7 +17,7 @@
 
 namespace spoonbill {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef SPOONBILL_SANITIZED
 
 Status confine_reader() {
   return {};

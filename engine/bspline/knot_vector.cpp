@@ -94,10 +94,12 @@ std::vector<double> extend_periodic(const std::vector<double>& knots, int degree
     for (; within < 0; within += r) --wraps;
     for (; within > r; within -= r) ++wraps;
     const double knot = knots[static_cast<std::size_t>(within)];
+    // Copies of the seam that belong to two periods are computed alike.
     if (wraps < 0) {
-      extended.push_back(start - (end - knot) + (wraps + 1) * period);
+      extended.push_back(knot == start ? start + wraps * period
+                                       : start - (end - knot) + (wraps + 1) * period);
     } else if (wraps > 0) {
-      extended.push_back(end + (knot - start) + (wraps - 1) * period);
+      extended.push_back(knot == end ? end + wraps * period : end + (knot - start) + (wraps - 1) * period);
     } else {
       extended.push_back(knot);
     }

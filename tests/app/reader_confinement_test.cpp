@@ -35,7 +35,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef SPOONBILL_SANITIZED
 constexpr bool are_readers_confined = false;
 #else
 constexpr bool are_readers_confined = true;

@@ -1,4 +1,5 @@
-// Random values that are the same on every machine, unlike the distributions of the standard library.
+// Random values that are the same on every machine, unlike the distributions of the standard library. Where a
+// call has several random arguments, they depend on the compiler, which chooses the order of evaluation.
 #pragma once
 
 #include <cmath>
@@ -27,7 +28,10 @@ class Random {
   Vector3 in_box(const Vector3& half) {
     return {uniform(-half.x(), half.x()), uniform(-half.y(), half.y()), uniform(-half.z(), half.z())};
   }
-  Vector3 direction() { return Vector3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)).normalized(); }
+  Vector3 direction() {
+    const double z = uniform(-1, 1), y = uniform(-1, 1), x = uniform(-1, 1);
+    return Vector3(x, y, z).normalized();
+  }
 
  private:
   std::mt19937_64 engine_;

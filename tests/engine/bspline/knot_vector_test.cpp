@@ -107,6 +107,16 @@ TEST(KnotVector, KnotsThatCoincideAtTheSeamCoincideToTheLastBit) {
   EXPECT_EQ(at_start.extended_knots()[7], 0.9);
 }
 
+// With fewer control points than the degree, the knots repeat over several periods.
+TEST(KnotVector, KnotsThatCoincideDoSoInEveryPeriod) {
+  const double seam = -0.84947456852662273, end = -0.34614869330139586;
+  const std::vector<double> knots = KnotVector::periodic(8, {seam, seam, end}).value().extended_knots();
+  for (std::size_t i = 1; i < knots.size(); ++i) {
+    const double step = knots[i] - knots[i - 1];
+    EXPECT_TRUE(step == 0.0 || step > 0.5) << "at knot " << i;
+  }
+}
+
 TEST(KnotVector, BringsParametersIntoTheDomain) {
   const auto open = KnotVector::clamped_uniform(2, 5).value();
   EXPECT_EQ(open.into_domain(-3), 0);

@@ -182,9 +182,11 @@ TEST(OpenCascade, AgreesOnAThousandRandomSurfaces) {
                  " x " + std::to_string(surface.net.columns));
     periodic += surface.u.is_periodic() || surface.v.is_periodic() ? 1 : 0;
     const auto oracle = occt_surface(surface);
-    const Grid grid = make_grid(surface.u, surface.v, random_parameters(random, surface.u, 5),
-                                random_parameters(random, surface.v, random.integer(5, 20)))
-                          .value();
+    const int count = random.integer(5, 20);
+    std::vector<double> v_parameters = random_parameters(random, surface.v, count);
+    std::vector<double> u_parameters = random_parameters(random, surface.u, 5);
+    const Grid grid =
+        make_grid(surface.u, surface.v, std::move(u_parameters), std::move(v_parameters)).value();
     for (const double u : grid.u.parameters) {
       for (const double v : grid.v.parameters) expect_same_point(surface, occt_point(*oracle, u, v), u, v);
     }

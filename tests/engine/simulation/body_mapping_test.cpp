@@ -11,6 +11,7 @@
 #include "engine/material/lattice/body_lattice.h"
 #include "engine/shapes/fit_shape.h"
 #include "engine/shapes/stock_shapes.h"
+#include "tests/engine/effort.h"
 
 namespace spoonbill {
 namespace {
@@ -62,6 +63,7 @@ double misfit_after_turn(const Body& body) {
 TEST(BodyMapping, FollowsATurnOfTheLattice) {
   std::vector<Body> bodies;
   for (const int budget : {60, 150, 200, 300, 400}) {
+    if (sanitized && budget > 60) break;
     bodies.push_back(stock_body("box", BoxSize{{0.0216, 0.0222, 0.018}, 0.001}, budget));
     bodies.push_back(stock_body("long box", BoxSize{{0.03, 0.012, 0.015}, 0.002}, budget));
     bodies.push_back(stock_body("cone", ConeSize{0.012, 0.018, 0.003, 0.001}, budget));
