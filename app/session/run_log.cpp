@@ -47,6 +47,10 @@ void append_start(std::string& line, std::uint64_t tick, const std::string& name
   line += ',' + name + ',' + kind;
 }
 
+Vector3 momentum_ns(const MassCentre& centre) {
+  return centre.mass_kg * centre.velocity_m_per_s;
+}
+
 }  // namespace
 
 RunLog::RunLog(OutputFile file, const Session& session, LoggedTool tool)
@@ -57,6 +61,8 @@ RunLog::RunLog(OutputFile file, const Session& session, LoggedTool tool)
     logged.name = csv_field(bodies[b].name);
     logged.kind = body_kind_names[static_cast<std::size_t>(bodies[b].kind)];
     logged.support_count = static_cast<int>(bodies[b].supports.size());
+    if (bodies[b].kind == BodyKind::deformable)
+      logged.momentum_ns = momentum_ns(find_mass_centre(session.simulation.lattice(static_cast<int>(b))));
   }
 }
 
@@ -75,6 +81,7 @@ void RunLog::add_body(const Session& session, int body, std::string_view phase) 
   const Vector3& gravity = simulation.scene().sculpting.gravity_m_per_s2;
   const std::optional<Pose> pose = simulation.rigid_pose(body);
   const RigidDynamics* const rigid = simulation.rigid_dynamics(body);
+  std::optional<MassCentre> centre;  // of a deformable body
   append_start(text_, simulation.tick(), logged.name, logged.kind);
   if (rigid) {
     append_pose(text_, rigid->pose());
@@ -91,8 +98,9 @@ void RunLog::add_body(const Session& session, int body, std::string_view phase) 
     append_vector(text_, pose->position_m + pose->orientation * logged.at_rest.centre_m);
     append_empty(text_, 1);
   } else {
+    centre = find_mass_centre(lattice);
     append_empty(text_, 7);
-    append_vector(text_, find_mass_centre(lattice).position_m);
+    append_vector(text_, centre->position_m);
     append_csv_number(text_, simulation.fastest_m_per_s(body));
   }
   const Vector3 contact_n = simulation.contact_force_n(body) + simulation.tool_force_n(body);
@@ -105,8 +113,15 @@ void RunLog::add_body(const Session& session, int body, std::string_view phase) 
     support_n = rigid->hand_impulse_ns() / tick_s;
   } else if (pose) {
     support_n = -contact_n - ground_n - logged.at_rest.mass_kg * gravity;
+  } else if (tool_ == LoggedTool::none && !simulation.scene().planes.empty() && lattice.has_fixed_nodes()) {
+    // In a trial, nothing else acts on a body, so that the force of planes and supports is the rest of
+    // Newton's second law.
+    support_n = (momentum_ns(*centre) - logged.momentum_ns) / tick_s - contact_n - ground_n -
+                find_load_force_n(lattice) - centre->mass_kg * gravity;
+  } else {
+    for (int s = 0; s < logged.support_count; ++s) support_n += simulation.support_force_n(s, body);
   }
-  for (int s = 0; s < logged.support_count; ++s) support_n += simulation.support_force_n(s, body);
+  if (centre) logged.momentum_ns = momentum_ns(*centre);
   append_vector(text_, support_n);
   if (rigid) {
     append_empty(text_, 1);

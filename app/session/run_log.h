@@ -29,7 +29,9 @@ enum class LoggedTool { none, with_force };
 // - contact_area_m2: area on which contacts push the body (Simulation::contact_area_m2())
 // - ground_x_n to ground_z_n: force of the ground on the body
 // - support_x_n to support_z_n: force of the body's supports on it; for a fixed body, the force that holds
-//   it; for a held body, the force of the hand. Fixing planes are not included
+//   it; for a held body, the force of the hand. In a trial, the force of fixing planes is included. It is
+//   then found from the change of the momentum of all nodes, which for a stiff body is right in the mean
+//   alone
 // - inverted_cells
 // - energy_j: kinetic, gravitational and elastic energy, without that of a hand's spring; empty for a fixed
 //   body, and for one that creeps or flows
@@ -60,6 +62,7 @@ class RunLog {
     ControlNet rest;     // control points of a fixed body at rest
     RigidMass at_rest;   // mass of a fixed body, and its centre at rest
     int support_count = 0;
+    Vector3 momentum_ns = Vector3::Zero();  // of a deformable body after the last row
   };
   OutputFile file_;
   std::vector<LoggedBody> bodies_;

@@ -385,6 +385,11 @@ Vector3 Simulation::contact_force_n(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
   return state_->between.impulse_ns(body, tick_s) / tick_s;
 }
+double Simulation::contact_work_j(int body) const {
+  const SpringLattice& frame = lattice(body);
+  const bool is_prescribed = frame.mesh().is_frame && frame.has_fixed_nodes();
+  return is_prescribed ? state_->between.work_j(body, frame, tick_s) : 0.0;
+}
 Vector3 Simulation::tool_force_n(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->scene.bodies.size()));
   Vector3 impulse_ns = -state_->tool.contact.constraints().tool_impulse(body);

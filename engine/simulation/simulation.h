@@ -141,6 +141,9 @@ class Simulation {
   Vector3 support_force_n(int support, int body = 0) const;
   Vector3 ground_force_n(int body = 0) const;
   Vector3 contact_force_n(int body = 0) const;
+  // Returns the work that a body with a prescribed motion did on other bodies in the last tick, J; 0 for any
+  // other body, such as one that a hand or a support moves.
+  double contact_work_j(int body) const;
   // Returns the mean force of the tool, and of its mirror image, on a body over the last tick. The force of a
   // soft tool is part of contact_force_n() instead.
   Vector3 tool_force_n(int body = 0) const;

@@ -46,6 +46,17 @@ RigidMass find_fixed_mass(const Body& body, const Surface& surface) {
   return found;
 }
 
+Vector3 find_load_force_n(const SpringLattice& lattice) {
+  Vector3 sum = Vector3::Zero();
+  if (!lattice.has_applied_force()) return sum;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+      sum[axis] += static_cast<double>(lattice.applied_force(axis)[n]);
+    }
+  }
+  return sum;
+}
+
 bool EnergyMeter::has_cells_of(const SpringLattice& lattice) const {
   const auto responds_alike = [](const Material& one, const Material& other) {
     return one.youngs_modulus_pa == other.youngs_modulus_pa && one.poissons_ratio == other.poissons_ratio;

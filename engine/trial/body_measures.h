@@ -26,6 +26,9 @@ CellShapes measure_cells(const SpringLattice& lattice);
 // the mass is 0 and the centre is that of its area. `surface` is the body's present surface.
 RigidMass find_fixed_mass(const Body& body, const Surface& surface);
 
+// Returns the sum of the loads on a body, N.
+Vector3 find_load_force_n(const SpringLattice& lattice);
+
 // Finds the kinetic, gravitational and elastic energy of a deformable body. Keeps the body's cells from call
 // to call, until its lattice or its material changes. Has one owner, on one thread.
 class EnergyMeter {

@@ -8,17 +8,6 @@
 namespace spoonbill {
 namespace {
 
-Vector3 find_loads_n(const SpringLattice& lattice) {
-  Vector3 sum = Vector3::Zero();
-  if (!lattice.has_applied_force()) return sum;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (int n = 0; n < lattice.mesh().node_count(); ++n) {
-      sum[axis] += static_cast<double>(lattice.applied_force(axis)[n]);
-    }
-  }
-  return sum;
-}
-
 TrialBodyReport report_on_body(const Trial& trial, const Simulation& simulation, std::size_t index) {
   const Body& body = simulation.scene().bodies[index];
   const int number = static_cast<int>(index);
@@ -44,7 +33,7 @@ TrialBodyReport report_on_body(const Trial& trial, const Simulation& simulation,
     report.volume_ratio = lattice.volume_m3() / lattice.rest_volume_m3();
     report.smallest_jacobian = cells.smallest_jacobian;
     report.inverted_cells = cells.inverted_cells;
-    others_n += find_loads_n(lattice);
+    others_n += find_load_force_n(lattice);
   }
   report.support_force_n = -others_n - mass_kg * simulation.scene().sculpting.gravity_m_per_s2;
   return report;

@@ -13,6 +13,8 @@
 
 #include "app/program.h"
 #include "engine/exchange/document.h"
+#include "engine/inspection/mass_properties.h"
+#include "engine/trial/trial.h"
 #include "tests/app/workplace.h"
 
 namespace spoonbill {
@@ -141,6 +143,33 @@ TEST(Try, LogsEachTick) {
   EXPECT_EQ(last.at("inverted_cells"), "0");
   EXPECT_EQ(first.at("phase"), "settling");
   EXPECT_EQ(last.at("phase"), "watching");
+}
+
+// A block that a fixing plane holds at one end sags, and the plane bears its weight.
+TEST(Try, LogsTheForceOfAFixingPlane) {
+  const Workplace place;
+  Document document = read_document(jelly_on_spoon).value();
+  document.scene.bodies.pop_back();
+  document.scene.trial.reset();
+  document.scene.bodies[0].lattice.counts = {{5, 4, 6}};
+  const std::vector<double>& x_m = document.scene.bodies[0].surface.net.x;
+  const auto [low_m, high_m] = std::minmax_element(x_m.begin(), x_m.end());
+  const Vector3 on_plane_m(0.8 * *low_m + 0.2 * *high_m, 0.0, 0.0);
+  document.scene.planes = {FixingPlane{on_plane_m, Vector3::UnitX()}};
+  place.write("held.json", json_to_page(document_to_json(document)));
+  const Outcome outcome =
+      run({"try", place.text("held.json"), "--seconds", "0.5", "--log", place.text("run.csv"), "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  const Json body = json_of(outcome.out)["bodies"][0];
+  const LogRows rows = read_log(place.path("run.csv"), "jelly");
+  ASSERT_GT(rows.size(), 500u);
+  // `try` reports the mean force of the last half second.
+  double mean_n = 0.0;
+  for (std::size_t r = rows.size() - 500; r < rows.size(); ++r)
+    mean_n += number(rows[r], "support_y_n") / 500.0;
+  const double weight_n = compute_body_mass(document.scene.bodies[0])->mass_kg() * standard_gravity_m_per_s2;
+  EXPECT_NEAR(mean_n, weight_n, 0.01 * weight_n);
+  EXPECT_NEAR(mean_n, body["support_force_n"][1].get<double>(), 0.01 * weight_n);
 }
 
 TEST(Try, DoesNotWriteTheLogOverItsDocument) {

@@ -217,7 +217,10 @@ void BodyContacts::keep() {
 }
 
 void BodyContacts::begin() {
-  for (int c = 0; c < count_; ++c) constraints_[c].acted = false;
+  for (int c = 0; c < count_; ++c) {
+    constraints_[c].acted = false;
+    constraints_[c].impulse_ns.setZero();
+  }
   impulse_ns_.fill(Vector3::Zero());
   ground_impulse_ns_.fill(Vector3::Zero());
   has_searched_ = true;
@@ -233,6 +236,24 @@ Vector3 BodyContacts::impulse_ns(int body, double time_s) const {
     if (constraint.second_body == body) sum -= time_s * constraint.force_n;
   }
   return sum;
+}
+
+double BodyContacts::work_j(int body, const SpringLattice& lattice, double time_s) const {
+  SPOONBILL_ASSERT(body >= 0 && body < lattice_capacity);
+  double sum_j = 0.0;
+  const auto add = [&](const EmbeddedPoint& point, const Vector3& impulse_ns) {
+    point.visit_shares(impulse_ns, [&](int node, const Vector3& share_ns) {
+      sum_j -= share_ns.dot(lattice.velocity(node));
+    });
+  };
+  for (int c = 0; c < count_; ++c) {
+    const Constraint& constraint = constraints_[c];
+    const Vector3 impulse_ns =
+        constraint.moved_by == MovedBy::solvers ? time_s * constraint.force_n : constraint.impulse_ns;
+    if (constraint.first_body == body) add(constraint.first, impulse_ns);
+    if (constraint.second_body == body) add(constraint.second, -impulse_ns);
+  }
+  return sum_j;
 }
 
 bool BodyContacts::has_constraint_between_solvers() const {
@@ -305,6 +326,7 @@ void BodyContacts::push(std::span<const LatticeView> lattices, Constraint& const
     } else {
       impulse_ns_[first] += impulse;
       impulse_ns_[second] -= impulse;
+      constraint.impulse_ns += impulse;
     }
     const double size_ns = impulse.norm();
     changed_m_per_s_[first] += size_ns * (constraint.first_mobility.node_per_kg + frame_compliance(one));

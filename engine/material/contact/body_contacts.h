@@ -124,6 +124,9 @@ class BodyContacts {
   Vector3 impulse_ns(int body, double time_s) const;
   // Returns the impulse of the ground on a rigid body since begin(), N s.
   const Vector3& ground_impulse_ns(int body) const { return ground_impulse_ns_[body]; }
+  // Returns the work that a body with a prescribed motion has done on other bodies since begin(), J, in a
+  // tick of `time_s`. `lattice` is the frame to which the body is attached, after the tick.
+  double work_j(int body, const SpringLattice& lattice, double time_s) const;
   // Returns whether any constraint of a body, or between two bodies, has acted since begin().
   bool acted(int body) const;
   bool acted(int body, int other) const;
@@ -182,6 +185,7 @@ class BodyContacts {
     int sample = -1;
     Vector3 force_n = Vector3::Zero();  // force on the first point in the last substep: push and friction
     Vector3 passed_force_n = Vector3::Zero();  // `force_n` before the last pass()
+    Vector3 impulse_ns = Vector3::Zero();      // impulse on the first point since begin(), N s
     bool acted = false;
 
     ContactKey key() const { return {first_body, second_body, sample}; }

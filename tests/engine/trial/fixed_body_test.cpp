@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "engine/base/processor.h"
+#include "engine/simulation/body_hold.h"
 #include "tests/engine/allocations.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/forces/samples.h"
@@ -120,6 +121,36 @@ TEST(FixedBody, CarriesAlongWhatLiesOnIt) {
   const Vector3 carried = turn.point_m + turned * (before - turn.point_m);
   EXPECT_GT((carried - before).norm(), 0.017);
   EXPECT_LT((find_centre_m(simulation.lattice(0)) - carried).norm(), 5e-4);
+}
+
+// A plate that turns about an axis far away lifts the block on it, which costs the weight times the height.
+// It ends at rest, so that no other energy remains but that of its sag, which was there before.
+TEST(FixedBody, DoesTheWorkThatLiftsABody) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  Scene scene = block_over_plate(1e-5);
+  scene.sculpting.is_critically_damped = false;
+  scene.sculpting.real_time = true;
+  scene.sculpting.drag_per_s = 0.0;
+  Simulation simulation = make_simulation(scene);
+  advance(simulation, 300, idle_tool());
+  TurnBody turn;
+  turn.body = 1;
+  turn.point_m = {-0.2, 0.0, 0.0};
+  turn.axis = Vector3::UnitZ();
+  turn.angle_deg = 3.0;
+  turn.speed_deg_per_s = 6.0;
+  ASSERT_TRUE(simulation.apply(turn).ok());
+  const double before_m = find_mass_centre(simulation.lattice(0)).position_m.y();
+  double work_j = 0.0;
+  for (int tick = 0; tick < static_cast<int>(turn_duration_s(turn) / tick_s) + 300; ++tick) {
+    simulation.advance(idle_tool());
+    work_j += simulation.contact_work_j(1);
+    EXPECT_EQ(simulation.contact_work_j(0), 0.0);
+  }
+  const double rise_m = find_mass_centre(simulation.lattice(0)).position_m.y() - before_m;
+  EXPECT_GT(rise_m, 0.01);
+  const double lifted_j = g_m_per_s2 * simulation.lattice(0).mass_kg() * rise_m;
+  EXPECT_NEAR(work_j, lifted_j, 0.02 * lifted_j);
 }
 
 TEST(FixedBody, SpeedsUpAndSlowsDownEvenly) {
