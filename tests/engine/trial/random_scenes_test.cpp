@@ -170,9 +170,8 @@ class EnergyBalance {
 
  private:
   // Kinetic and gravitational energy, and elastic energy of bodies that are elastic and stepped explicitly.
-  // Elastic energy is never negative, so bodies that gain energy without it gain energy with it. The steps of
-  // an implicit solver are linearised: while a stiff body turns, the error strains it by more energy than it
-  // has.
+  // Elastic energy is never negative, so bodies that gain energy without it gain energy with it. For stiff
+  // bodies, which have an implicit solver, EnergyMeter finds more elastic energy than they were given.
   double find_energy_j(const Simulation& simulation) {
     const Vector3& gravity = simulation.scene().sculpting.gravity_m_per_s2;
     double energy_j = 0.0;
