@@ -47,10 +47,6 @@ void append_start(std::string& line, std::uint64_t tick, const std::string& name
   line += ',' + name + ',' + kind;
 }
 
-Vector3 momentum_ns(const MassCentre& centre) {
-  return centre.mass_kg * centre.velocity_m_per_s;
-}
-
 }  // namespace
 
 RunLog::RunLog(OutputFile file, const Session& session, LoggedTool tool)
@@ -62,7 +58,7 @@ RunLog::RunLog(OutputFile file, const Session& session, LoggedTool tool)
     logged.kind = body_kind_names[static_cast<std::size_t>(bodies[b].kind)];
     logged.support_count = static_cast<int>(bodies[b].supports.size());
     if (bodies[b].kind == BodyKind::deformable)
-      logged.momentum_ns = momentum_ns(find_mass_centre(session.simulation.lattice(static_cast<int>(b))));
+      logged.momentum_ns = find_mass_centre(session.simulation.lattice(static_cast<int>(b))).momentum_ns();
   }
 }
 
@@ -116,12 +112,12 @@ void RunLog::add_body(const Session& session, int body, std::string_view phase) 
   } else if (tool_ == LoggedTool::none && !simulation.scene().planes.empty() && lattice.has_fixed_nodes()) {
     // In a trial, nothing else acts on a body, so that the force of planes and supports is the rest of
     // Newton's second law.
-    support_n = (momentum_ns(*centre) - logged.momentum_ns) / tick_s - contact_n - ground_n -
+    support_n = (centre->momentum_ns() - logged.momentum_ns) / tick_s - contact_n - ground_n -
                 find_load_force_n(lattice) - centre->mass_kg * gravity;
   } else {
     for (int s = 0; s < logged.support_count; ++s) support_n += simulation.support_force_n(s, body);
   }
-  if (centre) logged.momentum_ns = momentum_ns(*centre);
+  if (centre) logged.momentum_ns = centre->momentum_ns();
   append_vector(text_, support_n);
   if (rigid) {
     append_empty(text_, 1);

@@ -16,6 +16,8 @@ namespace spoonbill {
 struct MassCentre {
   Vector3 rest_m = Vector3::Zero(), position_m = Vector3::Zero(), velocity_m_per_s = Vector3::Zero();
   double mass_kg = 0.0;
+
+  Vector3 momentum_ns() const { return mass_kg * velocity_m_per_s; }
 };
 MassCentre find_mass_centre(const SpringLattice& lattice);
 

@@ -38,8 +38,7 @@ Vector3 momentum_ns(const Simulation& simulation, int body) {
   if (!is_movable(simulation.scene().bodies[static_cast<std::size_t>(body)])) return Vector3::Zero();
   if (const RigidDynamics* const rigid = simulation.rigid_dynamics(body))
     return rigid->mass().mass_kg * rigid->velocity_m_per_s();
-  const MassCentre centre = find_mass_centre(simulation.lattice(body));
-  return centre.mass_kg * centre.velocity_m_per_s;
+  return find_mass_centre(simulation.lattice(body)).momentum_ns();
 }
 
 // Returns the height of a surface along the unit vector `up`.

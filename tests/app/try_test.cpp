@@ -107,13 +107,19 @@ double number(const std::map<std::string, std::string>& row, const char* column)
   return std::stod(row.at(column));
 }
 
-// A coarse elastic block falls onto the ground by a millimetre and comes to rest.
-TEST(Try, LogsEachTick) {
-  const Workplace place;
+// The bundled jelly without its spoon, of a few nodes.
+Document coarse_jelly() {
   Document document = read_document(jelly_on_spoon).value();
   document.scene.bodies.pop_back();
   document.scene.trial.reset();
   document.scene.bodies[0].lattice.counts = {{5, 4, 6}};
+  return document;
+}
+
+// A coarse elastic block falls onto the ground by a millimetre and comes to rest.
+TEST(Try, LogsEachTick) {
+  const Workplace place;
+  Document document = coarse_jelly();
   document.scene.bodies[0].material.relaxing_fraction = 0.0;
   document.scene.ground = Ground{Vector3(0.0, 0.001, 0.0), Vector3::UnitY(), 0.3};
   place.write("block.json", json_to_page(document_to_json(document)));
@@ -148,10 +154,7 @@ TEST(Try, LogsEachTick) {
 // A block that a fixing plane holds at one end sags, and the plane bears its weight.
 TEST(Try, LogsTheForceOfAFixingPlane) {
   const Workplace place;
-  Document document = read_document(jelly_on_spoon).value();
-  document.scene.bodies.pop_back();
-  document.scene.trial.reset();
-  document.scene.bodies[0].lattice.counts = {{5, 4, 6}};
+  Document document = coarse_jelly();
   const std::vector<double>& x_m = document.scene.bodies[0].surface.net.x;
   const auto [low_m, high_m] = std::minmax_element(x_m.begin(), x_m.end());
   const Vector3 on_plane_m(0.8 * *low_m + 0.2 * *high_m, 0.0, 0.0);
