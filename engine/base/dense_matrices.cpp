@@ -53,4 +53,8 @@ Quaternion rotation_between(const Vector3& from, const Vector3& to) {
   return Quaternion(0.5 * twice_w, axis.x(), axis.y(), axis.z()).normalized();
 }
 
+Quaternion rotation_about(const Vector3& turn) {
+  return Quaternion(1.0, 0.5 * turn.x(), 0.5 * turn.y(), 0.5 * turn.z()).normalized();
+}
+
 }  // namespace spoonbill

@@ -35,4 +35,8 @@ SmallMatrix solve_symmetric(const SmallMatrix& matrix, const SmallMatrix& right_
 // if one of them is zero.
 Quaternion rotation_between(const Vector3& from, const Vector3& to);
 
+// Returns a rotation about `turn` by 2 atan(|turn| / 2), which differs from |turn| by |turn|^3 / 12 (Cayley
+// 1846). Unlike the sine and cosine of the library, it has the same bits on every machine.
+Quaternion rotation_about(const Vector3& turn);
+
 }  // namespace spoonbill

@@ -555,7 +555,7 @@ int drift(Relaxation& relaxation, float h) {
 
 // Fraction of speed_cap_cells by which a node may move in a substep at its speed at the start of a tick. It
 // may become faster within the tick.
-constexpr double started_cap_fraction = 0.5;
+constexpr double started_cap_fraction = 0.25;
 
 // Returns the number of substeps that the speeds of nodes require in real time, at most as many as
 // substep_ceiling allows.

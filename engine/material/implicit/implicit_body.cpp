@@ -205,7 +205,7 @@ ImplicitBody::ImplicitBody(const LatticeMesh& mesh, const BandKernels& band, con
       size_(3 * mesh.node_count()),
       factor_(mesh, band) {
   for (Doubles* a : {&mass3_, &free_, &moved_, &velocity_, &applied_, &fixed_velocity_, &force_, &residual_,
-                     &direction_, &image_, &conditioned_}) {
+                     &direction_, &image_, &conditioned_, &in_frame_}) {
     a->assign(static_cast<std::size_t>(factor_.padded_size()), 0.0);
   }
   mass_.assign(static_cast<std::size_t>(mesh.node_count()), 0.0);
@@ -282,6 +282,7 @@ void ImplicitBody::fix_nodes(std::span<const std::uint8_t> fixed) {
   }
   std::fill(fixed_velocity_.begin(), fixed_velocity_.end(), 0.0);
   fixed_moves_ = false;
+  frame_ = Quaternion::Identity();
   factor_.forget();
 }
 
@@ -312,8 +313,10 @@ void ImplicitBody::begin_solve(double inertia, double stiffness, double h) {
   for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) {
     residual_[n] = free_[n] * (inertia * mass3_[n] * velocity_[n] + h * force_[n]);
   }
-  // The internal forces sum to zero, so the residual sums to the momentum with the scaled inertia.
-  momentum_ = sum_over_nodes(residual_) / inertia;
+  if (!has_fixed_nodes_) {
+    // The internal forces and their moments sum to zero, so this is the motion at the end of the step.
+    motion_ = rigid_motion([&](int n) { return Vector3(at(residual_, n) / inertia); });
+  }
   const int blocks = rounded_up(size_, band_block);
   const double along_velocity = band_->dot(residual_.data(), velocity_.data(), blocks),
                all = band_->dot(image_.data(), velocity_.data(), blocks);
@@ -328,7 +331,7 @@ void ImplicitBody::begin_solve(double inertia, double stiffness, double h) {
 ImplicitReport ImplicitBody::solve(double inertia, double stiffness) {
   const int blocks = rounded_up(size_, band_block);
   const auto dot = [&](const Doubles& a, const Doubles& b) { return band_->dot(a.data(), b.data(), blocks); };
-  factor_.solve(residual_.data(), free_.data(), conditioned_.data());
+  precondition(residual_, conditioned_);
   std::copy(conditioned_.begin(), conditioned_.end(), direction_.begin());
   const double first = dot(residual_, conditioned_);
   double square = first;
@@ -343,7 +346,7 @@ ImplicitReport ImplicitBody::solve(double inertia, double stiffness) {
       velocity_[n] += step * direction_[n];
       residual_[n] -= step * image_[n];
     }
-    factor_.solve(residual_.data(), free_.data(), conditioned_.data());
+    precondition(residual_, conditioned_);
     const double next = dot(residual_, conditioned_), turn = next / square;
     square = next;
     for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) {
@@ -354,29 +357,35 @@ ImplicitReport ImplicitBody::solve(double inertia, double stiffness) {
   return report;
 }
 
-// Returns the rigid motion with the momentum and angular momentum of the body.
-ImplicitBody::RigidMotion ImplicitBody::rigid_motion() const {
-  double mass_kg = 0.0;
-  RigidMotion motion;
+void ImplicitBody::update_inertia() {
+  inertia_ = {};
   for (int n = 0; n < node_count(); ++n) {
-    mass_kg += this->mass_kg(n);
-    motion.centre_m += this->mass_kg(n) * deformed_position(n);
-    motion.velocity_m_per_s += this->mass_kg(n) * velocity(n);
+    inertia_.mass_kg += mass_kg(n);
+    inertia_.centre_m += mass_kg(n) * deformed_position(n);
   }
-  motion.centre_m /= mass_kg;
-  motion.velocity_m_per_s /= mass_kg;
-  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
-  Vector3 moment = Vector3::Zero();
+  inertia_.centre_m /= inertia_.mass_kg;
   for (int n = 0; n < node_count(); ++n) {
-    const Vector3 from_centre = deformed_position(n) - motion.centre_m;
-    moment += this->mass_kg(n) * from_centre.cross(velocity(n));
-    inertia += this->mass_kg(n) * (from_centre.squaredNorm() * Eigen::Matrix3d::Identity() -
-                                   from_centre * from_centre.transpose());
+    const Vector3 from_centre = deformed_position(n) - inertia_.centre_m;
+    inertia_.tensor_kg_m2 += mass_kg(n) * (from_centre.squaredNorm() * Eigen::Matrix3d::Identity() -
+                                           from_centre * from_centre.transpose());
   }
   // A body stretched to a line has no inertia about that line; the small term keeps the tensor regular.
-  inertia.diagonal().array() += 1e-9 * inertia.trace();
-  motion.spin_rad_per_s = solve_symmetric(inertia, moment);
-  return motion;
+  inertia_.tensor_kg_m2.diagonal().array() += 1e-9 * inertia_.tensor_kg_m2.trace();
+}
+
+template <class Momenta>
+ImplicitBody::RigidMotion ImplicitBody::rigid_motion(const Momenta& momentum_ns) const {
+  Vector3 momentum = Vector3::Zero(), moment = Vector3::Zero();
+  for (int n = 0; n < node_count(); ++n) {
+    const Vector3 of_node = momentum_ns(n);
+    momentum += of_node;
+    moment += (deformed_position(n) - inertia_.centre_m).cross(of_node);
+  }
+  return {inertia_.centre_m, momentum / inertia_.mass_kg, solve_symmetric(inertia_.tensor_kg_m2, moment)};
+}
+
+ImplicitBody::RigidMotion ImplicitBody::rigid_part(const Doubles& velocities) const {
+  return rigid_motion([&](int n) { return Vector3(mass_kg(n) * at(velocities, n)); });
 }
 
 // Caps the speeds relative to the rigid motion. Returns whether any speed was capped.
@@ -396,39 +405,52 @@ bool ImplicitBody::cap_speeds(const RigidMotion& motion, double cap_m_per_s) {
 
 // Moves a free body: it rotates as a whole, and the relative motion of its nodes rotates with it. If nodes
 // moved along straight lines, a fast spin would stretch the body by half the square of the angle per step.
+// The body keeps its angular momentum, so its spin changes with its inertia tensor; it rotates with the spin
+// at half of the step.
 void ImplicitBody::move_and_turn(const RigidMotion& motion, double step_s) {
-  const Vector3 half_turn = 0.5 * step_s * motion.spin_rad_per_s;
-  const Eigen::Matrix3d turn =
-      Quaternion(1.0, half_turn.x(), half_turn.y(), half_turn.z()).normalized().toRotationMatrix() -
-      Eigen::Matrix3d::Identity();
+  const Vector3 moment = inertia_.tensor_kg_m2 * motion.spin_rad_per_s;
+  const auto spin_after = [&](const Quaternion& turn) {
+    const Eigen::Matrix3d matrix = turn.toRotationMatrix();
+    return Vector3(solve_symmetric(matrix * inertia_.tensor_kg_m2 * matrix.transpose(), moment));
+  };
+  const Vector3 spin = spin_after(rotation_about(0.5 * step_s * motion.spin_rad_per_s));
+  const Quaternion rotation = rotation_about(step_s * spin);
+  const RigidMotion after{motion.centre_m, motion.velocity_m_per_s, spin_after(rotation)};
+  const Eigen::Matrix3d turn = rotation.toRotationMatrix() - Eigen::Matrix3d::Identity();
   for (int n = 0; n < node_count(); ++n) {
     if (mesh_.joined(n) != n) continue;
-    const Vector3 from_centre = deformed_position(n) - motion.centre_m, now = velocity(n);
-    const Vector3 own = now - motion.velocity_at(deformed_position(n));
-    const Vector3 rotated = turn * from_centre;
-    set_displacement(n, displacement(n) + rotated + step_s * (motion.velocity_m_per_s + own + turn * own));
-    set_velocity(n, now + motion.spin_rad_per_s.cross(rotated) + turn * own);
+    const Vector3 here = deformed_position(n);
+    const Vector3 rotated = turn * (here - motion.centre_m);
+    Vector3 own = velocity(n) - motion.velocity_at(here);
+    own += turn * own;
+    set_displacement(n, displacement(n) + rotated + step_s * (motion.velocity_m_per_s + own));
+    set_velocity(n, after.velocity_at(here + rotated) + own);
   }
+  turn_frame(rotation);
 }
 
-Vector3 ImplicitBody::sum_over_nodes(const Doubles& of) const {
-  Vector3 sum = Vector3::Zero();
-  for (int n = 0; n < node_count(); ++n) sum += at(of, n);
-  return sum;
+// Applies the inverse of the matrix of some ticks ago. The factor of a free body is in the body's frame,
+// where its rotation does not change the matrix.
+void ImplicitBody::precondition(const Doubles& from, Doubles& to) {
+  if (has_fixed_nodes_) {
+    factor_.solve(from.data(), free_.data(), to.data());
+    return;
+  }
+  const Eigen::Matrix3d turn = frame_.toRotationMatrix();
+  for (int n = 0; n < node_count(); ++n) put(in_frame_, n, turn.transpose() * at(from, n));
+  factor_.solve(in_frame_.data(), free_.data(), to.data());
+  for (int n = 0; n < node_count(); ++n) put(to, n, turn * at(to, n));
 }
 
-// Restores the momentum of a free body, which truncated conjugate gradients and the speed cap change
-// slightly.
-void ImplicitBody::restore_momentum() {
-  Vector3 momentum = Vector3::Zero();
-  double mass = 0.0;
+// Sets the rigid part of velocities. Internal forces do not change it, so that it is known exactly, while
+// truncated conjugate gradients, and the factor of an earlier orientation, would damp the rotation.
+void ImplicitBody::set_rigid_part(const RigidMotion& motion, Doubles& velocities) const {
+  const RigidMotion part = rigid_part(velocities);
+  const RigidMotion missing{motion.centre_m, motion.velocity_m_per_s - part.velocity_m_per_s,
+                            motion.spin_rad_per_s - part.spin_rad_per_s};
   for (int n = 0; n < node_count(); ++n) {
-    momentum += mass_kg(n) * velocity(n);
-    mass += mass_kg(n);
-  }
-  const Vector3 more = (momentum_ - momentum) / mass;
-  for (int n = 0; n < node_count(); ++n) {
-    if (mass_kg(n) > 0.0) set_velocity(n, velocity(n) + more);
+    if (mesh_.joined(n) != n) continue;
+    put(velocities, n, at(velocities, n) + missing.velocity_at(deformed_position(n)));
   }
 }
 
@@ -454,22 +476,28 @@ ImplicitReport ImplicitBody::solve_velocities(const ImplicitStep& step, std::spa
   for (std::size_t n = 0; n < known_ns.size(); ++n) force_[n] += known_ns[n] / h;
   cells_->compute_forces(block_.batches.data(), static_cast<int>(block_.batches.size()), moved_.data(),
                          force_.data());
-  factor_.advance({&block_, mass_.data(), free_.data(), inertia, stiffness});
+  factor_.advance({&block_, mass_.data(), free_.data(), frame_.toRotationMatrix(), inertia, stiffness});
   if (fixed_moves_) apply_fixed_motion(stiffness, h);
+  if (!has_fixed_nodes_) update_inertia();
   begin_solve(inertia, stiffness, h);
   ImplicitReport report = solve(inertia, stiffness);
   if (fixed_moves_) {
     for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) velocity_[n] += fixed_velocity_[n];
   }
-  if (!has_fixed_nodes_) restore_momentum();
+  if (!has_fixed_nodes_) set_rigid_part(motion_, velocity_);
   return report;
 }
 
 double ImplicitBody::respond_to(const std::vector<double>& impulses) {
+  SPOONBILL_ASSERT_DEBUG(has_fixed_nodes_ || inertia_.mass_kg > 0.0);
   SPOONBILL_ASSERT(impulses.size() >= 3 * static_cast<std::size_t>(node_count()));
   std::copy(impulses.begin(), impulses.end(), image_.begin());
   free_only(image_);
-  factor_.solve(image_.data(), free_.data(), conditioned_.data());
+  precondition(image_, conditioned_);
+  if (!has_fixed_nodes_) {
+    set_rigid_part(rigid_motion([&](int n) { return Vector3(at(image_, n) / inertia_scale_); }),
+                   conditioned_);
+  }
   return band_->dot(image_.data(), conditioned_.data(), rounded_up(size_, band_block));
 }
 
@@ -479,7 +507,7 @@ void ImplicitBody::apply_response(double fraction) {
 }
 
 bool ImplicitBody::move(double step_s) {
-  const RigidMotion motion = has_fixed_nodes_ ? RigidMotion{} : rigid_motion();
+  const RigidMotion motion = has_fixed_nodes_ ? RigidMotion{} : rigid_part(velocity_);
   const bool capped = cap_speeds(motion, speed_cap_cells * cell_size_ / step_s);
   if (has_fixed_nodes_) {
     for (std::size_t n = 0; n < static_cast<std::size_t>(size_); ++n) moved_[n] += step_s * velocity_[n];

@@ -140,6 +140,8 @@ class ImplicitBody {
   Vector3 velocity(int node) const { return at(velocity_, mesh_.joined(node)); }
   void set_displacement(int node, const Vector3& d) { put(moved_, mesh_.joined(node), d); }
   void set_velocity(int node, const Vector3& v) { put(velocity_, mesh_.joined(node), v); }
+  // Call after all nodes of a free body have been rotated by set_displacement().
+  void turn_frame(const Quaternion& turn) { frame_ = (turn * frame_).normalized(); }
   // Sets the force on a node, N; it acts until it is changed.
   void set_node_force(int node, const Vector3& force_n) { put(applied_, mesh_.joined(node), force_n); }
   void add_node_force(int node, const Vector3& force_n) {
@@ -179,6 +181,7 @@ class ImplicitBody {
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
     for (const Doubles* a : {&moved_, &velocity_, &applied_}) visit(a->data(), a->size());
+    if (!has_fixed_nodes_) visit(frame_.coeffs().data(), 4);
     factor_.visit_state(visit);
     for (const CellBatch& batch : block_.batches) visit(&batch.quaternion[0][0], 4 * std::size_t{cell_lanes});
   }
@@ -208,11 +211,22 @@ class ImplicitBody {
   Vector3 deformed_position(int node) const {
     return mesh_.nodes[static_cast<std::size_t>(node)] + displacement(node);
   }
-  RigidMotion rigid_motion() const;
+  // Mass, centre and inertia tensor of a free body at the start of the step.
+  struct RigidInertia {
+    double mass_kg = 0.0;
+    Vector3 centre_m = Vector3::Zero();
+    Eigen::Matrix3d tensor_kg_m2 = Eigen::Matrix3d::Zero();
+  };
+  void update_inertia();
+  // rigid_motion() returns the rigid motion with the sum and the moment of the nodes' momenta, N s, which
+  // `momentum_ns(node)` returns. rigid_part() returns that of velocities, which are by coordinate.
+  template <class Momenta>
+  RigidMotion rigid_motion(const Momenta& momentum_ns) const;
+  RigidMotion rigid_part(const Doubles& velocities) const;
+  void set_rigid_part(const RigidMotion& motion, Doubles& velocities) const;
   bool cap_speeds(const RigidMotion& motion, double cap_m_per_s);
   void move_and_turn(const RigidMotion& motion, double step_s);
-  Vector3 sum_over_nodes(const Doubles& of) const;
-  void restore_momentum();
+  void precondition(const Doubles& from, Doubles& to);
   void apply_matrix(double inertia, double stiffness, const Doubles& field, Doubles& out) const;
   void apply_fixed_motion(double stiffness, double h);
   void begin_solve(double inertia, double stiffness, double h);
@@ -225,14 +239,16 @@ class ImplicitBody {
   double damping_time_ = 0.0, inertia_scale_ = 1.0, cell_size_;
   int size_;  // number of coordinates
   bool has_fixed_nodes_ = false, fixed_moves_ = false;
-  Vector3 momentum_ = Vector3::Zero();  // momentum of a free body at the end of the step
+  RigidInertia inertia_;
+  Quaternion frame_ = Quaternion::Identity();  // rotation of a free body since it was built
+  RigidMotion motion_;                         // of a free body at the end of the step
   RollingFactor factor_;
   CellBlock block_;
   // mass_ is by node; mass3_ is by coordinate, 0 if fixed; free_ is by coordinate, 1 if free and 0 if fixed.
   Doubles mass_, mass3_, free_;
   Doubles moved_, velocity_, applied_;
   Doubles fixed_velocity_;  // prescribed velocities of fixed nodes; 0 for free nodes
-  Doubles force_, residual_, direction_, image_, conditioned_;  // working memory
+  Doubles force_, residual_, direction_, image_, conditioned_, in_frame_;  // working memory
 };
 
 }  // namespace spoonbill

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
+#include "engine/base/dense_matrices.h"
 #include "engine/material/implicit/implicit_body.h"
 #include "engine/material/lattice/lattice_mesh.h"
 #include "engine/material/lattice/layer_volumes.h"
@@ -178,6 +179,25 @@ GridPoint embed_node(const LatticeMesh& of, int node, const LatticeMesh& by) {
   return result;
 }
 
+// Changes the weights so that they give the position `at_m` of the point, and not the nearby one at its grid
+// indices: inside a bent body the cells of the two grids are not congruent. Otherwise the point would keep
+// its distance from the block's material in space while the block rotates, and forces on it would have a
+// wrong moment. The changes d have the least sum of squares: d_c = (x_c - m).S^-1 e, with the corners x_c,
+// their mean m, their scatter S = sum (x_c - m)(x_c - m)^T and the error e of the position. Their sum is
+// zero.
+void place_exactly(const Vector3& at_m, const std::vector<Vector3>& nodes, GridPoint& point) {
+  const auto corner = [&](std::size_t c) { return nodes[static_cast<std::size_t>(point.node[c])]; };
+  Vector3 mean = Vector3::Zero(), error = at_m;
+  for (std::size_t c = 0; c < 8; ++c) {
+    mean += corner(c) / 8.0;
+    error -= point.weight[c] * corner(c);
+  }
+  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+  for (std::size_t c = 0; c < 8; ++c) scatter += (corner(c) - mean) * (corner(c) - mean).transpose();
+  const Vector3 slope = solve_symmetric(scatter, error);
+  for (std::size_t c = 0; c < 8; ++c) point.weight[c] += slope.dot(corner(c) - mean);
+}
+
 std::size_t find_heaviest_node(const GridPoint& follower) {
   const auto most =
       std::max_element(follower.weight.begin(), follower.weight.end()) - follower.weight.begin();
@@ -283,7 +303,9 @@ Result<ImplicitSolver> ImplicitSolver::make(const LatticeMesh& mesh, const std::
   ImplicitSolver solver(std::move(body).value(), mesh.node_count(), mass_kg);
   solver.rest_m_ = rest_m;
   for (int n = 0; n < mesh.node_count(); ++n) {
-    solver.followers_.push_back(embed_node(mesh, n, coarse.value()));
+    GridPoint follower = embed_node(mesh, n, coarse.value());
+    place_exactly(rest_m[static_cast<std::size_t>(n)], coarse->nodes, follower);
+    solver.followers_.push_back(follower);
   }
   for (int n = 0; n < coarse->node_count(); ++n) {
     const GridPoint at = embed_node(coarse.value(), n, mesh);
@@ -467,6 +489,7 @@ void ImplicitSolver::move_rigidly(const RigidMove& move, SpringLattice& lattice)
     body_.set_displacement(n, move.moved(position) - rest);
     body_.set_velocity(n, move.slowed(position, velocity));
   }
+  body_.turn_frame(Quaternion(move.turn));
   write_velocities(lattice);
   write_displacements(lattice);
 }

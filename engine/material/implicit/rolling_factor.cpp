@@ -51,10 +51,11 @@ void RollingFactor::clear_slice(const MatrixParts& parts, int k) {
   }
 }
 
-// Adds the rotated stiffness of one cell to the band.
+// Adds the stiffness of one cell, rotated into the frame, to the band.
 void RollingFactor::add_cell(const MatrixParts& parts, const CellBatch& b, int lane) {
   Eigen::Matrix3d rotation;
   for (int e = 0; e < 9; ++e) rotation(e / 3, e % 3) = b.turn[e][lane] + (e % 4 == 0 ? 1.0 : 0.0);
+  rotation = parts.frame.transpose() * rotation;
   const auto entry = [&](int row, int column) {
     const int low = std::min(row, column), high = std::max(row, column);
     return b.stiffness[high * (high + 1) / 2 + low][lane];

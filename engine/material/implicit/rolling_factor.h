@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/base/containers.h"
+#include "engine/base/geometry.h"
 #include "engine/material/implicit/band_kernels.h"
 #include "engine/material/implicit/cell_kernels.h"
 #include "engine/material/lattice/lattice_mesh.h"
@@ -18,11 +19,13 @@ struct CellBlock {
   int layer_cells = 0;      // cells per layer; the last batch of a layer may have unused lanes
 };
 
-// Terms of the matrix inertia * M + stiffness * K, without the rows and columns of fixed coordinates.
+// Terms of the matrix inertia * M + stiffness * K in a frame, without the rows and columns of fixed
+// coordinates.
 struct MatrixParts {
   const CellBlock* cells;
-  const double* mass;  // mass of each node, kg
-  const double* free;  // for each coordinate: 1 if free, 0 if fixed
+  const double* mass;     // mass of each node, kg
+  const double* free;     // for each coordinate: 1 if free, 0 if fixed
+  Eigen::Matrix3d frame;  // rotation of the frame; the identity if a coordinate is fixed
   double inertia, stiffness;
 };
 
@@ -50,7 +53,8 @@ class RollingFactor {
   // Factorises the next part of the present matrix. When the new factor is complete, it replaces the one in
   // use.
   void advance(const MatrixParts& parts);
-  // Sets `to` to A^-1 `from` with the matrix A of a few ticks ago; 0 at fixed coordinates.
+  // Sets `to` to A^-1 `from` with the matrix A of a few ticks ago; 0 at fixed coordinates. Both are in the
+  // frame.
   void solve(const double* from, const double* free, double* to) const;
 
   template <class Visitor>

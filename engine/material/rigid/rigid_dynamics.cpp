@@ -7,18 +7,13 @@
 #include <cmath>
 
 #include "engine/base/assert.h"
+#include "engine/base/dense_matrices.h"
 #include "engine/material/springs/spring_lattice.h"
 
 namespace spoonbill {
 namespace {
 
 using Matrix3 = Eigen::Matrix3d;
-
-// Returns a rotation about `turn` by 2 atan(|turn| / 2), which differs from |turn| by |turn|^3 / 12 (Cayley
-// 1846). Unlike the sine and cosine of the library, it has the same bits on every machine.
-Quaternion rotation_of(const Vector3& turn) {
-  return Quaternion(1.0, 0.5 * turn.x(), 0.5 * turn.y(), 0.5 * turn.z()).normalized();
-}
 
 // Returns the axis of the shortest turn from one orientation to another, times twice the sine of half its
 // angle, which is nearly the angle while it is small.
@@ -150,14 +145,14 @@ void RigidDynamics::shift(const LatticeView& view, const Vector3& arm_m, const V
                           double time_s) {
   const Vector3 centre = centre_m() + time_s * inverse_mass_per_kg_ * impulse_ns;
   const Vector3 turn = time_s * (turn_response_ * arm_m.cross(impulse_ns));
-  move_centre_to(centre, rotation_of(turn) * pose_.orientation);
+  move_centre_to(centre, rotation_about(turn) * pose_.orientation);
   place_nodes(view);
 }
 
 void RigidDynamics::drift(const LatticeView& view, double h_s) {
   const Vector3 momentum = inertia_of(pose_.orientation) * spin_rad_per_s_;
-  const Quaternion halfway = rotation_of(0.5 * h_s * spin_rad_per_s_) * pose_.orientation;
-  const Quaternion end = rotation_of(h_s * spin_of(halfway, momentum)) * pose_.orientation;
+  const Quaternion halfway = rotation_about(0.5 * h_s * spin_rad_per_s_) * pose_.orientation;
+  const Quaternion end = rotation_about(h_s * spin_of(halfway, momentum)) * pose_.orientation;
   move_centre_to(centre_m() + h_s * velocity_m_per_s_, end);
   spin_rad_per_s_ = spin_of(pose_.orientation, momentum);
   place_nodes(view);

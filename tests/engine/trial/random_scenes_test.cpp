@@ -169,9 +169,8 @@ class EnergyBalance {
   }
 
  private:
-  // Kinetic and gravitational energy, and elastic energy of bodies that are elastic and stepped explicitly.
-  // Elastic energy is never negative, so bodies that gain energy without it gain energy with it. For stiff
-  // bodies, which have an implicit solver, EnergyMeter finds more elastic energy than they were given.
+  // Kinetic and gravitational energy, and elastic energy of bodies that are elastic. Elastic energy is never
+  // negative, so bodies that gain energy without it gain energy with it.
   double find_energy_j(const Simulation& simulation) {
     const Vector3& gravity = simulation.scene().sculpting.gravity_m_per_s2;
     double energy_j = 0.0;
@@ -190,8 +189,7 @@ class EnergyBalance {
         kinetic_j += 0.5 * mass * lattice.velocity(n).squaredNorm();
         weight_j -= mass * gravity.dot(lattice.position(n));
       }
-      const std::optional<double> whole_j =
-          lattice.moved_by_solver() ? std::nullopt : meters_[b].find_energy_j(lattice, gravity);
+      const std::optional<double> whole_j = meters_[b].find_energy_j(lattice, gravity);
       energy_j += whole_j.value_or(kinetic_j + weight_j);
       weight_energy_j_ += weight_j;
     }
