@@ -147,9 +147,19 @@ void linearise_and_follow(SpringLattice& lattice, const LatticeView& view, Linea
 
 // Returns the speed cap in real time, m/s (see speed_cap_cells), for substeps of `h` seconds.
 float real_time_speed_cap(const SpringLattice& lattice, float h) {
-  const float by_substep = static_cast<float>(speed_cap_cells) / h;
-  const float by_damping = static_cast<float>(extrapolation_cap_cells) / lattice.damping_time_s();
-  return lattice.cell_size_m() * std::min(by_substep, by_damping);
+  return lattice.cell_size_m() * static_cast<float>(speed_cap_cells) / h;
+}
+
+SpeedCap make_speed_cap(float cap_m_per_s, const Vector3& mean) {
+  return {cap_m_per_s, static_cast<float>(mean.x()), static_cast<float>(mean.y()),
+          static_cast<float>(mean.z())};
+}
+
+// Sets the speeds that damping follows in real time (see extrapolation_cap_cells).
+void set_damped_speeds(const SpringLattice& lattice, const Vector3& mean, LatticeView& view) {
+  const float cap = static_cast<float>(extrapolation_cap_cells) * lattice.cell_size_m();
+  const float tau_s = lattice.damping_time_s();
+  view.damped_speeds = make_speed_cap(tau_s > 0.0f ? cap / tau_s : 0.0f, mean);
 }
 
 // Returns the speed cap in m/s (see speed_cap_cells) for substeps of `h` seconds.
@@ -162,13 +172,7 @@ float speed_cap(const SpringLattice& lattice, float h) {
 // Limits the nodes' speeds relative to the velocity `mean` and moves the nodes.
 Drifted drift(const SpringLattice& lattice, const LatticeView& view, float h, float cap,
               const Vector3& mean) {
-  Drift drift;
-  drift.h_s = h;
-  drift.cap_m_per_s = cap;
-  drift.tau_s = lattice.damping_time_s();
-  drift.mean_x = static_cast<float>(mean.x());
-  drift.mean_y = static_cast<float>(mean.y());
-  drift.mean_z = static_cast<float>(mean.z());
+  const Drift drift{h, make_speed_cap(cap, mean), lattice.damping_time_s()};
   return lattice.kernels().drift(view, drift);
 }
 
@@ -290,19 +294,10 @@ bool touches(const Relaxation& relaxation, const TouchingTool& tool, bool spring
 // Number of passes over the contacts of implicitly stepped lattices in a tick.
 constexpr int solver_passes = 2;
 
-// Response of the implicitly stepped lattices to the impulses of contacts. `assumed_work_j` is the work of
-// the impulses with the velocity changes that the contacts assumed; `work_j` is their work with the velocity
-// changes of the lattices.
+// Response of the implicitly stepped lattices to the impulses of contacts.
 struct Response {
-  double assumed_work_j = 0.0, work_j = 0.0;
+  ImplicitSolver::ContactResponse sum;
   std::array<bool, lattice_capacity> responds{};
-
-  // Returns the fraction of the impulses that must be applied for the energy to be least. It is below 1 if
-  // the lattices respond more than the contacts assumed. `tool_work_j` is the work of the impulses on a tool.
-  double find_best_fraction(double tool_work_j) const {
-    const double assumed = assumed_work_j + tool_work_j, work = work_j + tool_work_j;
-    return work > assumed ? assumed / work : 1.0;
-  }
 };
 
 Response find_response(const Relaxation& relaxation) {
@@ -311,8 +306,8 @@ Response find_response(const Relaxation& relaxation) {
     if (!relaxation.has_solver(at)) continue;
     const auto response = relaxation.lattices[at].implicit_solver->find_response(relaxation.lattice(at));
     found.responds[at] = response.work_j > 0.0;
-    found.assumed_work_j += response.assumed_work_j;
-    found.work_j += response.work_j;
+    found.sum.assumed_work_j += response.assumed_work_j;
+    found.sum.work_j += response.work_j;
   }
   return found;
 }
@@ -331,7 +326,7 @@ void solve_with_solvers(const Relaxation& relaxation, const TouchingTool& tool, 
   for (int p = 0; p < solver_passes; ++p) {
     tool.contacts->pass(views, *tool.state, {relaxation.time_s, MovedBy::solvers, p % 2 == 1, caps});
     const Response response = find_response(relaxation);
-    const double fraction = response.find_best_fraction(tool.contacts->pass_work_j(*tool.state));
+    const double fraction = response.sum.find_best_fraction(tool.contacts->pass_work_j(*tool.state));
     respond(relaxation, response, fraction);
     tool.contacts->shorten_pass(*tool.state, fraction);
   }
@@ -346,7 +341,7 @@ void solve_with_solvers(const Relaxation& relaxation, BodyContacts& between, std
   for (int p = 0; p < solver_passes; ++p) {
     between.pass(views, {relaxation.time_s, MovedBy::solvers, p % 2 == 1, caps});
     const Response response = find_response(relaxation);
-    const double fraction = response.find_best_fraction(0.0);
+    const double fraction = response.sum.find_best_fraction(0.0);
     respond(relaxation, response, fraction);
     between.shorten_solver_pass(fraction);
   }
@@ -537,12 +532,13 @@ void drift_with_solver(const LatticeView& view, float h) {
 
 // Moves the nodes of all lattices. Returns the index of a lattice of which a node reached the speed cap, or
 // -1.
-int drift(Relaxation& relaxation, float h) {
+int drift(Relaxation& relaxation, float h, bool is_real_time) {
   int capped = -1;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (relaxation.has_solver(at)) drift_with_solver(relaxation.view[at], h);
     if (!relaxation.has_springs(at)) continue;
     const Vector3 mean = find_mean_velocity(relaxation, at);
+    if (is_real_time) set_damped_speeds(relaxation.lattice(at), mean, relaxation.view[at]);
     relaxation.drifted[at] = drift(relaxation.lattice(at), relaxation.view[at], h, relaxation.cap[at], mean);
     if (!(relaxation.drifted[at].speed_square > 1.0f)) continue;
     capped = static_cast<int>(at);
@@ -623,7 +619,9 @@ Linearised choose_linearisation(const SpringLattice& lattice, const RelaxSetting
 // true, also tracks the fastest frequencies.
 Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, bool follows) {
   for (std::size_t at = 0; at < relaxation.count() && settings.is_real_time; ++at) {
-    if (relaxation.has_springs(at)) relaxation.lattice(at).continue_displacements();
+    if (!relaxation.has_springs(at)) continue;
+    relaxation.lattice(at).continue_displacements();
+    set_damped_speeds(relaxation.lattice(at), find_mean_velocity(relaxation, at), relaxation.view[at]);
   }
   const int for_speed = count_substeps_for_speed(relaxation, settings);
   const int expected = std::max(choose_substeps(relaxation, settings).count, for_speed);
@@ -722,12 +720,17 @@ void begin_implicit_steps(const Relaxation& relaxation, const BodyContacts* betw
   }
 }
 
-void end_implicit_steps(const Relaxation& relaxation, GroundContacts* ground) {
+void end_implicit_steps(const Relaxation& relaxation, BodyContacts* between, GroundContacts* ground) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const RelaxedLattice& relaxed = relaxation.lattices[at];
     if (!relaxed.implicit_solver) continue;
     const double cap = 0.5 * static_cast<double>(relaxation.push_cap[at]);
-    relaxed.implicit_solver->end_step(*relaxed.lattice, {ground, ground_contacts(ground, at), cap});
+    const double work_of_pairs_j = between ? between->find_assumed_work_j(static_cast<int>(at)) : 0.0;
+    const double fraction = relaxed.implicit_solver->end_step(
+        *relaxed.lattice, {ground, ground_contacts(ground, at), cap}, work_of_pairs_j);
+    if (between && fraction < 1.0) {
+      between->shorten(static_cast<int>(at), fraction, {relaxation.view.data(), relaxation.count()});
+    }
   }
 }
 
@@ -778,7 +781,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     kick(relaxation, substep);
     solve_contacts(relaxation, substep, tools, between, ground);
     if (settings.is_real_time) continue_velocities(relaxation);
-    if (const int capped = drift(relaxation, h); capped >= 0) {
+    if (const int capped = drift(relaxation, h, settings.is_real_time); capped >= 0) {
       report.speed_capped = true;
       report.at_fault = capped;
     }
@@ -787,7 +790,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
     move_rigid_bodies(relaxation, substep);
     if (between && between->count() > 0) separate_bodies(relaxation, *between, h);
   }
-  end_implicit_steps(relaxation, ground);
+  end_implicit_steps(relaxation, between, ground);
   if (flows) flow(relaxation);
   if (settings.tick % creep_pause == 0) creep(relaxation, settings.tick / creep_pause);
   return report;

@@ -47,8 +47,9 @@ inline constexpr double stability_fraction = 0.85;
 //
 // Waves cross a cell in about 2 / w, so nodes stay below about a tenth of the wave speed. An impact strains
 // even a soft, undamped body by no more than its springs can restore. In real time, where a body that falls
-// may hit another one faster than that, the cap is a tenth of a cell a substep, and extrapolation_cap_cells
-// in the damping time. Damping then does not extrapolate a spring of a cell's length through zero length.
+// may hit another one faster than that, the cap is a tenth of a cell a substep. Damping then follows only the
+// part of a node's speed that moves it by extrapolation_cap_cells in the damping time, so that it does not
+// extrapolate a spring of a cell's length through zero length.
 inline constexpr double speed_cap_cells = 0.1;
 inline constexpr double extrapolation_cap_cells = 0.5;
 

@@ -387,6 +387,39 @@ void BodyContacts::shorten_solver_pass(double fraction) {
   }
 }
 
+bool BodyContacts::is_with_others(const Constraint& constraint, int body) {
+  return constraint.moved_by == MovedBy::springs && constraint.second_body != ground_index &&
+         (constraint.first_body == body) != (constraint.second_body == body);
+}
+
+double BodyContacts::find_assumed_work_j(int body) const {
+  double work_j = 0.0;
+  for (int c = 0; c < count_; ++c) {
+    const Constraint& constraint = constraints_[c];
+    if (is_with_others(constraint, body))
+      work_j += constraint.normal_per_kg * constraint.impulse_ns.squaredNorm();
+  }
+  return work_j;
+}
+
+void BodyContacts::shorten(int body, double fraction, std::span<const LatticeView> lattices) {
+  SPOONBILL_ASSERT_DEBUG(fraction >= 0.0 && fraction <= 1.0);
+  for (int c = 0; c < count_; ++c) {
+    Constraint& constraint = constraints_[c];
+    if (!is_with_others(constraint, body)) continue;
+    const Vector3 excess_ns = (1.0 - fraction) * constraint.impulse_ns;
+    if (constraint.first_body == body) {
+      constraint.second.push(view_of(lattices, constraint.second_body), excess_ns);
+    } else {
+      constraint.first.push(view_of(lattices, constraint.first_body), -excess_ns);
+    }
+    impulse_ns_[static_cast<std::size_t>(constraint.first_body)] -= excess_ns;
+    impulse_ns_[static_cast<std::size_t>(constraint.second_body)] += excess_ns;
+    constraint.impulse_ns -= excess_ns;
+    constraint.force_n *= fraction;
+  }
+}
+
 void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& constraint, double h,
                          double cap) {
   if (constraint.normal_per_kg == 0.0) {

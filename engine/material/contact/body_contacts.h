@@ -115,6 +115,14 @@ class BodyContacts {
   // Multiplies by `fraction` the changes that the last pass() with MovedBy::solvers made to the forces. The
   // caller must scale the impulses on the nodes in the same way.
   void shorten_solver_pass(double fraction);
+  // Returns the work that the impulses of the constraints of the kind MovedBy::springs between an implicitly
+  // stepped body and others have done on both since begin(), J, with the velocity changes that each
+  // constraint alone would cause.
+  double find_assumed_work_j(int body) const;
+  // Multiplies by `fraction` what the constraints of the kind MovedBy::springs between an implicitly stepped
+  // body and others have done since begin(). Takes back the rest from the other bodies; the caller scales the
+  // impulses on the body itself. Call after the last substep.
+  void shorten(int body, double fraction, std::span<const LatticeView> lattices);
   // Returns whether there is a constraint of the kind MovedBy::solvers.
   bool has_constraint_between_solvers() const;
 
@@ -192,6 +200,8 @@ class BodyContacts {
   };
   bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m,
            double deepest_new_m, int sample, double friction);
+  // Returns whether a constraint of the kind MovedBy::springs is between a body and another one.
+  static bool is_with_others(const Constraint& constraint, int body);
   // Finds how the bodies of a constraint respond to it in the present substep.
   static void find_response(std::span<const LatticeView> lattices, Constraint& constraint);
   static double find_gap_m(std::span<const LatticeView> lattices, const Constraint& constraint);

@@ -123,6 +123,10 @@ namespace {
 // needs about five solves.
 constexpr double max_band = 1.3e5;
 constexpr int min_budget = 30;
+// Largest work of the contacts' impulses at the end of a step, relative to the assumed one. A contact that
+// stops a velocity v with an assumed inverse mass w leaves (1 - W / w) v if the inverse mass is W: beyond 2
+// w, the body would rebound faster than it came.
+constexpr double largest_response = 2.0;
 // Inverse mass in contacts, relative to that of the whole body: the value before the first contact, and the
 // largest value.
 constexpr double initial_lightness = 8.0, max_lightness = 1e5;
@@ -469,8 +473,13 @@ void ImplicitSolver::update_contact_mass(SpringLattice& lattice) {
   lattice.set_contact_inverse_mass(contact_inverse_mass_);
 }
 
-void ImplicitSolver::end_step(SpringLattice& lattice, const GroundPush& on_ground) {
-  if (find_response(lattice).work_j > 0.0) body_.apply_response(1.0);
+double ImplicitSolver::end_step(SpringLattice& lattice, const GroundPush& on_ground,
+                                double assumed_work_of_pairs_j) {
+  const ContactResponse response = find_response(lattice);
+  const double other_j = std::max(0.0, assumed_work_of_pairs_j - response.assumed_work_j);
+  const bool gains = response.work_j + other_j > largest_response * (response.assumed_work_j + other_j);
+  const double fraction = gains ? response.find_best_fraction(other_j) : 1.0;
+  if (response.work_j > 0.0) body_.apply_response(fraction);
   update_contact_mass(lattice);
   if (!on_ground.contacts.empty()) {
     ground_contacts_.solve(*on_ground.ground, on_ground.contacts, followers_, step_s_,
@@ -479,6 +488,7 @@ void ImplicitSolver::end_step(SpringLattice& lattice, const GroundPush& on_groun
   body_.move(step_s_);
   write_velocities(lattice);
   write_displacements(lattice);
+  return fraction;
 }
 
 void ImplicitSolver::move_rigidly(const RigidMove& move, SpringLattice& lattice) {

@@ -179,6 +179,13 @@ class ImplicitSolver {
   // the contacts assumed, `work_j` with the velocity changes of the hexahedral block.
   struct ContactResponse {
     double assumed_work_j = 0.0, work_j = 0.0;
+
+    // Returns the fraction of the impulses for which the energy is least. It is below 1 if the block responds
+    // more than the contacts assumed. `other_work_j` is the work of the impulses on other bodies.
+    double find_best_fraction(double other_work_j) const {
+      const double assumed = assumed_work_j + other_work_j, work = work_j + other_work_j;
+      return work > assumed ? assumed / work : 1.0;
+    }
   };
   ContactResponse find_response(const SpringLattice& lattice);
   // Multiplies the response computed by find_response() by `fraction` and applies it to the hexahedral block.
@@ -190,7 +197,12 @@ class ImplicitSolver {
     std::span<GroundContact> contacts;
     double push_speed_cap_m_per_s = 0.0;
   };
-  void end_step(SpringLattice& lattice, const GroundPush& on_ground);
+  // Ends a step: responds to the contacts since the last response and moves the block and the lattice. If the
+  // block responded so much more than the contacts assumed that the bodies gained energy, the impulses are
+  // scaled down to those with the least energy. `assumed_work_of_pairs_j` is the work on this body and the
+  // other bodies that the contacts between them assumed (BodyContacts::find_assumed_work_j()). Returns the
+  // fraction that acts, at most 1.
+  double end_step(SpringLattice& lattice, const GroundPush& on_ground, double assumed_work_of_pairs_j);
 
   template <class Visitor>
   void visit_state(Visitor&& visit) const {

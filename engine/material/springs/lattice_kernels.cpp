@@ -1,5 +1,7 @@
 #include "engine/material/springs/lattice_kernels.h"
 
+#include "engine/material/springs/speed_cap.h"
+
 namespace spoonbill::SPOONBILL_KERNELS {
 namespace {
 
@@ -200,13 +202,31 @@ void extrapolate(float* __restrict to, const float* __restrict d, const float* _
   for (int i = 0; i < count; ++i) to[i] = d[i] + tau * v[i];
 }
 
+// Extrapolates the displacements of all nodes by the damping time, within the speeds for damping.
+void extrapolate(const LatticeView& view, float tau) {
+  extrapolate(view.reference_x, view.dx, view.vx, tau, view.padded_count);
+  extrapolate(view.reference_y, view.dy, view.vy, tau, view.padded_count);
+  extrapolate(view.reference_z, view.dz, view.vz, tau, view.padded_count);
+  const SpeedCap& cap = view.damped_speeds;
+  if (!(cap.cap_m_per_s > 0.0f)) return;
+  alignas(64) float ratio[lattice_block], capped[lattice_block];
+  for (int i = 0; i < view.padded_count; i += lattice_block) {
+    const float *vx = view.vx + i, *vy = view.vy + i, *vz = view.vz + i;
+    if (!(speed_ratios({vx, vy, vz}, view.free_node + i, cap, ratio) > 1.0f)) continue;
+    cap_speeds(vx, ratio, cap.mean_x, capped);
+    extrapolate(view.reference_x + i, view.dx + i, capped, tau, lattice_block);
+    cap_speeds(vy, ratio, cap.mean_y, capped);
+    extrapolate(view.reference_y + i, view.dy + i, capped, tau, lattice_block);
+    cap_speeds(vz, ratio, cap.mean_z, capped);
+    extrapolate(view.reference_z + i, view.dz + i, capped, tau, lattice_block);
+  }
+}
+
 // Linearises all springs. If `powers` is true, also sets the forces to the product of the springs'
 // derivative and the power vector.
 void linearise(const LatticeView& view, float tau, Linearised stored, bool powers) {
   const int count = view.padded_count;
-  extrapolate(view.reference_x, view.dx, view.vx, tau, count);
-  extrapolate(view.reference_y, view.dy, view.vy, tau, count);
-  extrapolate(view.reference_z, view.dz, view.vz, tau, count);
+  extrapolate(view, tau);
   clear(view.moved_x, view.moved_y, view.moved_z, count);
   clear(view.spring_x, view.spring_y, view.spring_z, count);
   if (powers) clear(view.fx, view.fy, view.fz, count);

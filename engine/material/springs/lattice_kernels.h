@@ -70,6 +70,12 @@ struct CreepRule {
 struct MovingFrame;   // see engine/material/lattice/embedded_point.h
 class RigidDynamics;  // see engine/material/rigid/rigid_dynamics.h
 
+// Limit of the speeds of nodes, relative to a velocity.
+struct SpeedCap {
+  float cap_m_per_s = 0.0f;                           // no limit if it is 0
+  float mean_x = 0.0f, mean_y = 0.0f, mean_z = 0.0f;  // m/s
+};
+
 // View of arrays that a SpringLattice owns.
 struct LatticeView {
   int padded_count = 0;         // number of nodes including padding, a whole number of blocks
@@ -80,7 +86,8 @@ struct LatticeView {
   float *fx = nullptr, *fy = nullptr, *fz = nullptr;  // N
   // Extrapolated node displacements d + tau v at the last linearisation, m, where tau is the damping time.
   // Spring forces evaluated there are damped: f(x + tau v) is f(x) + tau df/dt to first order, as in a
-  // Kelvin-Voigt element.
+  // Kelvin-Voigt element. Velocities are those of the nodes within `damped_speeds`.
+  SpeedCap damped_speeds;
   float *reference_x = nullptr, *reference_y = nullptr, *reference_z = nullptr;
   // Change of the extrapolated displacements since the linearisation, m.
   float *moved_x = nullptr, *moved_y = nullptr, *moved_z = nullptr;
@@ -123,9 +130,7 @@ struct LatticeView {
 // Parameters of one drift of the nodes.
 struct Drift {
   float h_s = 0.0f;
-  float cap_m_per_s = 0.0f;
-  // The cap applies to speeds relative to this velocity, m/s.
-  float mean_x = 0.0f, mean_y = 0.0f, mean_z = 0.0f;
+  SpeedCap speeds;
   float tau_s = 0.0f;
 };
 

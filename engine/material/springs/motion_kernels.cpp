@@ -1,4 +1,5 @@
 #include "engine/material/springs/lattice_kernels.h"
+#include "engine/material/springs/speed_cap.h"
 
 namespace spoonbill::SPOONBILL_KERNELS {
 namespace {
@@ -45,32 +46,16 @@ void kick(const LatticeView& view, float h, float decay) {
 
 namespace {
 
-// Moves a block of nodes along one axis, and adds the squares of the changes of d + tau v since the
-// linearisation to `squares`.
-inline void drift_along(float* __restrict d, const float* __restrict v, const float* __restrict reference,
-                        float* __restrict moved, float* __restrict squares, float h, float tau) {
+// Moves a block of nodes along one axis with the velocities v, and adds the squares of the changes of d + tau
+// u since the linearisation to `squares`. u are the velocities for damping.
+inline void drift_along(float* __restrict d, const float* v, const float* u,
+                        const float* __restrict reference, float* __restrict moved, float* __restrict squares,
+                        const Drift& drift) {
+  const float h = drift.h_s, tau = drift.tau_s;
   for (int l = 0; l < block; ++l) {
     d[l] += h * v[l];
-    moved[l] = d[l] + tau * v[l] - reference[l];
+    moved[l] = d[l] + tau * u[l] - reference[l];
     squares[l] += moved[l] * moved[l];
-  }
-}
-
-// Computes the squared ratio of speed to cap for each node of a block.
-inline void speed_ratios(const float* __restrict vx, const float* __restrict vy, const float* __restrict vz,
-                         const float* __restrict free, float* __restrict ratio, const Drift& drift,
-                         float inverse_square) {
-  for (int l = 0; l < block; ++l) {
-    const float rx = vx[l] - drift.mean_x, ry = vy[l] - drift.mean_y, rz = vz[l] - drift.mean_z;
-    ratio[l] = (rx * rx + ry * ry + rz * rz) * inverse_square * free[l];
-  }
-}
-
-// Caps the speeds of a block of nodes. Velocities below the cap stay the same to the last bit.
-inline void cap_speeds(float* __restrict v, const float* __restrict ratio, float mean) {
-  for (int l = 0; l < block; ++l) {
-    const float scale = 1.0f / __builtin_sqrtf(max(ratio[l], 1.0f));
-    v[l] = ratio[l] > 1.0f ? mean + (v[l] - mean) * scale : v[l];
   }
 }
 
@@ -87,28 +72,34 @@ inline float largest_value(const float* values) {
 }  // namespace
 
 Drifted drift(const LatticeView& view, const Drift& drift) {
-  alignas(64) float ratio[block], squares[block];
-  const float inverse_square = 1.0f / (drift.cap_m_per_s * drift.cap_m_per_s);
+  alignas(64) float ratio[block], squares[block], damped_ratio[block], damped[3][block];
   Drifted drifted;
   follow_seam(view, view.vx);
   follow_seam(view, view.vy);
   follow_seam(view, view.vz);
   for (int i = 0; i < view.padded_count; i += block) {
     if (view.free_block[i / block] == 0) continue;
-    speed_ratios(view.vx + i, view.vy + i, view.vz + i, view.free_node + i, ratio, drift, inverse_square);
-    const float fastest = largest_value(ratio);
+    float *vx = view.vx + i, *vy = view.vy + i, *vz = view.vz + i;
+    const float fastest = speed_ratios({vx, vy, vz}, view.free_node + i, drift.speeds, ratio);
     if (fastest > 1.0f) {
-      cap_speeds(view.vx + i, ratio, drift.mean_x);
-      cap_speeds(view.vy + i, ratio, drift.mean_y);
-      cap_speeds(view.vz + i, ratio, drift.mean_z);
+      cap_speeds(vx, ratio, drift.speeds.mean_x, vx);
+      cap_speeds(vy, ratio, drift.speeds.mean_y, vy);
+      cap_speeds(vz, ratio, drift.speeds.mean_z, vz);
+    }
+    const float *ux = vx, *uy = vy, *uz = vz;
+    const SpeedCap& cap = view.damped_speeds;
+    if (cap.cap_m_per_s > 0.0f && speed_ratios({vx, vy, vz}, view.free_node + i, cap, damped_ratio) > 1.0f) {
+      cap_speeds(vx, damped_ratio, cap.mean_x, damped[0]);
+      cap_speeds(vy, damped_ratio, cap.mean_y, damped[1]);
+      cap_speeds(vz, damped_ratio, cap.mean_z, damped[2]);
+      ux = damped[0];
+      uy = damped[1];
+      uz = damped[2];
     }
     for (int l = 0; l < block; ++l) squares[l] = 0.0f;
-    drift_along(view.dx + i, view.vx + i, view.reference_x + i, view.moved_x + i, squares, drift.h_s,
-                drift.tau_s);
-    drift_along(view.dy + i, view.vy + i, view.reference_y + i, view.moved_y + i, squares, drift.h_s,
-                drift.tau_s);
-    drift_along(view.dz + i, view.vz + i, view.reference_z + i, view.moved_z + i, squares, drift.h_s,
-                drift.tau_s);
+    drift_along(view.dx + i, vx, ux, view.reference_x + i, view.moved_x + i, squares, drift);
+    drift_along(view.dy + i, vy, uy, view.reference_y + i, view.moved_y + i, squares, drift);
+    drift_along(view.dz + i, vz, uz, view.reference_z + i, view.moved_z + i, squares, drift);
     drifted.speed_square = max(drifted.speed_square, fastest);
     drifted.moved_square = max(drifted.moved_square, largest_value(squares));
   }

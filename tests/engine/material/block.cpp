@@ -37,7 +37,7 @@ void plain_substep(SpringLattice& lattice, float h_s) {
   kernels.kick(view, h_s, 1.0f);
   Drift drift;
   drift.h_s = h_s;
-  drift.cap_m_per_s = 1e6f;
+  drift.speeds.cap_m_per_s = 1e6f;
   kernels.drift(view, drift);
 }
 

@@ -188,7 +188,7 @@ TEST(LatticeForces, LinearisedSpringsFollowToFirstOrder) {
     }
     const LatticeView view = lattice.view();
     Drift still;
-    still.cap_m_per_s = 1.0f;
+    still.speeds.cap_m_per_s = 1.0f;
     lattice.kernels().drift(view, still);
     lattice.kernels().start_forces(view);
     lattice.kernels().spring_forces(view);
