@@ -442,8 +442,8 @@ void ImplicitBody::precondition(const Doubles& from, Doubles& to) {
   for (int n = 0; n < node_count(); ++n) put(to, n, turn * at(to, n));
 }
 
-// Sets the rigid part of velocities. Internal forces do not change it, so that it is known exactly, while
-// truncated conjugate gradients, and the factor of an earlier orientation, would damp the rotation.
+// Sets the rigid part of velocities, which truncated conjugate gradients, the speed cap and the factor of an
+// earlier shape change.
 void ImplicitBody::set_rigid_part(const RigidMotion& motion, Doubles& velocities) const {
   const RigidMotion part = rigid_part(velocities);
   const RigidMotion missing{motion.centre_m, motion.velocity_m_per_s - part.velocity_m_per_s,

@@ -103,6 +103,11 @@ struct ImplicitReport {
 // matrix a few ticks earlier, updated in parts. Bodies are long and their nodes are numbered along them, so
 // the matrix is a narrow band.
 //
+// A free body rotates with the spin at half of the step, as RigidDynamics does. Its momentum and angular
+// momentum are known before the system is solved, since internal forces do not change them, and are set
+// exactly afterwards. The Cholesky factor is in the body's frame, where a rotation does not change the
+// matrix.
+//
 // Fixed nodes may move at prescribed velocities. The forces that they thereby exert on free nodes are added
 // to the right-hand side.
 //
@@ -140,7 +145,8 @@ class ImplicitBody {
   Vector3 velocity(int node) const { return at(velocity_, mesh_.joined(node)); }
   void set_displacement(int node, const Vector3& d) { put(moved_, mesh_.joined(node), d); }
   void set_velocity(int node, const Vector3& v) { put(velocity_, mesh_.joined(node), v); }
-  // Call after all nodes of a free body have been rotated by set_displacement().
+  // Rotates the frame in which the matrix of a free body is factorised. Call after set_displacement() has
+  // rotated all nodes.
   void turn_frame(const Quaternion& turn) { frame_ = (turn * frame_).normalized(); }
   // Sets the force on a node, N; it acts until it is changed.
   void set_node_force(int node, const Vector3& force_n) { put(applied_, mesh_.joined(node), force_n); }
@@ -240,7 +246,7 @@ class ImplicitBody {
   int size_;  // number of coordinates
   bool has_fixed_nodes_ = false, fixed_moves_ = false;
   RigidInertia inertia_;
-  Quaternion frame_ = Quaternion::Identity();  // rotation of a free body since it was built
+  Quaternion frame_ = Quaternion::Identity();  // rotation of a free body since the last fix_nodes()
   RigidMotion motion_;                         // of a free body at the end of the step
   RollingFactor factor_;
   CellBlock block_;

@@ -5,118 +5,11 @@
 #include <utility>
 
 #include "engine/base/assert.h"
-#include "engine/base/dense_matrices.h"
 #include "engine/material/implicit/implicit_body.h"
 #include "engine/material/lattice/lattice_mesh.h"
 #include "engine/material/lattice/layer_volumes.h"
 
 namespace spoonbill {
-namespace {
-
-// Largest number of iterations for the ground contacts in a tick. Each iteration costs one solve with the
-// Cholesky factor, as much as an iteration of the conjugate gradients in ImplicitBody.
-constexpr int step_limit = 4;
-// Velocity error below which the ground contacts of a tick count as solved: a nanometre per second.
-constexpr double accepted_error_m_per_s = 1e-9;
-constexpr double min_diagonal_fraction = 0.1;
-// Bounds of the spectral mass (see ImplicitGroundContacts), relative to the body's mass.
-constexpr double min_mass_ratio = 1e-5, max_mass_ratio = 10.0;
-
-// A contact point responds only if the weights of its free nodes have at least this sum. A point attached
-// mostly to fixed nodes would hardly move, or would move its few free nodes far too much.
-constexpr double min_free_fraction = 0.5;
-
-double free_fraction(const GridPoint& point, const ImplicitBody& body) {
-  double fraction = 0.0;
-  for (std::size_t c = 0; c < 8; ++c) fraction += body.is_fixed(point.node[c]) ? 0.0 : point.weight[c];
-  return fraction;
-}
-
-// Limits an impulse to the friction cone: its normal part to 0 or more, then its tangential part to
-// `friction` times the normal part.
-Vector3 project_onto_cone(const Vector3& impulse, const Vector3& normal, double friction) {
-  const double push = std::max(0.0, impulse.dot(normal));
-  const Vector3 along = impulse - impulse.dot(normal) * normal;
-  const double drag = along.norm();
-  return push * normal + (drag > friction * push ? friction * push / drag : 1.0) * along;
-}
-
-}  // namespace
-
-ImplicitGroundContacts::ImplicitGroundContacts(int points, double mass_kg)
-    : mass_(0.1 * mass_kg), min_mass_(min_mass_ratio * mass_kg), max_mass_(max_mass_ratio * mass_kg) {
-  SPOONBILL_ASSERT(mass_kg > 0.0);
-  target_.assign(static_cast<std::size_t>(points), 0.0);
-  velocity_errors_.assign(static_cast<std::size_t>(points), Vector3::Zero());
-  impulse_changes_.assign(static_cast<std::size_t>(points), Vector3::Zero());
-}
-
-void ImplicitGroundContacts::scale_inertia(double factor) {
-  for (double* mass : {&mass_, &min_mass_, &max_mass_}) *mass *= factor;
-}
-
-void ImplicitGroundContacts::restore_last_impulses(std::span<GroundContact> contacts,
-                                                   std::span<const GridPoint> points, double time_s,
-                                                   std::vector<double>& impulses_ns) {
-  SPOONBILL_ASSERT(time_s > 0.0);
-  for (GroundContact& contact : contacts) {
-    contact.impulse_ns = time_s * contact.force_n;
-    points[static_cast<std::size_t>(contact.node)].spread(contact.impulse_ns, impulses_ns);
-  }
-}
-
-void ImplicitGroundContacts::compute_velocity_errors(std::span<const GroundContact> contacts,
-                                                     std::span<const GridPoint> points,
-                                                     const ImplicitBody& body) {
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    const GridPoint& point = points[static_cast<std::size_t>(contacts[c].node)];
-    velocity_errors_[c].setZero();
-    if (free_fraction(point, body) < min_free_fraction) continue;
-    velocity_errors_[c] =
-        point.sum_over([&](int node) { return body.velocity(node); }) - target_[c] * normal_;
-  }
-}
-
-double ImplicitGroundContacts::compute_impulse_changes(std::span<const GroundContact> contacts) {
-  double square = 0.0;
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    const Vector3& now = contacts[c].impulse_ns;
-    impulse_changes_[c] =
-        project_onto_cone(now - mass_ * velocity_errors_[c], normal_, contacts[c].friction) - now;
-    square += impulse_changes_[c].squaredNorm();
-  }
-  return square;
-}
-
-void ImplicitGroundContacts::solve(const GroundContacts& ground, std::span<GroundContact> contacts,
-                                   std::span<const GridPoint> points, double time_s, double cap_m_per_s,
-                                   ImplicitBody& body, std::vector<double>& impulses_ns) {
-  SPOONBILL_ASSERT(time_s > 0.0);
-  normal_ = ground.normal();
-  for (std::size_t c = 0; c < contacts.size(); ++c) {
-    const ContactPush push{contacts[c].gap_m, normal_, Vector3::Zero(), 0.0};
-    target_[c] = push.target_m_per_s(time_s, ground_pace, cap_m_per_s);
-  }
-  for (int step = 0; step < step_limit; ++step) {
-    compute_velocity_errors(contacts, points, body);
-    const double square = compute_impulse_changes(contacts), still = mass_ * accepted_error_m_per_s;
-    if (!(square > still * still)) return;
-    std::fill(impulses_ns.begin(), impulses_ns.end(), 0.0);
-    double slope = 0.0;
-    for (std::size_t c = 0; c < contacts.size(); ++c) {
-      points[static_cast<std::size_t>(contacts[c].node)].spread(impulse_changes_[c], impulses_ns);
-      slope -= impulse_changes_[c].dot(velocity_errors_[c]);
-    }
-    const double work = body.respond_to(impulses_ns);
-    const double fraction =
-        work > 0.0 && slope > 0.0 ? std::clamp(slope / work, min_diagonal_fraction, 1.0) : 1.0;
-    body.apply_response(fraction);
-    for (std::size_t c = 0; c < contacts.size(); ++c)
-      contacts[c].impulse_ns += fraction * impulse_changes_[c];
-    if (work > 0.0) mass_ = std::clamp(square / work, min_mass_, max_mass_);
-  }
-}
-
 namespace {
 
 // Largest number of entries in the band of the matrix. Each solve multiplies every entry twice, and a tick
@@ -130,18 +23,6 @@ constexpr double largest_response = 2.0;
 // Inverse mass in contacts, relative to that of the whole body: the value before the first contact, and the
 // largest value.
 constexpr double initial_lightness = 8.0, max_lightness = 1e5;
-
-// Position of a node of one grid in another grid over the same body, along one axis.
-struct GridPosition {
-  int first;
-  double fraction;  // position between this node and the next, from 0 to 1
-};
-
-GridPosition locate_in(int at, int count, int other_count) {
-  const double coordinate = static_cast<double>(at) * (other_count - 1) / (count - 1);
-  const int first = std::min(static_cast<int>(coordinate), other_count - 2);
-  return {first, coordinate - first};
-}
 
 // Returns the mean extents of a lattice along i, j and k, m.
 Vector3 extents(const LatticeMesh& mesh, const std::vector<Vector3>& nodes) {
@@ -159,53 +40,6 @@ Vector3 extents(const LatticeMesh& mesh, const std::vector<Vector3>& nodes) {
     size[axis] = sum / lines;
   }
   return size;
-}
-
-// Returns a node of one grid as a weighted sum of the nodes of another, trilinear in the grid indices.
-GridPoint embed_node(const LatticeMesh& of, int node, const LatticeMesh& by) {
-  const std::array<int, 3> at = of.grid_index(node);
-  std::array<GridPosition, 3> positions{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    positions[axis] = locate_in(at[axis], of.count[axis], by.count[axis]);
-  }
-  GridPoint result;
-  for (int c = 0; c < 8; ++c) {
-    const std::array<int, 3> high = {c >> 2 & 1, c >> 1 & 1, c & 1};
-    std::array<int, 3> corner{};
-    double weight = 1.0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      corner[axis] = positions[axis].first + high[axis];
-      weight *= high[axis] ? positions[axis].fraction : 1.0 - positions[axis].fraction;
-    }
-    result.node[static_cast<std::size_t>(c)] = by.joined(by.index(corner[0], corner[1], corner[2]));
-    result.weight[static_cast<std::size_t>(c)] = weight;
-  }
-  return result;
-}
-
-// Changes the weights so that they give the position `at_m` of the point, and not the nearby one at its grid
-// indices: inside a bent body the cells of the two grids are not congruent. Otherwise the point would keep
-// its distance from the block's material in space while the block rotates, and forces on it would have a
-// wrong moment. The changes d have the least sum of squares: d_c = (x_c - m).S^-1 e, with the corners x_c,
-// their mean m, their scatter S = sum (x_c - m)(x_c - m)^T and the error e of the position. Their sum is
-// zero.
-void place_exactly(const Vector3& at_m, const std::vector<Vector3>& nodes, GridPoint& point) {
-  const auto corner = [&](std::size_t c) { return nodes[static_cast<std::size_t>(point.node[c])]; };
-  Vector3 mean = Vector3::Zero(), error = at_m;
-  for (std::size_t c = 0; c < 8; ++c) {
-    mean += corner(c) / 8.0;
-    error -= point.weight[c] * corner(c);
-  }
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  for (std::size_t c = 0; c < 8; ++c) scatter += (corner(c) - mean) * (corner(c) - mean).transpose();
-  const Vector3 slope = solve_symmetric(scatter, error);
-  for (std::size_t c = 0; c < 8; ++c) point.weight[c] += slope.dot(corner(c) - mean);
-}
-
-std::size_t find_heaviest_node(const GridPoint& follower) {
-  const auto most =
-      std::max_element(follower.weight.begin(), follower.weight.end()) - follower.weight.begin();
-  return static_cast<std::size_t>(follower.node[static_cast<std::size_t>(most)]);
 }
 
 // Returns the number of entries in the band of the matrix.
@@ -307,9 +141,9 @@ Result<ImplicitSolver> ImplicitSolver::make(const LatticeMesh& mesh, const std::
   ImplicitSolver solver(std::move(body).value(), mesh.node_count(), mass_kg);
   solver.rest_m_ = rest_m;
   for (int n = 0; n < mesh.node_count(); ++n) {
-    GridPoint follower = embed_node(mesh, n, coarse.value());
-    place_exactly(rest_m[static_cast<std::size_t>(n)], coarse->nodes, follower);
-    solver.followers_.push_back(follower);
+    solver.by_index_.push_back(embed_node(mesh, n, coarse.value()));
+    solver.followers_.push_back(solver.by_index_.back());
+    place_exactly(rest_m[static_cast<std::size_t>(n)], coarse->nodes, solver.followers_.back());
   }
   for (int n = 0; n < coarse->node_count(); ++n) {
     const GridPoint at = embed_node(coarse.value(), n, mesh);
@@ -334,8 +168,8 @@ void ImplicitSolver::fix_nodes(std::span<const std::uint8_t> fixed) {
     fixing_node_[b] = fixed[static_cast<std::size_t>(nearest_[b])] != 0 ? nearest_[b] : -1;
   }
   for (std::size_t n = 0; n < fixed.size(); ++n) {
-    if (fixed[n] == 0 || follows_fixed(followers_[n])) continue;
-    fixing_node_[find_heaviest_node(followers_[n])] = static_cast<int>(n);
+    if (fixed[n] == 0 || follows_fixed(by_index_[n])) continue;
+    fixing_node_[find_heaviest_node(by_index_[n])] = static_cast<int>(n);
   }
   std::vector<std::uint8_t> block_fixed;
   block_fixed.reserve(fixing_node_.size());

@@ -1,5 +1,4 @@
-// Implicit solver of a lattice whose material is too stiff for the explicit spring solver, and the contacts
-// of such a lattice with the ground.
+// Implicit solver of a lattice whose material is too stiff for the explicit spring solver.
 #pragma once
 
 #include <array>
@@ -10,88 +9,12 @@
 
 #include "engine/base/geometry.h"
 #include "engine/material/contact/ground_contacts.h"
+#include "engine/material/implicit/grid_point.h"
 #include "engine/material/implicit/implicit_body.h"
+#include "engine/material/implicit/implicit_ground_contacts.h"
 #include "engine/material/springs/spring_lattice.h"
 
 namespace spoonbill {
-
-// A node of one grid, expressed as a weighted sum of the nodes of another grid.
-struct GridPoint {
-  std::array<int, 8> node{};
-  std::array<double, 8> weight{};
-
-  template <class Of>
-  Vector3 sum_over(const Of& of) const {
-    Vector3 sum = Vector3::Zero();
-    for (std::size_t c = 0; c < 8; ++c) sum += weight[c] * of(node[c]);
-    return sum;
-  }
-  // Distributes a vector at the point among the nodes and adds it to their values, by coordinate.
-  void spread(const Vector3& point_value, std::vector<double>& by_coordinate) const {
-    for (std::size_t c = 0; c < 8; ++c) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        by_coordinate[3 * static_cast<std::size_t>(node[c]) + axis] +=
-            weight[c] * point_value[static_cast<Eigen::Index>(axis)];
-      }
-    }
-  }
-};
-
-// Contacts of an implicitly stepped body with the ground, solved all together once a tick.
-//
-// Impulses r on points of the body change their velocities by W r, where W is the response of the whole body.
-// The solution satisfies these complementarity conditions, with Coulomb friction, for the normal parts r_n,
-// v_n and the tangential parts r_t, v_t of the impulses and velocities:
-//
-//   r_n >= 0,  v_n >= target,  with equality in one of them;
-//   |r_t| <= friction r_n,  v_t = 0 or r_t opposite to v_t.
-//
-// The solution is the fixed point of r <- P(r - m (v - target)) with the projection P onto the friction cone,
-// for every mass m. Starting from the forces of the last tick, a few of these steps are taken with the
-// spectral mass m = |dr|^2 / (dr.W dr) (Barzilai and Borwein 1988). A step that would pass the minimum of the
-// energy along its direction is shortened to that minimum, but to no less than a tenth of its length (Birgin,
-// Martinez and Raydan 2000). A body at rest is at the fixed point and does not creep.
-//
-// The argument `points` has one entry for each node of the lattice to which the contacts belong. Points that
-// are attached mostly to fixed nodes do not respond.
-//
-// Owned by the implicit solver of the body. Allocates only at construction.
-class ImplicitGroundContacts {
- public:
-  ImplicitGroundContacts(int points, double mass_kg);
-  // Scales the spectral mass and its bounds by `factor`. Call after the body's inertia has changed by this
-  // factor.
-  void scale_inertia(double factor);
-
-  // Sets the impulse of each contact to its force in the last tick times `time_s`. The step starts from these
-  // impulses. Adds them to `impulses_ns`, one entry per coordinate of the body.
-  void restore_last_impulses(std::span<GroundContact> contacts, std::span<const GridPoint> points,
-                             double time_s, std::vector<double>& impulses_ns);
-  // Solves the contacts. Call after everything else has pushed the body. Changes the impulses of the contacts
-  // and the body's velocities. Overwrites `impulses_ns`, one entry per coordinate of the body.
-  void solve(const GroundContacts& ground, std::span<GroundContact> contacts,
-             std::span<const GridPoint> points, double time_s, double push_speed_cap_m_per_s,
-             ImplicitBody& body, std::vector<double>& impulses_ns);
-
-  template <class Visitor>
-  void visit_state(Visitor&& visit) const {
-    visit(&mass_, 1);
-  }
-
- private:
-  // Computes the velocity of each contact's point minus its target velocity, m/s; 0 for a point that does not
-  // respond.
-  void compute_velocity_errors(std::span<const GroundContact> contacts, std::span<const GridPoint> points,
-                               const ImplicitBody& body);
-  // Computes the changes of the impulses for one step, with `mass_` as the impulse per velocity error.
-  // Returns the square of their norm.
-  double compute_impulse_changes(std::span<const GroundContact> contacts);
-
-  double mass_, min_mass_, max_mass_;
-  Vector3 normal_ = Vector3::UnitY();
-  std::vector<double> target_;  // for each contact: smallest speed along the normal, m/s
-  std::vector<Vector3> velocity_errors_, impulse_changes_;  // for each contact, m/s and N s
-};
 
 // Node budget of the coarse grid of hexahedra in an implicit solver: as many nodes as a tick can solve for a
 // long body, whose matrix has a narrow band. Compact bodies get fewer nodes. A body needs few hexahedra,
@@ -227,10 +150,12 @@ class ImplicitSolver {
   bool is_fixed_by(int node, std::span<const int> nodes) const;
 
   ImplicitBody body_;
-  std::vector<Vector3> rest_m_;       // rest positions of the lattice's nodes
-  std::vector<GridPoint> followers_;  // each lattice node as a weighted sum of block nodes
-  std::vector<int> nearest_;          // for each block node: the lattice node nearest in grid coordinates
-  std::vector<int> fixing_node_;      // for each block node: lattice node that fixes it, or -1 if none
+  std::vector<Vector3> rest_m_;  // rest positions of the lattice's nodes
+  // Each lattice node as a weighted sum of block nodes: at its exact position, and at its grid indices. The
+  // latter decides which block nodes a fixed lattice node fixes.
+  std::vector<GridPoint> followers_, by_index_;
+  std::vector<int> nearest_;      // for each block node: the lattice node nearest in grid coordinates
+  std::vector<int> fixing_node_;  // for each block node: lattice node that fixes it, or -1 if none
   // Velocities of the lattice's nodes as last written, before contacts change them.
   std::vector<std::array<float, 3>> velocity_;
   std::vector<double> known_;    // known impulses of the next step, by coordinate of the block, N s

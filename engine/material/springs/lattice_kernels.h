@@ -72,7 +72,7 @@ class RigidDynamics;  // see engine/material/rigid/rigid_dynamics.h
 
 // Limit of the speeds of nodes, relative to a velocity.
 struct SpeedCap {
-  float cap_m_per_s = 0.0f;                           // no limit if it is 0
+  float cap_m_per_s = 0.0f;                           // in LatticeView::damped_speeds, 0 means no limit
   float mean_x = 0.0f, mean_y = 0.0f, mean_z = 0.0f;  // m/s
 };
 
@@ -86,9 +86,9 @@ struct LatticeView {
   float *fx = nullptr, *fy = nullptr, *fz = nullptr;  // N
   // Extrapolated node displacements d + tau v at the last linearisation, m, where tau is the damping time.
   // Spring forces evaluated there are damped: f(x + tau v) is f(x) + tau df/dt to first order, as in a
-  // Kelvin-Voigt element. Velocities are those of the nodes within `damped_speeds`.
-  SpeedCap damped_speeds;
+  // Kelvin-Voigt element.
   float *reference_x = nullptr, *reference_y = nullptr, *reference_z = nullptr;
+  SpeedCap damped_speeds;  // limit of the speeds v with which displacements are extrapolated
   // Change of the extrapolated displacements since the linearisation, m.
   float *moved_x = nullptr, *moved_y = nullptr, *moved_z = nullptr;
   // Spring forces at the linearisation, N.

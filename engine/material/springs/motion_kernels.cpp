@@ -59,16 +59,6 @@ inline void drift_along(float* __restrict d, const float* v, const float* u,
   }
 }
 
-inline float largest_value(const float* values) {
-  alignas(64) float lanes[16] = {};
-  for (int i = 0; i < block; i += 16) {
-    for (int l = 0; l < 16; ++l) lanes[l] = max(lanes[l], values[i + l]);
-  }
-  float largest = 0.0f;
-  for (const float lane : lanes) largest = max(largest, lane);
-  return largest;
-}
-
 }  // namespace
 
 Drifted drift(const LatticeView& view, const Drift& drift) {

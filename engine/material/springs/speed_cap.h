@@ -1,9 +1,20 @@
-// Caps the speeds of a block of nodes, for the kernels of springs and of motion. Included by kernels only.
+// Caps the speeds of a block of nodes. Included by the kernels of springs and of motion only.
 #pragma once
 
 #include "engine/material/springs/lattice_kernels.h"
 
 namespace spoonbill::SPOONBILL_KERNELS {
+
+// Returns the largest of the values of a block of nodes, none of which is negative.
+inline float largest_value(const float* values) {
+  alignas(64) float lanes[16] = {};
+  for (int i = 0; i < lattice_block; i += 16) {
+    for (int l = 0; l < 16; ++l) lanes[l] = lanes[l] > values[i + l] ? lanes[l] : values[i + l];
+  }
+  float largest = 0.0f;
+  for (const float lane : lanes) largest = largest > lane ? largest : lane;
+  return largest;
+}
 
 // Velocities of a block of nodes along the three axes, m/s.
 struct BlockVelocities {
@@ -19,13 +30,7 @@ inline float speed_ratios(const BlockVelocities& v, const float* __restrict free
     const float rx = v.x[l] - cap.mean_x, ry = v.y[l] - cap.mean_y, rz = v.z[l] - cap.mean_z;
     ratio[l] = (rx * rx + ry * ry + rz * rz) * inverse_square * free[l];
   }
-  alignas(64) float lanes[16] = {};
-  for (int i = 0; i < lattice_block; i += 16) {
-    for (int l = 0; l < 16; ++l) lanes[l] = lanes[l] > ratio[i + l] ? lanes[l] : ratio[i + l];
-  }
-  float largest = 0.0f;
-  for (const float lane : lanes) largest = largest > lane ? largest : lane;
-  return largest;
+  return largest_value(ratio);
 }
 
 // Caps the velocities of a block of nodes along one axis. Those below the cap stay the same to the last bit.

@@ -187,13 +187,14 @@ class EnergyBalance {
         continue;
       }
       const SpringLattice& lattice = simulation.lattice(static_cast<int>(b));
-      double kinetic_j = 0.0, weight_j = 0.0;
+      const MassCentre centre = find_mass_centre(lattice);
+      const double weight_j = -centre.mass_kg * gravity.dot(centre.position_m);
+      double kinetic_j = 0.0;
       for (int n = 0; n < lattice.mesh().node_count(); ++n) {
         const auto mass = static_cast<double>(lattice.mass(n));
         kinetic_j += 0.5 * mass * lattice.velocity(n).squaredNorm();
-        weight_j -= mass * gravity.dot(lattice.position(n));
       }
-      const bool is_far = find_mass_centre(lattice).position_m.norm() > farthest_strained_m;
+      const bool is_far = centre.position_m.norm() > farthest_strained_m;
       const std::optional<double> whole_j =
           is_far ? std::nullopt : meters_[b].find_energy_j(lattice, gravity);
       energy_j += whole_j.value_or(kinetic_j + weight_j);

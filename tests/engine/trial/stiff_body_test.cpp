@@ -2,19 +2,21 @@
 // turn, and roll.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
+#include "engine/simulation/body_hold.h"
 #include "engine/trial/body_measures.h"
 #include "engine/trial/trial.h"
-#include "engine/trial/trial_report.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/forces/samples.h"
 
 namespace spoonbill {
 namespace {
 
-// A ball on a slope along x, of 20 degrees.
+// A ball on a slope that falls along x.
 Simulation make_ball_on_slope(const char* material_name, LatticeCells cells, double slope_rad) {
   Material material = made_elastic(bundled_material(material_name));
   material.friction = 0.6;

@@ -151,50 +151,52 @@ TEST(ImplicitBody, KeepsItsMomentum) {
   EXPECT_LT((after - before).norm(), 1e-5 * size);
 }
 
-// A steel bar that spins about an axis of no symmetry keeps its angular momentum and its kinetic energy: it
-// is not strained. The energy of a tumbling body, moved with the spin at the start of each step, grows by up
-// to the square of the angle per step.
-TEST(ImplicitBody, SpinsFreely) {
-  ImplicitBody body = body_of(box_mesh({0.02, 0.01, 0.06}, {4, 3, 11}), elastic_material(193e9, 0.3, 8000.0));
-  const Vector3 spin_rad_per_s(8.0, 3.0, 12.0);
-  const auto position = [&](int n) {
-    return Vector3(body.mesh().nodes[static_cast<std::size_t>(n)] + body.displacement(n));
-  };
-  const auto angular_momentum = [&] {
-    Vector3 sum = Vector3::Zero();
-    for (int n = 0; n < body.node_count(); ++n) {
-      sum += body.mass_kg(n) * (position(n)).cross(body.velocity(n));
-    }
-    return sum;
-  };
-  const auto energy_j = [&] {
-    double sum = 0.0;
-    for (int n = 0; n < body.node_count(); ++n) {
-      sum += 0.5 * body.mass_kg(n) * body.velocity(n).squaredNorm();
-    }
-    return sum;
-  };
-  for (int n = 0; n < body.node_count(); ++n) body.set_velocity(n, spin_rad_per_s.cross(position(n)));
-  const Vector3 momentum = angular_momentum();
-  const double energy = energy_j();
-  for (int tick = 0; tick < 1000; ++tick) body.step({});
-  EXPECT_LT((angular_momentum() - momentum).norm(), 1e-4 * momentum.norm());
-  EXPECT_NEAR(energy_j() / energy, 1.0, 0.02);
+ImplicitBody steel_bar() {
+  return body_of(box_mesh({0.02, 0.01, 0.06}, {4, 3, 11}), elastic_material(193e9, 0.3, 8000.0));
 }
 
-// A pair of impulses that only turns a free body gives it their angular momentum, even if the factor of the
-// matrix is that of another orientation.
-TEST(ImplicitBody, TakesTheAngularMomentumOfImpulses) {
-  ImplicitBody body = body_of(box_mesh({0.02, 0.01, 0.06}, {4, 3, 11}), elastic_material(193e9, 0.3, 8000.0));
-  const auto position = [&](int n) {
-    return Vector3(body.mesh().nodes[static_cast<std::size_t>(n)] + body.displacement(n));
-  };
+Vector3 position(const ImplicitBody& body, int node) {
+  return body.mesh().nodes[static_cast<std::size_t>(node)] + body.displacement(node);
+}
+
+void spin(ImplicitBody& body, const Vector3& spin_rad_per_s) {
+  for (int n = 0; n < body.node_count(); ++n) body.set_velocity(n, spin_rad_per_s.cross(position(body, n)));
+}
+
+// About the origin.
+Vector3 angular_momentum(const ImplicitBody& body) {
+  Vector3 sum = Vector3::Zero();
   for (int n = 0; n < body.node_count(); ++n)
-    body.set_velocity(n, Vector3(30.0, 0.0, 0.0).cross(position(n)));
+    sum += body.mass_kg(n) * position(body, n).cross(body.velocity(n));
+  return sum;
+}
+
+double kinetic_energy_j(const ImplicitBody& body) {
+  double sum = 0.0;
+  for (int n = 0; n < body.node_count(); ++n) sum += 0.5 * body.mass_kg(n) * body.velocity(n).squaredNorm();
+  return sum;
+}
+
+// A steel bar that spins about an axis of no symmetry keeps its angular momentum, and its kinetic energy but
+// for the error of the steps, in each of which it rotates by 0.015 radians.
+TEST(ImplicitBody, SpinsFreely) {
+  ImplicitBody body = steel_bar();
+  spin(body, {8.0, 3.0, 12.0});
+  const Vector3 momentum = angular_momentum(body);
+  const double energy_j = kinetic_energy_j(body);
+  for (int tick = 0; tick < 1000; ++tick) body.step({});
+  EXPECT_LT((angular_momentum(body) - momentum).norm(), 1e-4 * momentum.norm());
+  EXPECT_NEAR(kinetic_energy_j(body) / energy_j, 1.0, 0.02);
+}
+
+// A pair of opposite impulses gives a free body their angular momentum, even if the body has rotated since
+// its matrix was factorised.
+TEST(ImplicitBody, TakesTheAngularMomentumOfImpulses) {
+  ImplicitBody body = steel_bar();
+  spin(body, {30.0, 0.0, 0.0});
   for (int tick = 0; tick < 20; ++tick) body.step({});
   body.solve_velocities({});
-  Vector3 before = Vector3::Zero();
-  for (int n = 0; n < body.node_count(); ++n) before += body.mass_kg(n) * position(n).cross(body.velocity(n));
+  const Vector3 before = angular_momentum(body);
   const int first = 0, last = body.node_count() - 1;
   const Vector3 impulse_ns(0.0, 1e-3, 0.0);
   std::vector<double> impulses(3 * static_cast<std::size_t>(body.node_count()), 0.0);
@@ -202,10 +204,8 @@ TEST(ImplicitBody, TakesTheAngularMomentumOfImpulses) {
   impulses[3 * static_cast<std::size_t>(last) + 1] = impulse_ns.y();
   EXPECT_GT(body.respond_to(impulses), 0.0);
   body.apply_response(1.0);
-  Vector3 after = Vector3::Zero();
-  for (int n = 0; n < body.node_count(); ++n) after += body.mass_kg(n) * position(n).cross(body.velocity(n));
-  const Vector3 given = (position(last) - position(first)).cross(impulse_ns);
-  EXPECT_LT((after - before - given).norm(), 1e-6 * given.norm());
+  const Vector3 given = (position(body, last) - position(body, first)).cross(impulse_ns);
+  EXPECT_LT((angular_momentum(body) - before - given).norm(), 1e-6 * given.norm());
 }
 
 // The nodes are thrown about at up to 20 m/s, with any damping and any stiffness that needs the implicit

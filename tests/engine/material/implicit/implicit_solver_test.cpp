@@ -1,9 +1,10 @@
 // Tests that the coarse block of cells of the implicit solver weighs as much as the lattice.
+#include "engine/material/implicit/implicit_solver.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "engine/material/implicit/implicit_solver.h"
 #include "tests/engine/material/block.h"
 #include "tests/engine/material/lattice/filled_volume.h"
 
