@@ -549,27 +549,43 @@ int drift(Relaxation& relaxation, float h, bool is_real_time) {
   return capped;
 }
 
-// Fraction of speed_cap_cells by which a node may move in a substep at its speed at the start of a tick. It
-// may become faster within the tick.
+// Fraction of speed_cap_cells by which a node may move in a substep at its speed at the start of a tick, or
+// at the speed at which the body hits another one. It may become faster within the tick: a contact moves
+// light nodes beside it by several times the speed that it takes from its point.
 constexpr double started_cap_fraction = 0.25;
 
-// Returns the number of substeps that the speeds of nodes require in real time, at most as many as
-// substep_ceiling allows.
-int count_substeps_for_speed(const Relaxation& relaxation, const RelaxSettings& settings) {
+// Returns the highest speed of a node of the body itself, relative to the mean velocity of the body, m/s.
+double find_fastest_m_per_s(const Relaxation& relaxation, std::size_t at) {
+  const LatticeView& view = relaxation.view[at];
+  const LatticeMesh& mesh = relaxation.lattice(at).mesh();
+  const Vector3 mean = find_mean_velocity(relaxation, at);
+  double square = 0.0;
+  for (int n = 0; n < mesh.node_count(); ++n) {
+    const bool is_outside = !mesh.node_locations.empty() &&
+                            mesh.node_locations[static_cast<std::size_t>(n)] == NodeLocation::outside_body;
+    if (view.free_node[n] == 0.0f || is_outside) continue;
+    square = std::max(square, (Vector3(view.vx[n], view.vy[n], view.vz[n]) - mean).squaredNorm());
+  }
+  return std::sqrt(square);
+}
+
+// Returns the number of substeps that the speeds of nodes and of impacts require in real time, at most as
+// many as substep_ceiling allows.
+int count_substeps_for_speed(const Relaxation& relaxation, const RelaxSettings& settings,
+                             const BodyContacts* between) {
   if (!settings.is_real_time) return 1;
+  std::array<double, lattice_capacity> impacts_m_per_s{};
+  if (between) {
+    impacts_m_per_s =
+        between->find_impacts_m_per_s({relaxation.view.data(), relaxation.count()}, settings.time_s);
+  }
   double most = 1.0;
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) continue;
-    const LatticeView& view = relaxation.view[at];
-    const Vector3 mean = find_mean_velocity(relaxation, at);
-    double square = 0.0;
-    for (int n = 0; n < view.padded_count; ++n) {
-      const Vector3 velocity(view.vx[n], view.vy[n], view.vz[n]);
-      if (view.free_node[n] != 0.0f) square = std::max(square, (velocity - mean).squaredNorm());
-    }
+    const double fastest_m_per_s = std::max(find_fastest_m_per_s(relaxation, at), impacts_m_per_s[at]);
     const double reach_m =
         started_cap_fraction * speed_cap_cells * static_cast<double>(relaxation.lattice(at).cell_size_m());
-    most = std::max(most, std::ceil(settings.time_s * std::sqrt(square) / reach_m));
+    most = std::max(most, std::ceil(settings.time_s * fastest_m_per_s / reach_m));
   }
   return static_cast<int>(std::min(most, static_cast<double>(substep_ceiling * settings.substeps)));
 }
@@ -617,13 +633,14 @@ Linearised choose_linearisation(const SpringLattice& lattice, const RelaxSetting
 
 // Linearises all springs at the start of a tick and returns the substeps that the tick needs. If `follows` is
 // true, also tracks the fastest frequencies.
-Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, bool follows) {
+Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, const BodyContacts* between,
+                       bool follows) {
   for (std::size_t at = 0; at < relaxation.count() && settings.is_real_time; ++at) {
     if (!relaxation.has_springs(at)) continue;
     relaxation.lattice(at).continue_displacements();
     set_damped_speeds(relaxation.lattice(at), find_mean_velocity(relaxation, at), relaxation.view[at]);
   }
-  const int for_speed = count_substeps_for_speed(relaxation, settings);
+  const int for_speed = count_substeps_for_speed(relaxation, settings, between);
   const int expected = std::max(choose_substeps(relaxation, settings).count, for_speed);
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) continue;
@@ -647,7 +664,9 @@ Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, bo
 // Lets the nodes outside all bodies follow. In real time, they would otherwise be thrown by a sudden stop.
 void continue_velocities(Relaxation& relaxation) {
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
-    if (relaxation.has_springs(at)) relaxation.lattice(at).continue_velocities();
+    if (!relaxation.has_springs(at)) continue;
+    relaxation.lattice(at).continue_velocities(
+        make_speed_cap(relaxation.cap[at], find_mean_velocity(relaxation, at)));
   }
 }
 
@@ -750,7 +769,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   Relaxation relaxation{lattices, {}, {}, {}, {}, {}, settings.time_s, {}, Vector3::Zero()};
   const bool flows = settings.tick % 2 == 1;
   for (std::size_t at = 0; at < lattices.size(); ++at) relaxation.view[at] = lattices[at].lattice->view();
-  const Substeps substeps = begin_springs(relaxation, settings, !flows);
+  const Substeps substeps = begin_springs(relaxation, settings, between, !flows);
   choose_drag(relaxation, settings);
   RelaxReport report;
   report.substeps = substeps.count;

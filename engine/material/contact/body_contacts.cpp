@@ -293,6 +293,23 @@ void BodyContacts::find_response(std::span<const LatticeView> lattices, Constrai
   constraint.slide_per_kg = constraint.compliance + across_per_kg + of_frames_per_kg;
 }
 
+std::array<double, lattice_capacity> BodyContacts::find_impacts_m_per_s(std::span<const LatticeView> lattices,
+                                                                        double time_s) const {
+  std::array<double, lattice_capacity> impacts{};
+  for (int c = 0; c < count_; ++c) {
+    const Constraint& constraint = constraints_[c];
+    if (constraint.moved_by != MovedBy::springs) continue;
+    const double approach = -find_relative_m_per_s(lattices, constraint).dot(constraint.normal);
+    if (!(approach * time_s > find_gap_m(lattices, constraint))) continue;
+    for (const int body : {constraint.first_body, constraint.second_body}) {
+      if (body == ground_index) continue;
+      double& impact = impacts[static_cast<std::size_t>(body)];
+      impact = std::max(impact, approach);
+    }
+  }
+  return impacts;
+}
+
 void BodyContacts::start(std::span<const LatticeView> lattices, double h_s) {
   for (int c = 0; c < count_; ++c) {
     Constraint& constraint = constraints_[c];

@@ -82,6 +82,11 @@ class BodyContacts {
   // masses and frictions must be the same.
   void keep();
 
+  // Returns for each body the highest speed at which a constraint of the kind MovedBy::springs meets another
+  // body within `time_s`, m/s.
+  std::array<double, lattice_capacity> find_impacts_m_per_s(std::span<const LatticeView> lattices,
+                                                            double time_s) const;
+
   // Starts a tick: marks all constraints as not having acted.
   void begin();
 

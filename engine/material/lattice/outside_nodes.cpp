@@ -1,5 +1,6 @@
 #include "engine/material/lattice/outside_nodes.h"
 
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
@@ -9,6 +10,9 @@ namespace spoonbill {
 namespace {
 
 using GridIndex = std::array<int, 3>;
+
+// Fraction of the speed cap to which nodes outside the body are limited, so that the cap does not count them.
+constexpr float outside_speed_fraction = 0.95f;
 
 // Returns the first corner of the filled cell whose centre is nearest to a node. The mesh must have a filled
 // cell.
@@ -61,6 +65,21 @@ void OutsideNodes::continue_field(const float* is_free, float* field) const {
     float sum = 0.0f;
     for (std::size_t c = 0; c < 8; ++c) sum += outside.weights[c] * field[outside.corners[c]];
     field[outside.node] = sum;
+  }
+}
+
+void OutsideNodes::limit_speeds(const SpeedCap& cap, const LatticeView& view) const {
+  const float most = outside_speed_fraction * cap.cap_m_per_s, most_square = most * most;
+  for (const Node& outside : nodes_) {
+    const int n = outside.node;
+    if (view.free_node[n] == 0.0f) continue;
+    const float x = view.vx[n] - cap.mean_x, y = view.vy[n] - cap.mean_y, z = view.vz[n] - cap.mean_z;
+    const float square = x * x + y * y + z * z;
+    if (square <= most_square) continue;
+    const float scale = most / std::sqrt(square);
+    view.vx[n] = cap.mean_x + scale * x;
+    view.vy[n] = cap.mean_y + scale * y;
+    view.vz[n] = cap.mean_z + scale * z;
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/material/lattice/lattice_mesh.h"
+#include "engine/material/springs/lattice_kernels.h"
 
 namespace spoonbill {
 
@@ -22,6 +23,9 @@ class OutsideNodes {
   // Sets the values of a field, such as the displacements along one axis, at the nodes outside the body. A
   // node whose entry in `is_free` is 0 keeps its value. Both arrays have one value per node.
   void continue_field(const float* is_free, float* field) const;
+  // Limits the speeds of the free nodes outside the body to a little less than the cap. A node far from the
+  // body continues a turn of a cell at many times its speed.
+  void limit_speeds(const SpeedCap& cap, const LatticeView& view) const;
 
  private:
   struct Node {

@@ -437,8 +437,9 @@ void SpringLattice::continue_displacements() {
   for (Floats* field : {&dx_, &dy_, &dz_}) outside_.continue_field(free_node_.data(), field->data());
 }
 
-void SpringLattice::continue_velocities() {
+void SpringLattice::continue_velocities(const SpeedCap& cap) {
   for (Floats* field : {&vx_, &vy_, &vz_}) outside_.continue_field(free_node_.data(), field->data());
+  outside_.limit_speeds(cap, view());
 }
 
 SpringLattice::Assembly::Assembly(const SpringLattice& lattice) {

@@ -131,9 +131,9 @@ class SpringLattice {
   // call. `fraction` is the fraction of the stability limit to use.
   const float* stabilise_strained_nodes(float h_s, float fraction);
   // Gives the free nodes outside the body the displacements, or the velocities, with which the body's motion
-  // continues there (see OutsideNodes).
+  // continues there (see OutsideNodes), below the speed cap.
   void continue_displacements();
-  void continue_velocities();
+  void continue_velocities(const SpeedCap& cap);
   const float* applied_force(int axis) const { return applied_[axis].data(); }
   bool has_applied_force() const { return has_applied_force_; }
 

@@ -302,5 +302,13 @@ TEST(RandomScenes, StayWholeWhenGelatinIsCrushed) {
   for (const std::uint32_t seed : {23u, 58u}) expect_whole(seed);
 }
 
+// A point of gelatin meets a fast body. Light nodes beside the point are moved by several times the speed
+// that the point loses.
+TEST(RandomScenes, StayWholeWhenLightNodesAreHit) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  if (!is_full_run()) GTEST_SKIP() << only_in_full;
+  for (const std::uint32_t seed : {36u, 56u}) expect_whole(seed);
+}
+
 }  // namespace
 }  // namespace spoonbill

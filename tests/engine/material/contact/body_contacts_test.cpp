@@ -213,6 +213,22 @@ TEST(BodyContacts, AContactWhoseNormalTurnsRoundKeepsItsOwn) {
   EXPECT_NEAR(row.velocity(1) - row.velocity(0), 0.5 * 1e-5 / h_s, 1e-6);
 }
 
+// Body 1 moves towards body 0 and away from body 2.
+TEST(BodyContacts, FindsHowFastBodiesMeet) {
+  Row row(3);
+  BodyContacts contacts(4);
+  row.set_velocity(1, 1.5);
+  ASSERT_TRUE(add(contacts, row, 0, 1, 1e-3));
+  ASSERT_TRUE(add(contacts, row, 1, 2, 1e-3));
+  const auto find = [&](double time_s) { return contacts.find_impacts_m_per_s(row.views(), time_s); };
+  EXPECT_DOUBLE_EQ(find(1e-3)[0], 1.5);
+  EXPECT_DOUBLE_EQ(find(1e-3)[1], 1.5);
+  EXPECT_EQ(find(1e-3)[2], 0.0);
+  EXPECT_EQ(find(0.5e-3)[0], 0.0);
+  row.set_velocity(1, -1.5);
+  EXPECT_EQ(find(1e-3)[0], 0.0);
+}
+
 TEST(BodyContacts, RefusesMoreThanItsCapacity) {
   Row row(2);
   BodyContacts contacts(1);

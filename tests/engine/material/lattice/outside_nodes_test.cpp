@@ -48,6 +48,30 @@ TEST(OutsideNodes, KeepTheirValuesIfTheyAreFixed) {
   EXPECT_EQ(field, before);
 }
 
+TEST(OutsideNodes, AreSlowerThanTheSpeedCap) {
+  const LatticeMesh mesh = surface_in_box(round_torus(0.02, 0.005), {500, {}}).value();
+  const std::size_t count = mesh.nodes.size();
+  const SpeedCap cap{2.0f, 3.0f, 0.0f, 0.0f};
+  std::vector<float> vx(count, 10.0f), vy(count, 0.5f), vz(count, -1.0f), is_free(count, 1.0f);
+  LatticeView view;
+  view.vx = vx.data();
+  view.vy = vy.data();
+  view.vz = vz.data();
+  view.free_node = is_free.data();
+  OutsideNodes(mesh).limit_speeds(cap, view);
+  for (std::size_t n = 0; n < count; ++n) {
+    const bool is_outside = mesh.node_locations[n] == NodeLocation::outside_body;
+    const Vector3 relative = Vector3(vx[n], vy[n], vz[n]) - Vector3(3.0, 0.0, 0.0);
+    const Vector3 before(7.0, 0.5, -1.0);
+    if (!is_outside) {
+      EXPECT_EQ(relative, before) << n;
+    } else {
+      EXPECT_LT(relative.norm(), 2.0) << n;
+      EXPECT_NEAR(relative.normalized().dot(before.normalized()), 1.0, 1e-6) << n;
+    }
+  }
+}
+
 TEST(OutsideNodes, AreNoneInAFullBlock) {
   EXPECT_TRUE(OutsideNodes(box_mesh({0.01, 0.01, 0.01}, {3, 3, 3})).empty());
 }
