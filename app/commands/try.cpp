@@ -161,7 +161,7 @@ Result<EndedTrial> run_trial(const TryOptions& options, Session& session, TrialP
     if (pictures) {
       if (Status drawn = pictures->draw(trial, session); !drawn) return drawn.error();
     }
-    if (const std::optional<Command> command = trial.next_command()) {
+    while (const std::optional<Command> command = trial.next_command()) {
       if (Status applied = session.simulation.apply(*command); !applied) return applied.error();
     }
     const auto start = std::chrono::steady_clock::now();

@@ -57,6 +57,38 @@ void read_rim(FieldReader& reader, Body& body) {
   }
 }
 
+BodyMotion read_motion(FieldReader& reader) {
+  BodyMotion motion;
+  if (reader.has("point_mm")) motion.point_m = reader.position_m("point_mm", position_range_m);
+  std::size_t index = 0;
+  for (const Json& item : reader.list("waypoints", waypoint_count_range)) {
+    FieldReader waypoint_reader = reader.element(item, "waypoints", index++);
+    motion.waypoints.push_back(read_fields<Waypoint>(waypoint_reader));
+    waypoint_reader.finish();
+  }
+  if (!reader.status().ok()) return motion;
+  if (const Status status = check_motion(motion); !status.ok()) reader.refuse(status.error());
+  return motion;
+}
+
+void add_motion(const BodyMotion& motion, Json& json) {
+  json["point_mm"] = position_to_json(motion.point_m);
+  for (const Waypoint& waypoint : motion.waypoints) {
+    Json item = Json::object();
+    add_fields(waypoint, item);
+    json["waypoints"].push_back(std::move(item));
+  }
+}
+
+// Says why a body's kind does not permit a field, for a message after the field's name.
+std::string explain_kind(const std::string& field) {
+  if (field == "hand") return "must be missing, because the body is not rigid; or make it rigid";
+  if (field == "motion") {
+    return "must be missing, because the body is neither fixed nor held by a hand; or make it fixed";
+  }
+  return "must be missing, because the body is not deformable; or make it deformable";
+}
+
 BodyKind read_kind(FieldReader& reader) {
   if (!reader.has("kind")) return BodyKind::deformable;
   return static_cast<BodyKind>(reader.choose("kind", body_kind_names));
@@ -88,6 +120,11 @@ std::optional<Body> read_body(FieldReader reader, int version) {
     body.hand = read_fields<HandSpring>(hand_reader);
     hand_reader.finish();
   }
+  if (reader.has("motion")) {
+    FieldReader motion_reader = reader.inner("motion");
+    body.motion = read_motion(motion_reader);
+    motion_reader.finish();
+  }
   read_loads_and_supports(reader, body);
   if (reader.has("shell_thickness_mm")) {
     body.shell_thickness_m = reader.length_m("shell_thickness_mm", shell_thickness_range_m);
@@ -97,11 +134,7 @@ std::optional<Body> read_body(FieldReader reader, int version) {
   read_rim(reader, body);
   if (version > 1 && reader.has("solid")) body.solid = reader.text("solid");
   if (const Status status = check_kind(body); !status.ok()) {
-    const bool is_hand = status.error().field == std::string("hand");
-    reader.refuse(status.error().field,
-                  is_hand ? "must be missing, because the body is not rigid; or make it rigid"
-                          : "must be missing, because the body is not deformable; or make it deformable",
-                  status.error().code);
+    reader.refuse(status.error().field, explain_kind(status.error().field), status.error().code);
   }
   if (reader.has("pose")) {
     FieldReader pose_reader = reader.inner("pose");
@@ -190,6 +223,7 @@ Json body_to_json(const Body& body) {
     json["hand"] = Json::object();  // the fields with default values are not written
     add_fields(*body.hand, json["hand"]);
   }
+  if (body.motion) add_motion(*body.motion, json["motion"]);
   if (body.kind == BodyKind::deformable) add_lattice_request(body.lattice, json["lattice"]);
   for (const Load& load : body.loads) json["loads"].push_back(load_to_json(load));
   for (const Support& support : body.supports) json["supports"].push_back(support_to_json(support));
@@ -254,6 +288,11 @@ void read_content(FieldReader& reader, LowerBody& command) {
   command.body = read_body_index(reader);
 }
 
+void read_content(FieldReader& reader, MoveBody& command) {
+  command.motion = read_motion(reader);
+  command.body = read_body_index(reader);
+}
+
 template <class CommandWithoutFields>
 void add_content(const CommandWithoutFields&, Json&) {}
 void add_content(const PlacePlane& command, Json& json) {
@@ -281,6 +320,10 @@ void add_content(const TurnBody& command, Json& json) {
 }
 void add_content(const LowerBody& command, Json& json) {
   add_fields(command, json);
+  add_body_index(command.body, json);
+}
+void add_content(const MoveBody& command, Json& json) {
+  add_motion(command.motion, json);
   add_body_index(command.body, json);
 }
 

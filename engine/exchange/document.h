@@ -139,6 +139,8 @@ Result<Material> read_material(const std::filesystem::path& file);
 //   {"command": "refine_knots", and optionally "body"}
 //   {"command": "turn_body", "point_mm", "axis", "angle_deg", "speed_deg_per_s", and optionally "body"}
 //   {"command": "lower_body", "speed_m_per_s", and optionally "body"}
+//   {"command": "move_body", "point_mm", "waypoints": [{"at_s", "moved_mm", "axis", "angle_deg"}, ...], and
+//   optionally "body"}
 // "body" is the index in the list of all bodies, default: 0.
 Result<Command> command_from_json(const Json& json, const std::string& source);
 Json command_to_json(const Command& command);

@@ -39,6 +39,12 @@ void move_body(const Pose& pose, Body& body) {
   for (Support& support : body.supports) {
     if (support.motion) support.motion->displacement_m = pose.orientation * support.motion->displacement_m;
   }
+  if (!body.motion) return;
+  body.motion->point_m = pose.position_m + pose.orientation * body.motion->point_m;
+  for (Waypoint& waypoint : body.motion->waypoints) {
+    waypoint.moved_m = pose.orientation * waypoint.moved_m;
+    waypoint.axis = pose.orientation * waypoint.axis;
+  }
 }
 
 Status check_feature_map(const FeatureMapSettings& settings) {
@@ -88,6 +94,13 @@ Status check_kind(const Body& body) {
   if (body.hand && body.kind != BodyKind::rigid) {
     return Error{ErrorCode::inconsistent,
                  "a hand holds only a rigid body; remove hand, or make the body rigid", "hand"};
+  }
+  if (body.motion && body.kind != BodyKind::fixed && !body.hand) {
+    return Error{
+        ErrorCode::inconsistent,
+        "only a fixed body moves as stated, or a rigid one that a hand holds; remove motion, or make "
+        "the body fixed",
+        "motion"};
   }
   if (body.kind == BodyKind::deformable) return {};
   const char* const field = !body.regions.empty()    ? "regions"

@@ -14,6 +14,7 @@
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trim_loop.h"
 #include "engine/bspline/trimmed_area.h"
+#include "engine/scene/body_motion.h"
 #include "engine/scene/loads.h"
 #include "engine/scene/material.h"
 
@@ -75,13 +76,15 @@ inline constexpr Range<int> node_budget_range{50, 40000};
 inline constexpr Range<int> node_count_range{2, 64};  // number of nodes in each direction
 
 // Kind of a body in a simulation. A deformable body has a lattice. Fixed and rigid bodies have none. A fixed
-// body stays where it is, unless TurnBody (scene.h) turns it, and nothing that touches it can move it. A
-// rigid body has a mass and moves freely, or a hand holds it by a spring (HandSpring).
+// body stays where it is, unless a command moves it (TurnBody and MoveBody in scene.h), and nothing that
+// touches it can move it. A rigid body has a mass and moves freely, or a hand holds it by a spring
+// (HandSpring).
 enum class BodyKind { deformable, fixed, rigid };
 inline constexpr const char* body_kind_names[] = {"deformable", "fixed", "rigid"};
 
-// Spring by which a hand holds a rigid body where it is, or where TurnBody turns it. It is critically damped,
-// and more so in turns about axes of little inertia. The defaults are a choice for a loosely held spoon.
+// Spring by which a hand holds a rigid body where it is, or where a command moves the hand. It is critically
+// damped, and more so in turns about axes of little inertia. The defaults are a choice for a loosely held
+// spoon.
 struct HandSpring {
   double stiffness_n_per_m = 300.0;
   double turn_stiffness_nm_per_rad = 1.0;
@@ -118,6 +121,8 @@ struct Body {
   std::string solid = {};
   BodyKind kind = BodyKind::deformable;
   std::optional<HandSpring> hand = {};  // of a rigid body that a hand holds; empty for any other body
+  // Motion of a fixed body, or of the hand that holds a rigid one, in a trial after its turn (trial.h).
+  std::optional<BodyMotion> motion = {};
 };
 
 inline constexpr Range<int> control_point_count_range{2, 200};  // number of control points in each direction
@@ -142,7 +147,7 @@ inline constexpr auto fields_of<BodyPlacement> = std::to_array<Field<BodyPlaceme
     number_field("angle_deg", &BodyPlacement::angle_deg, placement_angle_range_deg).optional(),
 });
 
-// Moves a body with its loads and the motions of its supports.
+// Moves a body with its loads, its motion and the motions of its supports.
 void move_body(const Pose& pose, Body& body);
 
 // Returns an error that names the first field out of range, with its value and its range.
@@ -150,8 +155,8 @@ Status check_feature_map(const FeatureMapSettings& settings);
 Status check_lattice_request(const LatticeRequest& lattice);
 // Checks the numbers of loads and supports, and that point loads are within the surface's domain.
 Status check_loads(const Body& body);
-// Refuses a fixed or rigid body with regions, loads or supports, which would have no effect, and a hand at a
-// body that is not rigid.
+// Refuses a fixed or rigid body with regions, loads or supports, which would have no effect, a hand at a body
+// that is not rigid, and a motion of a body that is neither fixed nor held by a hand.
 Status check_kind(const Body& body);
 
 // Returns the area within the body's trim loops; null if the body has no trims.

@@ -47,7 +47,8 @@ Vector3 mirror_point(const Symmetry& symmetry, const Vector3& point_m);
 Pose mirror_pose(const Symmetry& symmetry, const Pose& pose);
 
 // How a trial of the scene runs (engine/trial): a body such as food is lowered until others bear its weight,
-// comes to rest, and then a body such as a spoon is turned.
+// comes to rest, and then a body such as a spoon is turned. At last, bodies move as they state
+// (Body::motion).
 struct TrialPlan {
   std::string lowered_body;              // name of the body that is lowered first; empty: none
   double lowering_speed_m_per_s = 0.01;  // along gravity
@@ -181,6 +182,12 @@ struct TurnBody {
   double angle_deg = 0.0;
   double speed_deg_per_s = 30.0;
 };
+// Moves a fixed body, or the hand that holds a rigid one, through waypoints. A motion that has not ended is
+// replaced.
+struct MoveBody {
+  int body = 0;  // index in the scene
+  BodyMotion motion = {};
+};
 // Lowers a deformable body level, along gravity, until contacts bear its weight, and then lets it go.
 struct LowerBody {
   int body = 0;  // index in the scene
@@ -195,7 +202,7 @@ double turn_duration_s(const TurnBody& turn);
 double turned_angle_deg(const TurnBody& turn, double time_s);
 
 using Command = std::variant<PlacePlane, RemovePlanes, SetTool, SetMaterial, SetSculpting, SetSymmetry,
-                             ResetProxy, LiftTool, KeepShape, RefineKnots, TurnBody, LowerBody>;
+                             ResetProxy, LiftTool, KeepShape, RefineKnots, TurnBody, LowerBody, MoveBody>;
 
 // Names of the commands in scripts and recordings.
 template <>
@@ -222,6 +229,8 @@ template <>
 inline constexpr const char* kind_name<TurnBody> = "turn_body";
 template <>
 inline constexpr const char* kind_name<LowerBody> = "lower_body";
+template <>
+inline constexpr const char* kind_name<MoveBody> = "move_body";
 
 template <>
 inline constexpr auto fields_of<TurnBody> = std::to_array<Field<TurnBody>>({

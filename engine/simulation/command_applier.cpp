@@ -205,15 +205,27 @@ Status CommandApplier::operator()(const RefineKnots& command) {
   return {};
 }
 
+Result<RigidBody*> CommandApplier::find_driven(int body) const {
+  if (Status status = check_body(body); !status.ok()) return status.error();
+  std::optional<RigidBody>& rigid = state.bodies[static_cast<std::size_t>(body)].rigid;
+  if (rigid && !rigid->is_free()) return &*rigid;
+  return Error{ErrorCode::inconsistent, "only a fixed body moves so, or a rigid one that a hand holds",
+               "body"};
+}
+
 Status CommandApplier::operator()(const TurnBody& command) {
-  if (Status status = check_body(command.body); !status.ok()) return status;
+  const Result<RigidBody*> rigid = find_driven(command.body);
+  if (!rigid.ok()) return rigid.error().in("turn_body");
   if (Status status = check_fields("turn_body: ", command); !status.ok()) return status;
-  std::optional<RigidBody>& rigid = state.bodies[static_cast<std::size_t>(command.body)].rigid;
-  if (!rigid || rigid->is_free()) {
-    return Error{ErrorCode::inconsistent,
-                 "turn_body: only a fixed body turns, or a rigid one that a hand holds", "body"};
-  }
-  rigid->turn(command);
+  rigid.value()->turn(command);
+  return {};
+}
+
+Status CommandApplier::operator()(const MoveBody& command) {
+  const Result<RigidBody*> rigid = find_driven(command.body);
+  if (!rigid.ok()) return rigid.error().in("move_body");
+  if (Status status = check_motion(command.motion); !status.ok()) return status.error().in("move_body");
+  rigid.value()->move(command.motion);
   return {};
 }
 

@@ -3,17 +3,36 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "engine/base/assert.h"
 
 namespace spoonbill {
+namespace {
+
+// Returns the pose of a body `time_s` after the start of a turn.
+Pose turned_pose(const TurnBody& turn, double time_s, const Pose& start) {
+  const double angle = turned_angle_deg(turn, time_s) * std::numbers::pi / 180.0;
+  const Quaternion turned(Eigen::AngleAxisd(angle, turn.axis));
+  return {turn.point_m + turned * (start.position_m - turn.point_m), turned * start.orientation};
+}
+
+}  // namespace
+
+void RigidBody::start(std::variant<TurnBody, MotionPath> drive) {
+  drive_ = std::move(drive);
+  start_ = motion_.end;
+  elapsed_s_ = 0.0;
+  is_driven_ = true;
+}
 
 void RigidBody::turn(const TurnBody& turn) {
   SPOONBILL_ASSERT(std::abs(turn.axis.squaredNorm() - 1.0) < 1e-5);
-  turn_ = turn;
-  start_ = motion_.end;
-  elapsed_s_ = 0.0;
-  turns_ = true;
+  start(turn);
+}
+
+void RigidBody::move(const BodyMotion& motion) {
+  start(MotionPath(motion));
 }
 
 void RigidBody::place(const Pose& pose) {
@@ -34,7 +53,7 @@ void RigidBody::keep_shape(const LatticeMesh& frame) {
 
 void RigidBody::place_hand(const Pose& pose) {
   motion_ = {pose, pose, false};
-  turns_ = false;
+  is_driven_ = false;
 }
 
 bool RigidBody::is_finite() const {
@@ -47,14 +66,19 @@ void RigidBody::begin_tick(double tick_s) {
   SPOONBILL_ASSERT(tick_s > 0.0);
   tick_start_ = pose();
   motion_.start = motion_.end;
-  motion_.moves = turns_;
-  if (!turns_) return;
+  motion_.moves = is_driven_;
+  if (!is_driven_) return;
   elapsed_s_ += tick_s;
-  const double angle = turned_angle_deg(turn_, elapsed_s_) * std::numbers::pi / 180.0;
-  const Quaternion turned(Eigen::AngleAxisd(angle, turn_.axis));
-  motion_.end.orientation = turned * start_.orientation;
-  motion_.end.position_m = turn_.point_m + turned * (start_.position_m - turn_.point_m);
-  turns_ = elapsed_s_ < turn_duration_s(turn_);
+  double duration_s = 0.0;
+  if (const auto* const turn = std::get_if<TurnBody>(&drive_)) {
+    motion_.end = turned_pose(*turn, elapsed_s_, start_);
+    duration_s = turn_duration_s(*turn);
+  } else {
+    const MotionPath& path = std::get<MotionPath>(drive_);
+    motion_.end = path.at(elapsed_s_, start_);
+    duration_s = path.duration_s();
+  }
+  is_driven_ = elapsed_s_ < duration_s;
 }
 
 }  // namespace spoonbill

@@ -2,16 +2,18 @@
 #pragma once
 
 #include <optional>
+#include <variant>
 
 #include "engine/base/geometry.h"
 #include "engine/material/lattice_solver.h"
 #include "engine/material/rigid/rigid_dynamics.h"
+#include "engine/scene/body_motion.h"
 #include "engine/scene/scene.h"
 
 namespace spoonbill {
 
-// A fixed body, which only a TurnBody command moves, or a body that moves with its dynamics: freely, or held
-// by a hand, which TurnBody moves. Its pose maps the rest shape to the present one.
+// A fixed body, which only a TurnBody or MoveBody command moves, or a body that moves with its dynamics:
+// freely, or held by a hand, which these commands move. Its pose maps the rest shape to the present one.
 class RigidBody {
  public:
   RigidBody() = default;  // a fixed body
@@ -28,15 +30,18 @@ class RigidBody {
   bool is_free() const { return dynamics_ && !hand_; }
   // Returns whether the body may move in the present tick.
   bool moves() const { return dynamics_ || motion_.moves; }
-  bool is_turning() const { return turns_; }
+  // Returns whether a command is moving the body, or its hand.
+  bool is_driven() const { return is_driven_; }
 
-  // Starts a turn from the present pose, or from that of the hand.
+  // turn() and move() start a motion from the present pose, or from that of the hand. They replace a motion
+  // that has not ended. move() allocates.
   void turn(const TurnBody& turn);
-  // Ends a turn, and puts the body at rest at `pose`.
+  void move(const BodyMotion& motion);
+  // Ends a motion, and puts the body at rest at `pose`.
   void place(const Pose& pose);
-  // Ends a turn, and makes the present pose the rest shape, at rest. `frame` is the body's frame there.
+  // Ends a motion, and makes the present pose the rest shape, at rest. `frame` is the body's frame there.
   void keep_shape(const LatticeMesh& frame);
-  // Puts the hand that holds the body at a pose, and ends a turn.
+  // Puts the hand that holds the body at a pose, and ends a motion.
   void place_hand(const Pose& pose);
   // is_finite() returns whether the pose and the velocities are finite. return_to_start() puts a body with
   // dynamics at rest where it was at the start of the tick.
@@ -54,23 +59,30 @@ class RigidBody {
     };
     visit_pose(motion_.end);
     if (dynamics_) dynamics_->visit_state(visit);
-    if (!turns_) return;
+    if (!is_driven()) return;
     visit_pose(start_);
-    visit(turn_.point_m.data(), 3);
-    visit(turn_.axis.data(), 3);
-    const double turn[] = {turn_.angle_deg, turn_.speed_deg_per_s, elapsed_s_};
-    visit(turn, 3);
+    if (const auto* const turn = std::get_if<TurnBody>(&drive_)) {
+      visit(turn->point_m.data(), 3);
+      visit(turn->axis.data(), 3);
+      const double values[] = {turn->angle_deg, turn->speed_deg_per_s};
+      visit(values, 2);
+    } else {
+      std::get<MotionPath>(drive_).visit_state(visit);
+    }
+    visit(&elapsed_s_, 1);
   }
 
  private:
+  void start(std::variant<TurnBody, MotionPath> drive);
+
   std::optional<RigidDynamics> dynamics_;
   std::optional<HandSpring> hand_;
   Pose tick_start_;  // pose at the start of the tick
   RigidMotion motion_;
-  TurnBody turn_;  // the present turn, or the last one
-  Pose start_;     // pose at the start of the turn
+  std::variant<TurnBody, MotionPath> drive_;  // the present drive of the body or of its hand, or the last one
+  Pose start_;                                // pose at the start of the drive
   double elapsed_s_ = 0.0;
-  bool turns_ = false;
+  bool is_driven_ = false;
 };
 
 }  // namespace spoonbill

@@ -415,7 +415,7 @@ double Simulation::fastest_m_per_s(int body) const {
 }
 bool Simulation::is_moving_bodies() const {
   return std::any_of(state_->bodies.begin(), state_->bodies.end(), [](const BodyState& body) {
-    return body.lowering_m_per_s > 0.0 || (body.rigid && body.rigid->is_turning());
+    return body.lowering_m_per_s > 0.0 || (body.rigid && body.rigid->is_driven());
   });
 }
 int Simulation::body_at_fault() const {

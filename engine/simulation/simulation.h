@@ -157,7 +157,7 @@ class Simulation {
   const RigidDynamics* rigid_dynamics(int body) const;
   // Returns the highest speed of a node of a body.
   double fastest_m_per_s(int body = 0) const;
-  // Returns true while a body is being turned or lowered.
+  // Returns true while a command is turning, moving or lowering a body.
   bool is_moving_bodies() const;
   // Returns the index of the body to which the last tick's flags nodes_slowed, speed_capped and body_limited
   // apply, or -1.

@@ -145,10 +145,13 @@ struct CommandApplier {
   Status operator()(const RefineKnots& command);
   Status operator()(const TurnBody& command);
   Status operator()(const LowerBody& command);
+  Status operator()(const MoveBody& command);
 
  private:
   void release();
   Status check_body(int body) const;
+  // Returns a fixed body, or a rigid one that a hand holds; fails for any other body.
+  Result<RigidBody*> find_driven(int body) const;
   // Makes the implicit solver of a body (make_implicit_solver()); a rigid body has none.
   Result<std::optional<ImplicitSolver>> make_solver_of(const BodyState& body, const SpringLattice& lattice,
                                                        const std::vector<Vector3>& rest_m) const;

@@ -195,6 +195,9 @@ Trial::Trial(const Scene& scene, const TrialSettings& settings)
     turn_ = TurnBody{find_body(scene, plan_.turned_body), plan_.point_m, plan_.axis, plan_.angle_deg,
                      plan_.turn_speed_deg_per_s};
   }
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (scene.bodies[b].motion) motions_.push_back({static_cast<int>(b), *scene.bodies[b].motion});
+  }
   start(lower_ ? TrialPhase::lowering : TrialPhase::settling);
 }
 
@@ -203,12 +206,26 @@ void Trial::start(TrialPhase phase) {
   phase_s_ = 0.0;
   // A body that is lowered moves, although its nodes have no velocity.
   if (phase == TrialPhase::settling) still_s_ = 0.0;
-  if (phase == TrialPhase::lowering) next_ = *lower_;
-  if (phase == TrialPhase::turning) next_ = *turn_;
+  if (phase == TrialPhase::lowering) next_ = {*lower_};
+  if (phase == TrialPhase::turning) next_ = {*turn_};
+  if (phase == TrialPhase::moving) next_.assign(motions_.begin(), motions_.end());
+}
+
+void Trial::start_after(TrialPhase phase) {
+  if (phase == TrialPhase::settling && turn_) {
+    start(TrialPhase::turning);
+  } else if (phase != TrialPhase::moving && !motions_.empty()) {
+    start(TrialPhase::moving);
+  } else {
+    start(TrialPhase::watching);
+  }
 }
 
 std::optional<Command> Trial::next_command() {
-  return std::exchange(next_, std::nullopt);
+  if (next_.empty()) return std::nullopt;
+  Command command = std::move(next_.back());
+  next_.pop_back();
+  return command;
 }
 
 Status Trial::follow(const Simulation& simulation, std::uint32_t flags) {
@@ -242,11 +259,12 @@ Status Trial::follow(const Simulation& simulation, std::uint32_t flags) {
       break;
     case TrialPhase::settling:
       if (is_settled() || phase_s_ >= settings_.longest_settling_s) {
-        start(turn_ ? TrialPhase::turning : TrialPhase::watching);
+        start_after(phase_);
       }
       break;
     case TrialPhase::turning:
-      if (!simulation.is_moving_bodies()) start(TrialPhase::watching);
+    case TrialPhase::moving:
+      if (!simulation.is_moving_bodies()) start_after(phase_);
       break;
     case TrialPhase::watching:
       if (phase_s_ >= settings_.seconds) phase_ = TrialPhase::done;

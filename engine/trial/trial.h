@@ -20,7 +20,7 @@ inline constexpr double settled_speed_m_per_s = 1e-4;
 inline constexpr double settled_time_s = 0.2;
 
 struct TrialSettings {
-  double seconds = 3.0;              // time after the turn, or after the settling if nothing turns
+  double seconds = 3.0;              // time after the last turn or motion, or after the settling
   double longest_settling_s = 10.0;  // time after which a trial goes on although the bodies still move
 };
 inline constexpr Range<double> trial_seconds_range{0.0, 600.0};
@@ -37,15 +37,17 @@ Result<Scene> make_trial_scene(Scene scene, std::optional<double> tilt_deg);
 // Fails if a support or a plane holds the body that the trial would lower.
 Status check_trial_start(const Simulation& simulation);
 
-// The parts of a trial, in their order. Parts for which the plan names no body are left out.
-enum class TrialPhase { lowering, settling, turning, watching, done };
-inline constexpr const char* trial_phase_names[] = {"lowering", "settling", "turning", "watching", "done"};
+// The parts of a trial, in their order. Parts for which the plan names no body, or for which no body states a
+// motion, are left out.
+enum class TrialPhase { lowering, settling, turning, moving, watching, done };
+inline constexpr const char* trial_phase_names[] = {"lowering", "settling", "turning",
+                                                    "moving",   "watching", "done"};
 
 // Course of a trial. Has one owner, which runs the ticks:
 //
 //   Trial trial(simulation.scene(), settings);
 //   while (trial.phase() != TrialPhase::done) {
-//     if (const auto command = trial.next_command()) simulation.apply(*command);
+//     while (const auto command = trial.next_command()) simulation.apply(*command);
 //     const Reaction reaction = simulation.advance(trial_input());
 //     if (const Status held = trial.follow(simulation, reaction.flags); !held) return held;
 //   }
@@ -54,7 +56,7 @@ class Trial {
   // `scene` must be made by make_trial_scene(), and its bodies in the order of the simulation.
   Trial(const Scene& scene, const TrialSettings& settings);
 
-  // Returns the command to apply before the next tick, if there is one.
+  // Returns the next command to apply before the next tick, if there is one left.
   std::optional<Command> next_command();
   // Call after each tick. `flags` are the tick's flags. Fails if the simulation could not hold a body, which
   // the error names if it is known, and if no body bears the lowered body within half a minute.
@@ -89,13 +91,15 @@ class Trial {
     Vector3 momentum_ns;
   };
   void start(TrialPhase phase);
+  void start_after(TrialPhase phase);  // starts the phase that follows
   void record_forces(const Simulation& simulation);
 
   TrialPlan plan_;
   TrialSettings settings_;
   std::optional<LowerBody> lower_;
   std::optional<TurnBody> turn_;
-  std::optional<Command> next_;
+  std::vector<MoveBody> motions_;
+  std::vector<Command> next_;
   TrialPhase phase_ = TrialPhase::done;
   std::uint64_t ticks_ = 0;
   double phase_s_ = 0.0, still_s_ = 0.0;

@@ -90,7 +90,7 @@ bool play(const Scene& scene, Times& times) {
   Simulation simulation = std::move(made).value();
   Trial trial(simulation.scene(), {.seconds = 2.0});
   while (trial.phase() != TrialPhase::done) {
-    if (const auto command = trial.next_command()) (void)simulation.apply(*command);
+    while (const auto command = trial.next_command()) (void)simulation.apply(*command);
     const bool counts = trial.phase() == TrialPhase::turning || trial.phase() == TrialPhase::watching;
     Reaction reaction;
     time_tick(times, [&] {

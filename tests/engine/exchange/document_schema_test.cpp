@@ -67,6 +67,7 @@ Json rewritten_schema(Json schema) {
   all["symmetry"] = with_description_of<Symmetry>(all["symmetry"]);
   all["hand"] = with_description_of<HandSpring>(all["hand"]);
   all["pose"] = with_description_of<BodyPlacement>(all["pose"]);
+  all["motion"]["properties"]["waypoints"]["items"] = object_schema(Waypoint{});
   all["trial"] = with_description_of<TrialPlan>(all["trial"]);
   all["sculpting"] = with_description_of<Sculpting>(all["sculpting"]);
   all["load"] = variant_schema<Load>("kind");

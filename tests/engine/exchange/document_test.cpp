@@ -137,6 +137,38 @@ TEST(Document, PlacesABodyAndKeepsTheHandThatHoldsIt) {
   EXPECT_EQ(Refusal(document_from_json(fixed, "text")), Refusal(ErrorCode::inconsistent, "body.hand"));
 }
 
+TEST(Document, KeepsTheMotionOfABody) {
+  Document document = sample_document();
+  Body& body = document.scene.bodies[0];
+  body.regions.clear();
+  body.loads.clear();
+  body.supports.clear();
+  body.kind = BodyKind::fixed;
+  body.motion = BodyMotion{
+      {0.01, 0.0, 0.0},
+      {{0.5, {0.0, 0.02, 0.0}, Vector3::UnitY(), 0.0}, {1.5, {0.0, 0.02, 0.01}, Vector3::UnitZ(), 45.0}}};
+  const Json json = document_to_json(document);
+  const auto read = document_from_json(json, "text");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(document_to_json(read.value()), json);
+  ASSERT_TRUE(read->scene.bodies[0].motion);
+  const Waypoint& last = read->scene.bodies[0].motion->waypoints.at(1);
+  EXPECT_EQ(last.time_s, 1.5);
+  EXPECT_EQ(last.moved_m, Vector3(0.0, 0.02, 0.01));
+  EXPECT_EQ(last.axis, Vector3::UnitZ());
+  EXPECT_EQ(last.angle_deg, 45.0);
+
+  Json early = json;
+  early["body"]["motion"]["waypoints"][1]["at_s"] = 0.5;
+  EXPECT_EQ(Refusal(document_from_json(early, "text")), Refusal(ErrorCode::inconsistent, "body.motion"));
+  Json none = json;
+  none["body"]["motion"]["waypoints"] = Json::array();
+  EXPECT_EQ(Refusal(document_from_json(none, "text")), Refusal(ErrorCode::too_few, "body.motion.waypoints"));
+  Json free = json;
+  free["body"]["kind"] = "rigid";
+  EXPECT_EQ(Refusal(document_from_json(free, "text")), Refusal(ErrorCode::inconsistent, "body.motion"));
+}
+
 TEST(Document, KeepsTheRimOfABody) {
   Document document = sample_document();
   Body& body = document.scene.bodies[0];

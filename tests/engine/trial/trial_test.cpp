@@ -51,7 +51,7 @@ RunTrial run_trial(Simulation& simulation, const TrialSettings& settings) {
   while (trial.phase() != TrialPhase::done && result.held.ok()) {
     if (result.phases.empty() || result.phases.back() != trial.phase())
       result.phases.push_back(trial.phase());
-    if (const auto command = trial.next_command()) {
+    while (const auto command = trial.next_command()) {
       EXPECT_TRUE(simulation.apply(*command).ok());
     }
     const Reaction reaction = simulation.advance(trial_input());
