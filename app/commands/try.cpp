@@ -325,7 +325,7 @@ CommandEntry add_try(OptionSet root) {
   parser.add_option("DOCUMENT", options->model, "Document (.json)").require();
   parser
       .add_option("--seconds", options->seconds,
-                  "Time after the turn, or after the settling if nothing turns; default: 3, range: 0 to 600")
+                  "Time after the last turn or motion, or after the settling; default: 3, range: 0 to 600")
       .limit(trial_seconds_range);
   add_parsed_option(
       parser, "--tilt", "ANGLE",

@@ -288,6 +288,14 @@ void drop_trimmed_points(MeshProximity& proximity, const BodyState& body) {
       [&](const VertexNearSurface& near) { return is_untrimmed(body, near.u, near.v); });
 }
 
+// Returns a bound of how far points of two bodies, or of the same body, approach each other in a tick. Bodies
+// that fall side by side do not approach each other.
+double find_approach_m(const BodyState& first, const BodyState& second) {
+  const NodeSpeeds of_first = first.lattice.find_node_speeds(), of_second = second.lattice.find_node_speeds();
+  return tick_s * ((of_first.mean_m_per_s - of_second.mean_m_per_s).norm() +
+                   of_first.fastest_from_mean_m_per_s + of_second.fastest_from_mean_m_per_s);
+}
+
 void find_near_points(SurfaceProximity& proximity, const BodyState& first, const BodyState& second,
                       double margin) {
   const ShellOrSolid one{&first.mapping().current(), first.shell_thickness_m},
@@ -342,7 +350,7 @@ bool BodyPairContact::find(const IndexedBody& first, const IndexedBody& second) 
     return body.rigid && !both_rigid ? 0.0 : static_cast<double>(body.lattice.cell_size_m());
   };
   const double cell = std::max(size_of_cells(*first.state), size_of_cells(*second.state));
-  const double motion_m = tick_s * (first.state->fastest_m_per_s() + second.state->fastest_m_per_s());
+  const double motion_m = find_approach_m(*first.state, *second.state);
   // Points that come within reach during a tick need their constraints one tick earlier.
   const double margin_m = std::max(contact_margin_cells * cell, 2.0 * motion_m);
   deepest_new_m_ = std::max(deepest_new_cells * cell, motion_m);
@@ -394,7 +402,7 @@ BodySelfContact::BodySelfContact(const BodyState& body) {
 bool BodySelfContact::add_contacts(const IndexedBody& body, BodyContacts& contacts) const {
   if (!proximity_) return true;
   const auto cell_m = static_cast<double>(body.state->lattice.cell_size_m());
-  const double motion_m = 2.0 * tick_s * body.state->fastest_m_per_s();
+  const double motion_m = find_approach_m(*body.state, *body.state);
   const double deepest_new_m = std::max(deepest_new_cells * cell_m, motion_m);
   proximity_->find(body.state->mapping().current(), std::max(contact_margin_cells * cell_m, motion_m));
   if (const TrimmedArea* const trim = body.state->trim.get()) {

@@ -395,6 +395,17 @@ double SpringLattice::fastest_m_per_s() const {
   return std::sqrt(kernels_->find_largest_square(vx_.data(), vy_.data(), vz_.data(), padded_count_));
 }
 
+NodeSpeeds SpringLattice::find_node_speeds() const {
+  const int count = mesh_.node_count();
+  NodeSpeeds found;
+  for (int n = 0; n < count; ++n) found.mean_m_per_s += velocity(n);
+  found.mean_m_per_s /= count;
+  double square = 0.0;
+  for (int n = 0; n < count; ++n) square = std::max(square, (velocity(n) - found.mean_m_per_s).squaredNorm());
+  found.fastest_from_mean_m_per_s = std::sqrt(square);
+  return found;
+}
+
 void SpringLattice::set_displacement(int node, const Vector3& d) {
   for (const int n : {node, mesh_.twin(node)}) {
     dx_[n] = static_cast<float>(d.x());

@@ -24,6 +24,12 @@ namespace spoonbill {
 // frequency by a factor of 1.2 to 1.6; a tick then takes more substeps.
 inline constexpr double rest_stability_fraction = 0.75;
 
+// Mean velocity of the nodes of a lattice, and the highest speed of a node relative to it, m/s.
+struct NodeSpeeds {
+  Vector3 mean_m_per_s = Vector3::Zero();
+  double fastest_from_mean_m_per_s = 0.0;
+};
+
 class SpringLattice {
  public:
   // Builds the lattice at rest with an inertia scale of 1, at which the inertia of each node is its mass.
@@ -108,6 +114,7 @@ class SpringLattice {
   Vector3 velocity(int node) const { return {vx_[node], vy_[node], vz_[node]}; }
   // Returns the highest speed of a node, m/s.
   double fastest_m_per_s() const;
+  NodeSpeeds find_node_speeds() const;
   // Sets the displacement of a node and of its twin at the seam, m.
   void set_displacement(int node, const Vector3& d);
   void set_velocity(int node, const Vector3& v);

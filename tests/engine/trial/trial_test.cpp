@@ -134,6 +134,21 @@ TEST(Trial, ABlockFallsOntoAPlate) {
 }
 
 // The bundled jelly slides over the front rim of its spoon and falls. It never enters the spoon.
+// Two blocks that have fallen for 1.2 s move by 12 mm in a tick, but not towards each other or themselves.
+TEST(Trial, BlocksThatFallSideBySideHaveFewContacts) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  if (!is_full_run()) GTEST_SKIP() << only_in_full;
+  Scene scene;
+  scene.bodies = {soft_block(0.3), soft_block(0.3)};
+  move_body({Vector3(0.0, 0.0081, 0.0), Quaternion::Identity()}, scene.bodies[1]);
+  scene = make_trial_scene(scene, {}).value();
+  Simulation simulation = make_simulation(scene);
+  const RunTrial result = run_trial(simulation, {0.0, 1.2});
+  ASSERT_TRUE(result.held.ok()) << result.held.error().message;
+  EXPECT_EQ(result.report.inverted_cells, 0);
+  EXPECT_LT(result.largest_penetration_m, 0.1 * static_cast<double>(simulation.lattice(0).cell_size_m()));
+}
+
 TEST(Trial, JellySlidesOffATiltedSpoon) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   const Scene scene = bundled_scene("jelly-on-spoon");
