@@ -201,6 +201,7 @@ struct Relaxation {
   std::array<Drifted, lattice_capacity> drifted{};
   std::array<double, lattice_capacity> drag_per_s{};
   double time_s = 0.0;  // duration of the tick, s
+  bool is_real_time = false;
   // Frame of the soft tool, if there is one, and the position at which it has moved the tool's lattice.
   MovingFrame frame;
   Vector3 frame_m = Vector3::Zero();
@@ -274,6 +275,7 @@ void kick(Relaxation& relaxation, const Substep& substep) {
     const float decay = 1.0f / (1.0f + h * static_cast<float>(relaxation.drag_per_s[at]));
     compute_forces(lattice, view, relaxation.drifted[at].moved_square,
                    weights * relaxation.lattices[at].gravity_m_per_s2);
+    if (relaxation.is_real_time) lattice.resist_inversion(view, h);
     add_support_impulses(relaxation.lattices[at].supports, view, static_cast<double>(h));
     lattice.kernels().kick(view, h, decay);
     set_support_velocities(relaxation.lattices[at].supports, view, relaxation.time_s);
@@ -638,6 +640,7 @@ Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, co
   for (std::size_t at = 0; at < relaxation.count() && settings.is_real_time; ++at) {
     if (!relaxation.has_springs(at)) continue;
     relaxation.lattice(at).continue_displacements();
+    relaxation.lattice(at).find_flat_corners();
     set_damped_speeds(relaxation.lattice(at), find_mean_velocity(relaxation, at), relaxation.view[at]);
   }
   const int for_speed = count_substeps_for_speed(relaxation, settings, between);
@@ -766,7 +769,8 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   SPOONBILL_ASSERT(!lattices.empty() && lattices.size() <= static_cast<std::size_t>(lattice_capacity));
   SPOONBILL_ASSERT(settings.substeps >= 1 && settings.time_s > 0.0);
   SPOONBILL_ASSERT(settings.drag_per_s >= 0.0);
-  Relaxation relaxation{lattices, {}, {}, {}, {}, {}, settings.time_s, {}, Vector3::Zero()};
+  Relaxation relaxation{lattices,       {}, {}, {}, {}, {}, settings.time_s, settings.is_real_time, {},
+                        Vector3::Zero()};
   const bool flows = settings.tick % 2 == 1;
   for (std::size_t at = 0; at < lattices.size(); ++at) relaxation.view[at] = lattices[at].lattice->view();
   const Substeps substeps = begin_springs(relaxation, settings, between, !flows);

@@ -30,9 +30,9 @@ struct SupportedNodes {
   Vector3 impulse_ns = Vector3::Zero();  // impulse of the support on the body in the tick, N s
 };
 
-// Largest factor by which strain, or in real time the speed of nodes, may raise the number of substeps. If
-// strain requires more substeps, the inertia of the strained nodes is raised just enough for stability. These
-// nodes respond more slowly, which hardly shows in a damped, quasi-static body.
+// Largest factor by which strain, or in real time the speed of nodes and of impacts, may raise the number of
+// substeps. If strain requires more substeps, the inertia of the strained nodes is raised just enough for
+// stability. These nodes respond more slowly, which hardly shows in a damped, quasi-static body.
 inline constexpr int substep_ceiling = 4;
 
 // Longest substep, as a fraction of the measured stability limit. The reserve is needed because the running

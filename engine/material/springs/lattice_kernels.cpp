@@ -407,6 +407,7 @@ const LatticeKernels lattice_kernels = {
     start_forces,
     spring_forces,
     volume_forces,
+    find_flat_cells,
     damp_further,
     kick,
     drift,

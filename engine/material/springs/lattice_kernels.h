@@ -175,6 +175,10 @@ struct LatticeKernels {
   // rest volume also pushes back with crushed_stiffness, because springs cannot tell an inverted cell from a
   // regular one.
   void (*volume_forces)(const LatticeView&);
+  // Sets flat[n] to 1 for each cell, by its first corner n, of which the three edges at a corner span less
+  // than `ratio` of their volume at rest, and to 0 for all others, padding included. Corners that span less
+  // than `least` of the cell's volume at construction are left out. Returns whether there is such a cell.
+  bool (*find_flat_cells)(const LatticeView&, float ratio, float least, unsigned char* flat);
   // Adds the damping of springs beyond the damping time of the linearisation. A spring with the further
   // damping c, the direction n at the linearisation and the end velocities v and v' exerts the force
   // c ((v' - v).n) n on its first end and the opposite force on the other.
@@ -249,6 +253,9 @@ void creep(const LatticeView& view, int direction, const CreepRule& rule);
 
 // See LatticeKernels::volume_forces.
 void volume_forces(const LatticeView& view);
+
+// See LatticeKernels::find_flat_cells.
+bool find_flat_cells(const LatticeView& view, float ratio, float least, unsigned char* flat);
 
 // Sets node_dilation to the mean J of the cells around each node.
 void average_dilations(const LatticeView& view);

@@ -120,6 +120,7 @@ Result<SpringLattice> SpringLattice::make(const LatticeMesh& mesh, const Lattice
 void SpringLattice::allocate(const LatticeMesh& mesh) {
   mesh_ = mesh;
   outside_ = OutsideNodes(mesh);
+  flat_corners_ = FlatCorners(mesh);
   // The frame of a rigid body has a single cell. Searches for contacts need a length like that of the cells
   // of deformable bodies.
   constexpr double frame_fraction = 1.0 / 16.0;

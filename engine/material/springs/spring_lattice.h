@@ -16,6 +16,7 @@
 #include "engine/material/lattice/lattice_mesh.h"
 #include "engine/material/lattice/outside_nodes.h"
 #include "engine/material/lattice_materials.h"
+#include "engine/material/springs/flat_corners.h"
 #include "engine/material/springs/lattice_kernels.h"
 
 namespace spoonbill {
@@ -141,6 +142,10 @@ class SpringLattice {
   // continues there (see OutsideNodes), below the speed cap.
   void continue_displacements();
   void continue_velocities(const SpeedCap& cap);
+  // find_flat_corners() finds at the start of a tick which cells may be turned inside out, and
+  // resist_inversion() adds their resistance to the forces of a substep of h_s (see FlatCorners).
+  void find_flat_corners() { flat_corners_.find(kernels(), view()); }
+  void resist_inversion(const LatticeView& view, float h_s) const { flat_corners_.add_forces(view, h_s); }
   const float* applied_force(int axis) const { return applied_[axis].data(); }
   bool has_applied_force() const { return has_applied_force_; }
 
@@ -205,6 +210,7 @@ class SpringLattice {
 
   LatticeMesh mesh_;
   OutsideNodes outside_;
+  FlatCorners flat_corners_;
   LatticeReport report_;
   const LatticeKernels* kernels_ = nullptr;
   double total_mass_ = 0.0, rest_volume_ = 0.0;

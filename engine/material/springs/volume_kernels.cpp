@@ -1,4 +1,5 @@
 #include "engine/material/springs/lattice_kernels.h"
+#include "engine/material/springs/speed_cap.h"
 
 namespace spoonbill::SPOONBILL_KERNELS {
 namespace {
@@ -193,6 +194,58 @@ void volume_forces(const LatticeView& view) {
   } else {
     add_volume_forces<false>(view);
   }
+}
+
+namespace {
+
+// The edges of a cell along an axis, in the order of the bits of their first corners, at rest and at present.
+struct CellEdges {
+  Vector rest[4], present[4];
+};
+
+// `bit` is the axis' bit in the numbers of corners; `others` are the corners without it.
+inline CellEdges cell_edges(const LatticeView& view, int bit, const int (&others)[4], int n) {
+  const SpringArrays& springs = view.springs[view.corner_direction[bit]];
+  CellEdges edges;
+  for (int e = 0; e < 4; ++e) {
+    const int from = n + view.corner_offset[others[e]], to = n + view.corner_offset[others[e] | bit];
+    edges.rest[e] = rest_vector(springs, from);
+    edges.present[e] = edges.rest[e] + difference(view.dx, view.dy, view.dz, from, to);
+  }
+  return edges;
+}
+
+}  // namespace
+
+bool find_flat_cells(const LatticeView& view, float ratio, float least, unsigned char* flat) {
+  constexpr int without_i[4] = {0, 1, 2, 3}, without_j[4] = {0, 1, 4, 5}, without_k[4] = {0, 2, 4, 6};
+  alignas(64) float is_flat[block];
+  bool any = false;
+  for (int start = 0; start < view.padded_count; start += block) {
+    for (int l = 0; l < block; ++l) {
+      const int n = start + l;
+      const CellEdges along_i = cell_edges(view, 4, without_i, n),
+                      along_j = cell_edges(view, 2, without_j, n),
+                      along_k = cell_edges(view, 1, without_k, n);
+      // Products with the volume at rest do not depend on the orientation of the axes.
+      const float inverse = view.inverse_volume[n];
+      const float limit = ratio * view.rest_volume_sum[n] * (1.0f / 12.0f) * inverse;
+      float found = 0.0f;
+      for (int c = 0; c < 8; ++c) {
+        // The edges at the corner have the index of the corner's other two bits.
+        const int i = c & 3, j = (c & 4) >> 1 | (c & 1), k = c >> 1;
+        const float rest = dot(along_i.rest[i], cross(along_j.rest[j], along_k.rest[k]));
+        const float present = dot(along_i.present[i], cross(along_j.present[j], along_k.present[k]));
+        const bool counts = rest * rest * inverse * inverse >= least * least;
+        found = counts && present * rest < limit * rest * rest ? 1.0f : found;
+      }
+      is_flat[l] = found * view.has_cell[n];
+    }
+    const bool in_block = largest_value(is_flat) > 0.0f;
+    any = any || in_block;
+    for (int l = 0; l < block; ++l) flat[start + l] = is_flat[l] > 0.0f ? 1 : 0;
+  }
+  return any;
 }
 
 void average_dilations(const LatticeView& view) {

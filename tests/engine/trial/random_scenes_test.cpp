@@ -310,5 +310,12 @@ TEST(RandomScenes, StayWholeWhenLightNodesAreHit) {
   for (const std::uint32_t seed : {36u, 56u}) expect_whole(seed);
 }
 
+// A body is crushed until corners of its cells are inside out. Springs alone keep them so.
+TEST(RandomScenes, StayWholeWhenCellsAreTurnedInsideOut) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  if (!is_full_run()) GTEST_SKIP() << only_in_full;
+  expect_whole(145u);
+}
+
 }  // namespace
 }  // namespace spoonbill
