@@ -25,9 +25,10 @@ constexpr double least_lead_cells = 0.02;
 // the drawn surfaces overlap visibly where a net is too coarse for its lattice.
 constexpr double largest_fit_error_cells = 0.02;
 
-// Largest depth of a point that had no contact in the last tick, in cells, or the motion of the bodies in a
-// tick if that is larger. A deeper point is beside a fold of the surface. The motion does not include that of
-// the hand, so that a few points of a soft tool may be left out if the hand is faster than about 1 m/s.
+// Largest depth of a point that had no contact in the last tick, in cells, or the approach of the bodies in
+// a tick if that is larger. A deeper point is beside a fold of the surface. The approach does not include the
+// motion of the hand, so that a few points of a soft tool may be left out if the hand is faster than about 1
+// m/s.
 constexpr double deepest_new_cells = 0.2;
 
 }  // namespace
@@ -289,11 +290,14 @@ void drop_trimmed_points(MeshProximity& proximity, const BodyState& body) {
 }
 
 // Returns a bound of how far points of two bodies, or of the same body, approach each other in a tick. Bodies
-// that fall side by side do not approach each other.
-double find_approach_m(const BodyState& first, const BodyState& second) {
-  const NodeSpeeds of_first = first.lattice.find_node_speeds(), of_second = second.lattice.find_node_speeds();
-  return tick_s * ((of_first.mean_m_per_s - of_second.mean_m_per_s).norm() +
-                   of_first.fastest_from_mean_m_per_s + of_second.fastest_from_mean_m_per_s);
+// that fall side by side approach each other only if something stops one of them; this is found in the next
+// tick, before they are a cell deep.
+double find_approach_m(const BodyState& first, const BodyState& second, double cell_m) {
+  const NodeSpeeds one = first.lattice.find_node_speeds(), other = second.lattice.find_node_speeds();
+  const double speed_m_per_s = (one.mean_m_per_s - other.mean_m_per_s).norm() +
+                               one.fastest_from_mean_m_per_s + other.fastest_from_mean_m_per_s;
+  return std::min(tick_s * speed_m_per_s + cell_m,
+                  tick_s * (first.fastest_m_per_s() + second.fastest_m_per_s()));
 }
 
 void find_near_points(SurfaceProximity& proximity, const BodyState& first, const BodyState& second,
@@ -350,7 +354,7 @@ bool BodyPairContact::find(const IndexedBody& first, const IndexedBody& second) 
     return body.rigid && !both_rigid ? 0.0 : static_cast<double>(body.lattice.cell_size_m());
   };
   const double cell = std::max(size_of_cells(*first.state), size_of_cells(*second.state));
-  const double motion_m = find_approach_m(*first.state, *second.state);
+  const double motion_m = find_approach_m(*first.state, *second.state, cell);
   // Points that come within reach during a tick need their constraints one tick earlier.
   const double margin_m = std::max(contact_margin_cells * cell, 2.0 * motion_m);
   deepest_new_m_ = std::max(deepest_new_cells * cell, motion_m);
@@ -402,7 +406,7 @@ BodySelfContact::BodySelfContact(const BodyState& body) {
 bool BodySelfContact::add_contacts(const IndexedBody& body, BodyContacts& contacts) const {
   if (!proximity_) return true;
   const auto cell_m = static_cast<double>(body.state->lattice.cell_size_m());
-  const double motion_m = find_approach_m(*body.state, *body.state);
+  const double motion_m = find_approach_m(*body.state, *body.state, cell_m);
   const double deepest_new_m = std::max(deepest_new_cells * cell_m, motion_m);
   proximity_->find(body.state->mapping().current(), std::max(contact_margin_cells * cell_m, motion_m));
   if (const TrimmedArea* const trim = body.state->trim.get()) {

@@ -49,7 +49,7 @@ bool resolve_shell_gap(const ShellOrSolid& of, const ShellOrSolid& other, double
 inline constexpr double body_depth_limit_cells = 0.07;
 
 // Gap below which a constraint is added for a point, in lattice cells of the coarser body that is deformable.
-// The margin is at least twice the motion of the bodies in a tick.
+// The margin is at least twice the approach of the bodies in a tick.
 inline constexpr double contact_margin_cells = 0.08;
 
 // State of a body, and its index in the simulation.
