@@ -111,6 +111,7 @@ Status choose_kinds(const AddOptions& options, Document& document) {
   const auto free = [](Body& body) {
     body.kind = BodyKind::rigid;
     body.hand.reset();
+    body.motion.reset();
   };
   const auto hold = [](Body& body) {
     body.kind = BodyKind::rigid;

@@ -102,6 +102,9 @@ Status check_kind(const Body& body) {
         "the body fixed",
         "motion"};
   }
+  if (body.motion) {
+    if (Status status = check_motion(*body.motion); !status.ok()) return status.error().in("motion");
+  }
   if (body.kind == BodyKind::deformable) return {};
   const char* const field = !body.regions.empty()    ? "regions"
                             : !body.loads.empty()    ? "loads"

@@ -156,7 +156,7 @@ Status check_lattice_request(const LatticeRequest& lattice);
 // Checks the numbers of loads and supports, and that point loads are within the surface's domain.
 Status check_loads(const Body& body);
 // Refuses a fixed or rigid body with regions, loads or supports, which would have no effect, a hand at a body
-// that is not rigid, and a motion of a body that is neither fixed nor held by a hand.
+// that is not rigid, and a motion of a body that is neither fixed nor held by a hand. Checks the motion.
 Status check_kind(const Body& body);
 
 // Returns the area within the body's trim loops; null if the body has no trims.

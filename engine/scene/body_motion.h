@@ -1,7 +1,7 @@
 // Motion that a document or a command prescribes for a body: where the body is at given times.
 #pragma once
 
-#include <array>
+#include <Eigen/Core>
 #include <vector>
 
 #include "engine/base/field.h"
@@ -46,9 +46,9 @@ inline constexpr auto fields_of<Waypoint> = std::to_array<Field<Waypoint>>({
 // names the first waypoint at fault.
 Status check_motion(const BodyMotion& motion);
 
-// Smooth path of a body through its waypoints. Displacements and the components of the orientation are
-// monotone cubics between waypoints (Fritsch and Butland 1984), so a body never moves beyond the range of two
-// neighbouring waypoints, and rests between two equal ones. Allocates only in its constructor.
+// Smooth path of a body through its waypoints: cubics whose rates at the waypoints are harmonic means of
+// those of the steps beside them (Fritsch and Butland 1984), so that a body does not overshoot, rests between
+// two equal waypoints, and stops where it turns back. Allocates only in its constructor.
 class MotionPath {
  public:
   MotionPath() = default;  // stays at the start
@@ -66,16 +66,20 @@ class MotionPath {
     visit(point_m_.data(), 3);
     for (const Knot& knot : knots_) {
       visit(&knot.time_s, 1);
-      visit(knot.values.data(), knot.values.size());
+      visit(knot.moved_m.data(), 3);
+      visit(knot.turned.data(), 4);
     }
   }
 
  private:
+  using Vector4 = Eigen::Vector4d;
   // Displacement and quaternion (x, y, z, w) at a waypoint or at the start, and their rates of change.
-  using Values = std::array<double, 7>;
   struct Knot {
     double time_s = 0.0;
-    Values values{}, rates{};
+    Vector3 moved_m = Vector3::Zero();
+    Vector4 turned = Vector4::Zero();
+    Vector3 moved_rate = Vector3::Zero();
+    Vector4 turned_rate = Vector4::Zero();
   };
 
   Vector3 point_m_ = Vector3::Zero();

@@ -292,6 +292,7 @@ void Trial::record_forces(const Simulation& simulation) {
 
 std::optional<double> Trial::turned_deg(const Simulation& simulation) const {
   if (!turn_) return std::nullopt;
+  if (phase_ > TrialPhase::turning && !motions_.empty()) return turn_->angle_deg;
   const std::optional<Pose> pose = simulation.rigid_pose(turn_->body);
   if (!pose) return std::nullopt;
   const double sine = pose->orientation.vec().dot(turn_->axis);

@@ -70,7 +70,7 @@ class Trial {
   // Largest overlap of two bodies in the trial so far (Simulation::largest_overlap_m()).
   double largest_penetration_m() const { return largest_penetration_m_; }
   double time_s() const { return static_cast<double>(ticks_) * tick_s; }
-  // Angle by which the body that turns has turned, in degrees; empty if nothing turns.
+  // Angle by which the body that turns has turned in its turn, in degrees; empty if nothing turns.
   std::optional<double> turned_deg(const Simulation& simulation) const;
 
   // Returns what of a body is outside the rim; null if the body has not been inside a rim.

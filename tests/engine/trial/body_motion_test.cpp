@@ -53,7 +53,7 @@ TEST(MotionPath, PassesItsWaypoints) {
   const BodyMotion motion = lift_and_carry();
   const MotionPath path(motion);
   EXPECT_EQ(path.duration_s(), 2.0);
-  EXPECT_LT(image_m(path.at(0.0, {}), motion.point_m).x() - motion.point_m.x(), rounding_m);
+  EXPECT_LT((image_m(path.at(0.0, {}), motion.point_m) - motion.point_m).norm(), rounding_m);
   for (const Waypoint& waypoint : motion.waypoints) {
     const Pose pose = path.at(waypoint.time_s, {});
     EXPECT_LT((image_m(pose, motion.point_m) - motion.point_m - waypoint.moved_m).norm(), rounding_m);
@@ -109,7 +109,7 @@ TEST(BodyMotion, IsMovedWithItsBody) {
   Body body = make_plate(lift_and_carry());
   const Vector3 point_m = body.surface.net.point(3, 3);
   const Pose before = MotionPath(*body.motion).at(0.7, {});
-  const Pose moved{{0.1, 0.2, 0.3}, turn_by(Vector3::UnitX(), 90.0)};
+  const Pose moved{{0.1, 0.2, 0.3}, turn_by(Vector3(1.0, 2.0, 2.0) / 3.0, 45.0)};
   move_body(moved, body);
   const Pose after = MotionPath(*body.motion).at(0.7, {});
   EXPECT_LT((image_m(after, image_m(moved, point_m)) - image_m(moved, image_m(before, point_m))).norm(),
@@ -145,7 +145,11 @@ TEST(BodyMotion, NamesWhatIsWrong) {
     EXPECT_EQ(status.error().code, each.code) << each.name;
     EXPECT_EQ(status.error().field, each.field) << each.name;
   }
+  EXPECT_EQ(check_motion({{std::nan(""), 0.0, 0.0}, {first}}).error().code, ErrorCode::out_of_range);
   EXPECT_TRUE(check_motion(lift_and_carry()).ok());
+  const Vector3 here = Vector3::Zero();  // from 30 to 150 degrees is 120.00000000000001 degrees
+  EXPECT_TRUE(
+      check_motion({here, {{1.0, here, Vector3::UnitX(), 30.0}, {2.0, here, Vector3::UnitX(), 150.0}}}).ok());
 }
 
 // A soft block lies on a plate, which moves. Friction carries it along.
