@@ -25,6 +25,16 @@ std::vector<RigidGroundContact> make_rigid_ground_contacts(std::span<const BodyS
   return {bodies.begin(), bodies.end()};
 }
 
+void carry_motion(const BodyState& state, Body& body) {
+  if (!body.motion || !state.rigid) return;
+  const Pose& pose = state.rigid->motion().end;
+  body.motion->point_m = pose.position_m + pose.orientation * body.motion->point_m;
+}
+
+std::vector<SampledGroundContact> make_sampled_ground_contacts(std::span<const BodyState> bodies) {
+  return {bodies.begin(), bodies.end()};
+}
+
 BodyContacts make_contact_buffer() {
   // Largest number of constraints. Two handles pressed against each other need some hundreds.
   constexpr int capacity = 8192;
@@ -171,6 +181,7 @@ Status CommandApplier::operator()(const KeepShape&) {
     state.bodies[b].supports.rebase(state.bodies[b].lattice, lattices[b]);
     state.bodies[b].set_lattice(std::move(lattices[b]));
     state.bodies[b].set_implicit_solver(std::move(solvers[b]));
+    carry_motion(state.bodies[b], state.scene.bodies[b]);
     if (state.bodies[b].rigid) state.bodies[b].rigid->keep_shape(state.bodies[b].lattice.mesh());
   }
   update_inertia(state);
@@ -301,6 +312,7 @@ void CommandApplier::make_contacts() {
   state.ground_contact =
       BodyGroundContact(state.scene_bodies().first(state.scene.ground ? state.scene.bodies.size() : 0));
   state.rigid_ground = make_rigid_ground_contacts(state.scene_bodies());
+  state.sampled_ground = make_sampled_ground_contacts(state.scene_bodies());
 }
 
 }  // namespace spoonbill

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
+#include "engine/simulation/sampled_ground_contact.h"
 
 namespace spoonbill {
 namespace {
@@ -126,15 +127,18 @@ constexpr double ground_margin_cells = 0.25;
 // longer than the time in which a round body rolls over. Without the filter a node would push its neighbours'
 // skin at once, and round bodies would roll for ever.
 constexpr double skin_time_constant_s = 0.07;
+// The same for a stiff body, whose nodes hardly push its skin. It tips over within the longer time.
+constexpr double stiff_skin_time_constant_s = 0.02;
+
+// Bodies with a larger inertia scale respond more slowly.
+double find_skin_constant_s(const SpringLattice& lattice) {
+  const double constant_s = lattice.moved_by_solver() ? stiff_skin_time_constant_s : skin_time_constant_s;
+  return constant_s * std::sqrt(lattice.inertia_scale());
+}
 
 bool on_shell(const LatticeMesh& mesh, int node) {
   const std::array<int, 3> at = mesh.grid_index(node);
   return mesh.node_location(at[0], at[1], at[2]) == NodeLocation::on_shell;
-}
-
-// Returns whether the body is in a box of cells, whose nodes are not on the skin.
-bool is_boxed(const LatticeMesh& mesh) {
-  return !mesh.along.empty();
 }
 
 // Returns the node with the largest weight in a sample among those that the filter accepts; -1 if the filter
@@ -172,6 +176,10 @@ int count_nodes(std::span<const BodyState> bodies) {
 }
 
 }  // namespace
+
+bool is_boxed(const LatticeMesh& mesh) {
+  return !mesh.along.empty();
+}
 
 BodyGroundContact::BodyGroundContact(std::span<const BodyState> bodies) : contacts_(count_nodes(bodies)) {
   for (const BodyState& body : bodies) bodies_.push_back(make_footings(body));
@@ -234,13 +242,17 @@ BodyGroundContact::BodyFootings BodyGroundContact::make_footings(const BodyState
 }
 
 void BodyGroundContact::find(std::span<const BodyState> bodies, const Ground& ground,
-                             const Vector3& gravity_m_per_s2, double time_s) {
+                             const Sculpting& sculpting, double time_s) {
   SPOONBILL_ASSERT(bodies.size() == bodies_.size());
   SPOONBILL_ASSERT(time_s > 0.0);
   contacts_.begin(ground.normal, time_s);
-  const double fall_m = time_s * time_s * gravity_m_per_s2.norm();
+  const double fall_m = time_s * time_s * sculpting.gravity_m_per_s2.norm();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const BodyState& body = bodies[b];
+    if (has_sampled_ground_contact(body, sculpting.real_time)) {
+      for (Footing& footing : bodies_[b].footings) footing.is_near = false;
+      continue;
+    }
     double fastest = 0.0;
     for (const Footing& footing : bodies_[b].footings) {
       fastest = std::max(fastest, -ground.normal.dot(body.lattice.velocity(footing.node)));
@@ -251,15 +263,13 @@ void BodyGroundContact::find(std::span<const BodyState> bodies, const Ground& gr
 }
 
 void BodyGroundContact::update_skin_offset(const BodyFootings& footings, double followed_m, double time_s,
-                                           double inertia_scale, Footing& footing) const {
+                                           double constant_s, Footing& footing) const {
   double skin_m = std::numeric_limits<double>::infinity();
   for (int s = footing.first; s < footing.first + footing.count; ++s) {
     const Sample& sample = footings.samples[static_cast<std::size_t>(s)];
     skin_m = std::min(skin_m, footings.heights.lowest_m(sample.row, sample.column));
   }
   if (!std::isfinite(skin_m)) skin_m = followed_m;
-  // Bodies with a larger inertia scale respond more slowly.
-  const double constant_s = skin_time_constant_s * std::sqrt(inertia_scale);
   const double fraction = footing.is_near ? time_s / (constant_s + time_s) : 1.0;
   footing.skin_m += fraction * (skin_m - followed_m - footing.skin_m);
 }
@@ -294,7 +304,7 @@ void BodyGroundContact::find(int index, const BodyState& body, const Ground& gro
       const EmbeddedPoint& sample = body.mapping().sample(footings.followed[static_cast<std::size_t>(s)]);
       gap_m = std::min(gap_m, ground.normal.dot(sample.position_m(body.lattice) - ground.point_m));
     }
-    if (!thin) update_skin_offset(footings, gap_m, time_s, body.lattice.inertia_scale(), footing);
+    if (!thin) update_skin_offset(footings, gap_m, time_s, find_skin_constant_s(body.lattice), footing);
     footing.is_near = true;
     gap_m += footing.skin_m;
     if (gap_m > reach_m) continue;

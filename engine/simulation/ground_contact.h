@@ -9,6 +9,7 @@
 #include "engine/collision/levels/surface_levels.h"
 #include "engine/material/contact/ground_contacts.h"
 #include "engine/scene/loads.h"
+#include "engine/scene/scene.h"
 #include "engine/simulation/body_state.h"
 
 namespace spoonbill {
@@ -51,18 +52,22 @@ class SkinHeights {
   std::vector<double> height_;   // heights of the samples; infinite if skipped
 };
 
-// Largest penetration of a resting body's skin into the ground, in lattice cells.
+// Returns whether the body is in a box of cells, whose nodes are not on the skin.
+bool is_boxed(const LatticeMesh& mesh);
+
+// Largest penetration of the skin of a resting body into the ground, in lattice cells, where its nodes touch
+// the ground.
 inline constexpr double ground_depth_limit_cells = 0.01;
 
-// Ground contact of deformable bodies (see RigidGroundContact for others). Owned by the simulation, which
-// rebuilds it when the mapping of a body is replaced. find() allocates nothing.
+// Ground contact of deformable bodies (see RigidGroundContact and SampledGroundContact for others). Owned by
+// the simulation, which rebuilds it when the mapping of a body is replaced. find() allocates nothing.
 class BodyGroundContact {
  public:
   explicit BodyGroundContact(std::span<const BodyState> bodies);
 
   // Adds a constraint for each node whose attached samples (see Footing) can reach the ground in the coming
-  // tick of `time_s`.
-  void find(std::span<const BodyState> bodies, const Ground& ground, const Vector3& gravity_m_per_s2,
+  // tick of `time_s`. Skips bodies of which has_sampled_ground_contact() is true.
+  void find(std::span<const BodyState> bodies, const Ground& ground, const Sculpting& sculpting,
             double time_s);
 
   // Forgets the forces of the contacts and the positions of the skin, for example after a jump of the bodies.
@@ -117,8 +122,8 @@ class BodyGroundContact {
   static BodyFootings make_footings(const BodyState& body);
   void find(int index, const BodyState& body, const Ground& ground, double reach_m, double time_s);
   // Updates Footing::skin_m, the filtered height of the skin above the followed samples. `followed_m` is the
-  // height of the lowest followed sample. `inertia_scale` is the inertia scale of the body.
-  void update_skin_offset(const BodyFootings& body, double followed_m, double time_s, double inertia_scale,
+  // height of the lowest followed sample, `constant_s` the time constant of the filter.
+  void update_skin_offset(const BodyFootings& body, double followed_m, double time_s, double constant_s,
                           Footing& footing) const;
 
   std::vector<BodyFootings> bodies_;

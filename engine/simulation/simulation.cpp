@@ -70,6 +70,8 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
   BodyGroundContact ground_contact({bodies.data(), scene.ground ? scene.bodies.size() : 0});
   std::vector<RigidGroundContact> rigid_ground =
       make_rigid_ground_contacts({bodies.data(), scene.bodies.size()});
+  std::vector<SampledGroundContact> sampled_ground =
+      make_sampled_ground_contacts({bodies.data(), scene.bodies.size()});
   std::vector<std::shared_ptr<const ToolBody>> retired_bodies = {find_model_body(scene.tool)};
   const double scene_size_m = measure_size_m(bodies, scene.bodies.size());
   auto made = std::make_unique<State>(State{std::move(scene),
@@ -83,6 +85,7 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
                                             std::move(self),
                                             std::move(ground_contact),
                                             std::move(rigid_ground),
+                                            std::move(sampled_ground),
                                             false,
                                             0.0,
                                             scene_size_m,
@@ -196,6 +199,12 @@ void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
         !s.rigid_ground[b].add_contacts({static_cast<int>(b), &s.bodies[b]}, *s.scene.ground,
                                         s.scene.sculpting.gravity_m_per_s2, tick_s, s.between);
   }
+  for (std::size_t b = 0; s.scene.ground && b < s.sampled_ground.size(); ++b) {
+    if (!has_sampled_ground_contact(s.bodies[b], s.scene.sculpting.real_time)) continue;
+    s.pairs_overflow |=
+        !s.sampled_ground[b].add_contacts({static_cast<int>(b), &s.bodies[b]}, *s.scene.ground,
+                                          s.scene.sculpting.gravity_m_per_s2, tick_s, s.between);
+  }
   if (s.between.count() > 0) s.searched.remember(s.stepped_bodies());
   s.between.begin();
 }
@@ -203,7 +212,7 @@ void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
 void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
   const Sculpting& sculpting = s.scene.sculpting;
   if (s.scene.ground) {
-    s.ground_contact.find(s.scene_bodies(), *s.scene.ground, sculpting.gravity_m_per_s2, tick_s);
+    s.ground_contact.find(s.scene_bodies(), *s.scene.ground, sculpting, tick_s);
   }
   std::array<RelaxedLattice, lattice_capacity> lattices{};
   for (std::size_t b = 0; b < s.stepped_count(); ++b) {
@@ -356,6 +365,7 @@ void Simulation::write_scene(Scene& scene) const {
   scene = state_->scene;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     scene.bodies[b].surface = state_->bodies[b].mapping().current();
+    carry_motion(state_->bodies[b], scene.bodies[b]);
   }
 }
 

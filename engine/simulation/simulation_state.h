@@ -12,6 +12,7 @@
 #include "engine/simulation/body_state.h"
 #include "engine/simulation/ground_contact.h"
 #include "engine/simulation/rigid_ground_contact.h"
+#include "engine/simulation/sampled_ground_contact.h"
 #include "engine/simulation/searched_shapes.h"
 #include "engine/simulation/simulation.h"
 #include "engine/simulation/snapshot.h"
@@ -49,6 +50,7 @@ struct Simulation::State {
   std::vector<BodySelfContact> self;             // self-contact of each body
   BodyGroundContact ground_contact;              // contacts of the scene's bodies; empty without a ground
   std::vector<RigidGroundContact> rigid_ground;  // contacts of each of the scene's bodies
+  std::vector<SampledGroundContact> sampled_ground;
   bool pairs_overflow = false;
   double tool_gap_m = 0.0;    // smallest gap between a soft tool and a body; infinite if none is near
   double scene_size_m = 0.0;  // diagonal of the box around the bodies at rest
@@ -78,7 +80,10 @@ struct Simulation::State {
 
 std::vector<BodyPairContact> make_pairs(const std::vector<BodyState>& bodies);
 std::vector<BodySelfContact> make_self_contacts(const std::vector<BodyState>& bodies);
+// Moves the point of a body's motion with the body, or with the hand that holds it, to where it is now.
+void carry_motion(const BodyState& state, Body& body);
 std::vector<RigidGroundContact> make_rigid_ground_contacts(std::span<const BodyState> bodies);
+std::vector<SampledGroundContact> make_sampled_ground_contacts(std::span<const BodyState> bodies);
 // Makes the memory for the constraints between all bodies.
 BodyContacts make_contact_buffer();
 

@@ -147,7 +147,7 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
 
 bool BodyContacts::add_on_ground(const BodyPoint& point, const Vector3& normal, double gap_m,
                                  double ground_friction, int sample) {
-  SPOONBILL_ASSERT_DEBUG(is_of_moving_frame(point) && sample >= 0);
+  SPOONBILL_ASSERT_DEBUG(!point.lattice->moved_by_solver() && sample >= 0);
   const double friction = std::min(ground_friction, point.point.friction(*point.lattice));
   return add(point, BodyPoint{ground_index}, normal, gap_m, infinity, sample, friction);
 }

@@ -1,4 +1,4 @@
-// Contacts of bodies with each other and with themselves, and of rigid bodies with the ground.
+// Contacts of bodies with each other and with themselves, and of points of their surfaces with the ground.
 #pragma once
 
 #include <array>
@@ -72,8 +72,8 @@ class BodyContacts {
   // forget().
   bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m,
            double deepest_new_m, int sample);
-  // Adds a constraint that keeps a point of a rigid body on the side of the ground to which `normal` points.
-  // GroundContacts holds the contacts of deformable bodies.
+  // Adds a constraint that keeps a point of a rigid body, or of a body with springs, on the side of the
+  // ground to which `normal` points. GroundContacts holds the contacts of nodes.
   bool add_on_ground(const BodyPoint& point, const Vector3& normal, double gap_m, double ground_friction,
                      int sample);
 
@@ -82,8 +82,8 @@ class BodyContacts {
   // masses and frictions must be the same.
   void keep();
 
-  // Returns for each body the highest speed at which a constraint of the kind MovedBy::springs meets another
-  // body within `time_s`, m/s.
+  // Returns for each body the highest speed at which a point of it meets another body, itself or the ground
+  // within `time_s`, m/s, by constraints of the kind MovedBy::springs.
   std::array<double, lattice_capacity> find_impacts_m_per_s(std::span<const LatticeView> lattices,
                                                             double time_s) const;
 
@@ -135,7 +135,7 @@ class BodyContacts {
   // Returns the impulse of all other bodies on a body since begin(), N s, for a tick of `time_s`. Constraints
   // of a body with itself have no effect on it.
   Vector3 impulse_ns(int body, double time_s) const;
-  // Returns the impulse of the ground on a rigid body since begin(), N s.
+  // Returns the impulse of the ground on a body since begin(), N s.
   const Vector3& ground_impulse_ns(int body) const { return ground_impulse_ns_[body]; }
   // Returns the work that a body with a prescribed motion has done on other bodies since begin(), J, in a
   // tick of `time_s`. `lattice` is the frame to which the body is attached, after the tick.

@@ -252,7 +252,7 @@ TEST(OnGround, ForgetsWhereTheSkinWas) {
     contact.visit_state([&](const double*, std::size_t count) { heights += count == 1 ? 1 : 0; });
     return heights;
   };
-  contact.find(bodies, *scene.ground, g_m_per_s2 * -Vector3::UnitY(), tick_s);
+  contact.find(bodies, *scene.ground, scene.sculpting, tick_s);
   // Without the contacts, only the heights of the skin remain in the state.
   contact.contacts().forget();
   EXPECT_GT(count_skin_heights(), 0);
