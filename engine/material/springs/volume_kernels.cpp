@@ -198,52 +198,54 @@ void volume_forces(const LatticeView& view) {
 
 namespace {
 
-// The edges of a cell along an axis, in the order of the bits of their first corners, at rest and at present.
-struct CellEdges {
-  Vector rest[4], present[4];
+// The edge of a cell along an axis at a corner, at rest and at present.
+struct CornerEdge {
+  Vector rest, present;
 };
 
-// `bit` is the axis' bit in the numbers of corners; `others` are the corners without it.
-inline CellEdges cell_edges(const LatticeView& view, int bit, const int (&others)[4], int n) {
-  const SpringArrays& springs = view.springs[view.corner_direction[bit]];
-  CellEdges edges;
-  for (int e = 0; e < 4; ++e) {
-    const int from = n + view.corner_offset[others[e]], to = n + view.corner_offset[others[e] | bit];
-    edges.rest[e] = rest_vector(springs, from);
-    edges.present[e] = edges.rest[e] + difference(view.dx, view.dy, view.dz, from, to);
+// `bit` is the axis' bit in the numbers of corners. The edge leads in the direction of the axis.
+template <int corner, int bit>
+inline CornerEdge corner_edge(const LatticeView& view, int n) {
+  const int from = n + view.corner_offset[corner & ~bit], to = n + view.corner_offset[corner | bit];
+  const Vector rest = rest_vector(view.springs[view.corner_direction[bit]], from);
+  return {rest, rest + difference(view.dx, view.dy, view.dz, from, to)};
+}
+
+// Adds 1 for each cell of a block whose `corner` is flat (see find_flat_cells()).
+template <int corner>
+void count_flat_corners(const LatticeView& view, int start, float ratio, float least,
+                        float* __restrict flat) {
+  for (int l = 0; l < block; ++l) {
+    const int n = start + l;
+    const CornerEdge i = corner_edge<corner, 4>(view, n), j = corner_edge<corner, 2>(view, n),
+                     k = corner_edge<corner, 1>(view, n);
+    const float rest = dot(i.rest, cross(j.rest, k.rest));
+    const float present = dot(i.present, cross(j.present, k.present));
+    // Products with the volume at rest do not depend on the orientation of the axes.
+    const float inverse = view.inverse_volume[n], square = rest * rest;
+    const float limit = ratio * view.rest_volume_sum[n] * (1.0f / 12.0f) * inverse * square;
+    const float has_cell = view.has_cell[n];  // read unconditionally, so that the loop vectorises
+    const float counts = square * inverse * inverse < least * least ? 0.0f : has_cell;
+    flat[l] += present * rest < limit ? counts : 0.0f;
   }
-  return edges;
 }
 
 }  // namespace
 
 bool find_flat_cells(const LatticeView& view, float ratio, float least, unsigned char* flat) {
-  constexpr int without_i[4] = {0, 1, 2, 3}, without_j[4] = {0, 1, 4, 5}, without_k[4] = {0, 2, 4, 6};
-  alignas(64) float is_flat[block];
   bool any = false;
   for (int start = 0; start < view.padded_count; start += block) {
-    for (int l = 0; l < block; ++l) {
-      const int n = start + l;
-      const CellEdges along_i = cell_edges(view, 4, without_i, n),
-                      along_j = cell_edges(view, 2, without_j, n),
-                      along_k = cell_edges(view, 1, without_k, n);
-      // Products with the volume at rest do not depend on the orientation of the axes.
-      const float inverse = view.inverse_volume[n];
-      const float limit = ratio * view.rest_volume_sum[n] * (1.0f / 12.0f) * inverse;
-      float found = 0.0f;
-      for (int c = 0; c < 8; ++c) {
-        // The edges at the corner have the index of the corner's other two bits.
-        const int i = c & 3, j = (c & 4) >> 1 | (c & 1), k = c >> 1;
-        const float rest = dot(along_i.rest[i], cross(along_j.rest[j], along_k.rest[k]));
-        const float present = dot(along_i.present[i], cross(along_j.present[j], along_k.present[k]));
-        const bool counts = rest * rest * inverse * inverse >= least * least;
-        found = counts && present * rest < limit * rest * rest ? 1.0f : found;
-      }
-      is_flat[l] = found * view.has_cell[n];
-    }
-    const bool in_block = largest_value(is_flat) > 0.0f;
-    any = any || in_block;
-    for (int l = 0; l < block; ++l) flat[start + l] = is_flat[l] > 0.0f ? 1 : 0;
+    alignas(64) float corners[block] = {};
+    count_flat_corners<0>(view, start, ratio, least, corners);
+    count_flat_corners<1>(view, start, ratio, least, corners);
+    count_flat_corners<2>(view, start, ratio, least, corners);
+    count_flat_corners<3>(view, start, ratio, least, corners);
+    count_flat_corners<4>(view, start, ratio, least, corners);
+    count_flat_corners<5>(view, start, ratio, least, corners);
+    count_flat_corners<6>(view, start, ratio, least, corners);
+    count_flat_corners<7>(view, start, ratio, least, corners);
+    any = any || largest_value(corners) > 0.0f;
+    for (int l = 0; l < block; ++l) flat[start + l] = corners[l] > 0.0f ? 1 : 0;
   }
   return any;
 }
