@@ -76,7 +76,7 @@ class TrialPictures {
       : options_(options), crew_(options.size.width, options.size.height), writer_(options.out) {
     Snapshot start;
     write_snapshot(session, start);
-    framed_ = framed_box(start);
+    framed_ = find_box_of_motions(session.simulation.scene(), framed_box(start));
   }
 
   // Draws the present state if a frame is due.

@@ -1,5 +1,6 @@
 #include "engine/trial/trial.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -163,6 +164,28 @@ Result<Scene> make_trial_scene(Scene scene, std::optional<double> tilt_deg) {
   if (Status status = check_trial(scene); !status.ok()) return status.error();
   if (Status status = check_bodies_are_solid(scene); !status.ok()) return status.error();
   return scene;
+}
+
+Box find_box_of_motions(const Scene& scene, const Box& box) {
+  constexpr int steps = 32;
+  Box all = box;
+  for (const Body& body : scene.bodies) {
+    if (!body.motion) continue;
+    Pose start;
+    if (scene.trial && scene.trial->turned_body == body.name) {
+      const TrialPlan& plan = *scene.trial;
+      start.orientation = Eigen::AngleAxisd(plan.angle_deg * std::numbers::pi / 180.0, plan.axis);
+      start.position_m = plan.point_m - start.orientation * plan.point_m;
+    }
+    const MotionPath path(*body.motion);
+    for (int step = 0; step <= steps; ++step) {
+      const Pose pose = path.at(path.duration_s() * step / steps, start);
+      for (int corner = 0; corner < 8; ++corner) {
+        all.include(pose.position_m + pose.orientation * box.corner(corner));
+      }
+    }
+  }
+  return all;
 }
 
 ToolInput trial_input() {

@@ -108,6 +108,10 @@ class Trial {
   std::vector<std::vector<Forces>> forces_;  // the last ticks of each body, in a ring
 };
 
+// Returns the box around a box about the bodies and its images along the motions of the scene's bodies, which
+// carry what lies on them. A picture of this box shows the whole trial, if nothing falls.
+Box find_box_of_motions(const Scene& scene, const Box& box);
+
 // The input of the hand in a trial: a tool far from all bodies, which touches nothing.
 ToolInput trial_input();
 

@@ -186,6 +186,21 @@ TEST(BodyMotion, MovesABodyInATrialAndCarriesWhatLiesOnIt) {
   EXPECT_LT((carried_m - Vector3(0.06, 0.03 + 0.004, 0.0)).norm(), 1e-3);
 }
 
+// From 0.08 m aside and 0.05 m up to the start.
+TEST(BodyMotion, IsInThePictureOfATrial) {
+  Scene scene;
+  scene.bodies = {make_plate({Vector3::Zero(), {{1.0, {0.08, 0.05, 0.0}}}})};
+  Box box;
+  box.include({-0.04, -0.004, -0.03});
+  box.include({0.04, 0.0, 0.03});
+  const Box all = find_box_of_motions(scene, box);
+  EXPECT_LT((all.low - box.low).norm(), rounding_m);
+  EXPECT_LT((all.high - Vector3(0.12, 0.05, 0.03)).norm(), rounding_m);
+  // A turn before the motion: about z by 90 degrees, so that the plate stands upright.
+  scene.trial = TrialPlan{"", 0.01, "plate", Vector3::Zero(), Vector3::UnitZ(), 90.0};
+  EXPECT_NEAR(find_box_of_motions(scene, box).high.y(), 0.05 + 0.04, rounding_m);
+}
+
 TEST(BodyMotion, IsRefusedForABodyThatMovesByItself) {
   Simulation simulation = make_simulation(block_on_moving_plate(lift_and_carry()));
   EXPECT_EQ(simulation.apply(MoveBody{0, lift_and_carry()}).error().code, ErrorCode::inconsistent);
