@@ -109,7 +109,7 @@ class Trial {
 };
 
 // Returns the box around a box about the bodies and its images along the motions of the scene's bodies, which
-// carry what lies on them. A picture of this box shows the whole trial, if nothing falls.
+// carry what rests on them. If nothing falls, a picture of this box has all bodies in it throughout a trial.
 Box find_box_of_motions(const Scene& scene, const Box& box);
 
 // The input of the hand in a trial: a tool far from all bodies, which touches nothing.
