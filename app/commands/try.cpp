@@ -315,9 +315,10 @@ CommandEntry add_try(OptionSet root) {
   parser.set_footer(
       "Gives all bodies their true inertia and lets gravity act; without gravity in the document, standard\n"
       "gravity along -y. The document's \"trial\" may name a body that is lowered until others bear its\n"
-      "weight, and a fixed or held body that then turns. The bodies settle before the turn, for 10 s at\n"
-      "most. Bodies have settled when no node has moved faster than 0.1 mm/s for 0.2 s. A trial that cannot\n"
-      "hold a body, or in which nothing bears the lowered body within 30 s, ends with an error.\n"
+      "weight, and a fixed or held body that then turns. Then fixed and held bodies that state a \"motion\"\n"
+      "move through its waypoints. The bodies settle before the turn, for 10 s at most. Bodies have settled\n"
+      "when no node has moved faster than 0.1 mm/s for 0.2 s. A trial that cannot hold a body, or in which\n"
+      "nothing bears the lowered body within 30 s, ends with an error.\n"
       "If the body that bears the others has a known rim (rim_uv), like one from `spoonbill new bowl`, the\n"
       "report says how much of each is outside it, when it spilled (more than 1 % of its mass is outside\n"
       "the rim and below its plane) and when it left (its centre of mass is outside).\n"

@@ -20,6 +20,8 @@
 //      "kind": "fixed",               optional, "deformable"; a fixed or "rigid" body has no lattice,
 //                                     regions, loads or supports
 //      "hand": {"stiffness_n_per_m": 300, "turn_stiffness_nm_per_rad": 1},     optional, a rigid body is free
+//      "motion": {"point_mm": [0, 0, 0], "waypoints": [                        optional, of a body that is
+//        {"at_s": 1, "moved_mm": [0, 50, 0], "axis": [0, 0, 1], "angle_deg": 0}]}, fixed or held
 //      "pose": {"position_mm": [0, 20, 0], "axis": [0, 0, 1], "angle_deg": 15},    optional, none; applied
 //                                     when the body is read, and not written again (BodyPlacement)
 //      "lattice": {"node_budget": 2000,                          or "nodes": [4, 8, 60]
