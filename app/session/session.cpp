@@ -257,8 +257,8 @@ bool needs_rebuild(const Session& session, const Request& request) {
   // A solid tool may be soft, so a change from or to a solid tool can change the size of snapshots.
   const bool is_solid = session.simulation.scene().tool.kind == ToolKind::solid;
   return (tool != nullptr && (is_solid || tool->tool.kind == ToolKind::solid)) ||
-         (changes_shape_meaning(*command) || std::holds_alternative<SetMaterial>(*command) ||
-          std::holds_alternative<MoveBody>(*command));
+         changes_shape_meaning(*command) || std::holds_alternative<SetMaterial>(*command) ||
+         std::holds_alternative<MoveBody>(*command);
 }
 
 Status apply_command(Session& session, const TimedCommand& timed) {

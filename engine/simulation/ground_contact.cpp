@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
+#include "engine/simulation/body_contact.h"
 #include "engine/simulation/sampled_ground_contact.h"
 
 namespace spoonbill {
@@ -179,6 +180,12 @@ int count_nodes(std::span<const BodyState> bodies) {
 
 bool is_boxed(const LatticeMesh& mesh) {
   return !mesh.along.empty();
+}
+
+double find_ground_margin_m(const BodyState& body, const Vector3& gravity_m_per_s2, double time_s) {
+  const double fall_m = time_s * time_s * gravity_m_per_s2.norm();
+  return contact_margin_cells * static_cast<double>(body.lattice.cell_size_m()) +
+         2.0 * (time_s * body.fastest_m_per_s() + fall_m);
 }
 
 BodyGroundContact::BodyGroundContact(std::span<const BodyState> bodies) : contacts_(count_nodes(bodies)) {

@@ -55,6 +55,9 @@ class SkinHeights {
 // Returns whether the body is in a box of cells, whose nodes are not on the skin.
 bool is_boxed(const LatticeMesh& mesh);
 
+// Returns the height below which a point of a body is constrained, for a tick of `time_s`.
+double find_ground_margin_m(const BodyState& body, const Vector3& gravity_m_per_s2, double time_s);
+
 // Largest penetration of the skin of a resting body into the ground, in lattice cells, where its nodes touch
 // the ground.
 inline constexpr double ground_depth_limit_cells = 0.01;

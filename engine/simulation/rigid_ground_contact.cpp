@@ -82,10 +82,8 @@ bool RigidGroundContact::add_contacts(const IndexedBody& body, const Ground& gro
   if (!heights_) return true;
   SPOONBILL_ASSERT_DEBUG(time_s > 0.0);
   const BodyState& state = *body.state;
-  const double fall_m = time_s * time_s * gravity_m_per_s2.norm();
   const double thickness_m = state.shell_thickness_m;
-  const double margin_m = contact_margin_cells * static_cast<double>(state.lattice.cell_size_m()) +
-                          2.0 * (time_s * state.fastest_m_per_s() + fall_m);
+  const double margin_m = find_ground_margin_m(state, gravity_m_per_s2, time_s);
   const Surface& surface = state.mapping().current();
   if (!heights_->compute(surface, ground.point_m, ground.normal, margin_m + thickness_m)) return true;
   SupportPoints lowest(ground.normal);

@@ -63,9 +63,7 @@ bool SampledGroundContact::add_contacts(const IndexedBody& body, const Ground& g
   SPOONBILL_ASSERT_DEBUG(time_s > 0.0);
   const BodyState& state = *body.state;
   SPOONBILL_ASSERT_DEBUG(heights_m_.size() == static_cast<std::size_t>(state.lattice.mesh().node_count()));
-  const double fall_m = time_s * time_s * gravity_m_per_s2.norm();
-  const double margin_m = contact_margin_cells * static_cast<double>(state.lattice.cell_size_m()) +
-                          2.0 * (time_s * state.fastest_m_per_s() + fall_m);
+  const double margin_m = find_ground_margin_m(state, gravity_m_per_s2, time_s);
   float lowest_m = static_cast<float>(infinity);
   for (std::size_t n = 0; n < heights_m_.size(); ++n) {
     const Vector3 position_m = state.lattice.position(static_cast<int>(n));

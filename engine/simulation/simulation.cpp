@@ -194,16 +194,14 @@ void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
   for (std::size_t b = 0; b < s.stepped_count(); ++b) {
     s.pairs_overflow |= !s.self[b].add_contacts({static_cast<int>(b), &s.bodies[b]}, s.between);
   }
-  for (std::size_t b = 0; s.scene.ground && b < s.rigid_ground.size(); ++b) {
-    s.pairs_overflow |=
-        !s.rigid_ground[b].add_contacts({static_cast<int>(b), &s.bodies[b]}, *s.scene.ground,
-                                        s.scene.sculpting.gravity_m_per_s2, tick_s, s.between);
-  }
-  for (std::size_t b = 0; s.scene.ground && b < s.sampled_ground.size(); ++b) {
-    if (!has_sampled_ground_contact(s.bodies[b], s.scene.sculpting.real_time)) continue;
-    s.pairs_overflow |=
-        !s.sampled_ground[b].add_contacts({static_cast<int>(b), &s.bodies[b]}, *s.scene.ground,
-                                          s.scene.sculpting.gravity_m_per_s2, tick_s, s.between);
+  for (std::size_t b = 0; s.scene.ground && b < s.scene.bodies.size(); ++b) {
+    const IndexedBody body{static_cast<int>(b), &s.bodies[b]};
+    const Vector3& gravity = s.scene.sculpting.gravity_m_per_s2;
+    const bool is_complete =
+        has_sampled_ground_contact(s.bodies[b], s.scene.sculpting.real_time)
+            ? s.sampled_ground[b].add_contacts(body, *s.scene.ground, gravity, tick_s, s.between)
+            : s.rigid_ground[b].add_contacts(body, *s.scene.ground, gravity, tick_s, s.between);
+    s.pairs_overflow |= !is_complete;
   }
   if (s.between.count() > 0) s.searched.remember(s.stepped_bodies());
   s.between.begin();

@@ -50,7 +50,7 @@ struct Simulation::State {
   std::vector<BodySelfContact> self;             // self-contact of each body
   BodyGroundContact ground_contact;              // contacts of the scene's bodies; empty without a ground
   std::vector<RigidGroundContact> rigid_ground;  // contacts of each of the scene's bodies
-  std::vector<SampledGroundContact> sampled_ground;
+  std::vector<SampledGroundContact> sampled_ground;  // of each of them, for soft bodies in boxes of cells
   bool pairs_overflow = false;
   double tool_gap_m = 0.0;    // smallest gap between a soft tool and a body; infinite if none is near
   double scene_size_m = 0.0;  // diagonal of the box around the bodies at rest
@@ -80,12 +80,12 @@ struct Simulation::State {
 
 std::vector<BodyPairContact> make_pairs(const std::vector<BodyState>& bodies);
 std::vector<BodySelfContact> make_self_contacts(const std::vector<BodyState>& bodies);
-// Moves the point of a body's motion with the body, or with the hand that holds it, to where it is now.
-void carry_motion(const BodyState& state, Body& body);
 std::vector<RigidGroundContact> make_rigid_ground_contacts(std::span<const BodyState> bodies);
 std::vector<SampledGroundContact> make_sampled_ground_contacts(std::span<const BodyState> bodies);
 // Makes the memory for the constraints between all bodies.
 BodyContacts make_contact_buffer();
+// Moves the point of a body's motion with the body, or with the hand that holds it, to where it is now.
+void carry_motion(const BodyState& state, Body& body);
 
 // Chooses the substeps of a tick and the inertia scale of each body. A body with fixed nodes has its own
 // scale, which is 1 if the body uses the implicit solver. All other bodies share the largest of their scales,

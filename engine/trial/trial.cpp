@@ -1,6 +1,5 @@
 #include "engine/trial/trial.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,6 +12,7 @@
 #include "engine/collision/surfaces/closed_surface.h"
 #include "engine/simulation/body_hold.h"
 #include "engine/simulation/body_state.h"
+#include "engine/simulation/rigid_body.h"
 
 namespace spoonbill {
 namespace {
@@ -25,6 +25,12 @@ int find_body(const Scene& scene, const std::string& name) {
                                   [&](const Body& body) { return body.name == name; });
   SPOONBILL_ASSERT(found != scene.bodies.end());
   return static_cast<int>(found - scene.bodies.begin());
+}
+
+// `plan` must name the body that turns.
+TurnBody find_turn(const Scene& scene, const TrialPlan& plan) {
+  return {find_body(scene, plan.turned_body), plan.point_m, plan.axis, plan.angle_deg,
+          plan.turn_speed_deg_per_s};
 }
 
 bool is_deformable(const Body& body) {
@@ -171,15 +177,15 @@ Box find_box_of_motions(const Scene& scene, const Box& box) {
   Box all = box;
   for (const Body& body : scene.bodies) {
     if (!body.motion) continue;
-    Pose start;
+    RigidBody at_start;
     if (scene.trial && scene.trial->turned_body == body.name) {
-      const TrialPlan& plan = *scene.trial;
-      start.orientation = Eigen::AngleAxisd(plan.angle_deg * std::numbers::pi / 180.0, plan.axis);
-      start.position_m = plan.point_m - start.orientation * plan.point_m;
+      const TurnBody turn = find_turn(scene, *scene.trial);
+      at_start.turn(turn);
+      at_start.begin_tick(turn_duration_s(turn));
     }
     const MotionPath path(*body.motion);
     for (int step = 0; step <= steps; ++step) {
-      const Pose pose = path.at(path.duration_s() * step / steps, start);
+      const Pose pose = path.at(path.duration_s() * step / steps, at_start.pose());
       for (int corner = 0; corner < 8; ++corner) {
         all.include(pose.position_m + pose.orientation * box.corner(corner));
       }
@@ -215,8 +221,7 @@ Trial::Trial(const Scene& scene, const TrialSettings& settings)
     lower_ = LowerBody{find_body(scene, plan_.lowered_body), plan_.lowering_speed_m_per_s};
   }
   if (!plan_.turned_body.empty() && plan_.angle_deg != 0.0) {
-    turn_ = TurnBody{find_body(scene, plan_.turned_body), plan_.point_m, plan_.axis, plan_.angle_deg,
-                     plan_.turn_speed_deg_per_s};
+    turn_ = find_turn(scene, plan_);
   }
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     if (scene.bodies[b].motion) motions_.push_back({static_cast<int>(b), *scene.bodies[b].motion});

@@ -20,12 +20,8 @@ constexpr double stiffness_ratio = 15.0 / 8.0 / 8.0;
 // three axes.
 constexpr double corners_at_node = 32.0;
 
-int direction_of_axis(const LatticeView& view, int axis_bit) {
-  return view.corner_direction[axis_bit];
-}
-
 Vector3 rest_edge(const LatticeView& view, int axis_bit, int node) {
-  const SpringArrays& springs = view.springs[direction_of_axis(view, axis_bit)];
+  const SpringArrays& springs = view.springs[view.corner_direction[axis_bit]];
   return {springs.rest_x[node], springs.rest_y[node], springs.rest_z[node]};
 }
 

@@ -98,14 +98,20 @@ TEST(Document, KeepsTheKindOfABodyAndTheTrial) {
             Refusal(ErrorCode::out_of_range, "trial.turn_speed_deg_per_s"));
 }
 
-// The placement is applied when a document is read, and is not written again.
-TEST(Document, PlacesABodyAndKeepsTheHandThatHoldsIt) {
-  Document document = sample_document();
+// Gives the first body a kind that has no regions, loads or supports.
+Body& make_first_body(BodyKind kind, Document& document) {
   Body& body = document.scene.bodies[0];
   body.regions.clear();
   body.loads.clear();
   body.supports.clear();
-  body.kind = BodyKind::rigid;
+  body.kind = kind;
+  return body;
+}
+
+// The placement is applied when a document is read, and is not written again.
+TEST(Document, PlacesABodyAndKeepsTheHandThatHoldsIt) {
+  Document document = sample_document();
+  Body& body = make_first_body(BodyKind::rigid, document);
   body.hand = HandSpring{120.0, 0.5};
   const Json json = document_to_json(document);
   const Document same = document_from_json(json, "text").value();
@@ -139,11 +145,7 @@ TEST(Document, PlacesABodyAndKeepsTheHandThatHoldsIt) {
 
 TEST(Document, KeepsTheMotionOfABody) {
   Document document = sample_document();
-  Body& body = document.scene.bodies[0];
-  body.regions.clear();
-  body.loads.clear();
-  body.supports.clear();
-  body.kind = BodyKind::fixed;
+  Body& body = make_first_body(BodyKind::fixed, document);
   body.motion = BodyMotion{
       {0.01, 0.0, 0.0},
       {{0.5, {0.0, 0.02, 0.0}, Vector3::UnitY(), 0.0}, {1.5, {0.0, 0.02, 0.01}, Vector3::UnitZ(), 45.0}}};
