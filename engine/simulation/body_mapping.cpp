@@ -24,7 +24,7 @@ constexpr int samples_around = 64;
 bool is_ring_behind(const Surface& surface, const FixingPlane& plane, double v) {
   const double start = surface.u.domain_start(), length = surface.u.domain_end() - start;
   for (int s = 0; s <= samples_around; ++s) {
-    const Vector3 point = evaluate(surface, start + length * s / samples_around, v).position_m;
+    const Vector3 point = position(surface, start + length * s / samples_around, v);
     if (plane.normal.dot(point - plane.point_m) > 0.0) return false;
   }
   return true;

@@ -110,17 +110,16 @@ Vector3 limit_to_cone(const Vector3& force_n, const Vector3& normal, double fric
 
 }  // namespace
 
-BodyContacts::BodyContacts(int capacity)
-    : constraints_(static_cast<std::size_t>(capacity)), kept_(constraints_.size()) {
+BodyContacts::BodyContacts(int capacity) : capacity_(static_cast<std::size_t>(capacity)), kept_(capacity_) {
   SPOONBILL_ASSERT(capacity >= 0);
+  constraints_.reserve(capacity_);
   impulse_ns_.fill(Vector3::Zero());
   ground_impulse_ns_.fill(Vector3::Zero());
 }
 
 void BodyContacts::clear(std::span<const SpringLattice* const> lattices) {
   kept_.clear();
-  for (int c = 0; c < count_; ++c) {
-    const Constraint& constraint = constraints_[c];
+  for (const Constraint& constraint : constraints_) {
     if (constraint.sample < 0) continue;
     Vector3 apart = constraint.first.displacement_m(*lattices[constraint.first_body]);
     if (constraint.second_body != ground_index)
@@ -130,12 +129,12 @@ void BodyContacts::clear(std::span<const SpringLattice* const> lattices) {
     kept_.add(constraint.key(), {constraint.force_n, constraint.normal, gap_m});
   }
   kept_.sort();
-  count_ = 0;
+  constraints_.clear();
 }
 
 void BodyContacts::forget() {
   kept_.clear();
-  count_ = 0;
+  constraints_.clear();
   has_searched_ = false;
 }
 
@@ -161,7 +160,7 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
   const bool is_folded = kept != nullptr && kept->normal.dot(found_normal) < 0.0;
   const Vector3 normal = is_folded ? kept->normal : found_normal;
   const double gap_m = is_folded ? kept->gap_m : found_gap_m;
-  if (count_ == static_cast<int>(constraints_.size())) return false;
+  if (constraints_.size() == capacity_) return false;
   // A body with a prescribed motion next to an implicitly stepped one counts as such a one.
   const auto is_by_solver = [](const BodyPoint& point) {
     return point.lattice != nullptr && point.lattice->moved_by_solver();
@@ -182,30 +181,28 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
       is_real_time_ && is_between_soft ? taken_over_by_soft_in_real_time : taken_over_in_tick;
   const double difference_m =
       separates && kept != nullptr && !is_between_rigid ? (1.0 - taken_over) * (gap_m - kept->gap_m) : 0.0;
-  Constraint& added = constraints_[count_++];
-  added = {.first_body = first.body,
-           .second_body = second.body,
-           .first = first.point,
-           .second = second.point,
-           .normal = normal,
-           .compliance = compliance,
-           .base_m = gap_m - difference_m - moved,
-           .difference_m = difference_m,
-           .taken_over = taken_over,
-           .added_gap_m = gap_m,
-           .first_mobility = find_mobility(first),
-           .second_mobility = find_mobility(second),
-           .friction = friction,
-           .moved_by = by_solvers ? MovedBy::solvers : MovedBy::springs,
-           .separates = separates,
-           .sample = sample};
-  if (kept != nullptr) added.force_n = limit_to_cone(kept->force_n, normal, friction);
+  constraints_.push_back({.first_body = first.body,
+                          .second_body = second.body,
+                          .first = first.point,
+                          .second = second.point,
+                          .normal = normal,
+                          .compliance = compliance,
+                          .base_m = gap_m - difference_m - moved,
+                          .difference_m = difference_m,
+                          .taken_over = taken_over,
+                          .added_gap_m = gap_m,
+                          .first_mobility = find_mobility(first),
+                          .second_mobility = find_mobility(second),
+                          .friction = friction,
+                          .moved_by = by_solvers ? MovedBy::solvers : MovedBy::springs,
+                          .separates = separates,
+                          .sample = sample});
+  if (kept != nullptr) constraints_.back().force_n = limit_to_cone(kept->force_n, normal, friction);
   return true;
 }
 
 void BodyContacts::keep() {
-  for (int c = 0; c < count_; ++c) {
-    Constraint& constraint = constraints_[c];
+  for (Constraint& constraint : constraints_) {
     if (constraint.sample < 0) {
       constraint.force_n.setZero();
       continue;
@@ -217,9 +214,9 @@ void BodyContacts::keep() {
 }
 
 void BodyContacts::begin() {
-  for (int c = 0; c < count_; ++c) {
-    constraints_[c].acted = false;
-    constraints_[c].impulse_ns.setZero();
+  for (Constraint& constraint : constraints_) {
+    constraint.acted = false;
+    constraint.impulse_ns.setZero();
   }
   impulse_ns_.fill(Vector3::Zero());
   ground_impulse_ns_.fill(Vector3::Zero());
@@ -229,8 +226,7 @@ void BodyContacts::begin() {
 Vector3 BodyContacts::impulse_ns(int body, double time_s) const {
   SPOONBILL_ASSERT(body >= 0 && body < lattice_capacity);
   Vector3 sum = impulse_ns_[static_cast<std::size_t>(body)];
-  for (int c = 0; c < count_; ++c) {
-    const Constraint& constraint = constraints_[c];
+  for (const Constraint& constraint : constraints_) {
     if (constraint.moved_by != MovedBy::solvers) continue;
     if (constraint.first_body == body) sum += time_s * constraint.force_n;
     if (constraint.second_body == body) sum -= time_s * constraint.force_n;
@@ -246,8 +242,7 @@ double BodyContacts::work_j(int body, const SpringLattice& lattice, double time_
       sum_j -= share_ns.dot(lattice.velocity(node));
     });
   };
-  for (int c = 0; c < count_; ++c) {
-    const Constraint& constraint = constraints_[c];
+  for (const Constraint& constraint : constraints_) {
     const Vector3 impulse_ns =
         constraint.moved_by == MovedBy::solvers ? time_s * constraint.force_n : constraint.impulse_ns;
     if (constraint.first_body == body) add(constraint.first, impulse_ns);
@@ -257,7 +252,7 @@ double BodyContacts::work_j(int body, const SpringLattice& lattice, double time_
 }
 
 bool BodyContacts::has_constraint_between_solvers() const {
-  return std::any_of(constraints_.begin(), constraints_.begin() + count_,
+  return std::any_of(constraints_.begin(), constraints_.end(),
                      [](const Constraint& constraint) { return constraint.moved_by == MovedBy::solvers; });
 }
 
@@ -296,8 +291,7 @@ void BodyContacts::find_response(std::span<const LatticeView> lattices, Constrai
 std::array<double, lattice_capacity> BodyContacts::find_impacts_m_per_s(std::span<const LatticeView> lattices,
                                                                         double time_s) const {
   std::array<double, lattice_capacity> impacts{};
-  for (int c = 0; c < count_; ++c) {
-    const Constraint& constraint = constraints_[c];
+  for (const Constraint& constraint : constraints_) {
     if (constraint.moved_by != MovedBy::springs) continue;
     const double approach = -find_relative_m_per_s(lattices, constraint).dot(constraint.normal);
     if (!(approach * time_s > find_gap_m(lattices, constraint))) continue;
@@ -311,8 +305,7 @@ std::array<double, lattice_capacity> BodyContacts::find_impacts_m_per_s(std::spa
 }
 
 void BodyContacts::start(std::span<const LatticeView> lattices, double h_s) {
-  for (int c = 0; c < count_; ++c) {
-    Constraint& constraint = constraints_[c];
+  for (Constraint& constraint : constraints_) {
     if (constraint.moved_by != MovedBy::springs) continue;
     constraint.gap_m = find_gap_m(lattices, constraint);
     constraint.spare_m_per_s = -infinity;
@@ -320,8 +313,7 @@ void BodyContacts::start(std::span<const LatticeView> lattices, double h_s) {
     if (!constraint.force_n.isZero(0.0)) push(lattices, constraint, h_s * constraint.force_n);
   }
   changed_m_per_s_.fill(0.0);
-  for (int c = 0; c < count_; ++c) {
-    Constraint& constraint = constraints_[c];
+  for (Constraint& constraint : constraints_) {
     if (constraint.moved_by != MovedBy::springs || !constraint.force_n.isZero(0.0)) continue;
     if (!(constraint.gap_m > 0.0)) continue;
     const double separation = find_relative_m_per_s(lattices, constraint).dot(constraint.normal);
@@ -361,8 +353,8 @@ bool BodyContacts::may_act(const Constraint& constraint) const {
 
 void BodyContacts::pass(std::span<const LatticeView> lattices, const ContactPass& pass) {
   const std::span<const float> caps = pass.push_speed_caps_m_per_s;
-  for (int c = 0; c < count_; ++c) {
-    Constraint& constraint = constraints_[pass.is_reversed ? count_ - 1 - c : c];
+  for (int c = 0; c < count(); ++c) {
+    Constraint& constraint = constraints_[pass.is_reversed ? count() - 1 - c : c];
     if (constraint.moved_by != pass.moved_by) continue;
     if (pass.moved_by == MovedBy::solvers) {
       constraint.gap_m = find_gap_m(lattices, constraint);
@@ -378,8 +370,7 @@ void BodyContacts::pass(std::span<const LatticeView> lattices, const ContactPass
 void BodyContacts::separate(std::span<const LatticeView> lattices, double h_s,
                             std::span<const float> caps_m_per_s) {
   const double part = std::min(max_separation, separation_per_s * h_s);
-  for (int c = 0; c < count_; ++c) {
-    const Constraint& constraint = constraints_[c];
+  for (const Constraint& constraint : constraints_) {
     // The constraint lets at most a part of a gap close. Where other pushes close it all the same, the
     // overlap is corrected from the next substep on.
     if (!constraint.separates || constraint.sample < 0 || constraint.gap_m > 0.0) continue;
@@ -396,8 +387,7 @@ void BodyContacts::separate(std::span<const LatticeView> lattices, double h_s,
 
 void BodyContacts::shorten_solver_pass(double fraction) {
   SPOONBILL_ASSERT_DEBUG(fraction >= 0.0 && fraction <= 1.0);
-  for (int c = 0; c < count_; ++c) {
-    Constraint& constraint = constraints_[c];
+  for (Constraint& constraint : constraints_) {
     if (constraint.moved_by != MovedBy::solvers) continue;
     const Vector3& before = constraint.passed_force_n;
     constraint.force_n = before + fraction * (constraint.force_n - before);
@@ -411,8 +401,7 @@ bool BodyContacts::is_with_others(const Constraint& constraint, int body) {
 
 double BodyContacts::find_assumed_work_j(int body) const {
   double work_j = 0.0;
-  for (int c = 0; c < count_; ++c) {
-    const Constraint& constraint = constraints_[c];
+  for (const Constraint& constraint : constraints_) {
     if (is_with_others(constraint, body))
       work_j += constraint.normal_per_kg * constraint.impulse_ns.squaredNorm();
   }
@@ -421,8 +410,7 @@ double BodyContacts::find_assumed_work_j(int body) const {
 
 void BodyContacts::shorten(int body, double fraction, std::span<const LatticeView> lattices) {
   SPOONBILL_ASSERT_DEBUG(fraction >= 0.0 && fraction <= 1.0);
-  for (int c = 0; c < count_; ++c) {
-    Constraint& constraint = constraints_[c];
+  for (Constraint& constraint : constraints_) {
     if (!is_with_others(constraint, body)) continue;
     const Vector3 excess_ns = (1.0 - fraction) * constraint.impulse_ns;
     if (constraint.first_body == body) {
@@ -459,13 +447,13 @@ void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& cons
 }
 
 bool BodyContacts::acted(int body) const {
-  return std::any_of(constraints_.begin(), constraints_.begin() + count_, [&](const Constraint& constraint) {
+  return std::any_of(constraints_.begin(), constraints_.end(), [&](const Constraint& constraint) {
     return constraint.acted && (constraint.first_body == body || constraint.second_body == body);
   });
 }
 
 bool BodyContacts::acted(int body, int other) const {
-  return std::any_of(constraints_.begin(), constraints_.begin() + count_, [&](const Constraint& constraint) {
+  return std::any_of(constraints_.begin(), constraints_.end(), [&](const Constraint& constraint) {
     const bool between = (constraint.first_body == body && constraint.second_body == other) ||
                          (constraint.first_body == other && constraint.second_body == body);
     return constraint.acted && between;
@@ -473,8 +461,7 @@ bool BodyContacts::acted(int body, int other) const {
 }
 
 void BodyContacts::mark_touched(int body, std::uint8_t* touched) const {
-  for (int c = 0; c < count_; ++c) {
-    const Constraint& constraint = constraints_[c];
+  for (const Constraint& constraint : constraints_) {
     if (!constraint.acted) continue;
     if (constraint.first_body == body) constraint.first.mark(touched);
     if (constraint.second_body == body) constraint.second.mark(touched);

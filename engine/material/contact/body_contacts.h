@@ -41,6 +41,11 @@ struct PointMobility {
 class BodyContacts {
  public:
   explicit BodyContacts(int capacity);
+  // A copy would have no memory for more contacts.
+  BodyContacts(const BodyContacts&) = delete;
+  BodyContacts& operator=(const BodyContacts&) = delete;
+  BodyContacts(BodyContacts&&) = default;
+  BodyContacts& operator=(BodyContacts&&) = default;
 
   // Tells whether bodies have their real inertia, which is false at first. Call before the first add() of a
   // tick; constraints that keep() retains are not affected.
@@ -95,8 +100,7 @@ class BodyContacts {
   // impulses at the start of their steps.
   template <class Visit>
   void visit_known_impulses(int body, double time_s, const Visit& visit) const {
-    for (int c = 0; c < count_; ++c) {
-      const Constraint& constraint = constraints_[static_cast<std::size_t>(c)];
+    for (const Constraint& constraint : constraints_) {
       if (constraint.moved_by != MovedBy::solvers || constraint.force_n.isZero(0.0)) continue;
       const Vector3 impulse = time_s * constraint.force_n;
       if (constraint.first_body == body) constraint.first.visit_shares(impulse, visit);
@@ -131,7 +135,7 @@ class BodyContacts {
   // Returns whether there is a constraint of the kind MovedBy::solvers.
   bool has_constraint_between_solvers() const;
 
-  int count() const { return count_; }
+  int count() const { return static_cast<int>(constraints_.size()); }
   // Returns the impulse of all other bodies on a body since begin(), N s, for a tick of `time_s`. Constraints
   // of a body with itself have no effect on it.
   Vector3 impulse_ns(int body, double time_s) const;
@@ -150,8 +154,7 @@ class BodyContacts {
   // begin(), or that was closer than `reach_m` when its constraint was added.
   template <class Visit>
   void visit_pushed_samples(int body, double reach_m, const Visit& visit) const {
-    for (int c = 0; c < count_; ++c) {
-      const Constraint& constraint = constraints_[static_cast<std::size_t>(c)];
+    for (const Constraint& constraint : constraints_) {
       if (constraint.first_body != body || constraint.sample < 0) continue;
       if (constraint.second_body == ground_index) continue;
       if (constraint.added_gap_m < reach_m || (constraint.acted && !constraint.force_n.isZero(0.0))) {
@@ -163,8 +166,7 @@ class BodyContacts {
   // Calls `visit` with the state on which the next tick depends.
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
-    for (int c = 0; c < count_; ++c) {
-      const Constraint& constraint = constraints_[static_cast<std::size_t>(c)];
+    for (const Constraint& constraint : constraints_) {
       visit(constraint.force_n.data(), 3);
       visit(constraint.normal.data(), 3);
       for (const double* value : {&constraint.base_m, &constraint.difference_m, &constraint.compliance})
@@ -222,13 +224,13 @@ class BodyContacts {
     double gap_m;
   };
 
+  std::size_t capacity_;
   std::vector<Constraint> constraints_;
   KeptValues<Kept> kept_;  // of the last tick
   // Impulses on each body since begin() of the constraints that substeps solve, N s.
   std::array<Vector3, lattice_capacity> impulse_ns_, ground_impulse_ns_;
   // Bound of how much pushes have changed the velocity of a node of each body since start(), m/s.
   std::array<double, lattice_capacity + 1> changed_m_per_s_{};
-  int count_ = 0;
   bool has_searched_ = false;  // whether a tick has begun since forget()
   bool is_real_time_ = false;
 };

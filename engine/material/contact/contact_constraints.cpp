@@ -24,24 +24,24 @@ constexpr double coupling_frequency = 360.0;
 }  // namespace
 
 ContactConstraints::ContactConstraints(int capacity)
-    : constraints_(static_cast<std::size_t>(capacity)), kept_(constraints_.size()) {
+    : capacity_(static_cast<std::size_t>(capacity)), kept_(capacity_) {
   SPOONBILL_ASSERT(capacity >= 0);
+  constraints_.reserve(capacity_);
 }
 
 void ContactConstraints::clear() {
   kept_.clear();
-  for (int c = 0; c < count_; ++c) {
-    const Constraint& constraint = constraints_[c];
+  for (const Constraint& constraint : constraints_) {
     if (!constraint.keeps_force || !(constraint.force_n > 0.0)) continue;
     kept_.add({.first = constraint.body, .point = constraint.key}, constraint.force_n);
   }
   kept_.sort();
-  count_ = 0;
+  constraints_.clear();
 }
 
 void ContactConstraints::forget() {
   kept_.clear();
-  count_ = 0;
+  constraints_.clear();
 }
 
 double ContactConstraints::last_force_n(int body, int key) const {
@@ -74,9 +74,8 @@ bool ContactConstraints::add_grip(int body, const SpringLattice& lattice, const 
 
 bool ContactConstraints::add(const Constraint& constraint, const SpringLattice& lattice) {
   SPOONBILL_ASSERT_DEBUG(constraint.body >= 0 && constraint.body < lattice_capacity);
-  if (count_ == static_cast<int>(constraints_.size())) return false;
-  Constraint& added = constraints_[count_++];
-  added = constraint;
+  if (constraints_.size() == capacity_) return false;
+  Constraint& added = constraints_.emplace_back(constraint);
   added.rest_m += constraint.point.rest_m(lattice);
   added.friction = constraint.point.friction(lattice);
   added.is_implicit = lattice.moved_by_solver();
@@ -87,7 +86,7 @@ bool ContactConstraints::add(const Constraint& constraint, const SpringLattice& 
 }
 
 bool ContactConstraints::has_constraint_on(int body) const {
-  return std::any_of(constraints_.begin(), constraints_.begin() + count_,
+  return std::any_of(constraints_.begin(), constraints_.end(),
                      [&](const Constraint& constraint) { return constraint.body == body; });
 }
 
@@ -100,7 +99,7 @@ void ContactConstraints::begin(const ToolMotion& motion, double time_s) {
   tool_compliance_ = coupled ? coupling_frequency * coupling_frequency / motion.coupling_n_per_m : 0.0;
   tool_impulse_.fill(Vector3::Zero());
   acted_ = false;
-  for (int c = 0; c < count_; ++c) constraints_[c].acted = false;
+  for (Constraint& constraint : constraints_) constraint.acted = false;
 }
 
 void ContactConstraints::start(std::span<const LatticeView> lattices, ToolState& tool, double h_s,
@@ -109,8 +108,7 @@ void ContactConstraints::start(std::span<const LatticeView> lattices, ToolState&
   const double damped = 1.0 + h_s * coupling_frequency;
   response_compliance_ = tool_compliance_ / (damped * damped);
   follow_hand(tool, h_s, fraction);
-  for (int c = 0; c < count_; ++c) {
-    Constraint& constraint = constraints_[c];
+  for (Constraint& constraint : constraints_) {
     const LatticeView& lattice = lattices[constraint.body];
     locate(lattice, constraint, tool);
     constraint.drag_ns.setZero();
@@ -124,8 +122,8 @@ void ContactConstraints::pass(std::span<const LatticeView> lattices, ToolState& 
                               const ContactPass& pass) {
   passed_ = {tool.velocity_m_per_s, tool_impulse_};
   const bool by_solver = pass.moved_by == MovedBy::solvers;
-  for (int c = 0; c < count_; ++c) {
-    Constraint& constraint = constraints_[pass.is_reversed ? count_ - 1 - c : c];
+  for (int c = 0; c < count(); ++c) {
+    Constraint& constraint = constraints_[pass.is_reversed ? count() - 1 - c : c];
     if (constraint.is_implicit != by_solver) continue;
     const LatticeView& lattice = lattices[constraint.body];
     if (constraint.compliance + response_compliance_ == 0.0) continue;
@@ -232,8 +230,8 @@ void ContactConstraints::solve_grip(const LatticeView& lattice, Constraint& cons
 }
 
 void ContactConstraints::mark_touched(int body, std::uint8_t* touched) const {
-  for (int c = 0; c < count_; ++c) {
-    if (constraints_[c].acted && constraints_[c].body == body) constraints_[c].point.mark(touched);
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.acted && constraint.body == body) constraint.point.mark(touched);
   }
 }
 

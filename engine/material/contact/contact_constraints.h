@@ -58,6 +58,11 @@ inline constexpr int changing_point_key = -1000;
 class ContactConstraints {
  public:
   explicit ContactConstraints(int capacity);
+  // A copy would have no memory for more contacts.
+  ContactConstraints(const ContactConstraints&) = delete;
+  ContactConstraints& operator=(const ContactConstraints&) = delete;
+  ContactConstraints(ContactConstraints&&) = default;
+  ContactConstraints& operator=(ContactConstraints&&) = default;
 
   // Removes the constraints, and remembers their forces for the constraints that are added next.
   void clear();
@@ -114,7 +119,7 @@ class ContactConstraints {
            std::max(response_compliance_, std::numeric_limits<double>::min());
   }
 
-  int count() const { return count_; }
+  int count() const { return static_cast<int>(constraints_.size()); }
   bool has_constraint_on(int body) const;
   // Returns the sum of the impulses of a body on the tool since begin(), N s. The impulses of all bodies on a
   // soft tool have the index of the tool's own lattice.
@@ -127,8 +132,7 @@ class ContactConstraints {
   // sample, or of a point between samples, as its key.
   template <class Visit>
   void visit_pushed_samples(int body, const Visit& visit) const {
-    for (int c = 0; c < count_; ++c) {
-      const Constraint& constraint = constraints_[static_cast<std::size_t>(c)];
+    for (const Constraint& constraint : constraints_) {
       if (constraint.acted && constraint.body == body && constraint.key >= 0) visit(constraint.key);
     }
   }
@@ -136,7 +140,7 @@ class ContactConstraints {
   // Calls `visit` with the state on which the next tick depends.
   template <class Visitor>
   void visit_state(Visitor&& visit) const {
-    for (int c = 0; c < count_; ++c) visit(&constraints_[static_cast<std::size_t>(c)].force_n, 1);
+    for (const Constraint& constraint : constraints_) visit(&constraint.force_n, 1);
   }
 
  private:
@@ -178,9 +182,9 @@ class ContactConstraints {
                         const ToolState& tool) const;
   void exchange(const LatticeView& lattice, Constraint& constraint, ToolState& tool, const Vector3& impulse);
 
+  std::size_t capacity_;
   std::vector<Constraint> constraints_;
   KeptValues<double> kept_;  // forces of the last tick
-  int count_ = 0;
   ToolMotion motion_;
   Vector3 hand_velocity_ = Vector3::Zero();  // m/s
   double tool_compliance_ = 0.0;  // 1 / mass of the tool, 1/kg; 0 if the hand holds the tool rigidly
