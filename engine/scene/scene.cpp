@@ -65,9 +65,10 @@ Status check_trial(const Scene& scene) {
   if (!scene.trial) return {};
   const TrialPlan& plan = *scene.trial;
   if (Status status = check_fields("trial: ", plan); !status.ok()) return status;
-  const auto deforms = [](const Body& body) { return body.kind == BodyKind::deformable; };
+  const auto is_free = [](const Body& body) { return body.kind != BodyKind::fixed && !body.hand; };
   const auto turns = [](const Body& body) { return body.kind == BodyKind::fixed || body.hand.has_value(); };
-  if (Status status = check_named_body(scene, plan.lowered_body, "lowered_body", "deformable", deforms);
+  if (Status status = check_named_body(scene, plan.lowered_body, "lowered_body",
+                                       "deformable, or rigid and without a hand", is_free);
       !status.ok()) {
     return status;
   }

@@ -130,7 +130,7 @@ Status check_body_count(const Scene& scene);
 Status check_sculpting(const Sculpting& sculpting);
 Status check_symmetry(const Symmetry& symmetry);
 // Checks the numbers of a trial, that its bodies are in the scene, that the turned body is fixed or held by a
-// hand, and that the lowered body is deformable.
+// hand, and that the lowered body is neither.
 Status check_trial(const Scene& scene);
 // Removes the trial if check_trial() fails, for example because a body was removed or renamed. Returns a note
 // about it; empty if the trial stays.
@@ -188,7 +188,8 @@ struct MoveBody {
   int body = 0;  // index in the scene
   BodyMotion motion = {};
 };
-// Lowers a deformable body level, along gravity, until contacts bear its weight, and then lets it go.
+// Lowers a free body level, along gravity, until contacts bear its weight, and then lets it go. A rigid body
+// is let go at its first contact.
 struct LowerBody {
   int body = 0;  // index in the scene
   double speed_m_per_s = 0.01;

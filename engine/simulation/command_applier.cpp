@@ -244,9 +244,9 @@ Status CommandApplier::operator()(const LowerBody& command) {
   if (Status status = check_body(command.body); !status.ok()) return status;
   if (Status status = check_fields("lower_body: ", command); !status.ok()) return status;
   BodyState& body = state.bodies[static_cast<std::size_t>(command.body)];
-  if (body.rigid || body.lattice.has_fixed_nodes()) {
+  if (body.rigid ? !body.rigid->is_free() : body.lattice.has_fixed_nodes()) {
     return Error{ErrorCode::inconsistent,
-                 "lower_body: the body is fixed or rigid; only a free deformable body is lowered", "body"};
+                 "lower_body: the body is fixed or held by a hand; only a free body is lowered", "body"};
   }
   if (state.scene.sculpting.gravity_m_per_s2.isZero(0.0)) {
     return Error{ErrorCode::missing, "lower_body: without gravity nothing is lowered", "gravity_m_per_s2"};

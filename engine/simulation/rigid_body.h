@@ -44,9 +44,11 @@ class RigidBody {
   // Puts the hand that holds the body at a pose, and ends a motion.
   void place_hand(const Pose& pose);
   // is_finite() returns whether the pose and the velocities are finite. return_to_start() puts a body with
-  // dynamics at rest where it was at the start of the tick.
+  // dynamics at rest where it was at the start of the tick, shifted by `shift_m`.
   bool is_finite() const;
-  void return_to_start() { dynamics_->place(tick_start_); }
+  void return_to_start(const Vector3& shift_m = Vector3::Zero()) {
+    dynamics_->place({tick_start_.position_m + shift_m, tick_start_.orientation});
+  }
   // Finds the motion() of the next tick, which lasts `tick_s`.
   void begin_tick(double tick_s);
 

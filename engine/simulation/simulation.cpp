@@ -239,17 +239,30 @@ Vector3 contact_impulse_ns(const Simulation::State& s, int body) {
   return s.between.impulse_ns(body, tick_s) + find_ground_impulse_ns(s, body);
 }
 
-// Lowers a body level by the distance of a tick, unless contacts bear its weight: then lets it go.
+// Puts a rigid body with dynamics back where it was at the start of the tick, at rest, shifted by `shift_m`.
+void return_to_start(BodyState& body, const Vector3& shift_m) {
+  body.rigid->return_to_start(shift_m);
+  body.rigid->dynamics()->place_nodes(body.lattice.view());
+}
+
+// Lowers a body level by the distance of a tick, unless contacts bear its weight: then lets it go. A rigid
+// body cannot settle on its contacts while it is held level, so the first one suffices.
 void lower(Simulation::State& s, std::size_t index) {
   BodyState& body = s.bodies[index];
   const Vector3& gravity = s.scene.sculpting.gravity_m_per_s2;
-  const double weight_ns = body.lattice.mass_kg() * gravity.norm() * tick_s;
   const Vector3 down = gravity.normalized();
-  if (-contact_impulse_ns(s, static_cast<int>(index)).dot(down) >= weight_ns) {
+  const double borne_ns = -contact_impulse_ns(s, static_cast<int>(index)).dot(down);
+  const double weight_ns = body.lattice.mass_kg() * gravity.norm() * tick_s;
+  if (body.rigid ? borne_ns > 0.0 : borne_ns >= weight_ns) {
     body.lowering_m_per_s = 0.0;
     return;
   }
-  body.hold.keep_pose(body.lattice, body.solver(), body.lowering_m_per_s * tick_s * down);
+  const Vector3 shift_m = body.lowering_m_per_s * tick_s * down;
+  if (body.rigid) {
+    return_to_start(body, shift_m);
+  } else {
+    body.hold.keep_pose(body.lattice, body.solver(), shift_m);
+  }
 }
 
 // Puts a rigid body back where it was at the start of the tick, at rest, if it has no finite pose, or if it
@@ -257,9 +270,7 @@ void lower(Simulation::State& s, std::size_t index) {
 bool hold_rigid(BodyState& body, bool keeps_place) {
   if (!body.is_movable_rigid()) return false;
   const bool is_lost = !body.rigid->is_finite();
-  if (!is_lost && !(keeps_place && body.rigid->is_free())) return false;
-  body.rigid->return_to_start();
-  body.rigid->dynamics()->place_nodes(body.lattice.view());
+  if (is_lost || (keeps_place && body.rigid->is_free())) return_to_start(body, Vector3::Zero());
   return is_lost;
 }
 
@@ -272,6 +283,7 @@ void hold_bodies(Simulation::State& s) {
     BodyState& body = s.bodies[b];
     if (body.rigid) {
       if (hold_rigid(body, keeps_place(s.scene))) s.limited_body = static_cast<int>(b);
+      if (body.lowering_m_per_s > 0.0) lower(s, b);
       continue;
     }
     ImplicitSolver* const solver = body.solver();

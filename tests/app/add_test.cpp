@@ -82,7 +82,7 @@ TEST(Add, LeavesOutATrialThatDoesNotFit) {
   const Workplace place;
   const std::string jelly = std::string(SPOONBILL_ASSETS) + "/models/jelly-on-spoon.json";
   const std::string out = place.text("out.json");
-  const Outcome outcome = run({"add", jelly, "--rigid", "jelly", "--out", out, "--json"});
+  const Outcome outcome = run({"add", jelly, "--fixed", "jelly", "--out", out, "--json"});
   ASSERT_EQ(outcome.code, exit_done) << outcome.err;
   EXPECT_EQ(json_of(outcome.out)["remarks"].size(), 1u);
   const auto sum = read_document(out);

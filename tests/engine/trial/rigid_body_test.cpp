@@ -476,7 +476,9 @@ TEST(RigidBody, RefusesWhatItCannotDo) {
   scene.bodies = {rigid_block({0.0, 0.1, 0.0}, 0.3)};
   Simulation simulation = make_trial_of(scene);
   EXPECT_EQ(simulation.apply(TurnBody{}).error().code, ErrorCode::inconsistent);
-  EXPECT_EQ(simulation.apply(LowerBody{0, 0.01}).error().code, ErrorCode::inconsistent);
+  Scene gripped = scene;
+  gripped.bodies[0].hand.emplace();
+  EXPECT_EQ(make_trial_of(gripped).apply(LowerBody{0, 0.01}).error().code, ErrorCode::inconsistent);
   Scene open = scene;
   open.bodies[0].surface = stock_surface(SheetSize{0.06, 0.04});
   EXPECT_FALSE(Simulation::make(open, InstructionSet::baseline).ok());

@@ -91,6 +91,23 @@ TEST(Trial, LaysABlockOnAPlateAndTiltsIt) {
   EXPECT_GT(plate.support_force_n.y(), -weight_n.y());
 }
 
+// A rigid body is let go at its first contact, and then rests and tilts with the plate.
+TEST(Trial, LaysARigidBlockOnAPlate) {
+  Scene scene = block_over_plate(0.5, 10.0);
+  scene.bodies[0].kind = BodyKind::rigid;
+  Simulation simulation = make_simulation(scene);
+  const RunTrial result = run_trial(simulation, {0.5, 2.0});
+  ASSERT_TRUE(result.held.ok()) << result.held.error().message;
+  EXPECT_EQ(result.phases, (std::vector{TrialPhase::lowering, TrialPhase::settling, TrialPhase::turning,
+                                        TrialPhase::watching}));
+  EXPECT_TRUE(result.settled);
+  EXPECT_LT(result.largest_penetration_m, 2e-5);  // two ticks of lowering
+  const TrialBodyReport& block = result.report.bodies[0];
+  const double weight_n = standard_gravity_m_per_s2 * simulation.rigid_dynamics(0)->mass().mass_kg;
+  EXPECT_NEAR(block.contact_force_n.y(), weight_n, 0.01 * weight_n);
+  EXPECT_LT(block.centre_of_mass_m.norm(), 0.01);  // it has not slid off
+}
+
 // Too little friction to hold the block at the angle.
 TEST(Trial, ABlockSlidesOffASlipperyPlate) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
