@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/base/assert.h"
+#include "engine/material/springs/lattice_forces.h"
 #include "engine/material/springs/spring_lattice.h"
 
 namespace spoonbill {
@@ -112,39 +113,6 @@ Substeps choose_substeps(const SpringLattice& lattice, const RelaxSettings& sett
   return {std::max(settings.substeps, static_cast<int>(required)), false};
 }
 
-void add_loads(const SpringLattice& lattice, const LatticeView& view) {
-  if (!lattice.has_applied_force()) return;
-  for (int i = 0; i < view.padded_count; ++i) {
-    view.fx[i] += lattice.applied_force(0)[i];
-    view.fy[i] += lattice.applied_force(1)[i];
-    view.fz[i] += lattice.applied_force(2)[i];
-  }
-}
-
-void add_weights(const SpringLattice& lattice, const LatticeView& view, const Vector3& gravity_m_per_s2) {
-  if (gravity_m_per_s2.isZero(0.0)) return;
-  const float g[3] = {static_cast<float>(gravity_m_per_s2.x()), static_cast<float>(gravity_m_per_s2.y()),
-                      static_cast<float>(gravity_m_per_s2.z())};
-  const float* const mass = lattice.masses();
-  for (int i = 0; i < view.padded_count; ++i) {
-    view.fx[i] += mass[i] * g[0];
-    view.fy[i] += mass[i] * g[1];
-    view.fz[i] += mass[i] * g[2];
-  }
-}
-
-void linearise(const SpringLattice& lattice, const LatticeView& view, Linearised stored) {
-  lattice.kernels().linearise_springs(view, lattice.damping_time_s(), stored);
-}
-
-// Linearises the springs and performs one step of the power iteration that tracks the fastest frequency as
-// the lattice deforms.
-void linearise_and_follow(SpringLattice& lattice, const LatticeView& view, Linearised stored) {
-  const float square = lattice.kernels().linearise_with_power_step(view, lattice.damping_time_s(), stored,
-                                                                   lattice.free_mass());
-  if (square > 0.0f && std::isfinite(square)) lattice.set_fastest_square(static_cast<double>(square));
-}
-
 // Returns the speed cap in real time, m/s (see speed_cap_cells), for substeps of `h` seconds.
 float real_time_speed_cap(const SpringLattice& lattice, float h) {
   return lattice.cell_size_m() * static_cast<float>(speed_cap_cells) / h;
@@ -176,22 +144,6 @@ Drifted drift(const SpringLattice& lattice, const LatticeView& view, float h, fl
   return lattice.kernels().drift(view, drift);
 }
 
-// Computes all forces on the nodes. Linearises the springs again if `moved_square` is too large.
-// `moved_square` is the largest squared change of an extrapolated node displacement since the linearisation.
-void compute_forces(const SpringLattice& lattice, const LatticeView& view, float moved_square,
-                    const Vector3& gravity_m_per_s2) {
-  const LatticeKernels& kernels = lattice.kernels();
-  const float limit = static_cast<float>(linear_cells) * lattice.cell_size_m();
-  const bool linear = moved_square <= limit * limit;
-  if (!linear) linearise(lattice, view, Linearised::tangents);
-  kernels.start_forces(view);
-  if (linear && moved_square > 0.0f) kernels.spring_forces(view);
-  kernels.volume_forces(view);
-  if (lattice.is_damped_further()) kernels.damp_further(view);
-  add_loads(lattice, view);
-  add_weights(lattice, view, gravity_m_per_s2);
-}
-
 // The lattices of one tick, with a view, a speed cap and a drag for each.
 struct Relaxation {
   std::span<const RelaxedLattice> lattices;
@@ -199,6 +151,7 @@ struct Relaxation {
   std::array<float, lattice_capacity> cap{};       // of the nodes' speeds, m/s
   std::array<float, lattice_capacity> push_cap{};  // of what contacts and supports prescribe, m/s
   std::array<Drifted, lattice_capacity> drifted{};
+  std::array<LinearisedSprings, lattice_capacity> springs{};
   std::array<double, lattice_capacity> drag_per_s{};
   double time_s = 0.0;  // duration of the tick, s
   bool is_real_time = false;
@@ -274,7 +227,7 @@ void kick(Relaxation& relaxation, const Substep& substep) {
     const LatticeView& view = relaxation.view[at];
     const float decay = 1.0f / (1.0f + h * static_cast<float>(relaxation.drag_per_s[at]));
     compute_forces(lattice, view, relaxation.drifted[at].moved_square,
-                   weights * relaxation.lattices[at].gravity_m_per_s2);
+                   weights * relaxation.lattices[at].gravity_m_per_s2, relaxation.springs[at]);
     if (relaxation.is_real_time) lattice.resist_inversion(view, h);
     add_support_impulses(relaxation.lattices[at].supports, view, static_cast<double>(h));
     lattice.kernels().kick(view, h, decay);
@@ -769,7 +722,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   SPOONBILL_ASSERT(!lattices.empty() && lattices.size() <= static_cast<std::size_t>(lattice_capacity));
   SPOONBILL_ASSERT(settings.substeps >= 1 && settings.time_s > 0.0);
   SPOONBILL_ASSERT(settings.drag_per_s >= 0.0);
-  Relaxation relaxation{lattices,       {}, {}, {}, {}, {}, settings.time_s, settings.is_real_time, {},
+  Relaxation relaxation{lattices,       {}, {}, {}, {}, {}, {}, settings.time_s, settings.is_real_time, {},
                         Vector3::Zero()};
   const bool flows = settings.tick % 2 == 1;
   for (std::size_t at = 0; at < lattices.size(); ++at) relaxation.view[at] = lattices[at].lattice->view();

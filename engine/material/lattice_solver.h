@@ -53,12 +53,6 @@ inline constexpr double stability_fraction = 0.85;
 inline constexpr double speed_cap_cells = 0.1;
 inline constexpr double extrapolation_cap_cells = 0.5;
 
-// Longest motion of a node since the linearisation, in cells, before the springs are linearised again within
-// the tick. The linearised strain of a spring has an error of about half the square of the angle by which the
-// spring has rotated since. Its force then does work that its energy does not account for: with ten times
-// this limit, an undamped ball that is thrown against another one gains energy without end.
-inline constexpr double linear_cells = 0.01;
-
 // Settings of relax(). Tracking the fastest frequency costs about as much as a substep, and so does plastic
 // flow. The two alternate with `tick`: even ticks track the frequency, and odd ticks compute the flow of two
 // ticks.

@@ -222,12 +222,10 @@ void extrapolate(const LatticeView& view, float tau) {
   }
 }
 
-// Linearises all springs. If `powers` is true, also sets the forces to the product of the springs'
-// derivative and the power vector.
-void linearise(const LatticeView& view, float tau, Linearised stored, bool powers) {
+// Linearises all springs at the extrapolated positions. If `powers` is true, also sets the forces to the
+// product of the springs' derivative and the power vector.
+void linearise_extrapolated(const LatticeView& view, Linearised stored, bool powers) {
   const int count = view.padded_count;
-  extrapolate(view, tau);
-  clear(view.moved_x, view.moved_y, view.moved_z, count);
   clear(view.spring_x, view.spring_y, view.spring_z, count);
   if (powers) clear(view.fx, view.fy, view.fz, count);
   Tangents tangents;
@@ -243,14 +241,34 @@ void linearise(const LatticeView& view, float tau, Linearised stored, bool power
   }
 }
 
+void linearise(const LatticeView& view, float tau, Linearised stored, bool powers) {
+  extrapolate(view, tau);
+  clear(view.moved_x, view.moved_y, view.moved_z, view.padded_count);
+  linearise_extrapolated(view, stored, powers);
+}
+
 void linearise_springs(const LatticeView& view, float tau, Linearised stored) {
   linearise(view, tau, stored, false);
+}
+
+void store_tangents(const LatticeView& view) {
+  linearise_extrapolated(view, Linearised::tangents, false);
 }
 
 void start_forces(const LatticeView& view) {
   set_to(view.fx, view.spring_x, view.padded_count);
   set_to(view.fy, view.spring_y, view.padded_count);
   set_to(view.fz, view.spring_z, view.padded_count);
+}
+
+void add_weights(float* __restrict to, const float* mass, float g, int count) {
+  for (int i = 0; i < count; ++i) to[i] += mass[i] * g;
+}
+
+void add_weights(const LatticeView& view, const float* mass, const float g[3]) {
+  add_weights(view.fx, mass, g[0], view.padded_count);
+  add_weights(view.fy, mass, g[1], view.padded_count);
+  add_weights(view.fz, mass, g[2], view.padded_count);
 }
 
 void add_spring_tangent(const LatticeView& view, const ConstField& field) {
@@ -404,8 +422,10 @@ float linearise_with_power_step(const LatticeView& view, float tau, Linearised s
 
 const LatticeKernels lattice_kernels = {
     linearise_springs,
+    store_tangents,
     start_forces,
     spring_forces,
+    add_weights,
     volume_forces,
     find_flat_cells,
     damp_further,

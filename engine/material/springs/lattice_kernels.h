@@ -161,11 +161,15 @@ struct LatticeKernels {
   // Eq. 7 of Pungotra et al. 2013 damps the whole velocity, rotations included. Here rotations are not
   // damped, because the extrapolation of a rotating body is the same body rotated further.
   void (*linearise_springs)(const LatticeView&, float tau_s, Linearised stored);
+  // Stores the tangents of the last linearisation, whose forces stay the same.
+  void (*store_tangents)(const LatticeView&);
   // Sets the forces to the spring forces of the linearisation.
   void (*start_forces)(const LatticeView&);
   // Adds the first-order change of the spring forces since the linearisation. This function, damp_further()
   // and power_step() need Linearised::tangents.
   void (*spring_forces)(const LatticeView&);
+  // Adds the weights of all nodes under the gravity g, m/s^2.
+  void (*add_weights)(const LatticeView&, const float* mass, const float g[3]);
   // Adds the force f = -p dV/dx of each cell's pressure p on its corners x, with the exact volume V of the
   // trilinear cell. The pressure is p = K_v q for the dilation q = J - 1. Changes of volume are not damped:
   // damping these fast modes would need ten times the substeps.

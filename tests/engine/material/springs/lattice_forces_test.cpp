@@ -1,3 +1,5 @@
+#include "engine/material/springs/lattice_forces.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -207,6 +209,45 @@ TEST(LatticeForces, LinearisedSpringsFollowToFirstOrder) {
     EXPECT_LT(large, 0.02) << stiffening;
     EXPECT_NEAR(large / small, 4.0, 0.4) << stiffening;  // the bound allows for terms of third order
   }
+}
+
+// The springs of a fast lattice are linearised in each substep, without tangents. When it is slow again, the
+// tangents are those that would have been stored.
+TEST(LatticeForces, AreTheSameWheneverTangentsAreStored) {
+  constexpr float h_s = 1e-4f, fast = 1.0f, slow = 0.02f;
+  int substeps_without = 0;
+  const auto run = [&](bool stores_at_once) {
+    SpringLattice lattice = block({5e-3, 4e-3, 6e-3}, {6, 5, 7}, elastic_material(5000.0, 0.45, 1000.0));
+    displace_at_random(lattice, 2e-4, 5);
+    const LatticeView view = lattice.view();
+    lattice.kernels().linearise_springs(view, 0.0f, Linearised::tangents);
+    LinearisedSprings springs;
+    Random random(6);
+    std::vector<float> forces;
+    float moved_square = 0.0f;
+    for (const float m_per_s : {fast, fast, fast, slow, slow, fast, slow, fast, fast, slow}) {
+      if (stores_at_once) springs.age_substeps = 2;
+      compute_forces(lattice, view, moved_square, {0.0, -9.81, 0.0}, springs);
+      substeps_without += springs.stored == Linearised::forces ? 1 : 0;
+      for (const float* force : {view.fx, view.fy, view.fz}) {
+        forces.insert(forces.end(), force, force + view.padded_count);
+      }
+      for (int n = 0; n < lattice.mesh().node_count(); ++n) {
+        for (float* velocity : {view.vx, view.vy, view.vz}) {
+          velocity[n] = m_per_s * static_cast<float>(random.uniform(-1, 1));
+        }
+      }
+      Drift drift;
+      drift.h_s = h_s;
+      drift.speeds.cap_m_per_s = 10.0f;
+      moved_square = lattice.kernels().drift(view, drift).moved_square;
+    }
+    return forces;
+  };
+  const std::vector<float> at_once = run(true);
+  EXPECT_EQ(substeps_without, 0);
+  EXPECT_EQ(run(false), at_once);
+  EXPECT_EQ(substeps_without, 4);
 }
 
 // In a lattice that grows evenly all springs have the same strain: the forces are those of linear springs
