@@ -34,6 +34,7 @@ struct TryOptions {
   Extent size{1280, 720};
   std::uint64_t every = 1;
   std::optional<double> seconds, tilt_deg;
+  int step_division = 0;  // 0: that of the document
   InstructionSet instruction_set = best_instruction_set();
   bool progress = false;
   bool json = false;
@@ -265,6 +266,7 @@ Status try_document(const TryOptions& options, Console& console) {
   auto document = read_document_file(options.model);
   if (!document) return document.error();
   const std::string source = options.model.string();
+  if (options.step_division > 0) document->scene.sculpting.step_division = options.step_division;
   auto scene = make_trial_scene(document->scene, options.tilt_deg);
   if (!scene) return scene.error().in(source);
   document->scene = std::move(scene).value();
@@ -314,8 +316,8 @@ CommandEntry add_try(OptionSet root) {
   const OptionSet parser = root.add_command("try", "Try bodies with their true inertia under gravity");
   parser.set_footer(
       "Gives all bodies their true inertia and lets gravity act; without gravity in the document, standard\n"
-      "gravity along -y. The document's \"trial\" may name a body that is lowered until others bear its\n"
-      "weight, and a fixed or held body that then turns. Then fixed and held bodies that state a \"motion\"\n"
+      "gravity along -y. The document's \"trial\" may name a body that is lowered until others bear it, and\n"
+      "a fixed or held body that then turns. Then fixed and held bodies that state a \"motion\"\n"
       "move through its waypoints. The bodies settle before the turn, for 10 s at most. Bodies have settled\n"
       "when no node has moved faster than 0.1 mm/s for 0.2 s. A trial that cannot hold a body, or in which\n"
       "nothing bears the lowered body within 30 s, ends with an error.\n"
@@ -333,6 +335,11 @@ CommandEntry add_try(OptionSet root) {
       [](const std::string& text) { return parse_angle_deg(text, turn_angle_range_deg); },
       [options](double angle_deg) { options->tilt_deg = angle_deg; },
       "Angle of the turn, such as 10deg; default: the document's, range: -360deg to 360deg");
+  parser
+      .add_option("--step-division", options->step_division,
+                  "Number that divides each substep, to see whether the result depends on them; default: the "
+                  "document's, range: 1 to 8")
+      .limit(step_division_range);
   parser
       .add_option("--out", options->out,
                   "Folder for frame-####.png, the last of which shows the end; default: none")

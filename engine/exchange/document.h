@@ -50,7 +50,8 @@
 //    "sculpting": {"drag_per_s": 24, "gravity_m_per_s2": [0, 0, 0], "force_scale": 1,
 //      "settles": true,                                          optional, false: oscillates
 //      "free": false,                      optional, false: a body that nothing fixes keeps its place
-//      "real_time": false},                                      optional, false: bodies respond slower
+//      "real_time": false,                                       optional, false: bodies respond slower
+//      "step_division": 1},                                      optional, 1; divides steps in real time
 //    "ground": {"point_mm": [0, 0, 0], "normal": [0, 1, 0], "friction": 0.5},       optional
 //    "symmetry": {"on": true, "point_mm": [0, 0, 0], "normal": [0, 0, 1]},          optional
 //    "trial": {"lowered_body": "jelly", "lowering_speed_m_per_s": 0.01,             optional; TrialPlan in
@@ -134,7 +135,7 @@ Result<Material> read_material(const std::filesystem::path& file);
 //   {"command": "keep_shape"}
 //   {"command": "set_material", "name", "source", "youngs_modulus_pa", ..., and optionally "body": 1}
 //   {"command": "set_sculpting", "drag_per_s", "gravity_m_per_s2", "force_scale", optionally "settles",
-//   "free", "real_time"}
+//   "free", "real_time", "step_division"}
 //   {"command": "set_symmetry", "on", "point_mm", "normal"}
 //   {"command": "reset_proxy"}
 //   {"command": "lift_tool"}

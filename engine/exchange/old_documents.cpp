@@ -75,7 +75,7 @@ void convert_material(FieldReader reader, Json& material, int iterations) {
 }
 
 void convert_sculpting(FieldReader reader, Json& sculpting, int iterations) {
-  refuse_new_fields(reader, {"drag_per_s", "real_time"});
+  refuse_new_fields(reader, {"drag_per_s", "real_time", "step_division"});
   const double damping_per_s = reader.number("damping_per_s", old_damping_range_per_s);
   if (!reader.status().ok()) return;
   replace_field(sculpting, "damping_per_s", "drag_per_s", number_to_json(iterations * damping_per_s));

@@ -565,6 +565,7 @@ void stabilise_strained_nodes(Relaxation& relaxation, float h) {
     relaxation.view[at].inverse_mass =
         lattice.stabilise_strained_nodes(h, static_cast<float>(stability_fraction));
     // The velocities have changed, and the linearisation depends on them.
+    relaxation.springs[at].stored = Linearised::tangents;
     linearise(lattice, relaxation.view[at], Linearised::tangents);
   }
 }
@@ -597,11 +598,13 @@ Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, co
     set_damped_speeds(relaxation.lattice(at), find_mean_velocity(relaxation, at), relaxation.view[at]);
   }
   const int for_speed = count_substeps_for_speed(relaxation, settings, between);
-  const int expected = std::max(choose_substeps(relaxation, settings).count, for_speed);
+  const int expected =
+      settings.step_division * std::max(choose_substeps(relaxation, settings).count, for_speed);
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     if (!relaxation.has_springs(at)) continue;
     SpringLattice& lattice = relaxation.lattice(at);
     const Linearised stored = choose_linearisation(lattice, settings, expected);
+    relaxation.springs[at].stored = stored;
     if (follows) {
       linearise_and_follow(lattice, relaxation.view[at], stored);
     } else {
@@ -609,11 +612,7 @@ Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, co
     }
   }
   Substeps substeps = choose_substeps(relaxation, settings);
-  substeps.count = std::max(substeps.count, for_speed);
-  for (std::size_t at = 0; at < relaxation.count() && substeps.count > expected; ++at) {
-    if (!relaxation.has_springs(at)) continue;
-    linearise(relaxation.lattice(at), relaxation.view[at], Linearised::tangents);
-  }
+  substeps.count = settings.step_division * std::max(substeps.count, for_speed);
   return substeps;
 }
 
@@ -720,7 +719,7 @@ float rigid_speed_cap(const Relaxation& relaxation, std::size_t at, float h) {
 RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings& settings,
                   std::span<const TouchingTool> tools, BodyContacts* between, GroundContacts* ground) {
   SPOONBILL_ASSERT(!lattices.empty() && lattices.size() <= static_cast<std::size_t>(lattice_capacity));
-  SPOONBILL_ASSERT(settings.substeps >= 1 && settings.time_s > 0.0);
+  SPOONBILL_ASSERT(settings.substeps >= 1 && settings.step_division >= 1 && settings.time_s > 0.0);
   SPOONBILL_ASSERT(settings.drag_per_s >= 0.0);
   Relaxation relaxation{lattices,       {}, {}, {}, {}, {}, {}, settings.time_s, settings.is_real_time, {},
                         Vector3::Zero()};

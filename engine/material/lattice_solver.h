@@ -66,6 +66,7 @@ struct RelaxSettings {
   // supports may not. Faster nodes raise the number of substeps, and nodes outside a body follow it (see
   // OutsideNodes).
   bool is_real_time = false;
+  int step_division = 1;  // divides each substep further, whatever required it
 };
 
 // Prescribed motion of a rigid body, or of the hand that holds it, through a tick. The poses map the rest

@@ -33,6 +33,9 @@ struct Sculpting {
   // If false, inertia is scaled up until the tool's number of substeps suffices
   // (SpringLattice::set_inertia()).
   bool real_time = false;
+  // Number by which each substep of springs and contacts is divided if `real_time` is true. Results that
+  // depend on it are not to be trusted. Bodies that are stepped implicitly still take one step a tick.
+  int step_division = 1;
 };
 
 // Symmetric sculpting: a second tool is the mirror image of the hand's tool in a plane.
@@ -46,8 +49,8 @@ struct Symmetry {
 Vector3 mirror_point(const Symmetry& symmetry, const Vector3& point_m);
 Pose mirror_pose(const Symmetry& symmetry, const Pose& pose);
 
-// How a trial of the scene runs (engine/trial): a body such as food is lowered until others bear its weight,
-// comes to rest, and then a body such as a spoon is turned. At last, bodies move as they state
+// How a trial of the scene runs (engine/trial): a body such as food is lowered until others bear it
+// (LowerBody), comes to rest, and then a body such as a spoon is turned. At last, bodies move as they state
 // (Body::motion).
 struct TrialPlan {
   std::string lowered_body;              // name of the body that is lowered first; empty: none
@@ -85,6 +88,7 @@ inline constexpr Range<int> sculpted_body_count_range{1, 8};
 inline constexpr Range<double> drag_range_per_s{0.0, 8000.0};
 inline constexpr double gravity_limit_m_per_s2 = 100.0;  // largest length of the gravity vector
 inline constexpr Range<double> force_scale_range{0.0, 1e6};
+inline constexpr Range<int> step_division_range{1, 8};
 inline constexpr Range<double> lowering_speed_range_m_per_s{1e-4, 1.0};
 inline constexpr Range<double> turn_angle_range_deg{-360.0, 360.0};
 inline constexpr Range<double> turn_speed_range_deg_per_s{0.1, 360.0};
@@ -100,6 +104,7 @@ inline constexpr auto fields_of<Sculpting> = std::to_array<Field<Sculpting>>({
     switch_field("settles", &Sculpting::is_critically_damped).optional(),
     switch_field("free", &Sculpting::free).optional(),
     switch_field("real_time", &Sculpting::real_time).optional(),
+    whole_number_field("step_division", &Sculpting::step_division, step_division_range).optional(),
 });
 
 template <>
@@ -189,7 +194,7 @@ struct MoveBody {
   BodyMotion motion = {};
 };
 // Lowers a free body level, along gravity, until contacts bear its weight, and then lets it go. A rigid body
-// is let go at its first contact.
+// is let go when contacts first push it up.
 struct LowerBody {
   int body = 0;  // index in the scene
   double speed_m_per_s = 0.01;

@@ -354,7 +354,9 @@ bool BodyPairContact::find(const IndexedBody& first, const IndexedBody& second) 
     return body.rigid && !both_rigid ? 0.0 : static_cast<double>(body.lattice.cell_size_m());
   };
   const double cell = std::max(size_of_cells(*first.state), size_of_cells(*second.state));
-  const double motion_m = find_approach_m(*first.state, *second.state, cell);
+  // Bodies that are lowered move without a velocity.
+  const double lowered_m = tick_s * (first.state->lowering_m_per_s + second.state->lowering_m_per_s);
+  const double motion_m = find_approach_m(*first.state, *second.state, cell) + lowered_m;
   // Points that come within reach during a tick need their constraints one tick earlier.
   const double margin_m = std::max(contact_margin_cells * cell, 2.0 * motion_m);
   deepest_new_m_ = std::max(deepest_new_cells * cell, motion_m);

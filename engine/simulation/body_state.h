@@ -41,7 +41,7 @@ struct BodyState {
   std::shared_ptr<const TrimmedArea> trim = {};  // area within the trims; null without trims
   // Pose and motion of a rigid body, whose lattice is its frame (rigid_frame()); empty for a deformable body.
   std::optional<RigidBody> rigid = {};
-  // Speed at which the body is lowered until contacts bear its weight; 0 for any other body.
+  // Speed at which the body is lowered until contacts bear it; 0 for any other body.
   double lowering_m_per_s = 0.0;
 
   // is_immovable() returns whether the body is rigid and nothing that touches it can move it,

@@ -46,7 +46,7 @@ class RigidBody {
   // is_finite() returns whether the pose and the velocities are finite. return_to_start() puts a body with
   // dynamics at rest where it was at the start of the tick, shifted by `shift_m`.
   bool is_finite() const;
-  void return_to_start(const Vector3& shift_m = Vector3::Zero()) {
+  void return_to_start(const Vector3& shift_m) {
     dynamics_->place({tick_start_.position_m + shift_m, tick_start_.orientation});
   }
   // Finds the motion() of the next tick, which lasts `tick_s`.

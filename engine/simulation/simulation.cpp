@@ -111,8 +111,9 @@ void update_inertia(Simulation::State& s) {
     if (!body.solver() && !body.rigid)
       real_time_step_s = body.lattice.find_real_time_step_s(real_time_step_s);
   }
-  s.real_time_substeps = static_cast<int>(std::lround(tick_s / real_time_step_s));
-  s.substeps = s.scene.sculpting.real_time ? s.real_time_substeps : wanted;
+  const Sculpting& sculpting = s.scene.sculpting;
+  s.real_time_substeps = sculpting.step_division * static_cast<int>(std::lround(tick_s / real_time_step_s));
+  s.substeps = sculpting.real_time ? s.real_time_substeps : wanted;
   const double step_s = tick_s / s.substeps;
   const auto own_scale = [&](BodyState& body) {
     return body.solver() || body.rigid ? 1.0 : body.lattice.find_inertia_scale(step_s);
@@ -207,6 +208,10 @@ void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
   s.between.begin();
 }
 
+int find_step_division(const Sculpting& sculpting) {
+  return sculpting.real_time ? sculpting.step_division : 1;
+}
+
 void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
   const Sculpting& sculpting = s.scene.sculpting;
   if (s.scene.ground) {
@@ -225,8 +230,14 @@ void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
                    body.rigid ? body.rigid->dynamics() : nullptr,
                    body.rigid ? body.rigid->hand() : nullptr};
   }
-  const RelaxSettings settings{
-      s.tick, s.substeps, tick_s, sculpting.drag_per_s, sculpting.is_critically_damped, sculpting.real_time};
+  const int division = find_step_division(sculpting);
+  const RelaxSettings settings{s.tick,
+                               s.substeps / division,
+                               tick_s,
+                               sculpting.drag_per_s,
+                               sculpting.is_critically_damped,
+                               sculpting.real_time,
+                               division};
   s.relaxed = relax({lattices.data(), s.stepped_count()}, settings, tools, &s.between,
                     s.scene.ground ? &s.ground_contact.contacts() : nullptr);
 }
@@ -246,14 +257,14 @@ void return_to_start(BodyState& body, const Vector3& shift_m) {
 }
 
 // Lowers a body level by the distance of a tick, unless contacts bear its weight: then lets it go. A rigid
-// body cannot settle on its contacts while it is held level, so the first one suffices.
+// body cannot settle on its contacts while it is held level, so the first push suffices.
 void lower(Simulation::State& s, std::size_t index) {
   BodyState& body = s.bodies[index];
   const Vector3& gravity = s.scene.sculpting.gravity_m_per_s2;
   const Vector3 down = gravity.normalized();
   const double borne_ns = -contact_impulse_ns(s, static_cast<int>(index)).dot(down);
   const double weight_ns = body.lattice.mass_kg() * gravity.norm() * tick_s;
-  if (body.rigid ? borne_ns > 0.0 : borne_ns >= weight_ns) {
+  if (gravity.isZero(0.0) || (body.rigid ? borne_ns > 0.0 : borne_ns >= weight_ns)) {
     body.lowering_m_per_s = 0.0;
     return;
   }

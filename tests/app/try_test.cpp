@@ -50,6 +50,12 @@ TEST(Try, TellsWhereTheJellyIs) {
   EXPECT_TRUE(std::filesystem::exists(place.path("frames") / name)) << name;
 }
 
+TEST(Try, DividesTheStep) {
+  const Outcome outcome = run({"try", jelly_on_spoon, "--seconds", "0", "--step-division", "2", "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  EXPECT_EQ(json_of(outcome.out)["substeps"], 12);
+}
+
 // A model without the body that the trial lowers has no trial.
 TEST(Try, TheTrialGoesWithItsBodies) {
   const Workplace place;
@@ -227,6 +233,7 @@ TEST(Try, RefusesWrongUse) {
   EXPECT_EQ(run({"try", jelly_on_spoon, "--tilt", "10"}).code, exit_wrong_use);
   EXPECT_EQ(run({"try", jelly_on_spoon, "--tilt", "1000deg"}).code, exit_wrong_use);
   EXPECT_EQ(run({"try", jelly_on_spoon, "--seconds", "-1"}).code, exit_wrong_use);
+  EXPECT_EQ(run({"try", jelly_on_spoon, "--step-division", "9"}).code, exit_wrong_use);
   EXPECT_EQ(run({"try", place.text("model.json"), "--tilt", "10deg"}).code, exit_failed);
   EXPECT_EQ(run({"try", place.text("missing.json")}).code, exit_failed);
 }

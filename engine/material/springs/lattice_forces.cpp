@@ -48,8 +48,8 @@ void compute_forces(const SpringLattice& lattice, const LatticeView& view, float
   const bool is_linear = moved_square <= limit * limit;
   if (!is_linear) {
     // Nodes that moved so far within one substep will probably do so in the next one. That substep then needs
-    // no tangents.
-    const bool is_fast = springs.age_substeps == 1 && !lattice.is_damped_further();
+    // no tangents. A soft tool's frame moves the positions at which they would be computed later.
+    const bool is_fast = springs.age_substeps == 1 && !lattice.is_damped_further() && view.frame == nullptr;
     springs = {is_fast ? Linearised::forces : Linearised::tangents};
     linearise(lattice, view, springs.stored);
   }

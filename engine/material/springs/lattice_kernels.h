@@ -161,7 +161,8 @@ struct LatticeKernels {
   // Eq. 7 of Pungotra et al. 2013 damps the whole velocity, rotations included. Here rotations are not
   // damped, because the extrapolation of a rotating body is the same body rotated further.
   void (*linearise_springs)(const LatticeView&, float tau_s, Linearised stored);
-  // Stores the tangents of the last linearisation, whose forces stay the same.
+  // Stores the tangents of the last linearisation. Its forces stay the same if nothing has changed the
+  // positions at which the springs were linearised.
   void (*store_tangents)(const LatticeView&);
   // Sets the forces to the spring forces of the linearisation.
   void (*start_forces)(const LatticeView&);

@@ -97,6 +97,8 @@ TEST(OldDocuments, HaveNoCurrentFields) {
             Refusal(ErrorCode::unknown, "tool.substeps"));
   EXPECT_EQ(refusal_of_old([](Json& j) { j["sculpting"]["real_time"] = true; }),
             Refusal(ErrorCode::unknown, "sculpting.real_time"));
+  EXPECT_EQ(refusal_of_old([](Json& j) { j["sculpting"]["step_division"] = 2; }),
+            Refusal(ErrorCode::unknown, "sculpting.step_division"));
   Json current = document_to_json(sample_document());
   current["body"]["material"]["damping_ratio"] = 0.1;
   EXPECT_EQ(Refusal(document_from_json(current, "new.json")),

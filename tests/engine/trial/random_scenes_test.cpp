@@ -91,6 +91,7 @@ TEST_P(ManyScenes, StayWhole) {
     std::vector<std::jthread> threads(std::max(1u, std::thread::hardware_concurrency()));
     for (std::jthread& thread : threads) thread = std::jthread(run);
   }
+  int stopped_here = 0;
   for (int k = 0; k < scenes_in_block; ++k) {
     const SceneOutcome& outcome = outcomes[static_cast<std::size_t>(k)];
     SCOPED_TRACE("seed " + std::to_string(first + k));
@@ -98,12 +99,15 @@ TEST_P(ManyScenes, StayWhole) {
                 first + k, 100.0 * outcome.energy_gain, outcome.largest_overlap_cells,
                 outcome.last_overlap_cells, outcome.inverted_cells, outcome.stopped.c_str());
     if (!outcome.stopped.empty()) {
-      ++stopped_;
+      ++stopped_here;
     } else {
       expect_whole(outcome);
     }
   }
-  EXPECT_LE(stopped_, most_stopped);
+  stopped_ += stopped_here;
+  if (stopped_here > 0) {
+    EXPECT_LE(stopped_, most_stopped);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Blocks, ManyScenes, testing::Range(0, blocks));

@@ -262,6 +262,49 @@ TEST(Trial, ABlockRestsTheSameWithoutNewSearches) {
   EXPECT_LT((force_n[0] - force_n[1]).norm(), 0.005 * force_n[1].norm());
 }
 
+// A rigid body that is lowered fast is borne by a thin plate too, and is let go when gravity ends.
+TEST(Trial, LowersARigidBlockFast) {
+  Scene scene = block_over_plate(0.5, 0.0);
+  scene.bodies[0].kind = BodyKind::rigid;
+  move_body({{0.0, 0.02, 0.0}, Quaternion::Identity()}, scene.bodies[0]);
+  const auto lower = [&](Simulation& simulation) {
+    EXPECT_TRUE(simulation.apply(LowerBody{0, 1.0}).ok());
+    for (int tick = 0; tick < 200 && simulation.is_moving_bodies(); ++tick) simulation.advance(trial_input());
+    EXPECT_FALSE(simulation.is_moving_bodies());
+    return simulation.rigid_dynamics(0)->centre_m().y();
+  };
+  Simulation falling = make_simulation(scene);
+  EXPECT_NEAR(lower(falling), 0.004, 1.1e-3);  // half its height, within the motion of a tick
+  scene.sculpting.gravity_m_per_s2.setZero();
+  Simulation weightless = make_simulation(scene);
+  Sculpting none = scene.sculpting;
+  none.gravity_m_per_s2 = {0.0, -standard_gravity_m_per_s2, 0.0};
+  ASSERT_TRUE(weightless.apply(SetSculpting{none}).ok());
+  ASSERT_TRUE(weightless.apply(LowerBody{0, 0.001}).ok());
+  ASSERT_TRUE(weightless.apply(SetSculpting{scene.sculpting}).ok());
+  weightless.advance(trial_input());
+  EXPECT_FALSE(weightless.is_moving_bodies());
+}
+
+// A divided step takes more substeps, and the block comes to rest at the same place.
+TEST(Trial, RestsTheSameWithADividedStep) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  const auto rest = [](int step_division, int& substeps) {
+    Scene scene = block_over_plate(0.5, 0.0);
+    scene.sculpting.step_division = step_division;
+    Simulation simulation = make_simulation(scene);
+    substeps = simulation.substeps();
+    const RunTrial result = run_trial(simulation, {0.2, 2.0});
+    EXPECT_TRUE(result.held.ok());
+    return result.report.bodies[0].centre_of_mass_m;
+  };
+  int whole = 0, divided = 0;
+  const Vector3 once = rest(1, whole), twice = rest(2, divided);
+  EXPECT_EQ(divided, 2 * whole);
+  const double moved_m = (once - Vector3(0.0, 0.0042, 0.0)).norm();
+  EXPECT_LT((twice - once).norm(), 0.02 * moved_m);
+}
+
 TEST(Trial, ARefusedCommandChangesNothing) {
   Simulation simulation = make_simulation(block_over_plate(0.5, 0.0));
   ASSERT_TRUE(simulation.apply(LowerBody{0, 0.02}).ok());
