@@ -266,7 +266,9 @@ TEST(Trial, ABlockRestsTheSameWithoutNewSearches) {
 TEST(Trial, LowersARigidBlockFast) {
   Scene scene = block_over_plate(0.5, 0.0);
   scene.bodies[0].kind = BodyKind::rigid;
-  move_body({{0.0, 0.02, 0.0}, Quaternion::Identity()}, scene.bodies[0]);
+  move_body({{0.0, 0.0203, 0.0}, Quaternion::Identity()}, scene.bodies[0]);
+  // The reach of contacts follows the size of the bodies, so a small plate is missed first.
+  scene.bodies[1].surface = stock_surface(PlateSize{0.03, 0.02, 0.002, 0.003}, {0.0, -0.001, 0.0});
   const auto lower = [&](Simulation& simulation) {
     EXPECT_TRUE(simulation.apply(LowerBody{0, 1.0}).ok());
     for (int tick = 0; tick < 200 && simulation.is_moving_bodies(); ++tick) simulation.advance(trial_input());
