@@ -73,7 +73,7 @@ Scene food_scene(const Food& food, int node_budget) {
 struct Course {
   std::string stopped;  // what stopped the trial; empty if nothing did
   double smallest_jacobian = 1.0, largest_volume_change = 0.0;  // until the food has left the bowl
-  std::optional<double> first_spill_s, left_s;
+  std::optional<double> first_spill_s, left_s;                  // since the turn began
   bool settled = false;
 };
 
@@ -83,7 +83,9 @@ Course run_trial(Scene scene, int step_division = 1) {
   Simulation simulation = make_simulation(scene);
   Trial trial(simulation.scene(), {10.0, 10.0});
   Course course;
+  double turn_s = 0.0;
   for (int tick = 0; trial.phase() != TrialPhase::done; ++tick) {
+    if (trial.phase() < TrialPhase::turning) turn_s = trial.time_s();
     while (const auto command = trial.next_command()) EXPECT_TRUE(simulation.apply(*command).ok());
     const Reaction reaction = simulation.advance(trial_input());
     if (const Status held = trial.follow(simulation, reaction.flags); !held) {
@@ -96,8 +98,8 @@ Course run_trial(Scene scene, int step_division = 1) {
     course.largest_volume_change =
         std::max(course.largest_volume_change, std::abs(report.volume_ratio - 1.0));
     if (report.spill) {
-      course.first_spill_s = report.spill->first_spill_s;
-      course.left_s = report.spill->left_s;
+      if (report.spill->first_spill_s) course.first_spill_s = *report.spill->first_spill_s - turn_s;
+      if (report.spill->left_s) course.left_s = *report.spill->left_s - turn_s;
     }
     course.settled = trial.phase() == TrialPhase::watching && trial.is_settled();
     if (course.settled || course.left_s) break;
