@@ -565,8 +565,7 @@ void stabilise_strained_nodes(Relaxation& relaxation, float h) {
     relaxation.view[at].inverse_mass =
         lattice.stabilise_strained_nodes(h, static_cast<float>(stability_fraction));
     // The velocities have changed, and the linearisation depends on them.
-    relaxation.springs[at].stored = Linearised::tangents;
-    linearise(lattice, relaxation.view[at], Linearised::tangents);
+    relaxation.springs[at] = linearise(lattice, relaxation.view[at], Linearised::tangents);
   }
 }
 
@@ -604,12 +603,9 @@ Substeps begin_springs(Relaxation& relaxation, const RelaxSettings& settings, co
     if (!relaxation.has_springs(at)) continue;
     SpringLattice& lattice = relaxation.lattice(at);
     const Linearised stored = choose_linearisation(lattice, settings, expected);
-    relaxation.springs[at].stored = stored;
-    if (follows) {
-      linearise_and_follow(lattice, relaxation.view[at], stored);
-    } else {
-      linearise(lattice, relaxation.view[at], stored);
-    }
+    const LatticeView& view = relaxation.view[at];
+    relaxation.springs[at] =
+        follows ? linearise_and_follow(lattice, view, stored) : linearise(lattice, view, stored);
   }
   Substeps substeps = choose_substeps(relaxation, settings);
   substeps.count = settings.step_division * std::max(substeps.count, for_speed);

@@ -31,14 +31,16 @@ void add_change_of_springs(const LatticeKernels& kernels, const LatticeView& vie
 
 }  // namespace
 
-void linearise(const SpringLattice& lattice, const LatticeView& view, Linearised stored) {
+LinearisedSprings linearise(const SpringLattice& lattice, const LatticeView& view, Linearised stored) {
   lattice.kernels().linearise_springs(view, lattice.damping_time_s(), stored);
+  return {stored};
 }
 
-void linearise_and_follow(SpringLattice& lattice, const LatticeView& view, Linearised stored) {
+LinearisedSprings linearise_and_follow(SpringLattice& lattice, const LatticeView& view, Linearised stored) {
   const float square = lattice.kernels().linearise_with_power_step(view, lattice.damping_time_s(), stored,
                                                                    lattice.free_mass());
   if (square > 0.0f && std::isfinite(square)) lattice.set_fastest_square(static_cast<double>(square));
+  return {stored};
 }
 
 void compute_forces(const SpringLattice& lattice, const LatticeView& view, float moved_square,
@@ -50,8 +52,7 @@ void compute_forces(const SpringLattice& lattice, const LatticeView& view, float
     // Nodes that moved so far within one substep will probably do so in the next one. That substep then needs
     // no tangents. A soft tool's frame moves the positions at which they would be computed later.
     const bool is_fast = springs.age_substeps == 1 && !lattice.is_damped_further() && view.frame == nullptr;
-    springs = {is_fast ? Linearised::forces : Linearised::tangents};
-    linearise(lattice, view, springs.stored);
+    springs = linearise(lattice, view, is_fast ? Linearised::forces : Linearised::tangents);
   }
   ++springs.age_substeps;
   kernels.start_forces(view);

@@ -19,10 +19,10 @@ struct LinearisedSprings {
   int age_substeps = 0;  // number of substeps that have used it
 };
 
-// linearise() linearises the springs. linearise_and_follow() also performs one step of the power iteration
-// that tracks the fastest frequency as the lattice deforms.
-void linearise(const SpringLattice& lattice, const LatticeView& view, Linearised stored);
-void linearise_and_follow(SpringLattice& lattice, const LatticeView& view, Linearised stored);
+// linearise() linearises the springs, and returns what it stored. linearise_and_follow() also performs one
+// step of the power iteration that tracks the fastest frequency as the lattice deforms.
+LinearisedSprings linearise(const SpringLattice& lattice, const LatticeView& view, Linearised stored);
+LinearisedSprings linearise_and_follow(SpringLattice& lattice, const LatticeView& view, Linearised stored);
 
 // Computes all forces on the nodes in a substep. `moved_square` is the largest squared change of an
 // extrapolated node displacement since the linearisation; if it is too large, the springs are linearised
