@@ -293,11 +293,12 @@ void drop_trimmed_points(MeshProximity& proximity, const BodyState& body) {
 // that fall side by side approach each other only if something stops one of them; this is found in the next
 // tick, before they are a cell deep.
 double find_approach_m(const BodyState& first, const BodyState& second, double cell_m) {
+  const double moved_m = tick_s * (first.fastest_m_per_s() + second.fastest_m_per_s());
+  if (moved_m <= cell_m) return moved_m;  // the other bound is a cell or more
   const NodeSpeeds one = first.lattice.find_node_speeds(), other = second.lattice.find_node_speeds();
   const double speed_m_per_s = (one.mean_m_per_s - other.mean_m_per_s).norm() +
                                one.fastest_from_mean_m_per_s + other.fastest_from_mean_m_per_s;
-  return std::min(tick_s * speed_m_per_s + cell_m,
-                  tick_s * (first.fastest_m_per_s() + second.fastest_m_per_s()));
+  return std::min(tick_s * speed_m_per_s + cell_m, moved_m);
 }
 
 void find_near_points(SurfaceProximity& proximity, const BodyState& first, const BodyState& second,
