@@ -13,8 +13,11 @@
 #include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
 #include "app/files/documents.h"
+#include "app/files/length_unit.h"
+#include "app/files/scan_file.h"
 #include "app/report/fact_sheet.h"
 #include "app/report/quantity_text.h"
+#include "engine/exchange/file_format.h"
 
 namespace spoonbill {
 namespace {
@@ -26,9 +29,27 @@ struct AddOptions {
   std::vector<std::filesystem::path> models;
   std::vector<Pose> poses;
   std::vector<std::string> fixed, rigid, held;  // names of bodies, as they are in the new document
+  std::string material = "abs";                 // of bodies from mesh files
+  std::optional<LengthUnit> unit;               // of mesh files
   std::filesystem::path out;
   bool json = false;
 };
+
+// Reads a document, or makes one of a mesh file.
+Result<Document> read_model(const std::filesystem::path& file, const AddOptions& options) {
+  if (!is_mesh(format_from_name(file))) return read_document_file(file);
+  const auto material = shipped_material(options.material);
+  if (!material) return material.error();
+  MeshReading reading;
+  reading.unit = options.unit;
+  auto read = read_mesh_file(file, reading);
+  if (!read) return read.error();
+  auto mesh = clean_mesh(std::move(read->mesh), file.string());
+  if (!mesh) return mesh.error();
+  auto document = make_mesh_document(file.stem().string(), std::move(mesh).value(), material.value());
+  if (!document) return document.error().in(file.string());
+  return document;
+}
 
 // Returns the name, with a number appended if it is taken.
 std::string make_unique(const std::string& name, const std::vector<std::string>& taken) {
@@ -143,7 +164,7 @@ Status add_models(const AddOptions& options, Console& console) {
   std::optional<Document> sum;
   std::vector<std::string> notes;
   for (std::size_t m = 0; m < options.models.size(); ++m) {
-    auto document = read_document_file(options.models[m]);
+    auto document = read_model(options.models[m], options);
     if (!document) return document.error();
     const Pose pose = m < options.poses.size() ? options.poses[m] : Pose();
     if (!sum) {
@@ -185,10 +206,15 @@ CommandEntry add_add(OptionSet root) {
   parser.set_footer(
       "Tool, gravity, ground, fixing planes and trial are those of the first model, and --pose does not "
       "move\n"
-      "them. Bodies keep their materials and lattices. A body whose name is taken gets a number.\n"
+      "them. Bodies keep their materials and lattices. A body whose name is taken gets a number. A closed\n"
+      "mesh becomes a fixed body, or a rigid one with --rigid or --held; tools do not touch it.\n"
       "Example: spoonbill add assets/models/jelly.json assets/models/spoon-bowl.json \\\n"
       "  --pose 134mm,16mm,0,1,0,0,0 --fixed bowl --out served.json");
-  parser.add_option("MODEL", options->models, "Documents (.json), 1 to 64").require();
+  parser
+      .add_option(
+          "MODEL", options->models,
+          "Documents (.json), and closed meshes (.obj, .stl or .ply) of at most 20,000 triangles, 1 to 64")
+      .require();
   parser
       .add_parsed_list(
           "--pose",
@@ -210,6 +236,12 @@ CommandEntry add_add(OptionSet root) {
                    "Name of a body that becomes rigid and free; may be repeated. Default: none");
   add_names_option(parser, "--held", options->held,
                    "Name of a body that becomes rigid and held by a hand; may be repeated. Default: none");
+  parser.add_option("--material", options->material,
+                    "Bundled material of bodies from meshes, or a part of its name; default: abs");
+  add_parsed_option(
+      parser, "--unit", "UNIT", [](const std::string& text) { return parse_unit(text); },
+      [options](const LengthUnit& unit) { options->unit = unit; },
+      "Unit of the numbers in meshes: mm, cm, m or in; default: m for .ply, mm for others");
   add_force_option(parser, options->how);
   add_document_output(parser, options->out).require();
   add_json_option(parser, options->json);

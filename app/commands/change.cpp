@@ -86,6 +86,7 @@ Status change(const ChangeOptions& options, Console& console) {
   }
   const std::size_t index = static_cast<std::size_t>(options.body) - 1;
   const Body& body = bodies[index];
+  if (Status surface = check_surfaces({body}, options.model); !surface) return surface;
   auto result = CancellableJob(console, "Changing", options.out)
                     .run([&](const Progress& progress) -> Result<ChangedSurfaces> {
                       auto changed =

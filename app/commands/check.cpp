@@ -158,6 +158,7 @@ Status check_overlaps(FactSheet& facts, const std::vector<std::size_t>& solids, 
 Status check(const CheckOptions& options, Console& console) {
   const auto document = read_document_file(options.model);
   if (!document) return document.error();
+  if (Status surfaces = check_surfaces(document->scene.bodies, options.model); !surfaces) return surfaces;
   FactSheet facts;
   facts.add("File", options.model.string(), "file", options.model.string());
   const std::vector<Body>& all = document->scene.bodies;

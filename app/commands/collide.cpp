@@ -13,6 +13,7 @@
 #include "app/commands/command.h"
 #include "app/commands/option_set.h"
 #include "app/commands/option_values.h"
+#include "app/files/documents.h"
 #include "app/files/scan_file.h"
 #include "app/report/contact_facts.h"
 #include "engine/base/geometry.h"
@@ -218,6 +219,7 @@ Result<CollisionModel> read_bodies(const std::filesystem::path& file) {
   auto document = read_document(file);
   if (!document) return document.error();
   std::vector<Body>& bodies = document->scene.bodies;
+  if (Status surfaces = check_surfaces(bodies, file); !surfaces) return surfaces.error();
   CollisionModel model;
   for (Body& body : bodies) {
     const bool alone = bodies.size() == 1;

@@ -313,6 +313,7 @@ Result<MergeParts> read_parts(const MergeOptions& options) {
   for (const auto& model : options.models) {
     auto document = read_document_file(model);
     if (!document) return document.error();
+    if (Status surfaces = check_surfaces(document->scene.bodies, model); !surfaces) return surfaces.error();
     for (Body& body : document->scene.bodies) {
       auto whole =
           untrimmed(body.surface, body.trims, untrimming_fraction * options.request.join.tolerance_m);

@@ -70,6 +70,7 @@ Status sample(const SampleOptions& options, Console& console) {
   const auto document = read_document_file(options.model);
   if (!document) return document.error();
   const std::vector<Body>& bodies = document->scene.bodies;
+  if (Status surfaces = check_surfaces(bodies, options.model); !surfaces) return surfaces;
   if (options.out == "-") {
     return sample_all(bodies, options.grid, [&](const std::string& text) -> Status {
       console.out << text;

@@ -53,9 +53,9 @@ std::vector<Material> read_presets() {
   return presets;
 }
 
-// Returns a position above the surface where the tool does not touch it.
-Vector3 rest_position(const Surface& surface) {
-  const Box box = bounding_box(surface.net);
+// Returns a position above the body where the tool does not touch it.
+Vector3 rest_position(const Body& body) {
+  const Box box = find_bounds(body);
   Vector3 position = box.centre();
   position.y() = box.high.y() + 0.25 * box.size();
   return position;
@@ -121,7 +121,7 @@ Result<std::unique_ptr<Editor>> Editor::make(const EditSettings& settings) {
   live_settings.instruction_set = settings.instruction_set;
   live_settings.real_time = settings.real_time;
   HandTarget start;
-  start.pose.position_m = rest_position(document->scene.bodies[0].surface);
+  start.pose.position_m = rest_position(document->scene.bodies[0]);
   auto device = SteeredDevice::make(Hand{}, start);
   if (!device) return device.error();
   const std::shared_ptr<TargetMailbox> mailbox = device.value()->mailbox();

@@ -123,6 +123,10 @@ void SurfacePick::update(const Snapshot& snapshot) {
   surfaces_.resize(snapshot.bodies.size() - (is_soft(snapshot.tool) ? 1 : 0));
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     Sampled& sampled = surfaces_[i];
+    if (snapshot.bodies[i].is_mesh()) {  // tools do not touch meshes
+      sampled = Sampled();
+      continue;
+    }
     const SamplingLevel level =
         choose_sampling_level(snapshot.bodies[i].surface, picking_px_per_m, sampled.surface.level(), target);
     const bool evaluated = check_net(snapshot.bodies[i].surface).ok() &&

@@ -118,22 +118,6 @@ CadModel model_from_bodies(std::vector<Body> bodies) {
   return model;
 }
 
-Result<CadModel> read_model(const ConversionJob& job, const CadChild& child) {
-  const ConversionRequest& request = job.request;
-  if (job.in == FileFormat::document) {
-    auto document = read_document(request.in);
-    if (!document) return document.error();
-    return model_from_bodies(std::move(document->scene.bodies));
-  }
-  CadReading reading;
-  reading.format = job.in;
-  reading.tolerance_m = request.tolerance_m.value_or(default_cad_tolerance_m);
-  if (request.unit) reading.unit_m = request.unit->metres;
-  auto model = read_cad_file(request.in, reading, child);
-  if (!model) return model.error();
-  return model;
-}
-
 // Replaces the items by those selected in request.bodies, in the order of the selection.
 template <class Item>
 Status select_bodies(const ConversionRequest& request, std::vector<Item>& items) {
@@ -150,6 +134,28 @@ Status select_bodies(const ConversionRequest& request, std::vector<Item>& items)
   }
   items = std::move(chosen);
   return {};
+}
+
+// Reads the selected bodies.
+Result<CadModel> read_model(const ConversionJob& job, const CadChild& child) {
+  const ConversionRequest& request = job.request;
+  if (job.in == FileFormat::document) {
+    auto document = read_document(request.in);
+    if (!document) return document.error();
+    if (Status chosen = select_bodies(request, document->scene.bodies); !chosen) return chosen.error();
+    if (Status surfaces = check_surfaces(document->scene.bodies, request.in); !surfaces) {
+      return surfaces.error();
+    }
+    return model_from_bodies(std::move(document->scene.bodies));
+  }
+  CadReading reading;
+  reading.format = job.in;
+  reading.tolerance_m = request.tolerance_m.value_or(default_cad_tolerance_m);
+  if (request.unit) reading.unit_m = request.unit->metres;
+  auto model = read_cad_file(request.in, reading, child);
+  if (!model) return model.error();
+  if (Status chosen = select_bodies(request, model->surfaces); !chosen) return chosen.error();
+  return model;
 }
 
 std::vector<std::string> list_shell_notes(const CadModel& model) {
@@ -367,6 +373,7 @@ Result<ConversionReport> convert_document(const ConversionRequest& request) {
   if (Status written = write_document(document.value(), request.out, request.how); !written)
     return written.error();
   report.unit_in = report.unit_out = millimetre.name;
+  std::erase_if(document->scene.bodies, [](const Body& body) { return body.mesh != nullptr; });
   report.surfaces = model_from_bodies(std::move(document->scene.bodies)).surfaces;
   return report;
 }
@@ -404,6 +411,7 @@ Result<ConversionReport> export_bodies(std::vector<Body> bodies, const std::file
   if (!is_exported_to(out)) {
     return file_error(ErrorCode::unsupported, out, "does not have the ending of an export format");
   }
+  if (Status surfaces = check_surfaces(bodies, out); !surfaces) return surfaces.error();
   return write_and_report(model_from_bodies(std::move(bodies)), {request}, progress);
 }
 
@@ -416,7 +424,6 @@ Result<ConversionReport> convert_file(const ConversionRequest& request, const Pr
   }
   auto model = read_model(job, make_child(request, progress.part(0.0, read_fraction)));
   if (!model) return model.error();
-  if (Status chosen = select_bodies(request, model->surfaces); !chosen) return chosen.error();
   return write_and_report(std::move(model).value(), job, progress);
 }
 

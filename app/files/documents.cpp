@@ -169,6 +169,32 @@ Result<Document> read_document_file(const std::filesystem::path& file) {
   return read_document(file);
 }
 
+Status check_surfaces(const std::vector<Body>& bodies, const std::filesystem::path& file) {
+  for (const Body& body : bodies) {
+    if (!body.mesh) continue;
+    return Error{
+        ErrorCode::unsupported,
+        file.string() + ": body \"" + body.name +
+            "\": has a mesh, and this command works on surfaces; leave the body out, or fit a surface "
+            "to its mesh with `spoonbill fit`",
+        "mesh"};
+  }
+  return {};
+}
+
+Result<Document> make_mesh_document(const std::string& name, CleanMesh mesh, const Material& material) {
+  if (Status checked = check_mesh(mesh); !checked) return checked.error();
+  Document document;
+  document.name = name;
+  Body body;
+  body.name = name;
+  body.kind = BodyKind::fixed;
+  body.material = material;
+  body.mesh = std::make_shared<const CleanMesh>(std::move(mesh));
+  document.scene.bodies.push_back(std::move(body));
+  return document;
+}
+
 std::vector<std::string> shipped_material_names() {
   std::vector<std::string> names;
   std::error_code problem;

@@ -25,6 +25,12 @@ Status check_native_name(const std::filesystem::path& file);
 // Reads a document. For the name of a file of another format, returns the error of check_native_name().
 Result<Document> read_document_file(const std::filesystem::path& file);
 
+// Returns an error if a body has a mesh instead of a surface. The error names the file and the body.
+Status check_surfaces(const std::vector<Body>& bodies, const std::filesystem::path& file);
+
+// Returns a document with one fixed body, which a closed mesh bounds. Errors: those of check_mesh().
+Result<Document> make_mesh_document(const std::string& name, CleanMesh mesh, const Material& material);
+
 // Returns the names of the materials that come with the program, sorted.
 std::vector<std::string> shipped_material_names();
 

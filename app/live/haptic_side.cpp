@@ -188,8 +188,7 @@ void HapticSide::reclaim_if_done() {
     ++document_count_;
     // The workspace of a virtual device is centred on the first body of the new document.
     if (lent_.session->device.workspace_follows_model) {
-      const Box box = bounding_box(lent_.session->simulation.surface().net);
-      safe_device_.set_workspace_centre(box.centre());
+      safe_device_.set_workspace_centre(lent_.session->simulation.bounds(0).centre());
     }
     lent_.is_other_document = false;
   }

@@ -9,11 +9,10 @@ namespace spoonbill {
 namespace {
 
 // Returns the specification of the device. If the device is virtual, its workspace is enlarged to contain the
-// surface, up to the largest radius allowed.
-DeviceSpecification with_fitted_workspace(DeviceSpecification device, const Surface& surface) {
+// body, up to the largest radius allowed.
+DeviceSpecification with_fitted_workspace(DeviceSpecification device, const Body& body) {
   if (!device.workspace_follows_model) return device;
-  const Box box = bounding_box(surface.net);
-  const double reach = box.size();
+  const double reach = find_bounds(body).size();
   device.workspace_radius_m = std::clamp(reach, device.workspace_radius_m, device_workspace_range_m.high);
   return device;
 }
@@ -21,7 +20,7 @@ DeviceSpecification with_fitted_workspace(DeviceSpecification device, const Surf
 Result<std::unique_ptr<Session>> make_session(const Document& document, const std::string& source,
                                               const DeviceSpecification& device, InstructionSet set) {
   auto session =
-      Session::make(document, source, with_fitted_workspace(device, document.scene.bodies[0].surface), set);
+      Session::make(document, source, with_fitted_workspace(device, document.scene.bodies[0]), set);
   if (!session) return session.error();
   return std::make_unique<Session>(std::move(session).value());
 }

@@ -120,12 +120,29 @@ void add_region_facts(FactSheet& facts, const Body& body, Json& json) {
   }
 }
 
+void add_mesh_facts(FactSheet& facts, const CleanMesh& mesh, Json& json) {
+  const std::size_t triangles = mesh.mesh.triangles.size(), vertices = mesh.mesh.vertices_m.size();
+  facts.add(
+      "Mesh",
+      count_text(triangles, "triangle", "triangles") + ", " + count_text(vertices, "vertex", "vertices"), "",
+      nullptr);
+  json["mesh"] = {{"triangles", triangles}, {"vertices", vertices}};
+}
+
+void add_shape_facts(FactSheet& facts, const Body& body, bool detailed, Json& json) {
+  const Closing closing = find_closing(body.surface);
+  json["closedness"] = name_of(closing.closedness);
+  if (!detailed) return;
+  facts.add("Along u", direction_text(body.surface.u), "", nullptr);
+  facts.add("Along v", direction_text(body.surface.v), "", nullptr);
+  facts.add("Surface", closing_text(closing), "", nullptr);
+  add_trim_facts(facts, body, json);
+}
+
 // Adds the lines of a body and returns its JSON.
 Json add_body_facts(FactSheet& facts, const std::string& label, const Body& body, const Vector3& size_m,
                     bool detailed) {
-  const Closing closing = find_closing(body.surface);
   Json json = {{"name", body.name}, {"size_mm", size_json(size_m)}};
-  json["closedness"] = name_of(closing.closedness);
   json["material"] = material_to_json(body.material);
   if (body.shell_thickness_m) json["shell_thickness_m"] = *body.shell_thickness_m;
   std::string text = body.name + shell_text(body);
@@ -135,11 +152,12 @@ Json add_body_facts(FactSheet& facts, const std::string& label, const Body& body
     json["solid"] = body.solid;
   }
   facts.add(label, text, "", nullptr);
+  if (body.mesh) {
+    add_mesh_facts(facts, *body.mesh, json);
+  } else {
+    add_shape_facts(facts, body, detailed, json);
+  }
   if (!detailed) return json;
-  facts.add("Along u", direction_text(body.surface.u), "", nullptr);
-  facts.add("Along v", direction_text(body.surface.v), "", nullptr);
-  facts.add("Surface", closing_text(closing), "", nullptr);
-  add_trim_facts(facts, body, json);
   facts.add("Material", material_text(body.material), "", nullptr);
   add_region_facts(facts, body, json);
   if (!body.rim.empty())
@@ -246,7 +264,9 @@ void add_document_facts(FactSheet& facts, const Document& document) {
   facts.add("Unit", "mm (of the file's lengths)", "unit", "mm");
   std::vector<Box> extents;
   extents.reserve(bodies.size());
-  for (const Body& body : bodies) extents.push_back(extent_of(body.surface, body.trims));
+  for (const Body& body : bodies) {
+    extents.push_back(body.mesh ? find_bounds(body) : extent_of(body.surface, body.trims));
+  }
   Box all = extents.front();
   for (const Box& extent : extents) all = joined(all, extent);
   add_size_fact(facts, all);
@@ -256,7 +276,7 @@ void add_document_facts(FactSheet& facts, const Document& document) {
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const std::string label = alone ? "Body" : "Body " + std::to_string(b + 1);
     list.push_back(add_body_facts(facts, label, bodies[b], extents[b].high - extents[b].low, detailed));
-    surfaces.push_back(surface_json(bodies[b].surface));
+    surfaces.push_back(bodies[b].mesh ? Json() : surface_json(bodies[b].surface));
   }
   if (alone) add_single_body(facts, list.front());
   facts.add("", "", "bodies", list);
@@ -279,6 +299,7 @@ void add_material_facts(FactSheet& facts, const Material& material) {
 constexpr double shown_trim_deviation_m = 1e-9;
 
 void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces) {
+  if (surfaces.empty()) return;
   Json bodies = Json::array();
   Box all = extent_of(surfaces.front().surface, surfaces.front().trims);
   double deviation_m = 0.0, trim_deviation_m = 0.0;

@@ -85,10 +85,14 @@ void RunLog::add_body(const Session& session, int body, std::string_view phase) 
     append_csv_number(text_, simulation.fastest_m_per_s(body));
   } else if (pose) {
     const Body& at_rest = simulation.scene().bodies[static_cast<std::size_t>(body)];
-    if (logged.rest.x != at_rest.surface.net.x || logged.rest.y != at_rest.surface.net.y ||
-        logged.rest.z != at_rest.surface.net.z) {
+    const bool has_moved =
+        at_rest.mesh ? logged.mesh_pose != at_rest.mesh_pose || logged.at_rest.mass_kg == 0.0
+                     : logged.rest.x != at_rest.surface.net.x || logged.rest.y != at_rest.surface.net.y ||
+                           logged.rest.z != at_rest.surface.net.z;
+    if (has_moved) {
       logged.rest = at_rest.surface.net;
-      logged.at_rest = find_fixed_mass(at_rest, at_rest.surface);
+      logged.mesh_pose = at_rest.mesh_pose;
+      logged.at_rest = find_fixed_mass(at_rest);
     }
     append_pose(text_, *pose);
     append_vector(text_, pose->position_m + pose->orientation * logged.at_rest.centre_m);

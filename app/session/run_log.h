@@ -60,6 +60,7 @@ class RunLog {
     std::string name, kind;
     EnergyMeter energy;  // of a deformable body
     ControlNet rest;     // control points of a fixed body at rest
+    Pose mesh_pose;      // of a fixed body with a mesh
     RigidMass at_rest;   // mass of a fixed body, and its centre at rest
     int support_count = 0;
     Vector3 momentum_ns = Vector3::Zero();  // of a deformable body after the last row

@@ -45,6 +45,11 @@ struct Pose {
   friend bool operator==(const Pose&, const Pose&) = default;
 };
 
+// Returns the pose to which `by` moves a rigid object at `pose`.
+inline Pose composed(const Pose& by, const Pose& pose) {
+  return {by.position_m + by.orientation * pose.position_m, by.orientation * pose.orientation};
+}
+
 // Range of every coordinate in files, in commands and in the panel.
 inline constexpr Range<double> position_range_m{-100.0, 100.0};
 

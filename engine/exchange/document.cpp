@@ -1,6 +1,7 @@
 #include "engine/exchange/document.h"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -22,11 +23,17 @@ namespace {
 constexpr std::size_t document_bytes_limit = std::size_t{64} << 20;
 constexpr std::size_t material_bytes_limit = std::size_t{1} << 20;
 
+constexpr const char* explain_mesh = "must be missing, because the body has a mesh";
+
 // Reads the optional lists of loads and supports of a body.
 void read_loads_and_supports(FieldReader& reader, Body& body) {
   const auto read_list = [&](const char* field, const Range<int>& count, const auto& read_item) {
     reader.ignore(field);
     if (!reader.has(field)) return;
+    if (body.mesh) {
+      reader.refuse(field, explain_mesh, ErrorCode::inconsistent);
+      return;
+    }
     std::size_t index = 0;
     for (const Json& item : reader.list(field, count)) {
       FieldReader item_reader = reader.element(item, field, index++);
@@ -43,6 +50,10 @@ void read_loads_and_supports(FieldReader& reader, Body& body) {
 void read_rim(FieldReader& reader, Body& body) {
   reader.ignore("rim_uv");
   if (!reader.has("rim_uv")) return;
+  if (body.mesh) {
+    reader.refuse("rim_uv", explain_mesh, ErrorCode::inconsistent);
+    return;
+  }
   for (const Json& item : reader.list("rim_uv", rim_corner_count_range)) {
     Vector2& corner = body.rim.emplace_back(Vector2::Zero());
     const bool is_point = read_parameters(item, corner.x(), corner.y());
@@ -86,6 +97,11 @@ std::string explain_kind(const std::string& field) {
   if (field == "motion") {
     return "must be missing, because the body is neither fixed nor held by a hand; or make it fixed";
   }
+  if (field == "mesh") {
+    return "must be missing, because the body is deformable; or make it fixed or rigid, or fit a surface to "
+           "it";
+  }
+  if (field == "shell_thickness_mm" || field == "rim_uv") return explain_mesh;
   return "must be missing, because the body is not deformable; or make it deformable";
 }
 
@@ -94,14 +110,41 @@ BodyKind read_kind(FieldReader& reader) {
   return static_cast<BodyKind>(reader.choose("kind", body_kind_names));
 }
 
-// Reads a body. The fields "trims" and "solid" are unknown in version 1.
-std::optional<Body> read_body(FieldReader reader, int version) {
-  std::string name = reader.text("name");
+// Surface of a body, or the mesh that bounds it instead.
+struct ReadShape {
+  Surface surface = {};
+  std::vector<TrimLoop> trims = {};
+  std::shared_ptr<const CleanMesh> mesh = {};
+};
+
+std::optional<ReadShape> read_body_mesh(FieldReader& reader) {
+  if (reader.has("surface")) {
+    reader.refuse("mesh", "must be missing, because the body has a surface", ErrorCode::inconsistent);
+    return std::nullopt;
+  }
+  FieldReader mesh_reader = reader.inner("mesh");
+  std::optional<CleanMesh> mesh = read_mesh(mesh_reader);
+  mesh_reader.finish();
+  if (!mesh) return std::nullopt;
+  if (const Status status = check_mesh(*mesh); !status.ok()) reader.refuse(status.error());
+  return ReadShape{{}, {}, std::make_shared<const CleanMesh>(*std::move(mesh))};
+}
+
+std::optional<ReadShape> read_body_shape(FieldReader& reader, int version) {
+  if (reader.has("mesh")) return read_body_mesh(reader);
   FieldReader surface_reader = reader.inner("surface");
   std::optional<Surface> surface = read_surface(surface_reader);
   std::vector<TrimLoop> trims;
   if (surface && version > 1) trims = read_trims(surface_reader, *surface);
   surface_reader.finish();
+  if (!surface) return std::nullopt;
+  return ReadShape{*std::move(surface), std::move(trims)};
+}
+
+// Reads a body. The fields "trims" and "solid" are unknown in version 1.
+std::optional<Body> read_body(FieldReader reader, int version) {
+  std::string name = reader.text("name");
+  std::optional<ReadShape> shape = read_body_shape(reader, version);
   FieldReader material_reader = reader.inner("material");
   Material material = read_fields<Material>(material_reader);
   material_reader.finish();
@@ -112,8 +155,9 @@ std::optional<Body> read_body(FieldReader reader, int version) {
     lattice = read_lattice_request(lattice_reader);
     lattice_reader.finish();
   }
-  if (!surface || !reader.status().ok()) return std::nullopt;
-  Body body{std::move(name), *std::move(surface), std::move(material), lattice};
+  if (!shape || !reader.status().ok()) return std::nullopt;
+  Body body{std::move(name), std::move(shape->surface), std::move(material), lattice};
+  body.mesh = std::move(shape->mesh);
   body.kind = kind;
   if (reader.has("hand")) {
     FieldReader hand_reader = reader.inner("hand");
@@ -130,7 +174,7 @@ std::optional<Body> read_body(FieldReader reader, int version) {
     body.shell_thickness_m = reader.length_m("shell_thickness_mm", shell_thickness_range_m);
   }
   body.regions = read_material_regions(reader);
-  body.trims = std::move(trims);
+  body.trims = std::move(shape->trims);
   read_rim(reader, body);
   if (version > 1 && reader.has("solid")) body.solid = reader.text("solid");
   if (const Status status = check_kind(body); !status.ok()) {
@@ -216,8 +260,12 @@ Json body_to_json(const Body& body) {
   Json json;
   json["name"] = body.name;
   if (body.kind != BodyKind::deformable) json["kind"] = body_kind_names[static_cast<std::size_t>(body.kind)];
-  json["surface"] = surface_to_json(body.surface);
-  add_trims(body.trims, json["surface"]);
+  if (body.mesh) {
+    add_mesh(find_placed_mesh(body), json["mesh"]);
+  } else {
+    json["surface"] = surface_to_json(body.surface);
+    add_trims(body.trims, json["surface"]);
+  }
   add_fields(body.material, json["material"]);
   if (body.hand) {
     json["hand"] = Json::object();  // the fields with default values are not written

@@ -31,7 +31,7 @@ void read_counts(FieldReader& reader, LatticeRequest& lattice) {
   }
 }
 
-// Reads the mesh of a solid tool. Returns nullopt if a list is malformed.
+// Reads the triangles of a mesh. Returns nullopt if a list is malformed.
 std::optional<TriangleMesh> read_triangles(FieldReader& reader) {
   TriangleMesh mesh;
   const Range<int> counts{3, 3 * tool_triangle_limit};
@@ -57,14 +57,24 @@ std::optional<TriangleMesh> read_triangles(FieldReader& reader) {
   return mesh;
 }
 
-std::optional<ToolSolid> read_mesh(FieldReader& reader) {
+}  // namespace
+
+std::optional<CleanMesh> read_mesh(FieldReader& reader) {
   std::optional<TriangleMesh> mesh = read_triangles(reader);
   if (!mesh || !reader.status().ok()) return std::nullopt;
   Result<CleanMesh> clean = clean_mesh(*std::move(mesh), "mesh");
-  if (clean.ok()) return MeshSolid{std::move(clean).value()};
+  if (clean.ok()) return std::move(clean).value();
   reader.refuse(clean.error());
   return std::nullopt;
 }
+
+void add_mesh(const TriangleMesh& mesh, Json& json) {
+  Json& vertices = json["vertices_mm"] = Json::array();
+  for (const Vector3& vertex : mesh.vertices_m) vertices.push_back(position_to_json(vertex));
+  json["triangles"] = mesh.triangles;
+}
+
+namespace {
 
 // Indices of "mesh" and "surface" in the list of shape names. These two shapes have no table of fields and
 // follow the shapes that have one.
@@ -84,7 +94,7 @@ std::optional<ToolSolid> read_solid(FieldReader reader) {
     std::optional<Surface> surface = read_surface(reader);
     if (surface) solid = SurfaceSolid{*std::move(surface)};
   } else if (index == mesh_index) {
-    solid = read_mesh(reader);
+    if (std::optional<CleanMesh> mesh = read_mesh(reader)) solid = MeshSolid{*std::move(mesh)};
   } else {
     auto shape = make_kind<ImplicitShape>(index);
     std::visit([&](auto& kind) { read_fields(reader, kind); }, shape);
@@ -131,9 +141,7 @@ struct ToolSolidToJson {
   }
   Json operator()(const MeshSolid& solid) const {
     Json json{{"shape", kind_name<MeshSolid>}};
-    Json& vertices = json["vertices_mm"] = Json::array();
-    for (const Vector3& vertex : solid.mesh.mesh.vertices_m) vertices.push_back(position_to_json(vertex));
-    json["triangles"] = solid.mesh.mesh.triangles;
+    add_mesh(solid.mesh.mesh, json);
     return json;
   }
   Json operator()(const SurfaceSolid& solid) const {

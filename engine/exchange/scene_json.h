@@ -3,6 +3,7 @@
 // stores the first problem in its reader. Each add_ or _to_json function is the inverse of a read_ function.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "engine/exchange/field_reader.h"
@@ -14,6 +15,10 @@ namespace spoonbill {
 
 LatticeRequest read_lattice_request(FieldReader& reader);
 void add_lattice_request(const LatticeRequest& lattice, Json& json);
+
+// Reads and cleans the mesh that bounds a solid.
+std::optional<CleanMesh> read_mesh(FieldReader& reader);
+void add_mesh(const TriangleMesh& mesh, Json& json);
 
 Tool read_tool(FieldReader& reader);
 void add_tool(const Tool& tool, Json& json);

@@ -13,6 +13,7 @@
 #include "engine/inspection/surface_check.h"
 #include "engine/material/lattice/body_lattice.h"
 #include "engine/material/lattice_materials.h"
+#include "engine/material/rigid/rigid_mass.h"
 
 namespace spoonbill {
 EnclosedMass compute_enclosed_mass(const Surface& surface, const TrimmedArea& area) {
@@ -123,6 +124,11 @@ BodyMass mass_of_volume(const Body& body, double volume_m3, const Vector3& centr
 }
 
 std::optional<BodyMass> compute_body_mass(const Body& body) {
+  if (body.mesh) {
+    const std::optional<RigidMass> mass = compute_rigid_mass(body);
+    if (!mass) return std::nullopt;
+    return mass_of_volume(body, mass->mass_kg / body.material.density_kg_per_m3, mass->centre_m);
+  }
   const auto trim = make_trimmed_area(body);
   if (!trim) return std::nullopt;
   const TrimmedArea area = trim.value() ? *trim.value() : TrimmedArea();

@@ -1,10 +1,14 @@
 #include "engine/scene/body.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <numbers>
 #include <string>
 #include <utility>
 #include <variant>
+
+#include "engine/base/assert.h"
+#include "engine/collision/meshes/mesh_distance.h"
 
 namespace spoonbill {
 namespace {
@@ -31,7 +35,11 @@ Pose BodyPlacement::pose() const {
 }
 
 void move_body(const Pose& pose, Body& body) {
-  body.surface = placed(std::move(body.surface), pose);
+  if (body.mesh) {
+    body.mesh_pose = composed(pose, body.mesh_pose);
+  } else {
+    body.surface = placed(std::move(body.surface), pose);
+  }
   for (Load& load : body.loads) {
     if (auto* const force = std::get_if<ForceLoad>(&load)) force->force_n = pose.orientation * force->force_n;
     if (auto* const force = std::get_if<PointLoad>(&load)) force->force_n = pose.orientation * force->force_n;
@@ -84,11 +92,32 @@ Status check_loads(const Body& body) {
       !status.ok()) {
     return status;
   }
-  for (std::size_t l = 0; l < body.loads.size(); ++l) {
+  for (std::size_t l = 0; !body.mesh && l < body.loads.size(); ++l) {
     if (Status status = check_point(body.loads[l], l, body.surface); !status.ok()) return status;
   }
   return check_range("supports", static_cast<int>(body.supports.size()), support_count_range);
 }
+
+namespace {
+
+// Checks what a body with a mesh must not have.
+Status check_mesh_body(const Body& body) {
+  if (body.kind == BodyKind::deformable) {
+    return Error{
+        ErrorCode::unsupported,
+        "mesh: a deformable body needs a surface; fit one to the mesh, or make the body fixed or rigid",
+        "mesh"};
+  }
+  const char* const field = body.shell_thickness_m ? "shell_thickness_mm"
+                            : !body.rim.empty()    ? "rim_uv"
+                                                   : nullptr;
+  if (field == nullptr) return {};
+  return Error{ErrorCode::inconsistent,
+               std::string("a body with a mesh has no ") + field + "; remove it, or give the body a surface",
+               field};
+}
+
+}  // namespace
 
 Status check_kind(const Body& body) {
   if (body.hand && body.kind != BodyKind::rigid) {
@@ -105,6 +134,9 @@ Status check_kind(const Body& body) {
   if (body.motion) {
     if (Status status = check_motion(*body.motion); !status.ok()) return status.error().in("motion");
   }
+  if (body.mesh) {
+    if (Status status = check_mesh_body(body); !status.ok()) return status;
+  }
   if (body.kind == BodyKind::deformable) return {};
   const char* const field = !body.regions.empty()    ? "regions"
                             : !body.loads.empty()    ? "loads"
@@ -115,6 +147,40 @@ Status check_kind(const Body& body) {
                std::string("a ") + body_kind_names[static_cast<std::size_t>(body.kind)] + " body has no " +
                    field + "; remove them, or make the body deformable",
                field};
+}
+
+Status check_mesh(const CleanMesh& mesh) {
+  const std::size_t triangles = mesh.mesh.triangles.size();
+  if (triangles > body_triangle_limit) {
+    return Error{ErrorCode::too_many,
+                 "mesh: has " + std::to_string(triangles) + " triangles, but a body may have at most " +
+                     std::to_string(body_triangle_limit) + "; reduce it, or fit a surface to it",
+                 "mesh"};
+  }
+  const bool closed =
+      std::all_of(mesh.parts.begin(), mesh.parts.end(), [](const MeshPart& part) { return part.closed; });
+  if (!closed) {
+    return Error{ErrorCode::inconsistent, "mesh: has an open edge; close it, or fit a surface to it", "mesh"};
+  }
+  const ShellDistance inside(mesh.mesh.vertices_m, mesh.mesh.triangles, ShellDistance::Kind::solid);
+  if (inside.uses_normals()) return {};
+  return Error{ErrorCode::self_intersecting,
+               "mesh: passes through itself or has edges of more than two triangles; repair it", "mesh"};
+}
+
+TriangleMesh find_placed_mesh(const Body& body) {
+  SPOONBILL_ASSERT(body.mesh != nullptr);
+  TriangleMesh mesh = body.mesh->mesh;
+  if (body.mesh_pose == Pose{}) return mesh;
+  for (Vector3& vertex : mesh.vertices_m) {
+    vertex = body.mesh_pose.position_m + body.mesh_pose.orientation * vertex;
+  }
+  return mesh;
+}
+
+Box find_bounds(const Body& body) {
+  if (!body.mesh) return bounding_box(body.surface.net);
+  return box_about(find_placed_mesh(body).vertices_m);
 }
 
 Result<std::shared_ptr<const TrimmedArea>> make_trimmed_area(const Body& body) {

@@ -14,6 +14,7 @@
 #include "engine/bspline/surface.h"
 #include "engine/bspline/trim_loop.h"
 #include "engine/bspline/trimmed_area.h"
+#include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/scene/body_motion.h"
 #include "engine/scene/loads.h"
 #include "engine/scene/material.h"
@@ -101,10 +102,11 @@ inline constexpr auto fields_of<HandSpring> = std::to_array<Field<HandSpring>>({
 });
 
 // A solid bounded by one tube (periodic in u, closed by a pole at both ends of v) or one ring (periodic in u
-// and v). With a shell thickness, the body is instead a thin shell behind one surface (shell_lattice.h).
+// and v). With a shell thickness, the body is instead a thin shell behind one surface (shell_lattice.h). A
+// fixed or rigid body may be bounded by a closed triangle mesh instead of a surface.
 struct Body {
   std::string name;
-  Surface surface;
+  Surface surface;         // without control points if the body has a mesh
   Material material;       // material of the body outside its regions
   LatticeRequest lattice;  // ignored unless the body is deformable
   // Parts of the body with their own material or friction. Where parts overlap, the later part applies.
@@ -123,7 +125,14 @@ struct Body {
   std::optional<HandSpring> hand = {};  // of a rigid body that a hand holds; empty for any other body
   // Motion of a fixed body, or of the hand that holds a rigid one, in a trial after its turn (trial.h).
   std::optional<BodyMotion> motion = {};
+  // The mesh that bounds the body, whose parts are all closed (check_mesh()); null for a body with a surface.
+  std::shared_ptr<const CleanMesh> mesh = {};
+  Pose mesh_pose = {};  // where the mesh is
 };
+
+// Largest number of triangles of a body's mesh. It is small, because a mesh that moves is moved and searched
+// in every tick of one millisecond.
+inline constexpr int body_triangle_limit = 20000;
 
 inline constexpr Range<int> control_point_count_range{2, 200};  // number of control points in each direction
 inline constexpr Range<double> shell_thickness_range_m{1e-5, 0.1};
@@ -156,8 +165,15 @@ Status check_lattice_request(const LatticeRequest& lattice);
 // Checks the numbers of loads and supports, and that point loads are within the surface's domain.
 Status check_loads(const Body& body);
 // Refuses a fixed or rigid body with regions, loads or supports, which would have no effect, a hand at a body
-// that is not rigid, and a motion of a body that is neither fixed nor held by a hand. Checks the motion.
+// that is not rigid, a motion of a body that is neither fixed nor held by a hand, and a mesh of a deformable
+// body. Checks the motion.
 Status check_kind(const Body& body);
+// Refuses a mesh that is not closed, or that has more than body_triangle_limit triangles.
+Status check_mesh(const CleanMesh& mesh);
+// Returns the triangles of a body with a mesh, where the mesh is.
+TriangleMesh find_placed_mesh(const Body& body);
+// Returns the box about the mesh, or about the control points of the surface.
+Box find_bounds(const Body& body);
 
 // Returns the area within the body's trim loops; null if the body has no trims.
 Result<std::shared_ptr<const TrimmedArea>> make_trimmed_area(const Body& body);

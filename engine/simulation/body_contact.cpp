@@ -135,6 +135,12 @@ SkinPoint find_other_skin_point(const IndexedBody& body, const NearPoint& near) 
   return find_skin_point(body, near.other_u, near.other_v, near.other_m, normal);
 }
 
+// Returns a vertex or another point of a body's mesh, which is exactly where its embedding is.
+SkinPoint make_mesh_point(const IndexedBody& body, const EmbeddedPoint& embedding) {
+  if (stands_still(*body.state)) return make_still_point(body);
+  return {{body.index, &body.state->lattice, embedding}};
+}
+
 std::pair<double, double> find_sample_parameters(const BodyMapping& mapping, int sample) {
   const Grid& grid = mapping.nested().grid;
   return {grid.u.parameters[sample / grid.columns()], grid.v.parameters[sample % grid.columns()]};
@@ -155,17 +161,17 @@ constexpr int first_number_between = 1 << 24;
 // about the same normal. Flat faces would otherwise need hundreds of constraints.
 class RestingPoints {
  public:
-  void offer(int index, const NearPoint& near) {
+  void offer(int index, const Vector3& normal, const Vector3& point_m, double gap_m) {
     for (std::size_t p = 0; p < count_; ++p) {
-      if (parts_[p].normal().dot(near.normal) < least_cosine) continue;
-      return parts_[p].offer(index, near.point_m, near.gap_m);
+      if (parts_[p].normal().dot(normal) < least_cosine) continue;
+      return parts_[p].offer(index, point_m, gap_m);
     }
     if (count_ == parts_.size()) {
       is_complete_ = false;
       return;
     }
-    parts_[count_] = SupportPoints(near.normal);
-    parts_[count_++].offer(index, near.point_m, near.gap_m);
+    parts_[count_] = SupportPoints(normal);
+    parts_[count_++].offer(index, point_m, gap_m);
   }
   // All points count if the surfaces have more parts than the capacity.
   bool contains(int index) const {
@@ -202,7 +208,8 @@ bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::
   };
   RestingPoints resting;
   for (std::size_t p = 0; both_rigid && p < points.size(); ++p) {
-    if (!is_left_out(points[p])) resting.offer(static_cast<int>(p), points[p]);
+    const NearPoint& near = points[p];
+    if (!is_left_out(near)) resting.offer(static_cast<int>(p), near.normal, near.point_m, near.gap_m);
   }
   bool complete = true;
   for (std::size_t p = 0; p < points.size(); ++p) {
@@ -221,29 +228,101 @@ bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::
 
 namespace {
 
-bool add_contacts_of(const IndexedBody& first, const IndexedBody& second, const MeshProximity& proximity,
-                     double deepest_new_m, BodyContacts& contacts) {
-  const BodyMapping& surface = first.state->mapping();
-  const MeshMapping& mesh = *second.state->mesh();
-  bool complete = true;
-  for (const SampleNearMesh& near : proximity.surface_samples()) {
-    const auto [u, v] = find_sample_parameters(surface, near.sample);
-    const SkinPoint own = find_skin_sample(first, near.sample, position(surface.current(), u, v));
-    const SkinPoint other{{second.index, &second.state->lattice, mesh.at(near.mesh.on)}};
-    complete &= contacts.add(own.point, other.point, near.mesh.normal,
-                             corrected_gap_m(near.mesh.gap_m, near.mesh.normal, own, other), deepest_new_m,
-                             near.sample);
+// A point on the skin of one of two bodies, near the skin of the other.
+struct MeshContact {
+  Vector3 point_m, normal;
+  double gap_m;
+  SkinPoint own, other;
+  int number;
+};
+
+// Adds contacts of two bodies of which one or both have a mesh. `contact_of(index)` returns a contact, or
+// nothing for a point that is left out. Two rigid bodies touch only at the points on which one rests.
+template <class ContactOf>
+bool add_mesh_contacts(std::size_t count, bool both_rigid, double deepest_new_m, const ContactOf& contact_of,
+                       BodyContacts& contacts) {
+  RestingPoints resting;
+  for (std::size_t c = 0; both_rigid && c < count; ++c) {
+    if (const std::optional<MeshContact> contact = contact_of(c)) {
+      resting.offer(static_cast<int>(c), contact->normal, contact->point_m, contact->gap_m);
+    }
   }
-  for (const VertexNearSurface& near : proximity.mesh_vertices()) {
-    const SkinPoint own{{second.index, &second.state->lattice, mesh.vertex(near.vertex)}};
-    const SkinPoint other =
-        find_skin_point(first, near.u, near.v, position(surface.current(), near.u, near.v),
-                        unit_normal(surface.current(), near.u, near.v));
-    complete &=
-        contacts.add(own.point, other.point, near.normal,
-                     corrected_gap_m(near.gap_m, near.normal, own, other), deepest_new_m, near.vertex);
+  bool complete = true;
+  for (std::size_t c = 0; c < count; ++c) {
+    const std::optional<MeshContact> contact = contact_of(c);
+    if (!contact || (both_rigid && !resting.contains(static_cast<int>(c)))) continue;
+    complete &= contacts.add(contact->own.point, contact->other.point, contact->normal,
+                             corrected_gap_m(contact->gap_m, contact->normal, contact->own, contact->other),
+                             deepest_new_m, contact->number);
   }
   return complete;
+}
+
+Quaternion find_turn(const BodyState& body) {
+  return body.rigid ? body.rigid->pose().orientation : Quaternion::Identity();
+}
+
+// `first` has a surface and `second` a mesh. The cones are those of rigid bodies near another rigid body.
+bool add_contacts_of(const IndexedBody& first, const IndexedBody& second, const MeshProximity& proximity,
+                     double deepest_new_m, const NormalCones& cones, const NormalCones& mesh_cones,
+                     BodyContacts& contacts) {
+  const BodyMapping& surface = first.state->mapping();
+  const MeshMapping& mesh = *second.state->mesh();
+  const bool both_rigid = first.state->rigid && second.state->rigid;
+  const Quaternion turn = find_turn(*first.state), mesh_turn = find_turn(*second.state);
+  const int columns = surface.nested().grid.columns();
+  const auto contact_of_sample = [&](std::size_t index) -> std::optional<MeshContact> {
+    const SampleNearMesh& near = proximity.surface_samples()[index];
+    if (both_rigid && (surface.find_twin(near.sample / columns, near.sample % columns) != near.sample ||
+                       !cones.allow(near.sample, turn, near.mesh.normal))) {
+      return std::nullopt;
+    }
+    const auto [u, v] = find_sample_parameters(surface, near.sample);
+    const Vector3 point_m = position(surface.current(), u, v);
+    return MeshContact{point_m,
+                       near.mesh.normal,
+                       near.mesh.gap_m,
+                       find_skin_sample(first, near.sample, point_m),
+                       make_mesh_point(second, mesh.at(near.mesh.on)),
+                       near.sample};
+  };
+  const auto contact_of_vertex = [&](std::size_t index) -> std::optional<MeshContact> {
+    const VertexNearSurface& near = proximity.mesh_vertices()[index];
+    if (!mesh_cones.allow(static_cast<int>(near.vertex), mesh_turn, near.normal)) return std::nullopt;
+    return MeshContact{mesh.current().vertices_m()[near.vertex],
+                       near.normal,
+                       near.gap_m,
+                       make_mesh_point(second, mesh.vertex(near.vertex)),
+                       find_skin_point(first, near.u, near.v, position(surface.current(), near.u, near.v),
+                                       unit_normal(surface.current(), near.u, near.v)),
+                       static_cast<int>(near.vertex)};
+  };
+  const bool samples_complete = add_mesh_contacts(proximity.surface_samples().size(), both_rigid,
+                                                  deepest_new_m, contact_of_sample, contacts);
+  const bool vertices_complete = add_mesh_contacts(proximity.mesh_vertices().size(), both_rigid,
+                                                   deepest_new_m, contact_of_vertex, contacts);
+  return samples_complete && vertices_complete;
+}
+
+// `vertices` are those of the mesh of `from` near the mesh of `to`. `cones` are those of a rigid body `from`
+// near another rigid body.
+bool add_contacts_of(const IndexedBody& from, const IndexedBody& to,
+                     const std::vector<VertexNearMesh>& vertices, double deepest_new_m,
+                     const NormalCones& cones, BodyContacts& contacts) {
+  const MeshMapping &own = *from.state->mesh(), &other = *to.state->mesh();
+  const bool both_rigid = from.state->rigid && to.state->rigid;
+  const Quaternion turn = find_turn(*from.state);
+  const auto contact_of = [&](std::size_t index) -> std::optional<MeshContact> {
+    const VertexNearMesh& near = vertices[index];
+    if (!cones.allow(static_cast<int>(near.vertex), turn, near.other.normal)) return std::nullopt;
+    return MeshContact{own.current().vertices_m()[near.vertex],
+                       near.other.normal,
+                       near.other.gap_m,
+                       make_mesh_point(from, own.vertex(near.vertex)),
+                       make_mesh_point(to, other.at(near.other.on)),
+                       static_cast<int>(near.vertex)};
+  };
+  return add_mesh_contacts(vertices.size(), both_rigid, deepest_new_m, contact_of, contacts);
 }
 
 std::optional<SurfaceSpot> find_deepest(const std::vector<NearPoint>& points) {
@@ -333,19 +412,32 @@ void find_near_points(MeshProximity& proximity, const BodyState& first, const Bo
       });
 }
 
+void find_near_points(MeshPairProximity& proximity, const BodyState& first, const BodyState& second,
+                      double margin) {
+  proximity.find(first.mesh()->current(), second.mesh()->current(), margin);
+}
+
 }  // namespace
 
 BodyPairContact::BodyPairContact(const BodyState& first, const BodyState& second) {
-  SPOONBILL_ASSERT(first.mesh() == nullptr);
-  const NestedGrid& grid = first.mapping().nested();
-  if (const MeshMapping* const mesh = second.mesh()) {
-    proximity_ = std::make_unique<MeshProximity>(grid, mesh->patches());
+  const MeshMapping *const first_mesh = first.mesh(), *const second_mesh = second.mesh();
+  is_mesh_first_ = first_mesh && !second_mesh;
+  if (first_mesh && second_mesh) {
+    proximity_ = std::make_unique<MeshPairProximity>(first_mesh->patches(), second_mesh->patches());
+  } else if (first_mesh) {
+    proximity_ = std::make_unique<MeshProximity>(second.mapping().nested(), first_mesh->patches());
+  } else if (second_mesh) {
+    proximity_ = std::make_unique<MeshProximity>(first.mapping().nested(), second_mesh->patches());
   } else {
-    proximity_ = std::make_unique<SurfaceProximity>(grid, second.mapping().nested());
+    proximity_ = std::make_unique<SurfaceProximity>(first.mapping().nested(), second.mapping().nested());
   }
   if (!first.rigid || !second.rigid) return;
-  first_cones_ = NormalCones(first.mapping(), first.shell_thickness_m > 0.0);
-  second_cones_ = NormalCones(second.mapping(), second.shell_thickness_m > 0.0);
+  const auto make_cones = [](const BodyState& body) {
+    const MeshMapping* const mesh = body.mesh();
+    return mesh ? NormalCones(*mesh) : NormalCones(body.mapping(), body.shell_thickness_m > 0.0);
+  };
+  first_cones_ = make_cones(first);
+  second_cones_ = make_cones(second);
 }
 
 bool BodyPairContact::find(const IndexedBody& first, const IndexedBody& second) {
@@ -361,9 +453,11 @@ bool BodyPairContact::find(const IndexedBody& first, const IndexedBody& second) 
   // Points that come within reach during a tick need their constraints one tick earlier.
   const double margin_m = std::max(contact_margin_cells * cell, 2.0 * motion_m);
   deepest_new_m_ = std::max(deepest_new_cells * cell, motion_m);
+  const BodyState &one = is_mesh_first_ ? *second.state : *first.state,
+                  &other = is_mesh_first_ ? *first.state : *second.state;
   return std::visit(
       [&](const auto& proximity) {
-        find_near_points(*proximity, *first.state, *second.state, margin_m);
+        find_near_points(*proximity, one, other, margin_m);
         return !proximity->overflow();
       },
       proximity_);
@@ -376,21 +470,38 @@ void BodyPairContact::forget() {
 }
 
 std::optional<SurfaceSpot> BodyPairContact::deepest_on_first(const BodyState& first) const {
-  if (const auto* const meshes = std::get_if<std::unique_ptr<MeshProximity>>(&proximity_)) {
-    return find_deepest((*meshes)->surface_samples(), first.mapping());
+  if (const auto* const surfaces = std::get_if<std::unique_ptr<SurfaceProximity>>(&proximity_)) {
+    return find_deepest((*surfaces)->first_points());
   }
-  return find_deepest((*std::get_if<std::unique_ptr<SurfaceProximity>>(&proximity_))->first_points());
+  const auto* const mesh = std::get_if<std::unique_ptr<MeshProximity>>(&proximity_);
+  if (mesh == nullptr || is_mesh_first_) return std::nullopt;
+  return find_deepest((*mesh)->surface_samples(), first.mapping());
 }
 
-std::optional<SurfaceSpot> BodyPairContact::deepest_on_second() const {
-  const auto* const surfaces = std::get_if<std::unique_ptr<SurfaceProximity>>(&proximity_);
-  return surfaces != nullptr ? find_deepest((*surfaces)->second_points()) : std::nullopt;
+std::optional<SurfaceSpot> BodyPairContact::deepest_on_second(const BodyState& second) const {
+  if (const auto* const surfaces = std::get_if<std::unique_ptr<SurfaceProximity>>(&proximity_)) {
+    return find_deepest((*surfaces)->second_points());
+  }
+  const auto* const mesh = std::get_if<std::unique_ptr<MeshProximity>>(&proximity_);
+  if (mesh == nullptr || !is_mesh_first_) return std::nullopt;
+  return find_deepest((*mesh)->surface_samples(), second.mapping());
 }
 
 bool BodyPairContact::add_contacts(const IndexedBody& first, const IndexedBody& second,
                                    BodyContacts& contacts) const {
-  if (const auto* const meshes = std::get_if<std::unique_ptr<MeshProximity>>(&proximity_))
-    return add_contacts_of(first, second, **meshes, deepest_new_m_, contacts);
+  if (const auto* const mesh = std::get_if<std::unique_ptr<MeshProximity>>(&proximity_)) {
+    return is_mesh_first_
+               ? add_contacts_of(second, first, **mesh, deepest_new_m_, second_cones_, first_cones_, contacts)
+               : add_contacts_of(first, second, **mesh, deepest_new_m_, first_cones_, second_cones_,
+                                 contacts);
+  }
+  if (const auto* const meshes = std::get_if<std::unique_ptr<MeshPairProximity>>(&proximity_)) {
+    const bool first_complete =
+        add_contacts_of(first, second, (*meshes)->first_vertices(), deepest_new_m_, first_cones_, contacts);
+    const bool second_complete =
+        add_contacts_of(second, first, (*meshes)->second_vertices(), deepest_new_m_, second_cones_, contacts);
+    return first_complete && second_complete;
+  }
   const SurfaceProximity& surfaces = **std::get_if<std::unique_ptr<SurfaceProximity>>(&proximity_);
   const bool first_complete =
       add_near_points(first, second, surfaces.first_points(), deepest_new_m_, contacts, first_cones_);

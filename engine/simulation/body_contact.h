@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/bspline/surface.h"
+#include "engine/collision/proximity/mesh_pair_proximity.h"
 #include "engine/collision/proximity/mesh_proximity.h"
 #include "engine/collision/proximity/self_proximity.h"
 #include "engine/collision/proximity/surface_proximity.h"
@@ -71,7 +72,6 @@ bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::
 // replaced. find() and add_contacts() allocate nothing.
 class BodyPairContact {
  public:
-  // The first body must have a surface, the second a surface or a mesh.
   BodyPairContact(const BodyState& first, const BodyState& second);
 
   // Finds the points on the skin of each body that are near the skin of the other. Returns false if a
@@ -88,13 +88,16 @@ class BodyPairContact {
   // other body or nearest to it, as found by the last find(). Empty if nothing is near, or if the body is a
   // mesh.
   std::optional<SurfaceSpot> deepest_on_first(const BodyState& first) const;
-  std::optional<SurfaceSpot> deepest_on_second() const;
+  std::optional<SurfaceSpot> deepest_on_second(const BodyState& second) const;
   // Adds a constraint for each point of the last find(). Returns false if a capacity was exceeded.
   bool add_contacts(const IndexedBody& first, const IndexedBody& second, BodyContacts& contacts) const;
 
  private:
   // On the heap, because a proximity search cannot be moved.
-  std::variant<std::unique_ptr<SurfaceProximity>, std::unique_ptr<MeshProximity>> proximity_;
+  std::variant<std::unique_ptr<SurfaceProximity>, std::unique_ptr<MeshProximity>,
+               std::unique_ptr<MeshPairProximity>>
+      proximity_;
+  bool is_mesh_first_ = false;  // whether the first body has a mesh and the second a surface
   NormalCones first_cones_, second_cones_;
   double deepest_new_m_ = 0.0;  // largest depth of a point that had no contact before the last find()
 };

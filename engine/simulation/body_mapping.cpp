@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "engine/base/assert.h"
 #include "engine/bspline/reparameterise.h"
@@ -445,21 +446,40 @@ MeshMapping::MeshMapping(const TriangleMesh& rest, const SpringLattice& lattice)
       node_moves_(4 * static_cast<std::size_t>(lattice.mesh().node_count()), 0.0f),
       current_(rest) {
   SPOONBILL_ASSERT(!rest.triangles.empty());
-  embedding_.reserve(rest_m_.size());
-  patches_.reserve(rest_m_.size());
-  for (const Vector3& vertex : rest_m_) {
-    const EmbeddedPoint point = embed_in_box(lattice.mesh(), vertex);
-    patches_.push_back(find_cell_octant(point));
-    CellWeights& weights = embedding_.emplace_back();
-    std::copy_n(point.node.begin(), 8, weights.node);
-    std::copy_n(point.weight.begin(), 8, weights.weight);
+  embed(lattice);
+  const LatticeMesh& mesh = lattice.mesh();
+  patches_.resize(rest_m_.size());
+  if (mesh.is_frame) {
+    std::iota(patches_.begin(), patches_.end(), 0);
+    return;
   }
+  std::transform(rest_m_.begin(), rest_m_.end(), patches_.begin(),
+                 [&](const Vector3& vertex) { return find_cell_octant(embed_in_box(mesh, vertex)); });
   std::vector<int> found = patches_;
   std::sort(found.begin(), found.end());
   found.erase(std::unique(found.begin(), found.end()), found.end());
   for (int& patch : patches_) {
     patch = static_cast<int>(std::lower_bound(found.begin(), found.end(), patch) - found.begin());
   }
+}
+
+void MeshMapping::embed(const SpringLattice& lattice) {
+  const LatticeMesh& mesh = lattice.mesh();
+  embedding_.clear();
+  embedding_.reserve(rest_m_.size());
+  for (const Vector3& vertex : rest_m_) {
+    const EmbeddedPoint point = mesh.is_frame ? embed_point(mesh, vertex) : embed_in_box(mesh, vertex);
+    CellWeights& weights = embedding_.emplace_back();
+    std::copy_n(point.node.begin(), 8, weights.node);
+    std::copy_n(point.weight.begin(), 8, weights.weight);
+  }
+}
+
+MeshMapping MeshMapping::rebased(const SpringLattice& lattice) const {
+  MeshMapping mapping = *this;
+  mapping.rest_m_ = current_.vertices_m();
+  mapping.embed(lattice);
+  return mapping;
 }
 
 void MeshMapping::update(const SpringLattice& lattice) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/text.h"
+#include "engine/collision/meshes/mesh_edges.h"
 #include "engine/material/lattice/body_lattice.h"
 #include "engine/material/lattice_solver.h"
 #include "engine/material/rigid/rigid_mass.h"
@@ -76,6 +77,32 @@ void BodyState::fix_nodes_behind(const std::vector<FixingPlane>& planes) {
   fix(std::move(nodes));
 }
 
+namespace {
+
+// Edges of a rigid mesh are at most this fraction of its size long, so that enough of its vertices lie where
+// another body touches it.
+constexpr double longest_edge_fraction = 1.0 / 48.0;
+constexpr std::size_t refined_triangle_limit = 2 * body_triangle_limit;
+
+// Returns a mesh with shorter edges if that does not take too many triangles; otherwise the mesh as it is.
+TriangleMesh refine_for_contact(const TriangleMesh& mesh) {
+  const double size_m = box_about(mesh.vertices_m).size();
+  Result<TriangleMesh> refined = refine_edges(mesh, longest_edge_fraction * size_m, refined_triangle_limit);
+  return refined.ok() ? std::move(refined).value() : mesh;
+}
+
+}  // namespace
+
+Result<SkinMapping> make_skin(const Body& body, const SpringLattice& lattice,
+                              const std::vector<FixingPlane>& planes, InstructionSet set) {
+  if (body.mesh) return SkinMapping(MeshMapping(refine_for_contact(find_placed_mesh(body)), lattice));
+  const bool is_rigid = body.kind != BodyKind::deformable;
+  Result<BodyMapping> mapping = BodyMapping::make(body.surface, body.surface, lattice,
+                                                  is_rigid ? std::vector<FixingPlane>() : planes, set);
+  if (!mapping.ok()) return mapping.error();
+  return SkinMapping(std::move(mapping).value());
+}
+
 Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlane>& planes,
                                   InstructionSet set, const FeatureMapWatch& watch) {
   Result<std::shared_ptr<const TrimmedArea>> trim = make_trimmed_area(body);
@@ -90,16 +117,16 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
   Result<std::optional<ImplicitSolver>> solver = std::optional<ImplicitSolver>();
   if (!is_rigid) solver = make_implicit_solver(lattice.value(), mesh->nodes, set);
   if (!solver.ok()) return solver.error();
-  Result<BodyMapping> mapping = BodyMapping::make(body.surface, body.surface, lattice.value(),
-                                                  is_rigid ? std::vector<FixingPlane>() : planes, set);
-  if (!mapping.ok()) return mapping.error();
+  Result<SkinMapping> skin = make_skin(body, lattice.value(), planes, set);
+  if (!skin.ok()) return skin.error();
+  const auto* const surface = std::get_if<BodyMapping>(&skin.value());
   Result<BodyLoads> loads =
-      BodyLoads::make(body.loads, mesh.value(), [&](double u, double v) { return mapping->at(u, v); });
+      BodyLoads::make(body.loads, mesh.value(), [&](double u, double v) { return surface->at(u, v); });
   if (!loads.ok()) return loads.error();
   Result<BodySupports> supports = BodySupports::make(body.supports, mesh.value());
   if (!supports.ok()) return supports.error();
   BodyState state{std::move(lattice).value(),
-                  std::move(mapping).value(),
+                  std::move(skin).value(),
                   Smoothing(mesh.value()),
                   {},
                   std::vector<std::uint8_t>(mesh->nodes.size(), 0)};

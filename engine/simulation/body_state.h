@@ -30,7 +30,7 @@ namespace spoonbill {
 // State of one body. Plain data with one owner, the simulation.
 struct BodyState {
   SpringLattice lattice;
-  std::variant<BodyMapping, MeshMapping> skin;
+  SkinMapping skin;
   Smoothing smoothing;
   std::vector<std::uint8_t> fixed, touched;            // one byte per node: 1 if fixed, 1 if touched
   std::optional<ImplicitSolver> implicit_solver = {};  // empty: the body uses the spring solver
@@ -87,7 +87,7 @@ struct BodyState {
 
   const LatticeReport& report() const { return solver() ? solver()->report() : lattice.report(); }
 
-  // Returns the mapping to the surface. Every body has one except a soft mesh tool.
+  // Returns the mapping to the surface. Every body has one except a body with a mesh.
   BodyMapping& mapping() {
     SPOONBILL_ASSERT(mesh() == nullptr);
     return *std::get_if<BodyMapping>(&skin);
@@ -96,7 +96,7 @@ struct BodyState {
     SPOONBILL_ASSERT(mesh() == nullptr);
     return *std::get_if<BodyMapping>(&skin);
   }
-  // Returns the triangles of a soft mesh tool; null for any other body.
+  // Returns the triangles of a soft mesh tool or of a body with a mesh; null for any other body.
   const MeshMapping* mesh() const { return std::get_if<MeshMapping>(&skin); }
 
   // Returns the highest speed of a node. For a fixed body, it is that of the last tick in which it moved.
@@ -116,6 +116,11 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
 // The few newtons of a hand dent such bodies by less than a third of a millimetre, but can bend them. Softer
 // bodies can be dented. This requires a finer lattice, for which the spring solver is used.
 inline constexpr double stiff_youngs_modulus_pa = 1e6;
+
+// Makes the mapping of a body of a scene to its surface, or to its mesh. `lattice` is that of the body at
+// rest. Planes have no effect on rigid bodies.
+Result<SkinMapping> make_skin(const Body& body, const SpringLattice& lattice,
+                              const std::vector<FixingPlane>& planes, InstructionSet set);
 
 // Makes the implicit solver of a lattice, which is unstrained while its nodes are at `rest_m`. Returns
 // nothing if the body uses the spring solver. A body uses the implicit solver if all its materials are linear

@@ -48,6 +48,17 @@ std::vector<FixingPlane> planes_through(const BodyState& body, const std::vector
   return body.rigid ? std::vector<FixingPlane>() : planes;
 }
 
+// Returns the mapping of a body whose rest shape is the present one, with a lattice at rest there.
+Result<SkinMapping> make_present_skin(const BodyState& body, const SpringLattice& lattice,
+                                      const std::vector<FixingPlane>& planes, InstructionSet set) {
+  if (const MeshMapping* const mesh = body.mesh()) return SkinMapping(mesh->rebased(lattice));
+  const Surface& surface = body.mapping().current();
+  Result<BodyMapping> mapping =
+      BodyMapping::make(surface, surface, lattice, planes_through(body, planes), set);
+  if (!mapping.ok()) return mapping.error();
+  return SkinMapping(std::move(mapping).value());
+}
+
 }  // namespace
 
 Result<std::optional<ImplicitSolver>> CommandApplier::make_solver_of(
@@ -158,7 +169,7 @@ Status CommandApplier::operator()(const SetMaterial& command) {
 Status CommandApplier::operator()(const KeepShape&) {
   std::vector<SpringLattice> lattices;
   std::vector<std::optional<ImplicitSolver>> solvers;
-  std::vector<BodyMapping> mappings;
+  std::vector<SkinMapping> skins;
   for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) {
     const BodyState& body = state.bodies[b];
     LatticeMesh mesh = body.lattice.mesh();
@@ -166,15 +177,13 @@ Status CommandApplier::operator()(const KeepShape&) {
     Result<SpringLattice> lattice = SpringLattice::make(mesh, body.lattice.materials(), state.set);
     if (!lattice.ok()) return lattice.error();
     lattice->fix_nodes(body.fixed);
-    const Surface& surface = body.mapping().current();
-    Result<BodyMapping> mapping = BodyMapping::make(surface, surface, lattice.value(),
-                                                    planes_through(body, state.scene.planes), state.set);
-    if (!mapping.ok()) return mapping.error();
+    Result<SkinMapping> skin = make_present_skin(body, lattice.value(), state.scene.planes, state.set);
+    if (!skin.ok()) return skin.error();
     Result<std::optional<ImplicitSolver>> solver = make_solver_of(body, lattice.value(), mesh.nodes);
     if (!solver.ok()) return solver.error();
     solvers.push_back(std::move(solver).value());
     lattices.push_back(std::move(lattice).value());
-    mappings.push_back(std::move(mapping).value());
+    skins.push_back(std::move(skin).value());
   }
   for (std::size_t b = 0; b < state.scene.bodies.size(); ++b) {
     state.bodies[b].smoothing = Smoothing(lattices[b].mesh());
@@ -182,16 +191,23 @@ Status CommandApplier::operator()(const KeepShape&) {
     state.bodies[b].set_lattice(std::move(lattices[b]));
     state.bodies[b].set_implicit_solver(std::move(solvers[b]));
     carry_motion(state.bodies[b], state.scene.bodies[b]);
-    if (state.bodies[b].rigid) state.bodies[b].rigid->keep_shape(state.bodies[b].lattice.mesh());
+    if (std::optional<RigidBody>& rigid = state.bodies[b].rigid) {
+      Pose& mesh_pose = state.scene.bodies[b].mesh_pose;
+      if (state.bodies[b].mesh()) mesh_pose = composed(rigid->pose(), mesh_pose);
+      rigid->keep_shape(state.bodies[b].lattice.mesh());
+    }
   }
   update_inertia(state);
-  set_mappings(std::move(mappings));
+  set_skins(std::move(skins));
   return {};
 }
 
 Status CommandApplier::operator()(const RefineKnots& command) {
   if (Status status = check_body(command.body); !status.ok()) return status;
   const std::size_t index = static_cast<std::size_t>(command.body);
+  if (state.bodies[index].mesh()) {
+    return Error{ErrorCode::unsupported, "refine_knots: the body has a mesh, not a surface", "body"};
+  }
   BodyMapping& mapping = state.bodies[index].mapping();
   mapping.measure_residual();
   const MappingResidual& residual = mapping.residual();
@@ -267,26 +283,30 @@ void CommandApplier::release() {
 }
 
 Status CommandApplier::set_planes(std::vector<FixingPlane> planes) {
-  std::vector<BodyMapping> mappings;
+  std::vector<SkinMapping> skins;
   for (const BodyState& body : state.scene_bodies()) {
+    if (body.mesh()) {
+      skins.push_back(body.skin);
+      continue;
+    }
     Result<BodyMapping> mapping = BodyMapping::make(body.mapping().rest(), body.mapping().current(),
                                                     body.lattice, planes_through(body, planes), state.set);
     if (!mapping.ok()) return mapping.error();
-    mappings.push_back(std::move(mapping).value());
+    skins.push_back(std::move(mapping).value());
   }
   for (BodyState& body : state.scene_bodies()) {
     body.fix_nodes_behind(planes);
   }
   state.scene.planes = std::move(planes);
   update_inertia(state);
-  set_mappings(std::move(mappings));
+  set_skins(std::move(skins));
   return {};
 }
 
-void CommandApplier::set_mappings(std::vector<BodyMapping> mappings) {
-  for (std::size_t b = 0; b < mappings.size(); ++b) {
-    state.bodies[b].mapping() = std::move(mappings[b]);
-    state.scene.bodies[b].surface = state.bodies[b].mapping().current();
+void CommandApplier::set_skins(std::vector<SkinMapping> skins) {
+  for (std::size_t b = 0; b < skins.size(); ++b) {
+    state.bodies[b].skin = std::move(skins[b]);
+    if (!state.bodies[b].mesh()) state.scene.bodies[b].surface = state.bodies[b].mapping().current();
   }
   make_contacts();
 }

@@ -65,6 +65,50 @@ class PushedSamples {
   std::vector<std::uint8_t> pushed_;
 };
 
+// Vertices of a mesh that contacts push. Each counts a third of the area of its triangles.
+class PushedVertices {
+ public:
+  explicit PushedVertices(const DeformingMesh& mesh) : mesh_(mesh), pushed_(mesh.vertices_m().size()) {}
+
+  void add(int vertex) {
+    if (static_cast<std::size_t>(vertex) < pushed_.size()) pushed_[static_cast<std::size_t>(vertex)] = 1;
+  }
+
+  void add_near_ground(const Ground& ground, double reach_m) {
+    for (std::size_t v = 0; v < pushed_.size(); ++v) {
+      if (ground.normal.dot(mesh_.vertices_m()[v] - ground.point_m) < reach_m) pushed_[v] = 1;
+    }
+  }
+
+  double area_m2() const {
+    double sum = 0.0;
+    for (const TriangleCorners& corners : mesh_.triangles()) {
+      const int count = pushed_[corners[0]] + pushed_[corners[1]] + pushed_[corners[2]];
+      if (count == 0) continue;
+      const Vector3& a = mesh_.vertices_m()[corners[0]];
+      const Vector3 b = mesh_.vertices_m()[corners[1]] - a, c = mesh_.vertices_m()[corners[2]] - a;
+      sum += count / 3.0 * 0.5 * b.cross(c).norm();
+    }
+    return sum;
+  }
+
+ private:
+  const DeformingMesh& mesh_;
+  std::vector<std::uint8_t> pushed_;
+};
+
+template <class Pushed>
+double find_area_m2(const Simulation::State& state, int body, double reach_m, Pushed pushed) {
+  const auto add = [&](int sample) { pushed.add(sample); };
+  state.between.visit_pushed_samples(body, reach_m, add);
+  state.tool.contact.constraints().visit_pushed_samples(body, add);
+  if (state.scene.symmetry.on) state.mirrored.contact.constraints().visit_pushed_samples(body, add);
+  if (!find_ground_impulse_ns(state, body).isZero(0.0)) {
+    pushed.add_near_ground(*state.scene.ground, reach_m);
+  }
+  return pushed.area_m2();
+}
+
 }  // namespace
 
 double find_contact_area_m2(const Simulation::State& state, int body) {
@@ -76,15 +120,10 @@ double find_contact_area_m2(const Simulation::State& state, int body) {
   }
   if (cell_m == 0.0) cell_m = static_cast<double>(own.lattice.cell_size_m());
   const double reach_m = reach_cells * cell_m;
-  PushedSamples pushed(own.mapping());
-  const auto add = [&](int sample) { pushed.add(sample); };
-  state.between.visit_pushed_samples(body, reach_m, add);
-  state.tool.contact.constraints().visit_pushed_samples(body, add);
-  if (state.scene.symmetry.on) state.mirrored.contact.constraints().visit_pushed_samples(body, add);
-  if (!find_ground_impulse_ns(state, body).isZero(0.0)) {
-    pushed.add_near_ground(*state.scene.ground, reach_m);
+  if (const MeshMapping* const mesh = own.mesh()) {
+    return find_area_m2(state, body, reach_m, PushedVertices(mesh->current()));
   }
-  return pushed.area_m2();
+  return find_area_m2(state, body, reach_m, PushedSamples(own.mapping()));
 }
 
 }  // namespace spoonbill

@@ -220,13 +220,13 @@ std::vector<BodyGroundContact::AttachedSamples> BodyGroundContact::attach_sample
 }
 
 BodyGroundContact::BodyFootings BodyGroundContact::make_footings(const BodyState& body) {
+  if (body.rigid) return {};
   const LatticeMesh& mesh = body.lattice.mesh();
   const Surface& skin = body.mapping().current();
   // make() cannot fail, because the mapping already has a grid of these knots.
   BodyFootings result{
       SkinHeights::make(skin.u, skin.v).value(), static_cast<double>(body.lattice.cell_size_m()), {}, {}, {}};
-  if (body.rigid) return result;
-  const std::vector<AttachedSamples> attached = attach_samples(body, result.heights);
+  const std::vector<AttachedSamples> attached = attach_samples(body, *result.heights);
   const bool boxed = is_boxed(mesh);
   for (int n = 0; n < mesh.node_count(); ++n) {
     const AttachedSamples& on_node = attached[static_cast<std::size_t>(n)];
@@ -274,7 +274,7 @@ void BodyGroundContact::update_skin_offset(const BodyFootings& footings, double 
   double skin_m = std::numeric_limits<double>::infinity();
   for (int s = footing.first; s < footing.first + footing.count; ++s) {
     const Sample& sample = footings.samples[static_cast<std::size_t>(s)];
-    skin_m = std::min(skin_m, footings.heights.lowest_m(sample.row, sample.column));
+    skin_m = std::min(skin_m, footings.heights->lowest_m(sample.row, sample.column));
   }
   if (!std::isfinite(skin_m)) skin_m = followed_m;
   const double fraction = footing.is_near ? time_s / (constant_s + time_s) : 1.0;
@@ -295,7 +295,7 @@ void BodyGroundContact::find(int index, const BodyState& body, const Ground& gro
   const double look_m = reach_m + footings.max_sample_distance_m;
   // A shell's nodes are on its faces, so its skin needs no correction.
   const bool thin = body.lattice.mesh().thin, boxed = is_boxed(body.lattice.mesh());
-  if (!thin && !footings.heights.compute(body.mapping().current(), ground.point_m, ground.normal, look_m)) {
+  if (!thin && !footings.heights->compute(body.mapping().current(), ground.point_m, ground.normal, look_m)) {
     for (Footing& footing : footings.footings) footing.is_near = false;
     return;
   }

@@ -1,6 +1,7 @@
 // Contact of bodies with the ground, as constraints on their lattices, and the heights of surfaces above it.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -112,7 +113,7 @@ class BodyGroundContact {
     std::vector<Sample> skin;
   };
   struct BodyFootings {
-    SkinHeights heights;
+    std::optional<SkinHeights> heights;  // empty for a rigid body, which has no footings
     // The size of a cell or, in a box of cells, the largest distance at rest between a followed sample and
     // its node, whichever is larger.
     double max_sample_distance_m;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 namespace spoonbill {
 namespace {
@@ -52,6 +53,27 @@ NormalCones::NormalCones(const BodyMapping& mapping, bool has_far_face) : has_fa
       cone.least_cosine = widened_cosine(least);
     }
   }
+}
+
+NormalCones::NormalCones(const MeshMapping& mapping) {
+  const std::vector<Vector3>& vertices_m = mapping.rest_m();
+  const auto area_vector = [&](const TriangleCorners& corners) -> Vector3 {
+    const Vector3& first = vertices_m[corners[0]];
+    return (vertices_m[corners[1]] - first).cross(vertices_m[corners[2]] - first);
+  };
+  std::vector<Vector3> sums(vertices_m.size(), Vector3::Zero());
+  for (const TriangleCorners& corners : *mapping.triangles()) {
+    for (const std::uint32_t corner : corners) sums[corner] += area_vector(corners);
+  }
+  cones_.resize(vertices_m.size());
+  for (std::size_t v = 0; v < cones_.size(); ++v) cones_[v] = {sums[v].normalized(), 1.0};
+  for (const TriangleCorners& corners : *mapping.triangles()) {
+    const Vector3 normal = area_vector(corners).normalized();
+    for (const std::uint32_t corner : corners) {
+      cones_[corner].least_cosine = std::min(cones_[corner].least_cosine, cones_[corner].axis.dot(normal));
+    }
+  }
+  for (Cone& cone : cones_) cone.least_cosine = widened_cosine(cone.least_cosine);
 }
 
 }  // namespace spoonbill

@@ -1,4 +1,4 @@
-// Directions in which the surface of a rigid body faces around each of its samples.
+// Directions in which the skin of a rigid body faces around each of its samples or vertices.
 #pragma once
 
 #include <cmath>
@@ -19,10 +19,12 @@ class NormalCones {
   NormalCones() = default;  // allows all contacts
   // `has_far_face` is true for a shell, whose samples stand for both of its faces.
   NormalCones(const BodyMapping& mapping, bool has_far_face);
+  // The cone of a vertex includes the normals of the triangles around it.
+  explicit NormalCones(const MeshMapping& mapping);
 
-  // Returns whether another body with the unit normal `other_normal` can touch the sample of a body that has
-  // turned by `turn` since rest: whether the opposite of this normal is in the cone about the sample's normal
-  // that includes the normals of the samples around it, or almost in it.
+  // Returns whether another body with the unit normal `other_normal` can touch the sample, or vertex, of a
+  // body that has turned by `turn` since rest: whether the opposite of this normal is in the cone about the
+  // sample's normal that includes the normals of the samples around it, or almost in it.
   bool allow(int sample, const Quaternion& turn, const Vector3& other_normal) const {
     if (cones_.empty() || sample < 0) return true;
     const Cone& cone = cones_[static_cast<std::size_t>(sample)];
@@ -35,7 +37,7 @@ class NormalCones {
     Vector3 axis = Vector3::UnitY();
     double least_cosine = -1.0;
   };
-  std::vector<Cone> cones_;  // by sample
+  std::vector<Cone> cones_;  // by sample or vertex
   bool has_far_face_ = false;
 };
 

@@ -91,6 +91,9 @@ void measure(const StaticBody& body, const StaticLoads& loads, RestShape& shape)
 Result<RestShape> compute_rest_shape(const Scene& scene, int body, const Progress& progress) {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(scene.bodies.size()));
   const Body& definition = scene.bodies[static_cast<std::size_t>(body)];
+  if (definition.kind != BodyKind::deformable) {
+    return Error{ErrorCode::unsupported, "only a deformable body has a rest shape under load", "kind"};
+  }
   Result<BodyState> state = make_body_state(definition, scene.planes, InstructionSet::baseline);
   if (!state.ok()) return state.error();
   const std::vector<FixedAxis> fixed = find_fixed_axes(state.value(), definition);

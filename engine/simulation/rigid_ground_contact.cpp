@@ -67,10 +67,35 @@ double spacing_at(const std::vector<double>& parameters, int index) {
   return parameters[at + 1] - parameters[at];
 }
 
+// Adds constraints for the vertices of a mesh. The lowest points of a mesh are vertices.
+bool add_mesh_contacts(const IndexedBody& body, const Ground& ground, double margin_m,
+                       BodyContacts& contacts) {
+  const MeshMapping& mesh = *body.state->mesh();
+  const std::vector<Vector3>& vertices_m = mesh.current().vertices_m();
+  const auto gap_m = [&](std::size_t v) { return ground.normal.dot(vertices_m[v] - ground.point_m); };
+  SupportPoints lowest(ground.normal);
+  for (std::size_t v = 0; v < vertices_m.size(); ++v) {
+    if (gap_m(v) <= margin_m) lowest.offer(static_cast<int>(v), vertices_m[v], gap_m(v));
+  }
+  bool complete = true;
+  const auto& supports = lowest.supports();
+  for (std::size_t p = 0; p < supports.size(); ++p) {
+    const int vertex = supports[p].index;
+    if (vertex < 0) break;
+    const bool is_known = std::any_of(supports.begin(), supports.begin() + static_cast<std::ptrdiff_t>(p),
+                                      [&](const auto& other) { return other.index == vertex; });
+    if (is_known) continue;
+    const BodyPoint point{body.index, &body.state->lattice, mesh.vertex(static_cast<std::uint32_t>(vertex))};
+    complete &= contacts.add_on_ground(point, ground.normal, gap_m(static_cast<std::size_t>(vertex)),
+                                       ground.friction, vertex);
+  }
+  return complete;
+}
+
 }  // namespace
 
 RigidGroundContact::RigidGroundContact(const BodyState& body) {
-  if (!body.is_movable_rigid()) return;
+  if (!body.is_movable_rigid() || body.mesh()) return;
   const Surface& surface = body.mapping().current();
   // make() cannot fail, because the mapping already has a grid of these knots.
   heights_ = SkinHeights::make(surface.u, surface.v).value();
@@ -79,6 +104,10 @@ RigidGroundContact::RigidGroundContact(const BodyState& body) {
 bool RigidGroundContact::add_contacts(const IndexedBody& body, const Ground& ground,
                                       const Vector3& gravity_m_per_s2, double time_s,
                                       BodyContacts& contacts) {
+  if (body.state->mesh() && body.state->is_movable_rigid()) {
+    return add_mesh_contacts(body, ground, find_ground_margin_m(*body.state, gravity_m_per_s2, time_s),
+                             contacts);
+  }
   if (!heights_) return true;
   SPOONBILL_ASSERT_DEBUG(time_s > 0.0);
   const BodyState& state = *body.state;

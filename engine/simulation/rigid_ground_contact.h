@@ -25,7 +25,7 @@ class RigidGroundContact {
                     double time_s, BodyContacts& contacts);
 
  private:
-  std::optional<SkinHeights> heights_;
+  std::optional<SkinHeights> heights_;  // empty for a body without dynamics and for one with a mesh
 };
 
 }  // namespace spoonbill

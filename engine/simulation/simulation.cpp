@@ -335,7 +335,8 @@ void mark_touched(Simulation::State& s) {
 void measure_residuals(Simulation::State& s) {
   constexpr std::uint64_t interval_ticks = 128;
   if (s.tick % interval_ticks != 0) return;
-  s.bodies[s.tick / interval_ticks % s.scene.bodies.size()].mapping().measure_residual();
+  BodyState& body = s.bodies[s.tick / interval_ticks % s.scene.bodies.size()];
+  if (!body.mesh()) body.mapping().measure_residual();
 }
 
 }  // namespace
@@ -385,7 +386,11 @@ const Scene& Simulation::scene() const {
 void Simulation::write_scene(Scene& scene) const {
   scene = state_->scene;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    scene.bodies[b].surface = state_->bodies[b].mapping().current();
+    if (state_->bodies[b].mesh()) {
+      scene.bodies[b].mesh_pose = composed(state_->bodies[b].rigid->pose(), scene.bodies[b].mesh_pose);
+    } else {
+      scene.bodies[b].surface = state_->bodies[b].mapping().current();
+    }
     carry_motion(state_->bodies[b], scene.bodies[b]);
   }
 }
@@ -470,6 +475,12 @@ int Simulation::real_time_substeps() const {
 const LatticeReport& Simulation::report(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
   return state_->bodies[static_cast<std::size_t>(body)].report();
+}
+Box Simulation::bounds(int body) const {
+  SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
+  const BodyState& state = state_->bodies[static_cast<std::size_t>(body)];
+  const MeshMapping* const mesh = state.mesh();
+  return mesh ? mesh->current().bounds() : bounding_box(state.mapping().current().net);
 }
 const Surface& Simulation::surface(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));

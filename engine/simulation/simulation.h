@@ -125,9 +125,11 @@ class Simulation {
   // Warnings about the bodies' lattices, at most one line per body (describe_lattice_warning()).
   std::vector<std::string> warnings() const;
 
-  // Lattice and current surface of a body of the scene, for studies and tests.
+  // Lattice of a body of the scene, and the current surface of a body without a mesh, for studies and tests.
   const SpringLattice& lattice(int body = 0) const;
   const Surface& surface(int body = 0) const;
+  // Box about the present control points of a body of the scene, or about the vertices of its mesh.
+  Box bounds(int body) const;
   // inertia_scale() returns the inertia scale of a body. substeps() returns the number of substeps of a tick
   // at rest, real_time_substeps() the number that an inertia scale of 1 would need.
   double inertia_scale(int body = 0) const { return lattice(body).inertia_scale(); }

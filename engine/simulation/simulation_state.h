@@ -166,7 +166,7 @@ struct CommandApplier {
   void adopt_model(ToolModel model);
   void make_contacts();
   Status set_planes(std::vector<FixingPlane> planes);
-  void set_mappings(std::vector<BodyMapping> mappings);
+  void set_skins(std::vector<SkinMapping> skins);
 };
 
 // Writes bodies and contacts into a snapshot. Allocates only at the first call and after a change of bodies,

@@ -147,7 +147,7 @@ void add_pair_contacts(const Simulation::State& s, const BodyPairContact& pair, 
     contacts.push_back(make_contact_snapshot(body, state, contact_at(state.mapping().current(), *spot)));
   };
   add(first, pair.deepest_on_first(s.bodies[first]));
-  add(second, pair.deepest_on_second());
+  add(second, pair.deepest_on_second(s.bodies[second]));
 }
 
 }  // namespace

@@ -64,6 +64,10 @@ ToolContact::ToolContact(std::span<const BodyState> bodies, const ToolModel& mod
     : constraints_(constraint_capacity) {
   contacts_.reserve(bodies.size());
   for (const BodyState& body : bodies) {
+    if (body.mesh()) {
+      contacts_.emplace_back();
+      continue;
+    }
     contacts_.push_back({SurfaceCollider(body.mapping().nested(), body.trim), nullptr, {}, 0.0, {}});
     if (!model.surface) continue;
     contacts_.back().proximity = std::make_unique<SurfaceProximity>(body.mapping().nested(), *model.nested);
@@ -158,6 +162,7 @@ void ToolContact::prepare_soft() {
 
 void ToolContact::find(BodyContact& contact, const BodyState& body, const Tool& tool, const ToolModel& model,
                        const ToolHold& hold) {
+  if (body.mesh()) return;
   // The margin grows with the tool's movement, so that a fast tool cannot pass a body within a tick.
   const double margin = std::max(find_margin_m(body), hold.reach_m);
   if (is_surface()) return find_near_points(contact, body, margin, hold);
@@ -168,10 +173,10 @@ void ToolContact::find(BodyContact& contact, const BodyState& body, const Tool& 
   const Box box = bounding_box(body.mapping().current().net);
   if (shape_.is_beyond(box.centre(), 0.5 * box.size(), margin + thickness)) {
     contact.collision = {};
-    contact.collider.clear_near_samples();
+    contact.collider->clear_near_samples();
     return;
   }
-  contact.collision = contact.collider.collide(body.mapping().current(), shape_, margin + thickness, closed);
+  contact.collision = contact.collider->collide(body.mapping().current(), shape_, margin + thickness, closed);
   if (thickness > 0.0) select_shell_face(contact, body, margin);
 }
 
@@ -254,8 +259,8 @@ void ToolContact::visit_near(BodyContact& contact, const BodyState& state, const
     }
     return;
   }
-  for (const NearSample& sample : contact.collider.near_samples()) {
-    const DistanceSample distance = shape_.at(contact.collider.levels().sample(sample.index));
+  for (const NearSample& sample : contact.collider->near_samples()) {
+    const DistanceSample distance = shape_.at(contact.collider->levels().sample(sample.index));
     visit(Pushed{state.mapping().sample(sample.index), distance.gradient, distance.distance_m, sample.index});
   }
 }
@@ -356,10 +361,10 @@ void ToolContact::add_shell_pushes(int body, const BodyState& state, const ToolH
   add_plane_push(body, state, {deepest, push, -nearest.depth_m, key_of(point)}, hold);
   add_earlier_pushes(body, state, point, hold);
   const double margin = std::max(find_margin_m(state), hold.reach_m);
-  for (const NearSample& sample : contact.collider.near_samples()) {
+  for (const NearSample& sample : contact.collider->near_samples()) {
     const double gap = find_gap(state, sample);
     if (gap > margin) continue;
-    const Vector3 away = push_direction_at(shape_, contact.collider.levels().sample(sample.index));
+    const Vector3 away = push_direction_at(shape_, contact.collider->levels().sample(sample.index));
     add_plane_push(body, state, {state.mapping().sample(sample.index), away, gap, sample.index}, hold);
   }
 }
@@ -408,14 +413,14 @@ int count_parts(const Vector3& one_side, const Vector3& other_side, double longe
 // because a push at the nearest point would move, and its force would depend on its path.
 void ToolContact::add_pushes_between_samples(int body, const BodyState& state) {
   const BodyMapping& mapping = state.mapping();
-  SurfaceLevels& levels = contacts_[body].collider.levels();
+  SurfaceLevels& levels = contacts_[body].collider->levels();
   const Grid& grid = mapping.nested().grid;
   const auto &u = grid.u.parameters, &v = grid.v.parameters;
   const int columns = grid.columns(), sample_count = grid.rows() * columns;
   const double cell_m = static_cast<double>(state.lattice.cell_size_m());
   const double margin_m = contacts_[body].approach_m;
   const double longest_m = std::sqrt(8.0 * shape_.radius_m * largest_reach_cells * cell_m);
-  for (const LevelCell& cell : contacts_[body].collider.finest_cells()) {
+  for (const LevelCell& cell : contacts_[body].collider->finest_cells()) {
     const int first = cell.i * columns + cell.j;
     const std::array<int, 4> samples{first, first + 1, first + columns, first + columns + 1};
     PatchCorners rest, corners;
@@ -451,7 +456,7 @@ void ToolContact::add_pushes_between_samples(int body, const BodyState& state) {
 void ToolContact::add_sphere_pushes(int body, const BodyState& state, const ToolHold& hold) {
   BodyContact& contact = contacts_[body];
   if (is_small(state) || is_centre_outside(body)) {
-    for (const NearSample& sample : contact.collider.near_samples()) {
+    for (const NearSample& sample : contact.collider->near_samples()) {
       if (shape_.distance(state.mapping().embedded_m(sample.index)) > contact.approach_m) continue;
       overflow_ |=
           !constraints_.add_push(body, state.lattice, state.mapping().sample(sample.index), sample.index);
@@ -486,7 +491,7 @@ void ToolContact::add_grips(int body, const BodyState& state, const Pose& pose) 
     });
     return;
   }
-  for (const NearSample& sample : contact.collider.near_samples()) {
+  for (const NearSample& sample : contact.collider->near_samples()) {
     if (find_gap(state, sample) <= 0.0) grip(state.mapping().sample(sample.index));
   }
 }

@@ -32,16 +32,14 @@ CellShapes measure_cells(const SpringLattice& lattice) {
   return shape;
 }
 
-RigidMass find_fixed_mass(const Body& body, const Surface& surface) {
-  Body present = body;
-  present.surface = surface;
-  const std::optional<BodyMass> mass = compute_body_mass(present);
+RigidMass find_fixed_mass(const Body& body) {
+  const std::optional<BodyMass> mass = compute_body_mass(body);
   RigidMass found;
   if (mass) {
     found.mass_kg = mass->mass_kg();
     found.centre_m = mass->centre_m;
-  } else {
-    found.centre_m = compute_enclosed_mass(surface).area_centre_m;
+  } else if (!body.mesh) {
+    found.centre_m = compute_enclosed_mass(body.surface).area_centre_m;
   }
   return found;
 }

@@ -23,8 +23,8 @@ struct CellShapes {
 CellShapes measure_cells(const SpringLattice& lattice);
 
 // Returns the mass and centre of mass of a fixed body, without its inertia. If its mass cannot be computed,
-// the mass is 0 and the centre is that of its area. `surface` is the body's present surface.
-RigidMass find_fixed_mass(const Body& body, const Surface& surface);
+// the mass is 0 and the centre is that of its area.
+RigidMass find_fixed_mass(const Body& body);
 
 // Returns the sum of the loads on a body, N.
 Vector3 find_load_force_n(const SpringLattice& lattice);

@@ -8,6 +8,17 @@
 namespace spoonbill {
 namespace {
 
+// Returns a fixed body where it is now.
+Body find_present_body(const Simulation& simulation, int number) {
+  Body present = simulation.scene().bodies[static_cast<std::size_t>(number)];
+  if (present.mesh) {
+    present.mesh_pose = composed(*simulation.rigid_pose(number), present.mesh_pose);
+  } else {
+    present.surface = simulation.surface(number);
+  }
+  return present;
+}
+
 TrialBodyReport report_on_body(const Trial& trial, const Simulation& simulation, std::size_t index) {
   const Body& body = simulation.scene().bodies[index];
   const int number = static_cast<int>(index);
@@ -24,7 +35,7 @@ TrialBodyReport report_on_body(const Trial& trial, const Simulation& simulation,
     report.centre_of_mass_m = rigid->centre_m();
     mass_kg = rigid->mass().mass_kg;
   } else if (body.kind == BodyKind::fixed) {
-    const RigidMass fixed = find_fixed_mass(body, simulation.surface(number));
+    const RigidMass fixed = find_fixed_mass(find_present_body(simulation, number));
     report.centre_of_mass_m = fixed.centre_m;
     mass_kg = fixed.mass_kg;
   } else {

@@ -486,11 +486,8 @@ Result<LatticeMesh> solid_lattice(const Surface& surface, const LatticeRequest& 
   return about ? about : along;
 }
 
-Result<LatticeMesh> rigid_frame(const Surface& surface) {
-  Box box;
-  for (int i = 0; i < surface.net.rows; ++i) {
-    for (int j = 0; j < surface.net.columns; ++j) box.include(surface.net.point(i, j));
-  }
+Result<LatticeMesh> rigid_frame(const Body& body) {
+  const Box box = find_bounds(body);
   if (!(box.size() > 0.0)) {
     return Error{ErrorCode::degenerate, "all control points coincide; give the surface an extent",
                  "control_points_mm"};
@@ -506,8 +503,9 @@ Result<LatticeMesh> rigid_frame(const Surface& surface) {
 
 Result<LatticeMesh> make_body_lattice(const Body& body, const FeatureMapWatch& watch) {
   if (body.kind != BodyKind::deformable) {
-    const Status closed = body.shell_thickness_m ? Status() : check_closed(body.surface);
-    return closed.ok() ? rigid_frame(body.surface) : closed.error();
+    const bool may_be_open = body.mesh || body.shell_thickness_m;
+    const Status closed = may_be_open ? Status() : check_closed(body.surface);
+    return closed.ok() ? rigid_frame(body) : closed.error();
   }
   if (body.shell_thickness_m) return shell_lattice(body.surface, *body.shell_thickness_m, body.lattice);
   return solid_lattice(body.surface, body.lattice, watch);

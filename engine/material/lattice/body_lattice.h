@@ -15,7 +15,7 @@ namespace spoonbill {
 // Points of the body are attached to the frame like points of a deformable body to its lattice. A trilinear
 // cell reproduces every rigid motion exactly, so they move rigidly. The frame's nodes count as outside the
 // body. Fails if all control points coincide.
-Result<LatticeMesh> rigid_frame(const Surface& surface);
+Result<LatticeMesh> rigid_frame(const Body& body);
 
 // Returns the lattice of a body of a scene at rest, solid or shell, or the frame of a fixed body, which must
 // also be a closed solid or a shell. Fails if

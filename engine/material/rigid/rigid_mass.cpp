@@ -55,6 +55,24 @@ MassSums sum_solid(const Surface& surface, double density_kg_per_m3) {
   return {-sums.mass_kg, -sums.first_kg_m, -sums.second_kg_m2};  // the normals point inwards
 }
 
+// Sums over the cones from the origin to the triangles, in the same way. Over a triangle with the corners a,
+// b and c, the mean of x is (a + b + c) / 3, and that of x x^T is (a a^T + b b^T + c c^T + s s^T) / 12 with
+// s = a + b + c. Cavities are oriented inward and are thus subtracted.
+MassSums sum_mesh(const TriangleMesh& mesh, double density_kg_per_m3) {
+  const Vector3 origin = mesh.vertices_m.front();
+  MassSums sums;
+  for (const TriangleCorners& corners : mesh.triangles) {
+    const auto offset = [&](std::size_t c) { return Vector3(mesh.vertices_m[corners[c]] - origin); };
+    const Vector3 a = offset(0), b = offset(1), c = offset(2), sum = a + b + c;
+    const double cone_kg = density_kg_per_m3 * a.dot(b.cross(c)) / 6.0;
+    sums.mass_kg += cone_kg;
+    sums.first_kg_m += 0.25 * cone_kg * sum;
+    sums.second_kg_m2 +=
+        0.05 * cone_kg * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
+  }
+  return sums;
+}
+
 // Sums over the area of parallel surfaces: at depth s that area is dA (1 - 2 H s + K s^2) with the mean
 // curvature H and the Gaussian curvature K (Steiner 1840). Gauss's rule over the thickness is exact here.
 MassSums sum_shell(const Surface& surface, double thickness_m, const TrimmedArea& area,
@@ -90,6 +108,10 @@ MassSums sum_shell(const Surface& surface, double thickness_m, const TrimmedArea
 }  // namespace
 
 std::optional<RigidMass> compute_rigid_mass(const Body& body) {
+  if (body.mesh) {
+    const TriangleMesh mesh = find_placed_mesh(body);
+    return sum_mesh(mesh, body.material.density_kg_per_m3).find_mass(mesh.vertices_m.front());
+  }
   const auto trim = make_trimmed_area(body);
   if (!trim) return std::nullopt;
   const TrimmedArea area = trim.value() ? *trim.value() : TrimmedArea();

@@ -14,9 +14,9 @@ struct RigidMass {
   Eigen::Matrix3d inertia_kg_m2 = Eigen::Matrix3d::Zero();  // inertia tensor about the centre of mass
 };
 
-// Returns the mass of a body of one material: a shell, or the solid that its closed surface bounds. Exact up
-// to rounding for a solid, because the integrands are polynomials. Returns nothing for a solid with trims,
-// and if the mass or an inertia is not positive.
+// Returns the mass of a body of one material: a shell, or the solid that its closed surface or its mesh
+// bounds. Exact up to rounding for a solid, because the integrands are polynomials. Returns nothing for a
+// solid with trims, and if the mass or an inertia is not positive.
 std::optional<RigidMass> compute_rigid_mass(const Body& body);
 
 }  // namespace spoonbill

@@ -14,6 +14,7 @@
 #include "tests/engine/allocations.h"
 #include "tests/engine/effort.h"
 #include "tests/engine/forces/samples.h"
+#include "tests/engine/trial/rigid_samples.h"
 
 namespace spoonbill {
 namespace {
@@ -44,30 +45,12 @@ Ground ground_with(double friction) {
   return {Vector3::Zero(), Vector3::UnitY(), friction};
 }
 
-// Returns the scene as a trial on a slope along x.
-Simulation make_trial_of(Scene scene, double slope_rad = 0.0) {
-  scene.sculpting.gravity_m_per_s2 =
-      standard_gravity_m_per_s2 * Vector3(std::sin(slope_rad), -std::cos(slope_rad), 0.0);
-  return make_simulation(make_trial_scene(scene, {}).value());
-}
-
 Simulation make_weightless(const Scene& scene) {
   Scene free = scene;
   free.sculpting.free = true;
   free.sculpting.real_time = true;
   free.sculpting.drag_per_s = 0.0;
   return make_simulation(free);
-}
-
-// Largest overlap over some ticks.
-double run(Simulation& simulation, int ticks) {
-  double overlap_m = 0.0;
-  for (int t = 0; t < ticks; ++t) {
-    const Reaction reaction = simulation.advance(trial_input());
-    EXPECT_EQ(reaction.flags, tick_flag_none);
-    overlap_m = std::max(overlap_m, simulation.largest_overlap_m());
-  }
-  return overlap_m;
 }
 
 double kinetic_energy_j(const RigidDynamics& rigid) {
@@ -125,7 +108,7 @@ TEST(RigidBody, FallsFreely) {
   Scene scene;
   scene.bodies = {rigid_block({0.0, 0.5, 0.0}, 0.3)};
   Simulation simulation = make_trial_of(scene);
-  run(simulation, 200);
+  run_trial_ticks(simulation, 200);
   const RigidDynamics& block = *simulation.rigid_dynamics(0);
   EXPECT_NEAR(-block.velocity_m_per_s().y(), 0.2 * standard_gravity_m_per_s2,
               1e-3 * 0.2 * standard_gravity_m_per_s2);
@@ -160,28 +143,6 @@ TEST(RigidBody, KeepsItsMomentumAndEnergyWhileItTumbles) {
   EXPECT_NEAR(block.centre_m().x(), 0.1 * 8000 * 2.5e-4, 1e-9);
 }
 
-// Above the angle of friction by 5 degrees, a block slides with g (sin t - mu cos t); 0.3 degrees below it,
-// the block sticks. The first second is left out, in which it settles.
-void check_friction(const Scene& scene, double friction) {
-  const double angle = std::atan(friction);
-  Simulation sticking = make_trial_of(scene, angle - 0.3 * std::numbers::pi / 180.0);
-  run(sticking, 1000);
-  const Vector3 before = sticking.rigid_dynamics(0)->centre_m();
-  run(sticking, is_full_run() ? 10000 : 500);
-  EXPECT_LT((sticking.rigid_dynamics(0)->centre_m() - before).norm(), 1e-4) << friction;
-
-  for (const double beyond_deg : {0.3, 5.0}) {
-    const double steep = angle + beyond_deg * std::numbers::pi / 180.0;
-    const double expected = standard_gravity_m_per_s2 * (std::sin(steep) - friction * std::cos(steep));
-    Simulation sliding = make_trial_of(scene, steep);
-    run(sliding, 50);
-    const double start = sliding.rigid_dynamics(0)->velocity_m_per_s().x();
-    run(sliding, 200);
-    const double acceleration = (sliding.rigid_dynamics(0)->velocity_m_per_s().x() - start) / 0.2;
-    EXPECT_NEAR(acceleration, expected, 0.02 * expected) << friction << " " << beyond_deg;
-  }
-}
-
 TEST(RigidBody, SlidesAndSticksOnTheGround) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;
   for (const double friction : is_full_run() ? std::vector{0.05, 0.1, 0.3, 0.6} : std::vector{0.3}) {
@@ -213,7 +174,7 @@ TEST(RigidBody, RollsDownASlope) {
   scene.ground = ground_with(0.5);
   for (const Scene& each : {scene, on_plate}) {
     Simulation simulation = make_trial_of(each, slope);
-    run(simulation, 200);
+    run_trial_ticks(simulation, 200);
     const RigidDynamics& ball = *simulation.rigid_dynamics(0);
     EXPECT_NEAR(ball.velocity_m_per_s().x(), expected_m_per_s, 0.1 * expected_m_per_s);
     EXPECT_NEAR(-ball.spin_rad_per_s().z(), ball.velocity_m_per_s().x() / 0.015,
@@ -259,7 +220,7 @@ TEST(RigidBody, DoesNotPassThroughAThinWall) {
     Scene scene;
     scene.bodies = {rigid_body("ball", SphereSize{0.004}, {offset_m, 0.055, 0.3 * offset_m}, 0.3), wall};
     Simulation simulation = make_trial_of(scene);
-    const double overlap_m = run(simulation, 150);
+    const double overlap_m = run_trial_ticks(simulation, 150);
     const RigidDynamics& ball = *simulation.rigid_dynamics(0);
     EXPECT_NEAR(ball.centre_m().y(), 0.004, 2e-5);
     EXPECT_LT(ball.velocity_m_per_s().norm(), 1e-2);
@@ -278,9 +239,9 @@ TEST(RigidBody, StandsInAStack) {
   }
   scene.ground = ground_with(0.5);
   Simulation simulation = make_trial_of(scene);
-  run(simulation, 300);
+  run_trial_ticks(simulation, 300);
   const Vector3 top = simulation.rigid_dynamics(2)->centre_m();
-  const double overlap_m = run(simulation, 300);
+  const double overlap_m = run_trial_ticks(simulation, 300);
   EXPECT_LT((simulation.rigid_dynamics(2)->centre_m() - top).norm(), 1e-5);
   EXPECT_LT(overlap_m, 2e-5);
   const double weight_n = simulation.rigid_dynamics(0)->mass().mass_kg * standard_gravity_m_per_s2;
@@ -299,8 +260,8 @@ TEST(RigidBody, RestsOnASoftBody) {
                   rigid_body("block", BoxSize{{0.015, 0.004, 0.015}, 0.0005}, {0.0, 0.01705, 0.0}, 0.3)};
   scene.ground = ground_with(0.5);
   Simulation simulation = make_trial_of(scene);
-  run(simulation, 500);
-  const double overlap_m = run(simulation, 100);
+  run_trial_ticks(simulation, 500);
+  const double overlap_m = run_trial_ticks(simulation, 100);
   const RigidDynamics& block = *simulation.rigid_dynamics(1);
   const double weight_n = block.mass().mass_kg * standard_gravity_m_per_s2;
   EXPECT_NEAR(simulation.contact_force_n(1).y(), weight_n, 5e-3 * weight_n);
@@ -322,7 +283,7 @@ Scene held_block(double height_m) {
 // A hand spring of the stiffness k yields to the weight by m g / k, and turns with the hand.
 TEST(HeldBody, SagsByItsWeightAndFollowsTheHand) {
   Simulation simulation = make_trial_of(held_block(0.1));
-  run(simulation, 600);
+  run_trial_ticks(simulation, 600);
   const RigidDynamics& block = *simulation.rigid_dynamics(0);
   const double weight_n = block.mass().mass_kg * standard_gravity_m_per_s2;
   EXPECT_NEAR(0.1 - block.centre_m().y(), weight_n / 50.0, 1e-3 * weight_n / 50.0);
@@ -333,7 +294,7 @@ TEST(HeldBody, SagsByItsWeightAndFollowsTheHand) {
   turn.axis = Vector3::UnitX();
   turn.angle_deg = 30.0;
   ASSERT_TRUE(simulation.apply(turn).ok());
-  run(simulation, static_cast<int>(turn_duration_s(turn) / tick_s) + 400);
+  run_trial_ticks(simulation, static_cast<int>(turn_duration_s(turn) / tick_s) + 400);
   const Eigen::AngleAxisd turned(block.pose().orientation);
   EXPECT_NEAR(turned.angle(), std::numbers::pi / 6.0, 1e-3);
   EXPECT_NEAR(turned.axis().x(), 1.0, 1e-6);
@@ -341,7 +302,7 @@ TEST(HeldBody, SagsByItsWeightAndFollowsTheHand) {
   ASSERT_TRUE(simulation.restore(kept).ok());
   EXPECT_TRUE(simulation.shape() == kept);
   const Vector3 before = block.centre_m();
-  run(simulation, 200);
+  run_trial_ticks(simulation, 200);
   EXPECT_LT((block.centre_m() - before).norm(), 1e-6);
 }
 
@@ -351,7 +312,7 @@ TEST(HeldBody, IsBorneByTheGroundAndTheHand) {
   scene.ground = ground_with(0.3);
   scene.ground->point_m.y() = 5e-4;  // the hand presses the block upon the ground
   Simulation simulation = make_trial_of(scene);
-  run(simulation, 600);
+  run_trial_ticks(simulation, 600);
   const RigidDynamics& block = *simulation.rigid_dynamics(0);
   const double hand_n = block.hand_impulse_ns().y() / tick_s, ground_n = simulation.ground_force_n(0).y();
   const double weight_n = block.mass().mass_kg * standard_gravity_m_per_s2;
@@ -368,11 +329,11 @@ TEST(HeldBody, KeepsItsPlaceWhenItsShapeIsKept) {
   turn.axis = Vector3::UnitZ();
   turn.angle_deg = 40.0;
   ASSERT_TRUE(simulation.apply(turn).ok());
-  run(simulation, static_cast<int>(turn_duration_s(turn) / tick_s) + 600);
+  run_trial_ticks(simulation, static_cast<int>(turn_duration_s(turn) / tick_s) + 600);
   const Vector3 before = simulation.rigid_dynamics(0)->centre_m();
   const Surface surface = simulation.surface(0);
   ASSERT_TRUE(simulation.apply(KeepShape{}).ok());
-  run(simulation, 300);
+  run_trial_ticks(simulation, 300);
   EXPECT_LT((simulation.rigid_dynamics(0)->centre_m() - before).norm(), 1e-6);
   EXPECT_LT((simulation.surface(0).net.point(3, 3) - surface.net.point(3, 3)).norm(), 2e-6);
 }
@@ -430,7 +391,7 @@ TEST(RigidBody, WeighsMoreWithADenserMaterial) {
   denser.density_kg_per_m3 *= 3.0;
   const double mass_kg = simulation.rigid_dynamics(0)->mass().mass_kg;
   ASSERT_TRUE(simulation.apply(SetMaterial{denser, 0}).ok());
-  run(simulation, 200);
+  run_trial_ticks(simulation, 200);
   const double weight_n = 3.0 * mass_kg * standard_gravity_m_per_s2;
   EXPECT_NEAR(simulation.ground_force_n(0).y(), weight_n, 5e-3 * weight_n);
 }
@@ -450,7 +411,7 @@ TEST(RigidBody, AShellLiesOnEitherFace) {
     scene.bodies = {sheet};
     scene.ground = ground_with(0.3);
     Simulation simulation = make_trial_of(scene);
-    run(simulation, 150);
+    run_trial_ticks(simulation, 150);
     EXPECT_NEAR(simulation.rigid_dynamics(0)->centre_m().y(), 0.001, 2e-5) << is_turned;
   }
 }
@@ -463,7 +424,7 @@ TEST(RigidBody, AllocatesNothingInATick) {
   scene.bodies[1].name = "upper";
   scene.ground = ground_with(0.3);
   Simulation simulation = make_trial_of(scene);
-  run(simulation, 5);
+  run_trial_ticks(simulation, 5);
   for (int t = 0; t < 60; ++t) {
     const std::size_t allocated = allocation_count();
     simulation.advance(trial_input());
