@@ -62,6 +62,11 @@ class Measurements:
         case = kind + colon + str(ROOT / file) if file.endswith((".jsonl", ".json")) else case
         return json.loads(output_of([self.build / "tests/bench/tick_bench", rounds, case]))[case]
 
+    def jelly(self, rounds=5):
+        """Returns the times and errors of a block of jelly, ours and Bullet's."""
+        return json.loads(output_of([self.build / "tests/bench/jelly_bench",
+                                     ROOT / "tests/bench/calculix/jelly-sag.csv", rounds]))
+
     def replay(self):
         """Replays the bundled recording. Returns the number of frames, the seconds and the processor seconds."""
         with tempfile.TemporaryDirectory() as folder:
@@ -233,6 +238,18 @@ def measured_trial(measure, figure):
     return {"ours": ticks["thread_p99_us" if figure.case.endswith("p99") else "thread_median_us"], "details": ticks}
 
 
+def measured_jelly(measure, _figure):
+    """Compares with the fastest peer whose error is no larger than ours or, if there is none, with the fastest of those
+    that simulate the same material."""
+    jelly = measure.jelly()
+    ours, peers = jelly["ours"], jelly["bullet"]
+    as_true = {name: peer for name, peer in peers.items() if peer["error"] <= ours["error"]}
+    alike = {name: peer for name, peer in peers.items() if peer["poissons_ratio"] == ours["poissons_ratio"]}
+    name, peer = min((as_true or alike).items(), key=lambda each: each[1]["s_per_s"])
+    return {"ours": ours["s_per_s"], "peer": peer["s_per_s"], "ratio": peer["s_per_s"] / ours["s_per_s"],
+            "details": {"compared_with": name, "a_peer_meets_our_error": bool(as_true), **jelly}}
+
+
 def measured_frames(measure, _figure):
     frames, seconds, used = measure.replay()
     return {"ours": frames / seconds,
@@ -259,6 +276,7 @@ def measured(measure, figure):
     if pair_of(figure):
         return measured_pair(measure, figure)
     return {"tick_p99_us": measured_tick, "stiff_tick_p99_us": measured_tick, "trial_tick_us": measured_trial,
+            "trial_vs_peer": measured_jelly,
             "frames_per_second": measured_frames,
             "lattice_at_1khz": measured_lattice, "loop_missed_per_1000": measured_missed,
             "live_missed_per_1000": measured_live_missed, "live_p99_us": measured_live_lateness,

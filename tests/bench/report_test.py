@@ -26,6 +26,13 @@ class MadeUp:
         count = int(case.split(":")[1]) if case.startswith("block") else 0
         return {"thread_p99_us": 1500.0 if count > 20 else 300.0, "thread_median_us": 200.0}
 
+    def jelly(self):
+        alike = {"poissons_ratio": 0.49}
+        return {"ours": {"s_per_s": 0.1, "error": 0.06, **alike},
+                "bullet": {"explicit": {"s_per_s": 0.3, "error": 0.2, **alike},
+                           "looser": {"s_per_s": 0.2, "error": 0.1, "poissons_ratio": 0.46},
+                           "implicit": {"s_per_s": 2.0, "error": 0.05, **alike}}}
+
     def replay(self):
         return 300, 6.0, 9.0
 
@@ -107,6 +114,15 @@ class Report(unittest.TestCase):
             text = run("sphere_vs_fcl")[1]
         self.assertEqual([(row["peer"], row["met"], row["target"]) for row in rows], [(300.0, False, 100), (300.0, None, None)])
         self.assertEqual(text.splitlines()[2].split()[-2:], ["-", "-"])
+
+    def test_a_peer_with_a_larger_error_counts_only_if_no_other_is_as_true(self):
+        row = json.loads(run("--json", "trial_vs_peer")[1])["figures"][0]
+        self.assertEqual((row["peer"], row["met"], row["details"]["compared_with"]), (2.0, True, "implicit"))
+        wrong = {**MadeUp(None).jelly(), "ours": {"s_per_s": 0.1, "error": 0.01, "poissons_ratio": 0.49}}
+        with mock.patch.object(MadeUp, "jelly", lambda _self: wrong):
+            row = json.loads(run("--json", "trial_vs_peer")[1])["figures"][0]
+        self.assertEqual((row["peer"], row["met"], row["details"]["compared_with"]), (0.3, False, "explicit"))
+        self.assertFalse(row["details"]["a_peer_meets_our_error"])
 
 
 if __name__ == "__main__":
