@@ -17,6 +17,7 @@
 #include "app/files/scan_file.h"
 #include "app/report/fact_sheet.h"
 #include "app/report/quantity_text.h"
+#include "engine/exchange/cad_model.h"
 #include "engine/exchange/file_format.h"
 
 namespace spoonbill {
@@ -29,7 +30,7 @@ struct AddOptions {
   std::vector<std::filesystem::path> models;
   std::vector<Pose> poses;
   std::vector<std::string> fixed, rigid, held;  // names of bodies, as they are in the new document
-  std::string material = "abs";                 // of bodies from mesh files
+  std::string material;                         // of bodies from mesh files; empty: abs
   std::optional<LengthUnit> unit;               // of mesh files
   std::filesystem::path out;
   bool json = false;
@@ -38,7 +39,7 @@ struct AddOptions {
 // Reads a document, or makes one of a mesh file.
 Result<Document> read_model(const std::filesystem::path& file, const AddOptions& options) {
   if (!is_mesh(format_from_name(file))) return read_document_file(file);
-  const auto material = shipped_material(options.material);
+  const auto material = shipped_material(options.material.empty() ? "abs" : options.material);
   if (!material) return material.error();
   MeshReading reading;
   reading.unit = options.unit;
@@ -46,7 +47,8 @@ Result<Document> read_model(const std::filesystem::path& file, const AddOptions&
   if (!read) return read.error();
   auto mesh = clean_mesh(std::move(read->mesh), file.string());
   if (!mesh) return mesh.error();
-  auto document = make_mesh_document(file.stem().string(), std::move(mesh).value(), material.value());
+  auto document = make_mesh_document(clean_cad_name(file.stem().string(), "mesh"), std::move(mesh).value(),
+                                     material.value());
   if (!document) return document.error().in(file.string());
   return document;
 }
@@ -207,7 +209,7 @@ CommandEntry add_add(OptionSet root) {
       "Tool, gravity, ground, fixing planes and trial are those of the first model, and --pose does not "
       "move\n"
       "them. Bodies keep their materials and lattices. A body whose name is taken gets a number. A closed\n"
-      "mesh becomes a fixed body, or a rigid one with --rigid or --held; tools do not touch it.\n"
+      "mesh becomes a fixed body, or a rigid one with --rigid or --held; rigid tools pass through it.\n"
       "Example: spoonbill add assets/models/jelly.json assets/models/spoon-bowl.json \\\n"
       "  --pose 134mm,16mm,0,1,0,0,0 --fixed bowl --out served.json");
   parser
@@ -246,6 +248,16 @@ CommandEntry add_add(OptionSet root) {
   add_document_output(parser, options->out).require();
   add_json_option(parser, options->json);
   parser.set_final_check([options]() -> Status {
+    const bool has_mesh =
+        std::any_of(options->models.begin(), options->models.end(),
+                    [](const std::filesystem::path& model) { return is_mesh(format_from_name(model)); });
+    if (!has_mesh && (options->unit || !options->material.empty())) {
+      const char* const option = options->unit ? "--unit" : "--material";
+      return Error{
+          ErrorCode::inconsistent,
+          std::string(option) + ": no model is a mesh; documents have units and materials of their own",
+          option};
+    }
     if (options->poses.size() <= options->models.size()) return {};
     return Error{ErrorCode::too_many, "--pose: there are more poses than models", "--pose"};
   });

@@ -54,6 +54,7 @@ void report_change(const ChangeOptions& options, const std::vector<Body>& bodies
   facts.add("Deviation", deviation_text(deviation_m), "deviation_m", deviation_m);
   Json list = Json::array();
   for (const Body& body : bodies) {
+    if (body.mesh) continue;
     const KnotVector &u = body.surface.u, &v = body.surface.v;
     const std::string counts =
         std::to_string(u.control_point_count()) + " x " + std::to_string(v.control_point_count());

@@ -123,7 +123,7 @@ void SurfacePick::update(const Snapshot& snapshot) {
   surfaces_.resize(snapshot.bodies.size() - (is_soft(snapshot.tool) ? 1 : 0));
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     Sampled& sampled = surfaces_[i];
-    if (snapshot.bodies[i].is_mesh()) {  // tools do not touch meshes
+    if (snapshot.bodies[i].is_mesh()) {  // rigid tools pass through meshes
       sampled = Sampled();
       continue;
     }

@@ -136,16 +136,15 @@ Status select_bodies(const ConversionRequest& request, std::vector<Item>& items)
   return {};
 }
 
-// Reads the selected bodies.
+// Reads all bodies. Refuses a document if a selected body has a mesh.
 Result<CadModel> read_model(const ConversionJob& job, const CadChild& child) {
   const ConversionRequest& request = job.request;
   if (job.in == FileFormat::document) {
     auto document = read_document(request.in);
     if (!document) return document.error();
-    if (Status chosen = select_bodies(request, document->scene.bodies); !chosen) return chosen.error();
-    if (Status surfaces = check_surfaces(document->scene.bodies, request.in); !surfaces) {
-      return surfaces.error();
-    }
+    std::vector<Body> selected = document->scene.bodies;
+    if (Status chosen = select_bodies(request, selected); !chosen) return chosen.error();
+    if (Status surfaces = check_surfaces(selected, request.in); !surfaces) return surfaces.error();
     return model_from_bodies(std::move(document->scene.bodies));
   }
   CadReading reading;
@@ -154,7 +153,6 @@ Result<CadModel> read_model(const ConversionJob& job, const CadChild& child) {
   if (request.unit) reading.unit_m = request.unit->metres;
   auto model = read_cad_file(request.in, reading, child);
   if (!model) return model.error();
-  if (Status chosen = select_bodies(request, model->surfaces); !chosen) return chosen.error();
   return model;
 }
 
@@ -411,7 +409,13 @@ Result<ConversionReport> export_bodies(std::vector<Body> bodies, const std::file
   if (!is_exported_to(out)) {
     return file_error(ErrorCode::unsupported, out, "does not have the ending of an export format");
   }
-  if (Status surfaces = check_surfaces(bodies, out); !surfaces) return surfaces.error();
+  for (const Body& body : bodies) {
+    if (!body.mesh) continue;
+    return file_error(ErrorCode::unsupported, out,
+                      "cannot be written, because the body \"" + body.name +
+                          "\" has a mesh; save the document, and convert its other bodies with "
+                          "`spoonbill convert --bodies`");
+  }
   return write_and_report(model_from_bodies(std::move(bodies)), {request}, progress);
 }
 
@@ -424,6 +428,7 @@ Result<ConversionReport> convert_file(const ConversionRequest& request, const Pr
   }
   auto model = read_model(job, make_child(request, progress.part(0.0, read_fraction)));
   if (!model) return model.error();
+  if (Status chosen = select_bodies(request, model->surfaces); !chosen) return chosen.error();
   return write_and_report(std::move(model).value(), job, progress);
 }
 

@@ -12,6 +12,9 @@
 //        "control_points_mm": [[[x, y, z], ...], ...],           a list along v for each point along u
 //        "trims": [{"degree": 1, "periodic": false, "knots": [...],      optional, the whole surface;
 //          "control_points_uv": [[u, v], ...]}, ...]},           closed curves in its domain (trim_loop.h)
+//      "mesh": {"vertices_mm": [[x, y, z], ...], "triangles": [[0, 1, 2], ...]},   instead of "surface", for
+//      a
+//                                     fixed or rigid body (check_mesh())
 //      "material": {"name": "clay", "source": "...", "youngs_modulus_pa": 2e5, "poissons_ratio": 0.45,
 //        "density_kg_per_m3": 1700, "damping_time_s": 2e-5, "plastic": true, "yield_strain": 0.02,
 //        "flow_rate_per_s": 240,

@@ -162,6 +162,14 @@ Status check_mesh(const CleanMesh& mesh) {
   if (!closed) {
     return Error{ErrorCode::inconsistent, "mesh: has an open edge; close it, or fit a surface to it", "mesh"};
   }
+  const auto solids = std::count_if(mesh.parts.begin(), mesh.parts.end(),
+                                    [](const MeshPart& part) { return part.cavity_of < 0; });
+  if (solids != 1) {
+    return Error{ErrorCode::inconsistent,
+                 "mesh: has " + std::to_string(solids) +
+                     " separate parts, but a body is one; join them, or give each a body of its own",
+                 "mesh"};
+  }
   const ShellDistance inside(mesh.mesh.vertices_m, mesh.mesh.triangles, ShellDistance::Kind::solid);
   if (inside.uses_normals()) return {};
   return Error{ErrorCode::self_intersecting,

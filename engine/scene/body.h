@@ -125,7 +125,7 @@ struct Body {
   std::optional<HandSpring> hand = {};  // of a rigid body that a hand holds; empty for any other body
   // Motion of a fixed body, or of the hand that holds a rigid one, in a trial after its turn (trial.h).
   std::optional<BodyMotion> motion = {};
-  // The mesh that bounds the body, whose parts are all closed (check_mesh()); null for a body with a surface.
+  // The mesh that bounds the body (see check_mesh()); null for a body with a surface.
   std::shared_ptr<const CleanMesh> mesh = {};
   Pose mesh_pose = {};  // where the mesh is
 };
@@ -168,7 +168,8 @@ Status check_loads(const Body& body);
 // that is not rigid, a motion of a body that is neither fixed nor held by a hand, and a mesh of a deformable
 // body. Checks the motion.
 Status check_kind(const Body& body);
-// Refuses a mesh that is not closed, or that has more than body_triangle_limit triangles.
+// Refuses a mesh that is not one closed part, with or without cavities, that passes through itself, that has
+// an edge of more than two triangles, or that has more than body_triangle_limit triangles.
 Status check_mesh(const CleanMesh& mesh);
 // Returns the triangles of a body with a mesh, where the mesh is.
 TriangleMesh find_placed_mesh(const Body& body);

@@ -84,11 +84,15 @@ namespace {
 constexpr double longest_edge_fraction = 1.0 / 48.0;
 constexpr std::size_t refined_triangle_limit = 2 * body_triangle_limit;
 
-// Returns a mesh with shorter edges if that does not take too many triangles; otherwise the mesh as it is.
+// Returns a mesh with shorter edges. They are longer than they should be where that would take too many
+// triangles, as on a bundle of needles.
 TriangleMesh refine_for_contact(const TriangleMesh& mesh) {
   const double size_m = box_about(mesh.vertices_m).size();
-  Result<TriangleMesh> refined = refine_edges(mesh, longest_edge_fraction * size_m, refined_triangle_limit);
-  return refined.ok() ? std::move(refined).value() : mesh;
+  for (double fraction = longest_edge_fraction; fraction < 1.0; fraction *= 2.0) {
+    Result<TriangleMesh> refined = refine_edges(mesh, fraction * size_m, refined_triangle_limit);
+    if (refined.ok()) return std::move(refined).value();
+  }
+  return mesh;
 }
 
 }  // namespace
@@ -139,8 +143,8 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
     const std::optional<RigidMass> mass = compute_rigid_mass(body);
     if (!mass) {
       return Error{ErrorCode::degenerate,
-                   "the body has no mass that can be computed; a rigid body must be closed, or have a shell "
-                   "thickness",
+                   "the body has no mass that can be computed; a rigid body must be closed and not flat, or "
+                   "have a shell thickness",
                    "kind"};
     }
     state.rigid.emplace(RigidDynamics(*mass, state.lattice.mesh()), body.hand);

@@ -104,12 +104,12 @@ RigidGroundContact::RigidGroundContact(const BodyState& body) {
 bool RigidGroundContact::add_contacts(const IndexedBody& body, const Ground& ground,
                                       const Vector3& gravity_m_per_s2, double time_s,
                                       BodyContacts& contacts) {
+  SPOONBILL_ASSERT_DEBUG(time_s > 0.0);
   if (body.state->mesh() && body.state->is_movable_rigid()) {
     return add_mesh_contacts(body, ground, find_ground_margin_m(*body.state, gravity_m_per_s2, time_s),
                              contacts);
   }
   if (!heights_) return true;
-  SPOONBILL_ASSERT_DEBUG(time_s > 0.0);
   const BodyState& state = *body.state;
   const double thickness_m = state.shell_thickness_m;
   const double margin_m = find_ground_margin_m(state, gravity_m_per_s2, time_s);

@@ -23,7 +23,7 @@ struct SurfaceSnapshot {
   std::shared_ptr<const TrimmedArea> trim = {};  // area within the trims; null without trims
 };
 
-// Triangles of a soft mesh tool, counter-clockwise seen from outside.
+// Triangles of a body with a mesh or of a soft mesh tool, counter-clockwise seen from outside.
 struct MeshSnapshot {
   // Shared by all snapshots while the tool stays the same.
   std::shared_ptr<const std::vector<std::array<std::uint32_t, 3>>> triangles;
@@ -95,7 +95,7 @@ struct BodySnapshot {
   LatticeSnapshot lattice;
   MaterialSnapshot material;
   ResidualSnapshot residual = {};  // only for bodies with a surface
-  MeshSnapshot mesh = {};          // only for soft meshes, which have no surface
+  MeshSnapshot mesh = {};          // only for bodies with a mesh and soft mesh tools, which have no surface
   double shell_thickness_m = 0.0;  // thickness behind the surface; 0 for a solid
   bool is_rigid = false;           // true for a fixed or rigid body, whose lattice is only a frame
 

@@ -87,7 +87,7 @@ class ToolContact {
     Vector3 position_m = Vector3::Zero();  // in this tick
   };
   struct BodyContact {
-    std::optional<SurfaceCollider> collider;      // empty for a body with a mesh, which tools do not touch
+    std::optional<SurfaceCollider> collider;      // empty for a body with a mesh, which rigid tools pass
     std::unique_ptr<SurfaceProximity> proximity;  // only for B-spline tools
     CollisionResult collision;
     double approach_m = 0.0;  // how far a point of the body and the tool may approach each other in this tick

@@ -32,6 +32,12 @@ TEST(MeshBodyFiles, AreMadeOfAMesh) {
   const Json info = json_of(run({"info", out, "--json"}).out);
   EXPECT_EQ(info["bodies"][1]["mesh"]["triangles"], body.mesh->mesh.triangles.size());
   EXPECT_GT(info["simulated"][1]["mass_kg"], 0.0);
+  const Json changed =
+      json_of(run({"change", out, "reverse", "v", "--out", place.text("b.json"), "--json"}).out);
+  EXPECT_EQ(changed["bodies"].size(), 1u);  // those with a surface
+  ASSERT_EQ(run({"add", out, "--held", "egg", "--out", place.text("held.json")}).code, exit_done);
+  EXPECT_TRUE(read_document(place.text("held.json")).value().scene.bodies[1].hand);
+  EXPECT_EQ(run({"add", out, "--material", "beech", "--out", place.text("c.json")}).code, exit_wrong_use);
   for (const std::vector<std::string>& command :
        {std::vector<std::string>{"check", out},
         {"sample", out, "--out", place.text("a.csv")},

@@ -71,7 +71,10 @@ DeformingMesh::DeformingMesh(const TriangleMesh& mesh)
   for (const std::uint32_t index : tree_.order()) triangles_.push_back(mesh.triangles[index]);
   const MeshEdges edges(triangles_, vertices_m_.size());
   across_.resize(3 * triangles_.size());
-  for (MeshSide side = 0; side < across_.size(); ++side) across_[side] = edges.across(side) / 3;
+  for (MeshSide side = 0; side < across_.size(); ++side) {
+    SPOONBILL_ASSERT(edges.across(side) < across_.size());  // the mesh is closed and does not branch
+    across_[side] = edges.across(side) / 3;
+  }
   first_corner_.assign(vertices_m_.size() + 1, 0);
   for (const TriangleCorners& corners : triangles_) {
     for (const std::uint32_t vertex : corners) ++first_corner_[vertex + 1];

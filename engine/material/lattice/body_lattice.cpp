@@ -489,8 +489,8 @@ Result<LatticeMesh> solid_lattice(const Surface& surface, const LatticeRequest& 
 Result<LatticeMesh> rigid_frame(const Body& body) {
   const Box box = find_bounds(body);
   if (!(box.size() > 0.0)) {
-    return Error{ErrorCode::degenerate, "all control points coincide; give the surface an extent",
-                 "control_points_mm"};
+    return Error{ErrorCode::degenerate, "all points of the body coincide; give it an extent",
+                 body.mesh ? "mesh" : "control_points_mm"};
   }
   // A flat surface needs a cell that is not flat.
   const Vector3 extent = box.extent().cwiseMax(0.1 * box.size());

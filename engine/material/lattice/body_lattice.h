@@ -11,15 +11,15 @@
 
 namespace spoonbill {
 
-// Returns the frame of a rigid body: a single cell around its surface, whose nodes move with the body's pose.
-// Points of the body are attached to the frame like points of a deformable body to its lattice. A trilinear
-// cell reproduces every rigid motion exactly, so they move rigidly. The frame's nodes count as outside the
-// body. Fails if all control points coincide.
+// Returns the frame of a rigid body: a single cell around its surface or mesh, whose nodes move with the
+// body's pose. Points of the body are attached to the frame like points of a deformable body to its lattice.
+// A trilinear cell reproduces every rigid motion exactly, so they move rigidly. The frame's nodes count as
+// outside the body. Fails if all control points or vertices coincide.
 Result<LatticeMesh> rigid_frame(const Body& body);
 
-// Returns the lattice of a body of a scene at rest, solid or shell, or the frame of a fixed body, which must
-// also be a closed solid or a shell. Fails if
-// solid_lattice() or shell_lattice() fails. If the body requests a feature map, `watch` receives the progress
+// Returns the lattice of a body of a scene at rest, solid or shell, or the frame of a fixed or rigid body,
+// which must also be a closed solid or a shell, or have a mesh. Fails if solid_lattice() or shell_lattice()
+// fails. If the body requests a feature map, `watch` receives the progress
 // of order_by_feature_map().
 Result<LatticeMesh> make_body_lattice(const Body& body, const FeatureMapWatch& watch = {});
 

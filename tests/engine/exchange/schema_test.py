@@ -86,6 +86,19 @@ assert validator.is_valid(joined)
 first = {**json.loads((written / "version-1.json").read_text())}
 first["body"] = {**first["body"], "solid": "bracket"}
 assert not validator.is_valid(first), "version 1 had no solids"
+meshes = copy.deepcopy(whole)
+mesh = {"vertices_mm": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
+        "triangles": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]}
+meshes["other_bodies"] = [{"name": "dish", "kind": "fixed", "material": whole["body"]["material"], "mesh": mesh}]
+assert validator.is_valid(meshes)
+for change in ({"kind": "deformable"}, {"surface": whole["body"]["surface"]}, {"shell_thickness_mm": 1},
+               {"mesh": {**mesh, "triangles": [[0, 2]]}}):
+    changed = copy.deepcopy(meshes)
+    changed["other_bodies"][0].update(change)
+    assert not validator.is_valid(changed), change
+without = copy.deepcopy(whole)
+without["body"]["mesh"] = mesh
+assert not validator.is_valid(without), "a body has a surface or a mesh"
 joined["body"]["solid"] = 1
 assert not validator.is_valid(joined), "a solid has a name"
 # Counts a thousand bodies with a validator that skips their contents, because it is much faster.

@@ -210,13 +210,17 @@ TEST(MeshBody, KeepsItsPlaceWhenItsShapeIsKept) {
   scene.bodies = {mesh_plate(0.3), mesh_block({0.0, 0.00401, 0.0}, 0.3)};
   Simulation simulation = make_trial_of(scene);
   ASSERT_TRUE(simulation.apply(TurnBody{0, Vector3::Zero(), Vector3::UnitZ(), 5.0, 90.0}).ok());
-  run_trial_ticks(simulation, 100);
+  run_trial_ticks(simulation, 400);
   const Box before = simulation.bounds(0);
   ASSERT_TRUE(simulation.apply(KeepShape{}).ok());
   ASSERT_TRUE(simulation.apply(PlacePlane{{Vector3(10.0, 0.0, 0.0), Vector3(-1.0, 0.0, 0.0)}}).ok());
   run_trial_ticks(simulation, 50);
   EXPECT_LT((simulation.bounds(0).low - before.low).norm(), 1e-7);
   EXPECT_LT((find_bounds(simulation.scene().bodies[0]).high - before.high).norm(), 1e-7);
+  // It still follows its pose: turned back, it is level.
+  ASSERT_TRUE(simulation.apply(TurnBody{0, Vector3::Zero(), Vector3::UnitZ(), -5.0, 90.0}).ok());
+  run_trial_ticks(simulation, 400);
+  EXPECT_LT((simulation.bounds(0).low - find_bounds(mesh_plate(0.3)).low).norm(), 1e-6);
   EXPECT_EQ(simulation.apply(RefineKnots{0}).error().code, ErrorCode::unsupported);
 }
 
@@ -237,6 +241,22 @@ TEST(MeshBody, IsTheSameOnEveryRunAndAllocatesNothing) {
     return simulation.state_hash();
   };
   EXPECT_EQ(run_hash(), run_hash());
+}
+
+// Returns the field that is refused in a document whose only body has a mesh and this field of a body with a
+// surface.
+std::string document_refusal(const std::string& field) {
+  Scene scene;
+  scene.bodies = {mesh_block({0.0, 0.1, 0.0}, 0.3)};
+  Json json = document_to_json({"mesh", scene, Json::object()});
+  EXPECT_TRUE(document_from_json(json, "mesh").ok());
+  Scene other;
+  other.bodies = {surface_block(BodyKind::rigid, Vector3::Zero(), 0.3)};
+  other.bodies[0].rim = {{0.0, 0.1}, {0.3, 0.1}, {0.6, 0.1}};
+  other.bodies[0].loads = {PointLoad{}};
+  json["body"][field] = document_to_json({"surface", other, Json::object()})["body"][field];
+  const auto read = document_from_json(json, "mesh");
+  return read.ok() ? std::string() : read.error().field;
 }
 
 TEST(MeshBody, RefusesWhatItCannotBe) {
@@ -260,6 +280,17 @@ TEST(MeshBody, RefusesWhatItCannotBe) {
   TriangleMesh open = block.mesh->mesh;
   open.triangles.resize(10);
   EXPECT_EQ(check_mesh(clean_mesh(open, "open").value()).error().code, ErrorCode::inconsistent);
+  TriangleMesh two;
+  append_box({0.01, 0.01, 0.01}, Vector3::Zero(), false, two);
+  append_box({0.002, 0.002, 0.002}, Vector3::Zero(), false, two);  // inside the first, but not a cavity
+  EXPECT_EQ(check_mesh(clean_mesh(two, "two").value()).error().code, ErrorCode::inconsistent);
+  TriangleMesh crossed;
+  append_box({0.01, 0.002, 0.002}, Vector3::Zero(), false, crossed);
+  crossed.vertices_m[7] = Vector3(-0.004, -0.003, -0.003);  // this corner is pulled through the far side
+  EXPECT_EQ(check_mesh(clean_mesh(crossed, "crossed").value()).error().code, ErrorCode::self_intersecting);
+  EXPECT_EQ(document_refusal("surface"), "body.mesh");
+  EXPECT_EQ(document_refusal("loads"), "body.loads");
+  EXPECT_EQ(document_refusal("rim_uv"), "body.rim_uv");
 }
 
 }  // namespace
