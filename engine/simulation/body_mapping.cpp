@@ -440,9 +440,10 @@ int find_cell_octant(const EmbeddedPoint& point) {
 
 }  // namespace
 
-MeshMapping::MeshMapping(const TriangleMesh& rest, const SpringLattice& lattice)
+MeshMapping::MeshMapping(const TriangleMesh& rest, const std::vector<TriangleCorners>& drawn,
+                         const SpringLattice& lattice)
     : rest_m_(rest.vertices_m),
-      triangles_(std::make_shared<const std::vector<TriangleCorners>>(rest.triangles)),
+      triangles_(std::make_shared<const std::vector<TriangleCorners>>(drawn)),
       node_moves_(4 * static_cast<std::size_t>(lattice.mesh().node_count()), 0.0f),
       current_(rest) {
   SPOONBILL_ASSERT(!rest.triangles.empty());

@@ -123,10 +123,15 @@ class MeshMapping {
  public:
   // `lattice` is a box_lattice() or a rigid_frame() about the mesh, at rest. DeformingMesh states what the
   // mesh must satisfy.
-  MeshMapping(const TriangleMesh& rest, const SpringLattice& lattice);
+  MeshMapping(const TriangleMesh& rest, const SpringLattice& lattice)
+      : MeshMapping(rest, rest.triangles, lattice) {}
+  // `drawn` are the triangles to draw, of vertices of `rest`: if `rest` is a mesh with edges that were
+  // halved, those of the mesh before, which look smoother.
+  MeshMapping(const TriangleMesh& rest, const std::vector<TriangleCorners>& drawn,
+              const SpringLattice& lattice);
 
   const DeformingMesh& current() const { return current_; }
-  // Triangles in the order of the mesh, shared with snapshots.
+  // Triangles to draw, in the order of the mesh, shared with snapshots. current() has the triangles to touch.
   const std::shared_ptr<const std::vector<TriangleCorners>>& triangles() const { return triangles_; }
 
   // Vertices at rest, m.

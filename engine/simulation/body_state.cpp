@@ -99,7 +99,10 @@ TriangleMesh refine_for_contact(const TriangleMesh& mesh) {
 
 Result<SkinMapping> make_skin(const Body& body, const SpringLattice& lattice,
                               const std::vector<FixingPlane>& planes, InstructionSet set) {
-  if (body.mesh) return SkinMapping(MeshMapping(refine_for_contact(find_placed_mesh(body)), lattice));
+  if (body.mesh) {
+    const TriangleMesh mesh = find_placed_mesh(body);
+    return SkinMapping(MeshMapping(refine_for_contact(mesh), mesh.triangles, lattice));
+  }
   const bool is_rigid = body.kind != BodyKind::deformable;
   Result<BodyMapping> mapping = BodyMapping::make(body.surface, body.surface, lattice,
                                                   is_rigid ? std::vector<FixingPlane>() : planes, set);

@@ -62,12 +62,12 @@ NormalCones::NormalCones(const MeshMapping& mapping) {
     return (vertices_m[corners[1]] - first).cross(vertices_m[corners[2]] - first);
   };
   std::vector<Vector3> sums(vertices_m.size(), Vector3::Zero());
-  for (const TriangleCorners& corners : *mapping.triangles()) {
+  for (const TriangleCorners& corners : mapping.current().triangles()) {
     for (const std::uint32_t corner : corners) sums[corner] += area_vector(corners);
   }
   cones_.resize(vertices_m.size());
   for (std::size_t v = 0; v < cones_.size(); ++v) cones_[v] = {sums[v].normalized(), 1.0};
-  for (const TriangleCorners& corners : *mapping.triangles()) {
+  for (const TriangleCorners& corners : mapping.current().triangles()) {
     const Vector3 normal = area_vector(corners).normalized();
     for (const std::uint32_t corner : corners) {
       cones_[corner].least_cosine = std::min(cones_[corner].least_cosine, cones_[corner].axis.dot(normal));
