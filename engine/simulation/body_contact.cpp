@@ -154,6 +154,10 @@ EmbeddedPoint find_embedding(const BodyMapping& mapping, const NearPoint& near) 
 
 namespace {
 
+Quaternion find_turn(const BodyState& body) {
+  return body.rigid ? body.rigid->pose().orientation : Quaternion::Identity();
+}
+
 // Numbers of points between the samples of rigid bodies begin here. Surfaces have fewer samples.
 constexpr int first_number_between = 1 << 24;
 
@@ -197,7 +201,7 @@ bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::
   const SpringLattice& cells = from.state->rigid ? to.state->lattice : from.state->lattice;
   const bool both_rigid = from.state->rigid && to.state->rigid;
   const double least_lead_m = both_rigid ? 0.0 : least_lead_cells * static_cast<double>(cells.cell_size_m());
-  const Quaternion turn = from.state->rigid ? from.state->rigid->pose().orientation : Quaternion::Identity();
+  const Quaternion turn = find_turn(*from.state);
   const auto is_left_out = [&](const NearPoint& near) {
     if (near.sample < 0) return near.lead_m < least_lead_m;
     if (!both_rigid) return false;
@@ -256,10 +260,6 @@ bool add_mesh_contacts(std::size_t count, bool both_rigid, double deepest_new_m,
                              deepest_new_m, contact->number);
   }
   return complete;
-}
-
-Quaternion find_turn(const BodyState& body) {
-  return body.rigid ? body.rigid->pose().orientation : Quaternion::Identity();
 }
 
 // `first` has a surface and `second` a mesh. The cones are those of rigid bodies near another rigid body.

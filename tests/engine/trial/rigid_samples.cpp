@@ -49,4 +49,11 @@ void check_friction(const Scene& scene, double friction) {
   }
 }
 
+void check_stands_still(Simulation& simulation, int top) {
+  run_trial_ticks(simulation, 300);
+  const Vector3 before = simulation.rigid_dynamics(top)->centre_m();
+  EXPECT_LT(run_trial_ticks(simulation, 300), 2e-5);
+  EXPECT_LT((simulation.rigid_dynamics(top)->centre_m() - before).norm(), 1e-5);
+}
+
 }  // namespace spoonbill

@@ -17,4 +17,8 @@ double run_trial_ticks(Simulation& simulation, int ticks);
 // below it, it sticks. The first second is left out, in which it settles.
 void check_friction(const Scene& scene, double friction);
 
+// Lets a stack of bodies settle, and checks that its top, a rigid body, then stands still, and that the
+// bodies do not overlap.
+void check_stands_still(Simulation& simulation, int top);
+
 }  // namespace spoonbill
