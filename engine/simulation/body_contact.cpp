@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/base/assert.h"
+#include "engine/simulation/contact_samples.h"
 #include "engine/simulation/simulation.h"
 #include "engine/simulation/support_points.h"
 
@@ -196,6 +197,11 @@ class RestingPoints {
 
 }  // namespace
 
+bool bears_blunt_bodies(const BodyState& body) {
+  return !body.rigid && !body.mesh() && !body.trim &&
+         body.mapping().contact_spacing_m() <= static_cast<double>(body.lattice.cell_size_m());
+}
+
 bool add_near_points(const IndexedBody& from, const IndexedBody& to, const std::vector<NearPoint>& points,
                      double deepest_new_m, BodyContacts& contacts, const NormalCones& cones) {
   const SpringLattice& cells = from.state->rigid ? to.state->lattice : from.state->lattice;
@@ -380,8 +386,13 @@ double find_approach_m(const BodyState& first, const BodyState& second, double c
   return std::min(tick_s * speed_m_per_s + cell_m, moved_m);
 }
 
+// Approach in a tick, in cells, from which all samples of a rigid body have contacts, blunt or not. The
+// samples of a soft body may then be behind the wall before they have a contact.
+constexpr double fast_approach_cells = 0.1;
+
 void find_near_points(SurfaceProximity& proximity, const BodyState& first, const BodyState& second,
-                      double margin) {
+                      double margin, bool is_fast) {
+  proximity.set_skipping(!first.rigid || !is_fast, !second.rigid || !is_fast);
   const ShellOrSolid one{&first.mapping().current(), first.shell_thickness_m},
       other{&second.mapping().current(), second.shell_thickness_m};
   const Pose frame = first.rigid ? first.rigid->pose() : second.rigid ? second.rigid->pose() : Pose{};
@@ -393,7 +404,7 @@ void find_near_points(SurfaceProximity& proximity, const BodyState& first, const
 }
 
 void find_near_points(MeshProximity& proximity, const BodyState& first, const BodyState& second,
-                      double margin) {
+                      double margin, bool /*is_fast*/) {
   const Surface& surface = first.mapping().current();
   const DeformingMesh& mesh = second.mesh()->current();
   const double thickness = first.shell_thickness_m;
@@ -413,8 +424,16 @@ void find_near_points(MeshProximity& proximity, const BodyState& first, const Bo
 }
 
 void find_near_points(MeshPairProximity& proximity, const BodyState& first, const BodyState& second,
-                      double margin) {
+                      double margin, bool /*is_fast*/) {
   proximity.find(first.mesh()->current(), second.mesh()->current(), margin);
+}
+
+// Returns the samples of a body that have no contacts with another one.
+SkippedSamples find_skipped(const BodyState& body, const BodyState& other) {
+  if (body.trim) return {};  // samples beside a trim may be the only ones that are near
+  if (!body.rigid || !bears_blunt_bodies(other)) return body.mapping().skipped();
+  return find_blunt_samples(body.mapping().rest(), body.mapping().nested().grid,
+                            other.mapping().contact_spacing_m(), body.shell_thickness_m > 0.0);
 }
 
 }  // namespace
@@ -425,11 +444,14 @@ BodyPairContact::BodyPairContact(const BodyState& first, const BodyState& second
   if (first_mesh && second_mesh) {
     proximity_ = std::make_unique<MeshPairProximity>(first_mesh->patches(), second_mesh->patches());
   } else if (first_mesh) {
-    proximity_ = std::make_unique<MeshProximity>(second.mapping().nested(), first_mesh->patches());
+    proximity_ = std::make_unique<MeshProximity>(second.mapping().nested(), first_mesh->patches(),
+                                                 second.mapping().skipped());
   } else if (second_mesh) {
-    proximity_ = std::make_unique<MeshProximity>(first.mapping().nested(), second_mesh->patches());
+    proximity_ = std::make_unique<MeshProximity>(first.mapping().nested(), second_mesh->patches(),
+                                                 first.mapping().skipped());
   } else {
-    proximity_ = std::make_unique<SurfaceProximity>(first.mapping().nested(), second.mapping().nested());
+    proximity_ = std::make_unique<SurfaceProximity>(first.mapping().nested(), second.mapping().nested(),
+                                                    find_skipped(first, second), find_skipped(second, first));
   }
   if (!first.rigid || !second.rigid) return;
   const auto make_cones = [](const BodyState& body) {
@@ -457,7 +479,7 @@ bool BodyPairContact::find(const IndexedBody& first, const IndexedBody& second) 
                   &other = is_mesh_first_ ? *first.state : *second.state;
   return std::visit(
       [&](const auto& proximity) {
-        find_near_points(*proximity, one, other, margin_m);
+        find_near_points(*proximity, one, other, margin_m, motion_m > fast_approach_cells * cell);
         return !proximity->overflow();
       },
       proximity_);

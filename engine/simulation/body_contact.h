@@ -59,6 +59,10 @@ struct IndexedBody {
   const BodyState* state;
 };
 
+// Returns whether the samples of a body bear rigid ones alone where these are blunt (find_blunt_samples()):
+// those of a soft body that are at most a cell apart.
+bool bears_blunt_bodies(const BodyState& body);
+
 // Returns a near point of a body's surface as a weighted sum of the nodes of the body's lattice.
 EmbeddedPoint find_embedding(const BodyMapping& mapping, const NearPoint& near);
 

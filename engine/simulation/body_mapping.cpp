@@ -8,6 +8,7 @@
 #include "engine/base/assert.h"
 #include "engine/bspline/reparameterise.h"
 #include "engine/material/lattice/box_lattice.h"
+#include "engine/simulation/contact_samples.h"
 
 namespace spoonbill {
 namespace {
@@ -240,10 +241,20 @@ struct SampledRefit {
   DisplacementRefit refit;
 };
 
-// Makes the refit on the coarsest grid of samples from which the control points can be determined.
+// Chooses how often elements are halved at least, so that samples are dense enough for cells of this size.
+Result<int> choose_levels(const Surface& surface, double contact_cell_m) {
+  if (!std::isfinite(contact_cell_m)) return refit_levels;
+  const Result<NestedGrid> nested = make_nested_grid(surface.u, surface.v, refit_levels);
+  if (!nested.ok()) return nested.error();
+  const double longest_m = longest_sample_spacing_cells * contact_cell_m;
+  return find_largest_spacing_m(surface, nested->grid) > longest_m ? refit_levels + 1 : refit_levels;
+}
+
+// Makes the refit on the coarsest grid of samples from which the control points can be determined. Elements
+// are halved at least `least_levels` times.
 Result<SampledRefit> make_sampled_refit(const Surface& surface, const RefitConstraints& constraints,
-                                        InstructionSet set) {
-  for (int levels = refit_levels;; ++levels) {
+                                        int least_levels, InstructionSet set) {
+  for (int levels = least_levels;; ++levels) {
     Result<NestedGrid> nested = make_nested_grid(surface.u, surface.v, levels);
     if (!nested.ok()) return nested.error();
     Result<DisplacementRefit> refit = DisplacementRefit::make(nested->grid, constraints, set);
@@ -256,7 +267,8 @@ Result<SampledRefit> make_sampled_refit(const Surface& surface, const RefitConst
 
 Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& current,
                                       const SpringLattice& lattice, const std::vector<FixingPlane>& planes,
-                                      InstructionSet set) {
+                                      InstructionSet set, double contact_cell_m) {
+  SPOONBILL_ASSERT(contact_cell_m > 0.0);
   SPOONBILL_ASSERT_DEBUG(rest.u == current.u && rest.v == current.v);
   BodyMapping mapping(rest, current, set);
   FixedStretch fixed = find_fixed_stretch(current, planes);
@@ -278,8 +290,20 @@ Result<BodyMapping> BodyMapping::make(const Surface& rest, const Surface& curren
     mapping.first_pole_ = is_pole(mapping.rest_, false);
     mapping.last_pole_ = is_pole(mapping.rest_, true);
   }
-  Result<SampledRefit> sampled = make_sampled_refit(mapping.rest_, constraints, set);
+  const Result<int> levels = choose_levels(mapping.rest_, contact_cell_m);
+  if (!levels.ok()) return levels.error();
+  Result<SampledRefit> sampled = make_sampled_refit(mapping.rest_, constraints, levels.value(), set);
   if (!sampled.ok()) return sampled.error();
+  mapping.contact_cell_m_ = mapping.contact_spacing_m_ = contact_cell_m;
+  if (std::isfinite(contact_cell_m)) {
+    mapping.contact_spacing_m_ = find_largest_spacing_m(mapping.rest_, sampled->nested.grid);
+    if (levels.value() > refit_levels) {
+      const double least_m = least_sample_spacing_cells * contact_cell_m;
+      mapping.skipped_ = find_crowded_samples(mapping.rest_, sampled->nested.grid, least_m);
+      // A sample that is skipped is less than this way from one that is not.
+      mapping.contact_spacing_m_ = std::max(mapping.contact_spacing_m_, 2.0 * least_m);
+    }
+  }
   mapping.nested_ = std::make_shared<NestedGrid>(std::move(sampled->nested));
   mapping.refit_.push_back(std::move(sampled->refit));
   mapping.evaluator_.emplace_back(mapping.nested_->grid, set);
@@ -405,7 +429,7 @@ Result<BodyMapping> BodyMapping::refine_at(double u, double v, const SpringLatti
   if (!finer_rest.ok()) return finer_rest.error();
   const Result<Surface> finer = halve_element(current_, u, v);
   if (!finer.ok()) return finer.error();
-  return make(finer_rest.value(), finer.value(), lattice, planes, set_);
+  return make(finer_rest.value(), finer.value(), lattice, planes, set_, contact_cell_m_);
 }
 
 EmbeddedPoint BodyMapping::at(double u, double v) const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <variant>
@@ -16,6 +17,7 @@
 #include "engine/bspline/evaluate.h"
 #include "engine/bspline/grid.h"
 #include "engine/bspline/surface.h"
+#include "engine/collision/levels/surface_levels.h"
 #include "engine/collision/meshes/deforming_mesh.h"
 #include "engine/collision/meshes/triangle_mesh.h"
 #include "engine/collision/solids/surface_collider.h"
@@ -45,8 +47,12 @@ class BodyMapping {
   // The part of the surface wholly behind a plane stays exactly fixed: knots are inserted at its edge, which
   // changes no shape, and the control points that affect it are fixed. Only parts at an open end of v are
   // fixed in this way. A plane that cuts a sheet across u fixes only nodes.
+  //
+  // If samples would be farther apart than half of `contact_cell_m`, elements are halved once more, and
+  // samples that are then crowded bear no contacts (contact_samples.h). They may still be farther apart.
   static Result<BodyMapping> make(const Surface& rest, const Surface& current, const SpringLattice& lattice,
-                                  const std::vector<FixingPlane>& planes, InstructionSet set);
+                                  const std::vector<FixingPlane>& planes, InstructionSet set,
+                                  double contact_cell_m = std::numeric_limits<double>::infinity());
 
   const Surface& rest() const { return rest_; }
   const Surface& current() const { return current_; }
@@ -69,6 +75,12 @@ class BodyMapping {
   // the embeddings of the samples around the point.
   const EmbeddedPoint& sample(int index) const { return embedding_[index]; }
   EmbeddedPoint at(double u, double v) const;
+  // contact_cell_m() returns that of make(). skipped() returns the samples that bear no contacts with other
+  // bodies, because others are near. Samples that bear contacts are at most contact_spacing_m() apart;
+  // infinite if contact_cell_m() is.
+  double contact_cell_m() const { return contact_cell_m_; }
+  const SkippedSamples& skipped() const { return skipped_; }
+  double contact_spacing_m() const { return contact_spacing_m_; }
   // Returns the index of the first sample at the same point, across a seam or at a pole; otherwise the
   // sample's own index.
   int find_twin(int row, int column) const;
@@ -99,6 +111,8 @@ class BodyMapping {
   Surface rest_, base_, current_;
   // Shared pointer, because colliders keep the grid's address when the mapping is moved.
   std::shared_ptr<NestedGrid> nested_;
+  double contact_cell_m_ = 0.0, contact_spacing_m_ = 0.0;
+  SkippedSamples skipped_;
   std::vector<EmbeddedPoint> embedding_;
   std::vector<Vector3> embedded_rest_m_;
   std::vector<CellWeights> cell_weights_;  // for each sample, the same weights as in embedding_

@@ -46,6 +46,12 @@ Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& 
   return std::optional<ImplicitSolver>(std::move(solver).value());
 }
 
+double find_smallest_contact_radius_m(const BodyState& body) {
+  constexpr double spring_cells = 2.0, solver_cells = 5.0;
+  if (const ImplicitSolver* const solver = body.solver()) return solver_cells * solver->mesh().mean_edge();
+  return spring_cells * static_cast<double>(body.lattice.cell_size_m());
+}
+
 std::string describe_lattice_warning(const BodyState& body, const LatticeRequest& request) {
   const std::string slender = describe_slender_cells(body);
   if (body.lattice.mesh().along.empty() || request.cells == LatticeCells::box)
@@ -98,20 +104,22 @@ TriangleMesh refine_for_contact(const TriangleMesh& mesh) {
 }  // namespace
 
 Result<SkinMapping> make_skin(const Body& body, const SpringLattice& lattice,
-                              const std::vector<FixingPlane>& planes, InstructionSet set) {
+                              const std::vector<FixingPlane>& planes, InstructionSet set,
+                              double contact_cell_m) {
   if (body.mesh) {
     const TriangleMesh mesh = find_placed_mesh(body);
     return SkinMapping(MeshMapping(refine_for_contact(mesh), mesh.triangles, lattice));
   }
   const bool is_rigid = body.kind != BodyKind::deformable;
-  Result<BodyMapping> mapping = BodyMapping::make(body.surface, body.surface, lattice,
-                                                  is_rigid ? std::vector<FixingPlane>() : planes, set);
+  Result<BodyMapping> mapping =
+      BodyMapping::make(body.surface, body.surface, lattice, is_rigid ? std::vector<FixingPlane>() : planes,
+                        set, contact_cell_m);
   if (!mapping.ok()) return mapping.error();
   return SkinMapping(std::move(mapping).value());
 }
 
 Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlane>& planes,
-                                  InstructionSet set, const FeatureMapWatch& watch) {
+                                  InstructionSet set, const FeatureMapWatch& watch, bool is_real_time) {
   Result<std::shared_ptr<const TrimmedArea>> trim = make_trimmed_area(body);
   if (!trim.ok()) return trim.error();
   Result<LatticeMesh> mesh = make_body_lattice(body, watch);
@@ -124,7 +132,10 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
   Result<std::optional<ImplicitSolver>> solver = std::optional<ImplicitSolver>();
   if (!is_rigid) solver = make_implicit_solver(lattice.value(), mesh->nodes, set);
   if (!solver.ok()) return solver.error();
-  Result<SkinMapping> skin = make_skin(body, lattice.value(), planes, set);
+  // Stiff bodies, which the implicit solver steps, do not sink in between their samples.
+  const bool is_dense = is_real_time && !is_rigid && !solver.value();
+  const double contact_cell_m = is_dense ? static_cast<double>(lattice->cell_size_m()) : infinity;
+  Result<SkinMapping> skin = make_skin(body, lattice.value(), planes, set, contact_cell_m);
   if (!skin.ok()) return skin.error();
   const auto* const surface = std::get_if<BodyMapping>(&skin.value());
   Result<BodyLoads> loads =

@@ -109,8 +109,10 @@ struct BodyState {
 };
 
 // Makes the state of a body at rest. Refuses a body that cannot be simulated; the error names the field.
+// If the scene is in real time then, contacts of soft bodies act on denser samples.
 Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlane>& planes,
-                                  InstructionSet set, const FeatureMapWatch& watch = {});
+                                  InstructionSet set, const FeatureMapWatch& watch = {},
+                                  bool is_real_time = false);
 
 // Linear elastic bodies with at least this Young's modulus use the implicit solver, at their true stiffness.
 // The few newtons of a hand dent such bodies by less than a third of a millimetre, but can bend them. Softer
@@ -118,9 +120,10 @@ Result<BodyState> make_body_state(const Body& body, const std::vector<FixingPlan
 inline constexpr double stiff_youngs_modulus_pa = 1e6;
 
 // Makes the mapping of a body of a scene to its surface, or to its mesh. `lattice` is that of the body at
-// rest. Planes have no effect on rigid bodies.
+// rest. Planes have no effect on rigid bodies. `contact_cell_m` is that of BodyMapping::make().
 Result<SkinMapping> make_skin(const Body& body, const SpringLattice& lattice,
-                              const std::vector<FixingPlane>& planes, InstructionSet set);
+                              const std::vector<FixingPlane>& planes, InstructionSet set,
+                              double contact_cell_m);
 
 // Makes the implicit solver of a lattice, which is unstrained while its nodes are at `rest_m`. Returns
 // nothing if the body uses the spring solver. A body uses the implicit solver if all its materials are linear
@@ -130,6 +133,13 @@ Result<SkinMapping> make_skin(const Body& body, const SpringLattice& lattice,
 Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& lattice,
                                                            const std::vector<Vector3>& rest_m,
                                                            InstructionSet set);
+
+// Returns the smallest radius of a contact whose force a body's cells resolve, m: 2 cells of springs, or 5 of
+// the coarser cells of the implicit solver. Pressed by spheres whose contacts have this radius, blocks of
+// springs are within 5 % of axisymmetric finite elements, and 6 to 12 % too stiff at 1.6 cells; at the sharp
+// edge of a punch they need 5 cells for 10 %. On cells of the implicit solver, no contact up to 2.5 cells was
+// within 10 % for both.
+double find_smallest_contact_radius_m(const BodyState& body);
 
 // describe_lattice_warning() warns if the relative error of a lattice's Young's modulus along an axis exceeds
 // this value. Cells that are too slender for springs cause such errors.

@@ -53,8 +53,8 @@ Result<SkinMapping> make_present_skin(const BodyState& body, const SpringLattice
                                       const std::vector<FixingPlane>& planes, InstructionSet set) {
   if (const MeshMapping* const mesh = body.mesh()) return SkinMapping(mesh->rebased(lattice));
   const Surface& surface = body.mapping().current();
-  Result<BodyMapping> mapping =
-      BodyMapping::make(surface, surface, lattice, planes_through(body, planes), set);
+  Result<BodyMapping> mapping = BodyMapping::make(surface, surface, lattice, planes_through(body, planes),
+                                                  set, body.mapping().contact_cell_m());
   if (!mapping.ok()) return mapping.error();
   return SkinMapping(std::move(mapping).value());
 }
@@ -289,8 +289,9 @@ Status CommandApplier::set_planes(std::vector<FixingPlane> planes) {
       skins.push_back(body.skin);
       continue;
     }
-    Result<BodyMapping> mapping = BodyMapping::make(body.mapping().rest(), body.mapping().current(),
-                                                    body.lattice, planes_through(body, planes), state.set);
+    Result<BodyMapping> mapping =
+        BodyMapping::make(body.mapping().rest(), body.mapping().current(), body.lattice,
+                          planes_through(body, planes), state.set, body.mapping().contact_cell_m());
     if (!mapping.ok()) return mapping.error();
     skins.push_back(std::move(mapping).value());
   }

@@ -1,9 +1,10 @@
 #include "engine/simulation/normal_cones.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
+
+#include "engine/simulation/contact_samples.h"
 
 namespace spoonbill {
 namespace {
@@ -17,13 +18,6 @@ double widened_cosine(double cosine) {
   const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
   const double widened = (1.0 - 0.5 * margin_rad * margin_rad) * cosine - margin_rad * sine;
   return sine < margin_rad && cosine < 0.0 ? -1.0 : widened;  // the cone includes every direction
-}
-
-// Returns the indices before and after `index` among `count` parameters; at the end of an open direction,
-// `index` itself. In a closed direction, the last parameter coincides with the first.
-std::array<int, 2> find_neighbours(int index, int count, bool is_closed) {
-  if (is_closed) return {index == 0 ? count - 2 : index - 1, index == count - 1 ? 1 : index + 1};
-  return {std::max(index - 1, 0), std::min(index + 1, count - 1)};
 }
 
 }  // namespace

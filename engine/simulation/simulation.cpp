@@ -56,7 +56,7 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
   if (const Status status = check_scene(scene); !status.ok()) return status.error();
   std::vector<BodyState> bodies;
   for (const Body& body : scene.bodies) {
-    Result<BodyState> state = make_body_state(body, scene.planes, set, watch);
+    Result<BodyState> state = make_body_state(body, scene.planes, set, watch, scene.sculpting.real_time);
     if (!state.ok()) return name_body(body, scene, state.error());
     bodies.push_back(std::move(state).value());
   }
@@ -471,6 +471,11 @@ int Simulation::substeps() const {
 }
 int Simulation::real_time_substeps() const {
   return state_->real_time_substeps;
+}
+double Simulation::smallest_contact_radius_m(int body) const {
+  SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
+  const BodyState& state = state_->bodies[static_cast<std::size_t>(body)];
+  return state.rigid ? 0.0 : find_smallest_contact_radius_m(state);
 }
 const LatticeReport& Simulation::report(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));

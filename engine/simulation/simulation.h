@@ -152,6 +152,8 @@ class Simulation {
   // Returns the area of a body's surface on which contacts pushed in the last tick (contact_area.h).
   // Allocates.
   double contact_area_m2(int body) const;
+  // Returns find_smallest_contact_radius_m() of a body; 0 for a rigid one.
+  double smallest_contact_radius_m(int body) const;
   // Returns the pose of a fixed or rigid body, which maps its rest shape to the present one; empty for a
   // deformable body.
   std::optional<Pose> rigid_pose(int body) const;

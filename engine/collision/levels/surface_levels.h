@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -98,6 +99,12 @@ struct NestedGrid {
   Grid grid;
   int levels = 0;  // number of times that the stride is halved until it is 1
 };
+
+// For each sample of a grid, 1 if a search skips it. Empty if it skips none.
+using SkippedSamples = std::vector<std::uint8_t>;
+inline bool is_skipped(const SkippedSamples& skipped, int sample) {
+  return !skipped.empty() && skipped[static_cast<std::size_t>(sample)] != 0;
+}
 
 // Makes a grid in which each element has 2^levels cells in each direction, so that no cell has a knot in its
 // interior. `levels` must not be negative.

@@ -26,10 +26,14 @@ Box net_box(const ControlNet& net) {
 
 }  // namespace
 
-MeshProximity::MeshProximity(const NestedGrid& surface, std::vector<int> patches)
-    : levels_(surface), tree_(surface.grid.u.knots, surface.grid.v.knots), patches_(std::move(patches)) {
+MeshProximity::MeshProximity(const NestedGrid& surface, std::vector<int> patches, SkippedSamples skipped)
+    : levels_(surface),
+      tree_(surface.grid.u.knots, surface.grid.v.knots),
+      patches_(std::move(patches)),
+      skipped_(std::move(skipped)) {
   SPOONBILL_ASSERT_DEBUG(std::all_of(patches_.begin(), patches_.end(), [](int patch) { return patch >= 0; }));
   const auto samples = static_cast<std::size_t>(surface.grid.rows() * surface.grid.columns());
+  SPOONBILL_ASSERT(skipped_.empty() || skipped_.size() == samples);
   sampled_at_.assign(samples, 0);
   const int last_patch = patches_.empty() ? -1 : *std::max_element(patches_.begin(), patches_.end());
   const auto patch_count = static_cast<std::size_t>(last_patch + 1);
@@ -125,7 +129,7 @@ void MeshProximity::collect_samples(const ElementTree::Node& element, const Defo
   for (int i = element.first_u * side; i <= element.end_u * side; ++i) {
     for (int j = element.first_v * side; j <= element.end_v * side; ++j) {
       const int sample = i * columns + j;
-      if (sampled_at_[sample] == search_) continue;
+      if (sampled_at_[sample] == search_ || is_skipped(skipped_, sample)) continue;
       sampled_at_[sample] = search_;
       const auto nearest = mesh.nearest(levels_.sample(sample), margin);
       if (!nearest) continue;

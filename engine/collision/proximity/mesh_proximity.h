@@ -35,7 +35,8 @@ class MeshProximity {
   // `patches` assigns each vertex of the mesh to a patch, a group of vertices, numbered from 0. Vertices may
   // be much denser than the nodes of the spring lattice that moves them. Each patch therefore reports only
   // one vertex, its nearest or deepest. To select this vertex, the surface is treated as flat near the patch.
-  MeshProximity(const NestedGrid& surface, std::vector<int> patches);
+  // `skipped` are samples of the surface.
+  MeshProximity(const NestedGrid& surface, std::vector<int> patches, SkippedSamples skipped = {});
   MeshProximity(const MeshProximity&) = delete;
   MeshProximity& operator=(const MeshProximity&) = delete;
 
@@ -88,6 +89,7 @@ class MeshProximity {
   SurfaceLevels levels_;
   ElementTree tree_;
   std::vector<int> patches_;
+  SkippedSamples skipped_;
   // For each patch, start of its vertices in patch_vertices_; one more entry at the end.
   std::vector<std::uint32_t> first_vertex_;
   std::vector<std::uint32_t> patch_vertices_;  // vertex indices, by patch

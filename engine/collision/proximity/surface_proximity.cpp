@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "engine/base/assert.h"
 #include "engine/collision/surfaces/pair_polish.h"
@@ -47,8 +48,10 @@ NearestOnCell nearest_on_cell(const Vector3& point, const PatchCorners& at) {
   return low.distance <= high.distance ? low : high;
 }
 
-NearPoints::NearPoints(const NestedGrid& nested) : levels_(nested) {
+NearPoints::NearPoints(const NestedGrid& nested, SkippedSamples skipped)
+    : levels_(nested), skipped_(std::move(skipped)) {
   const auto samples = static_cast<std::size_t>(nested.grid.rows() * nested.grid.columns());
+  SPOONBILL_ASSERT(skipped_.empty() || skipped_.size() == samples);
   index_.assign(samples, 0);
   indexed_at_.assign(samples, 0);
   near_.reserve(near_point_limit);
@@ -98,16 +101,23 @@ double NearPoints::find_nearest(const SurfaceLevels& other, NearPoint& near) {
 
 void NearPoints::offer_corners(const LevelCell& cell, SurfaceLevels& other, const LevelCell& patch,
                                double margin_m) {
-  const PatchCorners corners = other.corners(patch);
-  Box box;
-  for (const Vector3& corner : corners) box.include(corner);
-  const double reach_m = margin_m + other.bulge(patch);
   const int step = levels_.step(cell.level);
   const int rows = levels_.nested().grid.rows(), columns = levels_.nested().grid.columns();
+  std::array<LevelCell, 4> offered;
+  std::size_t count = 0;
   for (int corner = 0; corner < 4; ++corner) {
     const int i = cell.i + (corner >> 1) * step, j = cell.j + (corner & 1) * step;
     // Another cell near the patch has this corner as its first one.
     if ((i > cell.i && i < rows - 1) || (j > cell.j && j < columns - 1)) continue;
+    if (!is_skipping_ || !is_skipped(skipped_, i * columns + j)) offered[count++] = {i, j, cell.level};
+  }
+  if (count == 0) return;
+  const PatchCorners corners = other.corners(patch);
+  Box box;
+  for (const Vector3& corner : corners) box.include(corner);
+  const double reach_m = margin_m + other.bulge(patch);
+  for (std::size_t c = 0; c < count; ++c) {
+    const auto [i, j, level] = offered[c];
     const int sample = i * columns + j;
     const double least_m = std::min(reach_m, offered_distance_m(sample));
     if (!(box.squared_distance(levels_.sample(sample)) < least_m * least_m)) continue;
@@ -181,17 +191,13 @@ void NearPoints::compute_nearest(const SurfaceLevels& other, double outside, dou
 }
 
 bool NearPoints::is_local_deepest(const NearPoint& near) const {
-  const Grid& grid = levels_.nested().grid;
-  const int row = near.sample / grid.columns(), column = near.sample % grid.columns();
-  for (int i = std::max(0, row - 1); i <= std::min(row + 1, grid.rows() - 1); ++i) {
-    for (int j = std::max(0, column - 1); j <= std::min(column + 1, grid.columns() - 1); ++j) {
-      const int sample = i * grid.columns() + j;
-      if (sample == near.sample || indexed_at_[sample] != generation_) continue;
-      const double gap = near_[index_[sample]].gap_m;
-      if (gap < near.gap_m || (gap == near.gap_m && sample < near.sample)) return false;
-    }
-  }
-  return true;
+  bool is_deepest = true;
+  visit_around(near.sample, [&](int sample) {
+    if (sample == near.sample || indexed_at_[sample] != generation_) return;
+    const double gap = near_[index_[sample]].gap_m;
+    if (gap < near.gap_m || (gap == near.gap_m && sample < near.sample)) is_deepest = false;
+  });
+  return is_deepest;
 }
 
 double NearPoints::smallest_gap_around(double u, double v) const {
@@ -206,15 +212,10 @@ double NearPoints::smallest_gap_around(double u, double v) const {
 }
 
 double NearPoints::find_spacing_m(int sample) {
-  const Grid& grid = levels_.nested().grid;
-  const int row = sample / grid.columns(), column = sample % grid.columns();
   const Vector3 here = levels_.sample(sample);
   double square = 0.0;
-  for (int i = std::max(0, row - 1); i <= std::min(row + 1, grid.rows() - 1); ++i) {
-    for (int j = std::max(0, column - 1); j <= std::min(column + 1, grid.columns() - 1); ++j) {
-      square = std::max(square, (levels_.sample(i * grid.columns() + j) - here).squaredNorm());
-    }
-  }
+  visit_around(sample,
+               [&](int around) { square = std::max(square, (levels_.sample(around) - here).squaredNorm()); });
   return std::sqrt(square);
 }
 
@@ -250,8 +251,9 @@ void NearPoints::add_between_samples(const NearPoints& other, double outside) {
 namespace {
 
 // Samples are followed only if the surfaces move so slowly that cells need not be searched in this number of
-// calls. Otherwise the larger reach of the search would cost more than it saves.
-constexpr int least_followed = 16;
+// calls. Otherwise the larger reach of the search would cost more than it saves. On the denser grid of a
+// surface with samples to skip, a search costs more.
+constexpr int least_followed = 16, least_followed_if_dense = 6;
 
 int control_points(const NestedGrid& nested) {
   return nested.grid.u.knots.control_point_count() * nested.grid.v.knots.control_point_count();
@@ -259,9 +261,12 @@ int control_points(const NestedGrid& nested) {
 
 }  // namespace
 
-SurfaceProximity::SurfaceProximity(const NestedGrid& first, const NestedGrid& second)
-    : first_(first),
-      second_(second),
+SurfaceProximity::SurfaceProximity(const NestedGrid& first, const NestedGrid& second,
+                                   SkippedSamples first_skipped, SkippedSamples second_skipped)
+    : first_(first, std::move(first_skipped)),
+      second_(second, std::move(second_skipped)),
+      least_followed_(first_.has_skipped() || second_.has_skipped() ? least_followed_if_dense
+                                                                    : least_followed),
       cells_(first_.levels(), second_.levels()),
       first_motion_(control_points(first)),
       second_motion_(control_points(second)) {}
@@ -280,7 +285,7 @@ void SurfaceProximity::find(const Surface& first, const Surface& second, double 
     // Surfaces that have jumped may now be near in other places.
     is_fresh = !(moved_m <= searched_m_);
     if (is_fresh) forget();
-    const bool is_slow = least_followed * moved_m <= finds_ * margin_m;
+    const bool is_slow = least_followed_ * moved_m <= finds_ * margin_m;
     searched_m_ = is_slow && !is_crowded_ ? 2.0 * margin_m : margin_m;
     finds_ = 0;
     first_motion_.remember(first.net, frame);
@@ -298,6 +303,13 @@ void SurfaceProximity::find(const Surface& first, const Surface& second, double 
   if (!overflow()) return;
   is_crowded_ = true;
   searched_m_ = -1.0;  // candidates may be missing
+}
+
+void SurfaceProximity::set_skipping(bool first, bool second) {
+  if (first == first_.is_skipping() && second == second_.is_skipping()) return;
+  first_.set_skipping(first);
+  second_.set_skipping(second);
+  forget();
 }
 
 void SurfaceProximity::forget() {

@@ -2,6 +2,7 @@
 // nearest points, and the locally nearest or deepest points between samples.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -39,8 +40,12 @@ struct NearPoint {
 // declaration. Not thread-safe. Allocates only on construction. The grid must outlive the object.
 class NearPoints {
  public:
-  explicit NearPoints(const NestedGrid& nested);
+  explicit NearPoints(const NestedGrid& nested, SkippedSamples skipped = {});
 
+  // Sets whether the samples that the constructor was told to skip are skipped; at first they are.
+  void set_skipping(bool is_skipping) { is_skipping_ = is_skipping; }
+  bool is_skipping() const { return is_skipping_; }
+  bool has_skipped() const { return !skipped_.empty(); }
   // Removes all points. Returns false if the surface has not moved since the last call.
   bool begin(const Surface& surface);
 
@@ -52,7 +57,7 @@ class NearPoints {
   // Compares corners of a cell with `patch`, a cell of the other surface, and remembers the nearest point for
   // each corner. Must be called for all cells that may be within `margin_m` of the patch: a corner that is
   // shared by cells is compared only with one of them. Corners farther than the margin from the exact surface
-  // over the patch may be left out.
+  // over the patch may be left out, and samples that the constructor was told to skip are.
   void offer_corners(const LevelCell& cell, SurfaceLevels& other, const LevelCell& patch, double margin_m);
   // Compares the sample (i, j) of the finest grid with `patch`, a cell of the other surface with the given
   // corners, and remembers the nearest point. The other surface may be the same surface.
@@ -116,11 +121,26 @@ class NearPoints {
   // Replaces the other surface's point by the nearest one, and the normal by the unit vector along du x dv.
   // The gap becomes the distance. Returns the distance in front of the nearest point, along du x dv.
   double find_nearest(const SurfaceLevels& other, NearPoint& near);
+  // Calls visit(sample) for the samples around a sample, and for this one.
+  template <class Visit>
+  void visit_around(int sample, const Visit& visit) const {
+    // Beside a sample that is skipped, there may be one that is not.
+    const int reach = skipped_.empty() || !is_skipping_ ? 1 : 2;
+    const Grid& grid = levels_.nested().grid;
+    const int row = sample / grid.columns(), column = sample % grid.columns();
+    for (int i = std::max(0, row - reach); i <= std::min(row + reach, grid.rows() - 1); ++i) {
+      for (int j = std::max(0, column - reach); j <= std::min(column + reach, grid.columns() - 1); ++j) {
+        visit(i * grid.columns() + j);
+      }
+    }
+  }
   bool is_local_deepest(const NearPoint& near) const;
   // Returns the largest distance of a sample of the grid from the samples around it, m.
   double find_spacing_m(int sample);
 
   SurfaceLevels levels_;
+  SkippedSamples skipped_;
+  bool is_skipping_ = true;
   std::vector<int> index_;                 // for each sample, its index in near_
   std::vector<std::uint32_t> indexed_at_;  // value of generation_ when each entry of index_ was set
   std::vector<NearPoint> near_;
@@ -137,7 +157,8 @@ class NearPoints {
 // by the margin. Not thread-safe. Allocates only on construction. The grids must outlive the search.
 class SurfaceProximity {
  public:
-  SurfaceProximity(const NestedGrid& first, const NestedGrid& second);
+  SurfaceProximity(const NestedGrid& first, const NestedGrid& second, SkippedSamples first_skipped = {},
+                   SkippedSamples second_skipped = {});
   SurfaceProximity(const SurfaceProximity&) = delete;
   SurfaceProximity& operator=(const SurfaceProximity&) = delete;
 
@@ -151,6 +172,9 @@ class SurfaceProximity {
   void find(const Surface& first, const Surface& second, double margin_m, double second_outside = 1.0,
             const Pose& frame = {});
 
+  // Sets for each surface whether the samples that the constructor was told to skip are skipped. At first
+  // they are. Forgets what was found if this changes.
+  void set_skipping(bool first, bool second);
   // Forgets what earlier calls of find() have found. Must be called before surfaces jump or are replaced.
   void forget();
 
@@ -182,6 +206,7 @@ class SurfaceProximity {
   void search_cells(double reach_m, bool is_fresh);
 
   NearPoints first_, second_;
+  int least_followed_;
   CellPairs cells_;
   NetMotion first_motion_, second_motion_;  // since the last search of cells
   double searched_m_ = -1.0;                // reach of the last search of cells; -1 before the first

@@ -150,15 +150,15 @@ class BodyContacts {
   // Sets to 1 the bytes in `touched` of the nodes of a body on which a constraint has acted.
   void mark_touched(int body, std::uint8_t* touched) const;
 
-  // Calls visit(sample) for each sample of a body that a constraint with another body has pushed since
-  // begin(), or that was closer than `reach_m` when its constraint was added.
+  // Calls visit(sample, other) for each sample of a body that a constraint with the body `other` has pushed
+  // since begin(), or that was closer than `reach_m` when its constraint was added.
   template <class Visit>
   void visit_pushed_samples(int body, double reach_m, const Visit& visit) const {
     for (const Constraint& constraint : constraints_) {
       if (constraint.first_body != body || constraint.sample < 0) continue;
       if (constraint.second_body == ground_index) continue;
       if (constraint.added_gap_m < reach_m || (constraint.acted && !constraint.force_n.isZero(0.0))) {
-        visit(constraint.sample);
+        visit(constraint.sample, constraint.second_body);
       }
     }
   }

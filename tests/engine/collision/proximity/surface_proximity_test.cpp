@@ -116,6 +116,34 @@ void expect_equal(const std::vector<NearPoint>& found, const std::vector<NearPoi
   }
 }
 
+// Every third sample of the first surface is skipped. The others are found as without it, bit for bit.
+TEST(SurfaceProximity, SkipsSamples) {
+  const Surface body = ellipsoid_tube(12, 12);
+  const NestedGrid grid = fine_grid(body);
+  SkippedSamples skipped(static_cast<std::size_t>(grid.grid.rows() * grid.grid.columns()), 0);
+  for (std::size_t s = 0; s < skipped.size(); s += 3) skipped[s] = 1;
+  SurfaceProximity all(grid, grid), some(grid, grid, skipped);
+  int found = 0, passed_over = 0;
+  for (int t = 0; t < 20; ++t) {
+    const Surface other = at_pose(body, {Vector3(0.002, 0.0125 + 1e-6 * t, 0.001), Quaternion::Identity()});
+    all.find(body, other, near_m);
+    some.find(body, other, near_m);
+    const std::map<int, NearPoint> expected = samples_of(all.first_points()),
+                                   kept = samples_of(some.first_points());
+    for (const auto& [sample, near] : expected) {
+      const bool is_skipped = skipped[static_cast<std::size_t>(sample)] != 0;
+      ASSERT_EQ(kept.contains(sample), !is_skipped);
+      if (!is_skipped) {
+        EXPECT_EQ(kept.at(sample).gap_m, near.gap_m);
+      }
+      ++(is_skipped ? passed_over : found);
+    }
+    EXPECT_EQ(samples_of(some.second_points()).size(), samples_of(all.second_points()).size());
+  }
+  EXPECT_GT(found, 100);
+  EXPECT_GT(passed_over, 50);
+}
+
 // After a jump through the other body, and after forget(), nothing is left from before: the results are those
 // of a fresh search, bit for bit, deep samples included.
 TEST(SurfaceProximity, FollowsNothingThatJumpsOrIsForgotten) {
