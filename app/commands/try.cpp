@@ -215,6 +215,12 @@ void add_trial_body(FactSheet& facts, const TrialBodyReport& body, const Body& s
             count_text(static_cast<std::size_t>(body.inverted_cells), "inverted cell", "inverted cells"),
         "", nullptr);
   }
+  if (body.contact_radius_m > 0.0) {
+    facts.add("  Contact",
+              "as large as a circle with a radius of " + short_length_text(body.contact_radius_m) +
+                  "; the cells resolve " + short_length_text(body.smallest_contact_radius_m),
+              "", nullptr);
+  }
   facts.add("  Forces",
             newtons_text(body.support_force_n.norm()) + " of supports, " +
                 newtons_text(body.ground_force_n.norm()) + " of the ground, " +
@@ -226,16 +232,29 @@ void add_trial_body(FactSheet& facts, const TrialBodyReport& body, const Body& s
                   {"volume_ratio", body.volume_ratio},
                   {"smallest_jacobian", body.smallest_jacobian},
                   {"inverted_cells", body.inverted_cells},
+                  {"contact_radius_m", body.contact_radius_m},
+                  {"smallest_contact_radius_m", body.smallest_contact_radius_m},
                   {"support_force_n", components_json(body.support_force_n)},
                   {"ground_force_n", components_json(body.ground_force_n)},
                   {"contact_force_n", components_json(body.contact_force_n)}});
   if (body.spill) add_spill(facts, *body.spill, list.back());
 }
 
-void add_trial_facts(FactSheet& facts, const EndedTrial& ended, const Session& session) {
+void warn_of_small_contacts(const TrialReport& report, Console& console) {
+  for (const TrialBodyReport& body : report.bodies) {
+    if (!has_small_contact(body)) continue;
+    console.err << "body " << body.name << ": its contact has a radius of "
+                << short_length_text(body.contact_radius_m) << ", but its cells resolve contacts from "
+                << short_length_text(body.smallest_contact_radius_m)
+                << "; its force and depth are not reliable; give the body more nodes\n";
+  }
+}
+
+void add_trial_facts(FactSheet& facts, const EndedTrial& ended, const Session& session, Console& console) {
   const Trial& trial = ended.trial;
   const Simulation& simulation = session.simulation;
   const TrialReport report = report_on(trial, simulation);
+  warn_of_small_contacts(report, console);
   const std::uint64_t ticks = simulation.tick();
   facts.add("Ticks", std::to_string(ticks) + " of 1 ms", "ticks", ticks);
   facts.add("Substeps", std::to_string(simulation.substeps()) + " a tick", "substeps", simulation.substeps());
@@ -297,7 +316,7 @@ Status try_document(const TryOptions& options, Console& console) {
   if (!ended) return ended.error().in(source);
   FactSheet facts;
   facts.add("File", source, "file", source);
-  add_trial_facts(facts, ended.value(), session.value());
+  add_trial_facts(facts, ended.value(), session.value(), console);
   if (pictures) {
     facts.add("Frames", std::to_string(pictures->count()), "frames", pictures->count());
     facts.add("Folder", options.out.string(), "out", options.out.string());

@@ -370,7 +370,10 @@ void add_elasticity_facts(FactSheet& facts, const Simulation& simulation) {
         "Achieved Poisson" + suffix,
         three_text(report.poissons_ratio, 1.0, 3) + " of " + decimals_text(report.wanted_poissons_ratio, 3),
         "", nullptr);
+    const double radius_m = simulation.smallest_contact_radius_m(static_cast<int>(b));
+    facts.add("Contacts" + suffix, "resolved from a radius of " + short_length_text(radius_m), "", nullptr);
     all.push_back({{"body", bodies[b].name},
+                   {"smallest_contact_radius_m", radius_m},
                    {"youngs_modulus_ratio", report.youngs_modulus_ratio},
                    {"poissons_ratio", report.poissons_ratio},
                    {"wanted_poissons_ratio", report.wanted_poissons_ratio}});

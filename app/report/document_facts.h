@@ -39,8 +39,8 @@ void add_surface_facts(FactSheet& facts, const std::vector<CadSurface>& surfaces
 // Adds the unit of a file; `declared` is false if the file does not name one.
 void add_unit_facts(FactSheet& facts, const std::string& unit, bool declared);
 
-// Adds the elasticity that the cells of each body achieve along x, y and z: Young's modulus as a fraction of
-// the material's, and Poisson's ratio.
+// Adds what the cells of each body achieve: Young's modulus along x, y and z as a fraction of the material's,
+// Poisson's ratio, and the smallest radius of a contact whose force they resolve.
 void add_elasticity_facts(FactSheet& facts, const Simulation& simulation);
 
 // Adds the lattice, mass and solver of each body. `snapshot` shows the initial state of a simulation of these

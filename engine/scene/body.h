@@ -73,7 +73,7 @@ struct LatticeRequest {
   LatticeCells cells = LatticeCells::bent;  // a shell has cells of its own, and refuses a box
 };
 
-inline constexpr Range<int> node_budget_range{50, 40000};
+inline constexpr Range<int> node_budget_range{50, 80000};
 inline constexpr Range<int> node_count_range{2, 64};  // number of nodes in each direction
 
 // Kind of a body in a simulation. A deformable body has a lattice. Fixed and rigid bodies have none. A fixed

@@ -1,6 +1,8 @@
 #include "engine/trial/trial_report.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "engine/simulation/body_hold.h"
 #include "engine/trial/body_measures.h"
@@ -44,6 +46,8 @@ TrialBodyReport report_on_body(const Trial& trial, const Simulation& simulation,
     report.volume_ratio = lattice.volume_m3() / lattice.rest_volume_m3();
     report.smallest_jacobian = cells.smallest_jacobian;
     report.inverted_cells = cells.inverted_cells;
+    report.contact_radius_m = std::sqrt(simulation.contact_area_m2(number) / std::numbers::pi);
+    report.smallest_contact_radius_m = simulation.smallest_contact_radius_m(number);
     others_n += find_load_force_n(lattice);
   }
   report.support_force_n = -others_n - mass_kg * simulation.scene().sculpting.gravity_m_per_s2;

@@ -20,6 +20,9 @@ struct TrialBodyReport {
   double volume_ratio = 1.0;
   double smallest_jacobian = 1.0;
   int inverted_cells = 0;  // cells with a corner whose volume is not positive
+  // Radius of a circle of the area on which contacts, taken together, pushed in the last tick, and the
+  // smallest radius that the cells resolve (find_smallest_contact_radius_m()), m; 0 for any other body.
+  double contact_radius_m = 0.0, smallest_contact_radius_m = 0.0;
   // Mean forces on the body over the last half second: of planes, supports and whatever else holds the body;
   // of the ground; and of other bodies. The first is the rest of Newton's second law after weight, loads,
   // ground and contacts. For a fixed body without a computable mass, it does not include the weight.
@@ -28,6 +31,12 @@ struct TrialBodyReport {
   Vector3 contact_force_n = Vector3::Zero();
   std::optional<Spill> spill;  // empty if the body has not been inside a rim
 };
+
+// Returns whether the body has contacts, and they are too small for its cells, so that their force and depth
+// are not reliable.
+inline bool has_small_contact(const TrialBodyReport& body) {
+  return body.contact_radius_m > 0.0 && body.contact_radius_m < body.smallest_contact_radius_m;
+}
 
 struct TrialReport {
   std::vector<TrialBodyReport> bodies;

@@ -41,6 +41,10 @@ TEST(Try, TellsWhereTheJellyIs) {
   EXPECT_NEAR(facts["bodies"][0]["outside_fraction"].get<double>(), 0.0, 1e-3);
   EXPECT_TRUE(facts["bodies"][0]["first_spill_s"].is_null());
   EXPECT_FALSE(facts["bodies"][1].contains("first_spill_s"));  // the bowl does not leave itself
+  const double radius_m = facts["bodies"][0]["contact_radius_m"].get<double>();
+  EXPECT_GT(radius_m, facts["bodies"][0]["smallest_contact_radius_m"].get<double>());
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(facts["bodies"][1]["contact_radius_m"], 0.0);
   EXPECT_TRUE(std::filesystem::exists(place.path("frames") / "frame-0000.png"));
   // The last frame shows the end, although no frame is due there.
   const auto ticks = facts["ticks"].get<std::uint64_t>();
@@ -48,6 +52,21 @@ TEST(Try, TellsWhereTheJellyIs) {
   EXPECT_EQ(facts["frames"].get<std::uint64_t>(), (last - 1) / 30 + 2);
   const std::string name = "frame-" + std::to_string(10000 + last).substr(1) + ".png";
   EXPECT_TRUE(std::filesystem::exists(place.path("frames") / name)) << name;
+}
+
+TEST(Try, WarnsOfAContactThatIsTooSmallForItsCells) {
+  const Workplace place;
+  Document document = read_document(jelly_on_spoon).value();
+  document.scene.bodies[0].lattice.counts = {{3, 3, 4}};
+  place.write("coarse.json", json_to_page(document_to_json(document)));
+  const Outcome outcome = run({"try", place.text("coarse.json"), "--seconds", "0", "--json"});
+  ASSERT_EQ(outcome.code, exit_done) << outcome.err;
+  EXPECT_NE(outcome.err.find("jelly"), std::string::npos);
+  EXPECT_NE(outcome.err.find("nodes"), std::string::npos);
+  const Json body = json_of(outcome.out)["bodies"][0];
+  EXPECT_LT(body["contact_radius_m"].get<double>(), body["smallest_contact_radius_m"].get<double>());
+  const Json info = json_of(run({"info", place.text("coarse.json"), "--json"}).out);
+  EXPECT_EQ(info["achieved"][0]["smallest_contact_radius_m"], body["smallest_contact_radius_m"]);
 }
 
 TEST(Try, DividesTheStep) {
