@@ -386,13 +386,8 @@ double find_approach_m(const BodyState& first, const BodyState& second, double c
   return std::min(tick_s * speed_m_per_s + cell_m, moved_m);
 }
 
-// Approach in a tick, in cells, from which all samples of a rigid body have contacts, blunt or not. The
-// samples of a soft body may then be behind the wall before they have a contact.
-constexpr double fast_approach_cells = 0.1;
-
 void find_near_points(SurfaceProximity& proximity, const BodyState& first, const BodyState& second,
-                      double margin, bool is_fast) {
-  proximity.set_skipping(!first.rigid || !is_fast, !second.rigid || !is_fast);
+                      double margin) {
   const ShellOrSolid one{&first.mapping().current(), first.shell_thickness_m},
       other{&second.mapping().current(), second.shell_thickness_m};
   const Pose frame = first.rigid ? first.rigid->pose() : second.rigid ? second.rigid->pose() : Pose{};
@@ -404,7 +399,7 @@ void find_near_points(SurfaceProximity& proximity, const BodyState& first, const
 }
 
 void find_near_points(MeshProximity& proximity, const BodyState& first, const BodyState& second,
-                      double margin, bool /*is_fast*/) {
+                      double margin) {
   const Surface& surface = first.mapping().current();
   const DeformingMesh& mesh = second.mesh()->current();
   const double thickness = first.shell_thickness_m;
@@ -424,7 +419,7 @@ void find_near_points(MeshProximity& proximity, const BodyState& first, const Bo
 }
 
 void find_near_points(MeshPairProximity& proximity, const BodyState& first, const BodyState& second,
-                      double margin, bool /*is_fast*/) {
+                      double margin) {
   proximity.find(first.mesh()->current(), second.mesh()->current(), margin);
 }
 
@@ -445,10 +440,10 @@ BodyPairContact::BodyPairContact(const BodyState& first, const BodyState& second
     proximity_ = std::make_unique<MeshPairProximity>(first_mesh->patches(), second_mesh->patches());
   } else if (first_mesh) {
     proximity_ = std::make_unique<MeshProximity>(second.mapping().nested(), first_mesh->patches(),
-                                                 second.mapping().skipped());
+                                                 find_skipped(second, first));
   } else if (second_mesh) {
     proximity_ = std::make_unique<MeshProximity>(first.mapping().nested(), second_mesh->patches(),
-                                                 first.mapping().skipped());
+                                                 find_skipped(first, second));
   } else {
     proximity_ = std::make_unique<SurfaceProximity>(first.mapping().nested(), second.mapping().nested(),
                                                     find_skipped(first, second), find_skipped(second, first));
@@ -461,6 +456,14 @@ BodyPairContact::BodyPairContact(const BodyState& first, const BodyState& second
   first_cones_ = make_cones(first);
   second_cones_ = make_cones(second);
 }
+
+namespace {
+
+// Approach in a tick, in cells, above which all samples of a rigid body have contacts, blunt or not. The
+// samples of a soft body may then be behind the wall before they have a contact.
+constexpr double fast_approach_cells = 0.1;
+
+}  // namespace
 
 bool BodyPairContact::find(const IndexedBody& first, const IndexedBody& second) {
   // The frames of rigid bodies have a length like that of cells, which is used between two such bodies.
@@ -477,9 +480,13 @@ bool BodyPairContact::find(const IndexedBody& first, const IndexedBody& second) 
   deepest_new_m_ = std::max(deepest_new_cells * cell, motion_m);
   const BodyState &one = is_mesh_first_ ? *second.state : *first.state,
                   &other = is_mesh_first_ ? *first.state : *second.state;
+  if (const auto* const surfaces = std::get_if<std::unique_ptr<SurfaceProximity>>(&proximity_)) {
+    const bool is_slow = motion_m <= fast_approach_cells * cell;
+    (*surfaces)->set_skipping(!first.state->rigid || is_slow, !second.state->rigid || is_slow);
+  }
   return std::visit(
       [&](const auto& proximity) {
-        find_near_points(*proximity, one, other, margin_m, motion_m > fast_approach_cells * cell);
+        find_near_points(*proximity, one, other, margin_m);
         return !proximity->overflow();
       },
       proximity_);
