@@ -136,7 +136,7 @@ Result<std::optional<ImplicitSolver>> make_implicit_solver(const SpringLattice& 
 
 // Returns the smallest radius of a contact whose force a body's cells resolve, m: 2 cells of springs, or 5 of
 // the coarser cells of the implicit solver. Pressed by spheres whose contacts have this radius, blocks of
-// springs are within 5 % of axisymmetric finite elements, and 6 to 12 % too stiff at 1.6 cells; at the sharp
+// springs are within 6 % of axisymmetric finite elements, and 6 to 12 % too stiff at 1.6 cells; at the sharp
 // edge of a punch they need 5 cells for 10 %. On cells of the implicit solver, no contact up to 2.5 cells was
 // within 10 % for both.
 double find_smallest_contact_radius_m(const BodyState& body);
