@@ -172,6 +172,7 @@ struct Relaxation {
 struct Substep {
   int index, count;
   float h;
+  int parts;  // of the tick
 };
 
 // Gravity acts in at most this number of the substeps of a tick. With more and shorter substeps, rounding
@@ -180,9 +181,10 @@ constexpr int most_weighted_substeps = 64;
 
 // Returns the factor by which gravity is multiplied in a substep. It is 1 in a tick of at most
 // most_weighted_substeps substeps. In a tick with more substeps, gravity acts in every n-th substep only, n
-// times as strongly. The factors of a tick add up to its number of substeps.
+// times as strongly. The factors of a part of a tick add up to its number of substeps.
 int count_weights(const Substep& substep) {
-  const int stride = (substep.count + most_weighted_substeps - 1) / most_weighted_substeps;
+  const int most = std::max(1, most_weighted_substeps / substep.parts);
+  const int stride = (substep.count + most - 1) / most;
   return substep.index % stride == 0 ? std::min(stride, substep.count - substep.index) : 0;
 }
 
@@ -249,6 +251,10 @@ bool touches(const Relaxation& relaxation, const TouchingTool& tool, bool spring
 // Number of passes over the contacts of implicitly stepped lattices in a tick.
 constexpr int solver_passes = 2;
 
+// Largest number of these passes in real time, where bodies may fall onto each other: the assumed contact
+// mass may be far from how a body responds to a push on an edge.
+constexpr int most_solver_passes = 16;
+
 // Response of the implicitly stepped lattices to the impulses of contacts.
 struct Response {
   ImplicitSolver::ContactResponse sum;
@@ -293,12 +299,42 @@ void solve_with_solvers(const Relaxation& relaxation, const TouchingTool& tool, 
 void solve_with_solvers(const Relaxation& relaxation, BodyContacts& between, std::span<const float> caps) {
   if (!between.has_constraint_between_solvers()) return;
   const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
-  for (int p = 0; p < solver_passes; ++p) {
+  const auto is_solved = [&] {
+    return !relaxation.is_real_time || !between.are_approaching(views, MovedBy::solvers, relaxation.time_s);
+  };
+  for (int p = 0; p < solver_passes || (p < most_solver_passes && !is_solved()); ++p) {
     between.pass(views, {relaxation.time_s, MovedBy::solvers, p % 2 == 1, caps});
     const Response response = find_response(relaxation);
     const double fraction = response.sum.find_best_fraction(0.0);
     respond(relaxation, response, fraction);
     between.shorten_solver_pass(fraction);
+  }
+}
+
+// Lets the implicitly stepped lattices respond to the contacts since their last response.
+void respond_to_pairs(const Relaxation& relaxation, BodyContacts* between) {
+  for (std::size_t at = 0; at < relaxation.count(); ++at) {
+    if (!relaxation.has_solver(at)) continue;
+    const int body = static_cast<int>(at);
+    const double work_j = between ? between->find_assumed_work_j(body) : 0.0;
+    const double fraction =
+        relaxation.lattices[at].implicit_solver->respond_to_pairs(work_j, relaxation.lattice(at));
+    if (between) between->respond(body, fraction, {relaxation.view.data(), relaxation.count()});
+  }
+}
+
+// Solves the contacts of implicitly stepped lattices with bodies that move in substeps further, as long as
+// bodies would approach each other with the velocities with which these lattices respond. Call before the
+// last drift of a tick in real time.
+void solve_with_responses(const Relaxation& relaxation, const Substep& substep, BodyContacts& between,
+                          std::span<const float> caps) {
+  const std::span<const LatticeView> views(relaxation.view.data(), relaxation.count());
+  for (int p = 0; p < most_solver_passes; ++p) {
+    respond_to_pairs(relaxation, &between);
+    if (!between.are_approaching(views, MovedBy::springs, relaxation.time_s)) return;
+    if (!between.pass(views, {static_cast<double>(substep.h), MovedBy::springs, p % 2 == 1, caps, true})) {
+      return;
+    }
   }
 }
 
@@ -371,6 +407,8 @@ void solve_contacts(Relaxation& relaxation, const Substep& substep, std::span<co
     for (const bool is_reversed : {false, true}) {
       between->pass(views, {h, MovedBy::springs, is_reversed, push_caps});
     }
+    const bool is_last = substep.index + 1 == substep.count;
+    if (is_last && relaxation.is_real_time) solve_with_responses(relaxation, substep, *between, push_caps);
   }
   if (soft) {
     soft->contacts->adopt(relaxation.frame, *soft->state);
@@ -403,7 +441,7 @@ void begin_rigid_motions(Relaxation& relaxation) {
     if (!relaxation.is_rigid(at)) continue;
     if (RigidDynamics* const dynamics = relaxation.dynamics(at)) {
       relaxation.view[at].rigid = dynamics;
-      dynamics->begin_tick(relaxation.view[at]);
+      dynamics->place_nodes(relaxation.view[at]);
       continue;
     }
     const RigidMotion& motion = *relaxation.lattices[at].rigid_motion;
@@ -636,9 +674,9 @@ void flow(Relaxation& relaxation) {
 
 // Applies creep to the springs of one direction; `turn` selects the direction. The time step is the time
 // until the next call for the same direction.
-void creep(Relaxation& relaxation, std::uint64_t turn) {
+void creep(Relaxation& relaxation, std::uint64_t turn, double tick_s) {
   const int direction = static_cast<int>(turn % lattice_direction_count);
-  const double time_s = relaxation.time_s * static_cast<double>(creep_pause * lattice_direction_count);
+  const double time_s = tick_s * static_cast<double>(creep_pause * lattice_direction_count);
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const SpringLattice& lattice = relaxation.lattice(at);
     const Material& material = lattice.material();
@@ -678,7 +716,7 @@ void begin_implicit_steps(const Relaxation& relaxation, const BodyContacts* betw
         relaxed.implicit_solver->move_fixed(support.nodes, (support.end_m - support.start_m) / time_s);
     }
     if (between) {
-      between->visit_known_impulses(static_cast<int>(at), time_s, [&](int node, const Vector3& impulse) {
+      between->visit_known_impulses(static_cast<int>(at), [&](int node, const Vector3& impulse) {
         relaxed.implicit_solver->add_known_impulse(*relaxed.lattice, node, impulse);
       });
     }
@@ -691,16 +729,12 @@ void begin_implicit_steps(const Relaxation& relaxation, const BodyContacts* betw
 }
 
 void end_implicit_steps(const Relaxation& relaxation, BodyContacts* between, GroundContacts* ground) {
+  respond_to_pairs(relaxation, between);
   for (std::size_t at = 0; at < relaxation.count(); ++at) {
     const RelaxedLattice& relaxed = relaxation.lattices[at];
     if (!relaxed.implicit_solver) continue;
     const double cap = 0.5 * static_cast<double>(relaxation.push_cap[at]);
-    const double work_of_pairs_j = between ? between->find_assumed_work_j(static_cast<int>(at)) : 0.0;
-    const double fraction = relaxed.implicit_solver->end_step(
-        *relaxed.lattice, {ground, ground_contacts(ground, at), cap}, work_of_pairs_j);
-    if (between && fraction < 1.0) {
-      between->shorten(static_cast<int>(at), fraction, {relaxation.view.data(), relaxation.count()});
-    }
+    relaxed.implicit_solver->end_step(*relaxed.lattice, {ground, ground_contacts(ground, at), cap});
   }
 }
 
@@ -748,7 +782,7 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   }
   if (substeps.slowed) stabilise_strained_nodes(relaxation, h);
   for (int s = 0; s < substeps.count; ++s) {
-    const Substep substep{s, substeps.count, h};
+    const Substep substep{s, substeps.count, h, settings.parts};
     kick(relaxation, substep);
     solve_contacts(relaxation, substep, tools, between, ground);
     if (settings.is_real_time) continue_velocities(relaxation);
@@ -763,7 +797,10 @@ RelaxReport relax(std::span<const RelaxedLattice> lattices, const RelaxSettings&
   }
   end_implicit_steps(relaxation, between, ground);
   if (flows) flow(relaxation);
-  if (settings.tick % creep_pause == 0) creep(relaxation, settings.tick / creep_pause);
+  const bool is_tick_over = settings.part + 1 == settings.parts;
+  if (is_tick_over && settings.tick % creep_pause == 0) {
+    creep(relaxation, settings.tick / creep_pause, settings.time_s * settings.parts);
+  }
   return report;
 }
 

@@ -59,14 +59,15 @@ inline constexpr double extrapolation_cap_cells = 0.5;
 struct RelaxSettings {
   std::uint64_t tick = 0;
   int substeps = 1;                   // number of substeps at rest; see substep_ceiling
-  double time_s = 1e-3;               // duration of the tick
+  double time_s = 1e-3;               // duration of the part of the tick
   double drag_per_s = 0.0;            // mass-proportional drag; the least drag if `is_critically_damped`
   bool is_critically_damped = false;  // true if each body is critically damped, see critical_damping_per_s()
   // True if bodies have their real inertia. Nodes may then be faster, see speed_cap_cells; contacts and
   // supports may not. Faster nodes raise the number of substeps, and nodes outside a body follow it (see
   // OutsideNodes).
   bool is_real_time = false;
-  int step_division = 1;  // divides each substep further, whatever required it
+  int step_division = 1;    // divides each substep further, whatever required it
+  int part = 0, parts = 1;  // index of the part of the tick, and number of parts
 };
 
 // Prescribed motion of a rigid body, or of the hand that holds it, through a tick. The poses map the rest

@@ -374,6 +374,17 @@ void drop_trimmed_points(MeshProximity& proximity, const BodyState& body) {
       [&](const VertexNearSurface& near) { return is_untrimmed(body, near.u, near.v); });
 }
 
+// Returns the length of a cell to which distances between two bodies are related, m: the larger one of those
+// that are not rigid. The frames of rigid bodies have a length like that of cells, which is used between two
+// such bodies.
+double find_cell_m(const BodyState& first, const BodyState& second) {
+  const bool both_rigid = first.rigid && second.rigid;
+  const auto size_of_cells = [&](const BodyState& body) {
+    return body.rigid && !both_rigid ? 0.0 : static_cast<double>(body.lattice.cell_size_m());
+  };
+  return std::max(size_of_cells(first), size_of_cells(second));
+}
+
 // Returns a bound of how far points of two bodies, or of the same body, approach each other in a tick. Bodies
 // that fall side by side approach each other only if something stops one of them; this is found in the next
 // tick, before they are a cell deep.
@@ -465,13 +476,17 @@ constexpr double fast_approach_cells = 0.1;
 
 }  // namespace
 
+int BodyPairContact::choose_tick_parts(const BodyState& first, const BodyState& second) const {
+  const double cell_m = find_cell_m(first, second);
+  const double approach_m = find_approach_m(first, second, cell_m);
+  if (!(least_gap_m() < approach_m)) return 1;
+  int parts = 1;
+  while (parts < tick_parts_limit && approach_m > parts * approach_limit_cells * cell_m) parts *= 2;
+  return parts;
+}
+
 bool BodyPairContact::find(const IndexedBody& first, const IndexedBody& second) {
-  // The frames of rigid bodies have a length like that of cells, which is used between two such bodies.
-  const bool both_rigid = first.state->rigid && second.state->rigid;
-  const auto size_of_cells = [&](const BodyState& body) {
-    return body.rigid && !both_rigid ? 0.0 : static_cast<double>(body.lattice.cell_size_m());
-  };
-  const double cell = std::max(size_of_cells(*first.state), size_of_cells(*second.state));
+  const double cell = find_cell_m(*first.state, *second.state);
   // Bodies that are lowered move without a velocity.
   const double lowered_m = tick_s * (first.state->lowering_m_per_s + second.state->lowering_m_per_s);
   const double motion_m = find_approach_m(*first.state, *second.state, cell) + lowered_m;

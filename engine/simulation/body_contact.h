@@ -53,6 +53,11 @@ inline constexpr double body_depth_limit_cells = 0.07;
 // The margin is at least twice the approach of the bodies in a tick.
 inline constexpr double contact_margin_cells = 0.08;
 
+// A tick is divided where bodies near each other approach each other in it by more than this distance, in
+// cells like those of BodyPairContact::find(), and into at most so many parts.
+inline constexpr double approach_limit_cells = 0.15;
+inline constexpr int tick_parts_limit = 16;
+
 // State of a body, and its index in the simulation.
 struct IndexedBody {
   int index;
@@ -78,6 +83,11 @@ class BodyPairContact {
  public:
   BodyPairContact(const BodyState& first, const BodyState& second);
 
+  // Returns the number of parts into which the coming tick must be divided so that bodies that the last
+  // find() found near each other approach each other by at most approach_limit_cells in each: a power of two,
+  // so that it changes rarely, and at most tick_parts_limit. Contacts are planes that stay as they are in a
+  // part, while the bodies turn and slide.
+  int choose_tick_parts(const BodyState& first, const BodyState& second) const;
   // Finds the points on the skin of each body that are near the skin of the other. Returns false if a
   // capacity was exceeded.
   bool find(const IndexedBody& first, const IndexedBody& second);

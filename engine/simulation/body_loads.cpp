@@ -241,17 +241,20 @@ void BodySupports::rebase(const SpringLattice& before, const SpringLattice& afte
   }
 }
 
-std::span<SupportedNodes> BodySupports::begin_tick(const SpringLattice& lattice, double end_s,
-                                                   double tick_s) {
-  SPOONBILL_ASSERT(tick_s > 0.0);
+void BodySupports::clear_impulses() {
+  for (SupportedNodes& support : supported_) support.impulse_ns.setZero();
+}
+
+std::span<SupportedNodes> BodySupports::begin_step(const SpringLattice& lattice, double end_s,
+                                                   double time_s) {
+  SPOONBILL_ASSERT(time_s > 0.0);
   for (std::size_t s = 0; s < supported_.size(); ++s) {
     SupportedNodes& support = supported_[s];
-    support.impulse_ns.setZero();
     if (!support.moves) continue;
     measure_displacement(lattice, support);
     support.start_m = support.end_m;
     support.end_m = displacement_at(*definitions_[s].motion, end_s);
-    support.largest_step_m = tick_s * top_speed_m_per_s(*definitions_[s].motion);
+    support.largest_step_m = time_s * top_speed_m_per_s(*definitions_[s].motion);
   }
   return supported_;
 }

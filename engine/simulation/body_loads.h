@@ -61,9 +61,10 @@ class BodySupports {
   // that of `after`.
   void rebase(const SpringLattice& before, const SpringLattice& after);
 
-  // Updates the motions of the supports for a tick of `tick_s` that ends at `end_s`, and sets their impulses
-  // to zero. Returns all supports.
-  std::span<SupportedNodes> begin_tick(const SpringLattice& lattice, double end_s, double tick_s);
+  // Sets the impulses of the supports to zero.
+  void clear_impulses();
+  // Updates the motions of the supports for a step of `time_s` that ends at `end_s`. Returns all supports.
+  std::span<SupportedNodes> begin_step(const SpringLattice& lattice, double end_s, double time_s);
 
   std::span<const SupportedNodes> supports() const { return supported_; }
 

@@ -120,7 +120,7 @@ void add_ground_and_tools(const Simulation::State& state, int body, double reach
   const auto add = [&](int sample) { pushed.add(sample); };
   state.tool.contact.constraints().visit_pushed_samples(body, add);
   if (state.scene.symmetry.on) state.mirrored.contact.constraints().visit_pushed_samples(body, add);
-  if (!find_ground_impulse_ns(state, body).isZero(0.0)) {
+  if (!state.pushes[static_cast<std::size_t>(body)].ground_impulse_ns.isZero(0.0)) {
     pushed.add_near_ground(*state.scene.ground, reach_m);
   }
 }

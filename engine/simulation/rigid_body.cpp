@@ -62,13 +62,24 @@ bool RigidBody::is_finite() const {
          dynamics_->velocity_m_per_s().allFinite() && dynamics_->spin_rad_per_s().allFinite();
 }
 
-void RigidBody::begin_tick(double tick_s) {
-  SPOONBILL_ASSERT(tick_s > 0.0);
-  tick_start_ = pose();
+void RigidBody::begin_step(double time_s) {
+  SPOONBILL_ASSERT(time_s > 0.0);
+  step_start_ = pose();
   motion_.start = motion_.end;
   motion_.moves = is_driven_;
   if (!is_driven_) return;
-  elapsed_s_ += tick_s;
+  elapsed_s_ += time_s;
+  find_step_end();
+}
+
+void RigidBody::shorten_step(double from_s, double to_s) {
+  SPOONBILL_ASSERT(to_s > 0.0 && to_s <= from_s);
+  if (!motion_.moves) return;
+  elapsed_s_ += to_s - from_s;
+  find_step_end();
+}
+
+void RigidBody::find_step_end() {
   double duration_s = 0.0;
   if (const auto* const turn = std::get_if<TurnBody>(&drive_)) {
     motion_.end = turned_pose(*turn, elapsed_s_, start_);

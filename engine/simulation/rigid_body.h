@@ -21,14 +21,14 @@ class RigidBody {
       : dynamics_(dynamics), hand_(hand) {}
 
   const Pose& pose() const { return dynamics_ ? dynamics_->pose() : motion_.end; }
-  // Motion in the present tick of a fixed body, or of the hand that holds the body.
+  // Motion in the present step of a fixed body, or of the hand that holds the body.
   const RigidMotion& motion() const { return motion_; }
   // Null for a fixed body.
   RigidDynamics* dynamics() { return dynamics_ ? &*dynamics_ : nullptr; }
   const RigidDynamics* dynamics() const { return dynamics_ ? &*dynamics_ : nullptr; }
   const HandSpring* hand() const { return hand_ ? &*hand_ : nullptr; }
   bool is_free() const { return dynamics_ && !hand_; }
-  // Returns whether the body may move in the present tick.
+  // Returns whether the body may move in the present step.
   bool moves() const { return dynamics_ || motion_.moves; }
   // Returns whether a command is moving the body, or its hand.
   bool is_driven() const { return is_driven_; }
@@ -44,13 +44,15 @@ class RigidBody {
   // Puts the hand that holds the body at a pose, and ends a motion.
   void place_hand(const Pose& pose);
   // is_finite() returns whether the pose and the velocities are finite. return_to_start() puts a body with
-  // dynamics at rest where it was at the start of the tick, shifted by `shift_m`.
+  // dynamics at rest where it was at the start of the step, shifted by `shift_m`.
   bool is_finite() const;
   void return_to_start(const Vector3& shift_m) {
-    dynamics_->place({tick_start_.position_m + shift_m, tick_start_.orientation});
+    dynamics_->place({step_start_.position_m + shift_m, step_start_.orientation});
   }
-  // Finds the motion() of the next tick, which lasts `tick_s`.
-  void begin_tick(double tick_s);
+  // Finds the motion() of the next step, which lasts `time_s`: a tick or a part of it.
+  void begin_step(double time_s);
+  // Shortens a step that has begun but in which nothing has moved yet.
+  void shorten_step(double from_s, double to_s);
 
   // Calls visit(const double*, count) with the state on which the next tick depends.
   template <class Visitor>
@@ -76,10 +78,11 @@ class RigidBody {
 
  private:
   void start(std::variant<TurnBody, MotionPath> drive);
+  void find_step_end();
 
   std::optional<RigidDynamics> dynamics_;
   std::optional<HandSpring> hand_;
-  Pose tick_start_;  // pose at the start of the tick
+  Pose step_start_;  // pose at the start of the step
   RigidMotion motion_;
   std::variant<TurnBody, MotionPath> drive_;  // the present drive of the body or of its hand, or the last one
   Pose start_;                                // pose at the start of the drive

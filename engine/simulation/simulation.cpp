@@ -1,9 +1,7 @@
 #include "engine/simulation/simulation.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -128,256 +126,11 @@ void update_inertia(Simulation::State& s) {
   for (BodyState& body : bodies) body.set_inertia(is_held(body) ? own_scale(body) : shared, step_s);
 }
 
-Vector3 find_ground_impulse_ns(const Simulation::State& s, int body) {
-  if (!s.scene.ground) return Vector3::Zero();
-  return s.ground_contact.contacts().impulse_ns(body) + s.between.ground_impulse_ns(body);
-}
-
 Status Simulation::apply(const Command& command) {
   const DenormalsFlushed flushed;  // every thread then computes the same bits
   const Status applied = std::visit(CommandApplier{*state_}, command);
   if (applied.ok()) state_->searched.forget();
   return applied;
-}
-
-namespace {
-
-bool is_tool(const Simulation::State& s, std::size_t body) {
-  return body >= s.scene.bodies.size();
-}
-
-template <class Visit>
-void visit_pairs(Simulation::State& s, const Visit& visit) {
-  auto pair = s.pairs.begin();
-  for (std::size_t second = 1; second < s.stepped_count(); ++second) {
-    for (std::size_t first = 0; first < second; ++first, ++pair) {
-      if (s.bodies[first].is_immovable() && s.bodies[second].is_immovable()) continue;
-      visit(*pair, IndexedBody{static_cast<int>(first), &s.bodies[first]},
-            IndexedBody{static_cast<int>(second), &s.bodies[second]}, is_tool(s, second));
-    }
-  }
-}
-
-// Returns whether the constraints of the last search still hold. A soft tool moves with the hand, and its
-// contacts depend on what the hand does. Contacts of implicitly stepped bodies depend on a contact mass that
-// changes with each impulse.
-bool is_searched(const Simulation::State& s) {
-  const auto stepped = s.stepped_bodies();
-  const bool has_solver = std::any_of(stepped.begin(), stepped.end(),
-                                      [](const BodyState& body) { return body.implicit_solver.has_value(); });
-  return s.between.count() > 0 && !s.tool_is_soft() && !has_solver && s.searched.still_hold(stepped);
-}
-
-void find_contacts_between(Simulation::State& s, const ToolHold& hold) {
-  s.between.set_real_time(s.scene.sculpting.real_time);
-  if (is_searched(s)) {
-    s.between.keep();
-    s.between.begin();
-    return;
-  }
-  std::array<const SpringLattice*, lattice_capacity> lattices{};
-  for (std::size_t b = 0; b < s.stepped_count(); ++b) lattices[b] = &s.stepped_bodies()[b].lattice;
-  s.between.clear(lattices);
-  s.pairs_overflow = false;
-  s.tool_gap_m = std::numeric_limits<double>::infinity();
-  visit_pairs(
-      s, [&](BodyPairContact& pair, const IndexedBody& first, const IndexedBody& second, bool is_tool_pair) {
-        s.pairs_overflow |= !pair.find(first, second);
-        if (is_tool_pair) s.tool_gap_m = std::min(s.tool_gap_m, pair.least_gap_m());
-      });
-  const bool tool_acts =
-      !s.tool_is_soft() || s.tool.contact.acts(s.tool_gap_m <= 0.0, std::isfinite(s.tool_gap_m), hold);
-  visit_pairs(s, [&](const BodyPairContact& pair, const IndexedBody& first, const IndexedBody& second,
-                     bool is_tool_pair) {
-    if (is_tool_pair && !tool_acts) return;
-    s.pairs_overflow |= !pair.add_contacts(first, second, s.between);
-  });
-  for (std::size_t b = 0; b < s.stepped_count(); ++b) {
-    s.pairs_overflow |= !s.self[b].add_contacts({static_cast<int>(b), &s.bodies[b]}, s.between);
-  }
-  for (std::size_t b = 0; s.scene.ground && b < s.scene.bodies.size(); ++b) {
-    const IndexedBody body{static_cast<int>(b), &s.bodies[b]};
-    const Vector3& gravity = s.scene.sculpting.gravity_m_per_s2;
-    const bool is_complete =
-        has_sampled_ground_contact(s.bodies[b], s.scene.sculpting.real_time)
-            ? s.sampled_ground[b].add_contacts(body, *s.scene.ground, gravity, tick_s, s.between)
-            : s.rigid_ground[b].add_contacts(body, *s.scene.ground, gravity, tick_s, s.between);
-    s.pairs_overflow |= !is_complete;
-  }
-  if (s.between.count() > 0) s.searched.remember(s.stepped_bodies());
-  s.between.begin();
-}
-
-int find_step_division(const Sculpting& sculpting) {
-  return sculpting.real_time ? sculpting.step_division : 1;
-}
-
-void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools) {
-  const Sculpting& sculpting = s.scene.sculpting;
-  if (s.scene.ground) {
-    s.ground_contact.find(s.scene_bodies(), *s.scene.ground, sculpting, tick_s);
-  }
-  std::array<RelaxedLattice, lattice_capacity> lattices{};
-  for (std::size_t b = 0; b < s.stepped_count(); ++b) {
-    BodyState& body = s.bodies[b];
-    body.loads.apply(body.lattice, body.solver());
-    const double end_s = static_cast<double>(s.tick + 1) * tick_s;
-    lattices[b] = {&body.lattice,
-                   sculpting.gravity_m_per_s2,
-                   body.solver(),
-                   body.supports.begin_tick(body.lattice, end_s, tick_s),
-                   body.rigid ? &body.rigid->motion() : nullptr,
-                   body.rigid ? body.rigid->dynamics() : nullptr,
-                   body.rigid ? body.rigid->hand() : nullptr};
-  }
-  const int division = find_step_division(sculpting);
-  const RelaxSettings settings{s.tick,
-                               s.substeps / division,
-                               tick_s,
-                               sculpting.drag_per_s,
-                               sculpting.is_critically_damped,
-                               sculpting.real_time,
-                               division};
-  s.relaxed = relax({lattices.data(), s.stepped_count()}, settings, tools, &s.between,
-                    s.scene.ground ? &s.ground_contact.contacts() : nullptr);
-}
-
-// Largest allowed distance of a node from its body's centre of mass, as a fraction of the scene's size.
-constexpr double reach_fraction = 1.0;
-
-// Impulse of the ground and of other bodies on a body in the last tick, N s.
-Vector3 contact_impulse_ns(const Simulation::State& s, int body) {
-  return s.between.impulse_ns(body, tick_s) + find_ground_impulse_ns(s, body);
-}
-
-// Puts a rigid body with dynamics back where it was at the start of the tick, at rest, shifted by `shift_m`.
-void return_to_start(BodyState& body, const Vector3& shift_m) {
-  body.rigid->return_to_start(shift_m);
-  body.rigid->dynamics()->place_nodes(body.lattice.view());
-}
-
-// Lowers a body level by the distance of a tick, unless contacts bear its weight: then lets it go. A rigid
-// body cannot settle on its contacts while it is held level, so the first push suffices.
-void lower(Simulation::State& s, std::size_t index) {
-  BodyState& body = s.bodies[index];
-  const Vector3& gravity = s.scene.sculpting.gravity_m_per_s2;
-  const Vector3 down = gravity.normalized();
-  const double borne_ns = -contact_impulse_ns(s, static_cast<int>(index)).dot(down);
-  const double weight_ns = body.lattice.mass_kg() * gravity.norm() * tick_s;
-  if (gravity.isZero(0.0) || (body.rigid ? borne_ns > 0.0 : borne_ns >= weight_ns)) {
-    body.lowering_m_per_s = 0.0;
-    return;
-  }
-  const Vector3 shift_m = body.lowering_m_per_s * tick_s * down;
-  if (body.rigid) {
-    return_to_start(body, shift_m);
-  } else {
-    body.hold.keep_pose(body.lattice, body.solver(), shift_m);
-  }
-}
-
-// Puts a rigid body back where it was at the start of the tick, at rest, if it has no finite pose, or if it
-// is free and keeps its place. Returns true if its pose was not finite.
-bool hold_rigid(BodyState& body, bool keeps_place) {
-  if (!body.is_movable_rigid()) return false;
-  const bool is_lost = !body.rigid->is_finite();
-  if (is_lost || (keeps_place && body.rigid->is_free())) return_to_start(body, Vector3::Zero());
-  return is_lost;
-}
-
-// Keeps the bodies in the scene. Call after everything else has moved them; BodyHold::begin() must have been
-// called at the start of the tick.
-void hold_bodies(Simulation::State& s) {
-  s.limited_body = -1;
-  const double reach_m = reach_fraction * s.scene_size_m;
-  for (std::size_t b = 0; b < s.scene.bodies.size(); ++b) {
-    BodyState& body = s.bodies[b];
-    if (body.rigid) {
-      if (hold_rigid(body, keeps_place(s.scene))) s.limited_body = static_cast<int>(b);
-      if (body.lowering_m_per_s > 0.0) lower(s, b);
-      continue;
-    }
-    ImplicitSolver* const solver = body.solver();
-    if (body.hold.limit(body.lattice, solver, reach_m)) {
-      s.limited_body = static_cast<int>(b);
-      s.searched.forget();  // the forces of the constraints may be lost too
-    }
-    if (body.lowering_m_per_s > 0.0) lower(s, b);
-    if (keeps_place(s.scene) && !body.lattice.has_fixed_nodes()) body.hold.keep_pose(body.lattice, solver);
-  }
-}
-
-std::uint32_t collect_flags(const Simulation::State& s) {
-  std::uint32_t flags = tick_flag_none;
-  if (s.limited_body >= 0) flags |= tick_flag_body_limited;
-  if (s.relaxed.nodes_slowed) flags |= tick_flag_nodes_slowed;
-  if (s.relaxed.speed_capped) flags |= tick_flag_speed_capped;
-  if (s.tool.contact.overflow() || s.mirrored.contact.overflow() || s.pairs_overflow) {
-    flags |= tick_flag_contact_overflow;
-  }
-  return flags;
-}
-
-void mark_touched(Simulation::State& s) {
-  for (std::size_t b = 0; b < s.stepped_count(); ++b) {
-    std::vector<std::uint8_t>& touched = s.bodies[b].touched;
-    std::fill(touched.begin(), touched.end(), std::uint8_t{0});
-    const int body = static_cast<int>(b);
-    s.between.mark_touched(body, touched.data());
-    if (is_tool(s, b)) continue;
-    if (s.scene.ground) s.ground_contact.contacts().mark_touched(body, touched.data());
-    s.tool.contact.constraints().mark_touched(body, touched.data());
-    if (s.scene.symmetry.on) s.mirrored.contact.constraints().mark_touched(body, touched.data());
-  }
-}
-
-// Measures the mapping residual for the panel: one body about eight times a second, each body in turn.
-void measure_residuals(Simulation::State& s) {
-  constexpr std::uint64_t interval_ticks = 128;
-  if (s.tick % interval_ticks != 0) return;
-  BodyState& body = s.bodies[s.tick / interval_ticks % s.scene.bodies.size()];
-  if (!body.mesh()) body.mapping().measure_residual();
-}
-
-}  // namespace
-
-Reaction Simulation::advance(const ToolInput& input) {
-  SPOONBILL_ASSERT(input.pose.position_m.allFinite() && input.coupling_n_per_m >= 0.0);
-  const DenormalsFlushed flushed;
-  State& s = *state_;
-  const bool both = s.scene.symmetry.on;
-  std::array<TouchingTool, 2> tools;
-  const ToolHold hold = make_hold(input);
-  tools[0] = touch(s, s.tool, hold, input.coupling_n_per_m);
-  if (both) {
-    tools[1] = touch(s, s.mirrored, make_mirrored_hold(s.scene.symmetry, input), input.coupling_n_per_m);
-  }
-  for (BodyState& body : s.scene_bodies()) {
-    if (body.rigid) body.rigid->begin_tick(tick_s);
-  }
-  find_contacts_between(s, hold);
-  for (BodyState& body : s.scene_bodies()) {
-    body.hold.begin(body.lattice, keeps_place(s.scene) || body.lowering_m_per_s > 0.0);
-  }
-  relax_bodies(s, {tools.data(), both ? std::size_t{2} : std::size_t{1}});
-  if (s.tool_is_soft()) turn_soft_tool(s, tools[0].motion.orientation);
-  if (const auto reform = find_kernel(s.scene.tool.action).reform) {
-    reform(s, s.tool);
-    if (both) reform(s, s.mirrored);
-  }
-  hold_bodies(s);
-  for (std::size_t b = 0; b < s.stepped_count(); ++b) {
-    if (s.bodies[b].rigid && !s.bodies[b].rigid->moves()) continue;
-    s.bodies[b].update_skin();
-  }
-  measure_residuals(s);
-  ++s.tick;
-
-  react(s, input);
-  s.reaction.mirror_touching = both && s.mirrored.contact.constraints().acted();
-  s.reaction.flags = collect_flags(s);
-  mark_touched(s);
-  return s.reaction;
 }
 
 const Scene& Simulation::scene() const {
@@ -419,12 +172,11 @@ Vector3 Simulation::support_force_n(int support, int body) const {
 }
 Vector3 Simulation::contact_force_n(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
-  return state_->between.impulse_ns(body, tick_s) / tick_s;
+  return state_->pushes[static_cast<std::size_t>(body)].impulse_ns / tick_s;
 }
 double Simulation::contact_work_j(int body) const {
-  const SpringLattice& frame = lattice(body);
-  const bool is_prescribed = frame.mesh().is_frame && frame.has_fixed_nodes();
-  return is_prescribed ? state_->between.work_j(body, frame, tick_s) : 0.0;
+  SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
+  return state_->pushes[static_cast<std::size_t>(body)].work_j;
 }
 Vector3 Simulation::tool_force_n(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->scene.bodies.size()));
@@ -458,13 +210,11 @@ int Simulation::body_at_fault() const {
   return state_->limited_body >= 0 ? state_->limited_body : state_->relaxed.at_fault;
 }
 double Simulation::largest_overlap_m() const {
-  double overlap = 0.0;
-  for (const BodyPairContact& pair : state_->pairs) overlap = std::max(overlap, -pair.least_gap_m());
-  return overlap;
+  return state_->overlap_m;
 }
 Vector3 Simulation::ground_force_n(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
-  return find_ground_impulse_ns(*state_, body) / tick_s;
+  return state_->pushes[static_cast<std::size_t>(body)].ground_impulse_ns / tick_s;
 }
 int Simulation::substeps() const {
   return state_->substeps;

@@ -149,7 +149,8 @@ class Simulation {
   // Returns the mean force of the tool, and of its mirror image, on a body over the last tick. The force of a
   // soft tool is part of contact_force_n() instead.
   Vector3 tool_force_n(int body = 0) const;
-  // Returns the area of a body's surface on which contacts pushed in the last tick (contact_area.h).
+  // Returns the area of a body's surface on which contacts pushed in the last tick, or in the last
+  // part of a divided one (contact_area.h).
   // Allocates.
   double contact_area_m2(int body) const;
   // Returns find_smallest_contact_radius_m() of a body; 0 for a rigid one.
@@ -166,7 +167,7 @@ class Simulation {
   // Returns the index of the body to which the last tick's flags nodes_slowed, speed_capped and body_limited
   // apply, or -1.
   int body_at_fault() const;
-  // Returns the largest overlap of two bodies that the contact search of the last tick found, m; 0 if none.
+  // Returns the largest overlap of two bodies that was found in the last tick, m; 0 if none.
   double largest_overlap_m() const;
 
   struct State;

@@ -1,6 +1,7 @@
 // State of a simulation and the steps that change it. Private to engine/simulation.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -38,6 +39,13 @@ struct HeldTool {
   }
 };
 
+// Pushes of contacts on a body in a tick.
+struct ContactPushes {
+  Vector3 impulse_ns = Vector3::Zero();         // of other bodies on the body, N s
+  Vector3 ground_impulse_ns = Vector3::Zero();  // of the ground on the body, N s
+  double work_j = 0.0;                          // of a body with a prescribed motion on others, J
+};
+
 struct Simulation::State {
   Scene scene;
   InstructionSet set;
@@ -51,7 +59,7 @@ struct Simulation::State {
   BodyGroundContact ground_contact;              // contacts of the scene's bodies; empty without a ground
   std::vector<RigidGroundContact> rigid_ground;  // contacts of each of the scene's bodies
   std::vector<SampledGroundContact> sampled_ground;  // of each of them, for soft bodies in boxes of cells
-  bool pairs_overflow = false;
+  bool pairs_overflow = false;                       // whether the last search exceeded a capacity
   double tool_gap_m = 0.0;    // smallest gap between a soft tool and a body; infinite if none is near
   double scene_size_m = 0.0;  // diagonal of the box around the bodies at rest
   int limited_body = -1;      // a body that BodyHold::limit() restored in the last tick, or -1
@@ -62,7 +70,10 @@ struct Simulation::State {
   std::uint64_t tick = 0;
   int substeps = 1;            // number of substeps of a tick at rest
   int real_time_substeps = 1;  // number of substeps at rest with an inertia scale of 1
-  RelaxReport relaxed{};
+  RelaxReport relaxed{};       // of all parts of the last tick
+  std::array<ContactPushes, lattice_capacity> pushes{};  // in the last tick, by body
+  double overlap_m = 0.0;          // largest overlap of two bodies that was found in the last tick
+  bool contacts_overflow = false;  // whether a search of the last tick exceeded a capacity
   Reaction reaction{};
   SearchedShapes searched{};  // the shapes for which `between` was found
 
@@ -92,9 +103,6 @@ void carry_motion(const BodyState& state, Body& body);
 // so that momentum is exchanged correctly and all fall alike. Call after a change of bodies, fixed nodes,
 // tool or settings; may allocate.
 void update_inertia(Simulation::State& state);
-
-// Impulse of the ground on a body of the scene in the last tick, N s.
-Vector3 find_ground_impulse_ns(const Simulation::State& state, int body);
 
 // Bodies and tool in a tick, as ToolKernel::constrain() receives them.
 struct ToolTouch {

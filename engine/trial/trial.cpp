@@ -181,7 +181,7 @@ Box find_box_of_motions(const Scene& scene, const Box& box) {
     if (scene.trial && scene.trial->turned_body == body.name) {
       const TurnBody turn = find_turn(scene, *scene.trial);
       at_start.turn(turn);
-      at_start.begin_tick(turn_duration_s(turn));
+      at_start.begin_step(turn_duration_s(turn));
     }
     const MotionPath path(*body.motion);
     for (int step = 0; step <= steps; ++step) {

@@ -40,6 +40,12 @@ bool is_of_moving_frame(const BodyPoint& point) {
   return is_of_frame(point) && !point.lattice->has_fixed_nodes();
 }
 
+// Returns the size of a deformable body's cells; 0 for any other body.
+double cell_size_m(const BodyPoint& point) {
+  return point.lattice == nullptr || is_of_frame(point) ? 0.0
+                                                        : static_cast<double>(point.lattice->cell_size_m());
+}
+
 double own_compliance(const BodyPoint& point) {
   return point.lattice == nullptr || is_of_frame(point) ? 0.0 : point.point.compliance(*point.lattice);
 }
@@ -178,25 +184,30 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
   const bool is_between_rigid = is_rigid(first) && is_rigid(second);
   const bool is_between_soft = !is_rigid(first) && !is_rigid(second);
   const double taken_over =
-      is_real_time_ && is_between_soft ? taken_over_by_soft_in_real_time : taken_over_in_tick;
+      tick_fraction_ *
+      (is_real_time_ && is_between_soft ? taken_over_by_soft_in_real_time : taken_over_in_tick);
   const double difference_m =
       separates && kept != nullptr && !is_between_rigid ? (1.0 - taken_over) * (gap_m - kept->gap_m) : 0.0;
-  constraints_.push_back({.first_body = first.body,
-                          .second_body = second.body,
-                          .first = first.point,
-                          .second = second.point,
-                          .normal = normal,
-                          .compliance = compliance,
-                          .base_m = gap_m - difference_m - moved,
-                          .difference_m = difference_m,
-                          .taken_over = taken_over,
-                          .added_gap_m = gap_m,
-                          .first_mobility = find_mobility(first),
-                          .second_mobility = find_mobility(second),
-                          .friction = friction,
-                          .moved_by = by_solvers ? MovedBy::solvers : MovedBy::springs,
-                          .separates = separates,
-                          .sample = sample});
+  constraints_.push_back(
+      {.first_body = first.body,
+       .second_body = second.body,
+       .first = first.point,
+       .second = second.point,
+       .normal = normal,
+       .compliance = compliance,
+       .base_m = gap_m - difference_m - moved,
+       .difference_m = difference_m,
+       .taken_over = taken_over,
+       .added_gap_m = gap_m,
+       .unsolved_m = unsolved_approach_cells * std::max(cell_size_m(first), cell_size_m(second)),
+       .first_mobility = find_mobility(first),
+       .second_mobility = find_mobility(second),
+       .friction = friction,
+       .moved_by = by_solvers ? MovedBy::solvers : MovedBy::springs,
+       .is_first_implicit = is_by_solver(first),
+       .is_second_implicit = is_by_solver(second),
+       .separates = separates,
+       .sample = sample});
   if (kept != nullptr) constraints_.back().force_n = limit_to_cone(kept->force_n, normal, friction);
   return true;
 }
@@ -213,10 +224,14 @@ void BodyContacts::keep() {
   }
 }
 
-void BodyContacts::begin() {
+void BodyContacts::begin(double time_s) {
+  SPOONBILL_ASSERT_DEBUG(time_s > 0.0);
   for (Constraint& constraint : constraints_) {
     constraint.acted = false;
     constraint.impulse_ns.setZero();
+    constraint.known_force_n = constraint.is_implicit() ? constraint.force_n : Vector3(Vector3::Zero());
+    constraint.responded_ns = time_s * constraint.known_force_n;
+    constraint.responded_force_n = constraint.known_force_n;
   }
   impulse_ns_.fill(Vector3::Zero());
   ground_impulse_ns_.fill(Vector3::Zero());
@@ -249,6 +264,15 @@ double BodyContacts::work_j(int body, const SpringLattice& lattice, double time_
     if (constraint.second_body == body) add(constraint.second, -impulse_ns);
   }
   return sum_j;
+}
+
+bool BodyContacts::are_approaching(std::span<const LatticeView> lattices, MovedBy moved_by,
+                                   double time_s) const {
+  return std::any_of(constraints_.begin(), constraints_.end(), [&](const Constraint& constraint) {
+    if (constraint.moved_by != moved_by || !constraint.is_implicit()) return false;
+    const double approach = -find_relative_m_per_s(lattices, constraint).dot(constraint.normal);
+    return approach * time_s > std::max(0.0, constraint.gap_m) + constraint.unsolved_m;
+  });
 }
 
 bool BodyContacts::has_constraint_between_solvers() const {
@@ -310,25 +334,27 @@ void BodyContacts::start(std::span<const LatticeView> lattices, double h_s) {
     constraint.gap_m = find_gap_m(lattices, constraint);
     constraint.spare_m_per_s = -infinity;
     find_response(lattices, constraint);
-    if (!constraint.force_n.isZero(0.0)) push(lattices, constraint, h_s * constraint.force_n);
+    if (constraint.force_n.isZero(0.0) && constraint.known_force_n.isZero(0.0)) continue;
+    push(lattices, constraint, h_s * constraint.force_n, h_s * constraint.known_force_n);
   }
   changed_m_per_s_.fill(0.0);
   for (Constraint& constraint : constraints_) {
     if (constraint.moved_by != MovedBy::springs || !constraint.force_n.isZero(0.0)) continue;
-    if (!(constraint.gap_m > 0.0)) continue;
+    if (!(constraint.gap_m > 0.0) || constraint.is_implicit()) continue;
     const double separation = find_relative_m_per_s(lattices, constraint).dot(constraint.normal);
     constraint.spare_m_per_s = separation + constraint.gap_m * body_closing / h_s;
   }
 }
 
-void BodyContacts::push(std::span<const LatticeView> lattices, Constraint& constraint,
-                        const Vector3& impulse) {
+void BodyContacts::push(std::span<const LatticeView> lattices, Constraint& constraint, const Vector3& impulse,
+                        const Vector3& known_ns) {
   const auto first = static_cast<std::size_t>(constraint.first_body);
   const auto second = static_cast<std::size_t>(constraint.second_body);
   const LatticeView& one = view_of(lattices, constraint.first_body);
   const LatticeView& other = view_of(lattices, constraint.second_body);
-  constraint.first.push(one, impulse);
-  constraint.second.push(other, -impulse);
+  constraint.first.push(one, constraint.is_first_implicit ? Vector3(impulse - known_ns) : impulse);
+  constraint.second.push(other,
+                         constraint.is_second_implicit ? Vector3(known_ns - impulse) : Vector3(-impulse));
   if (constraint.moved_by == MovedBy::springs) {
     if (constraint.second_body == ground_index) {
       ground_impulse_ns_[first] += impulse;
@@ -351,11 +377,13 @@ bool BodyContacts::may_act(const Constraint& constraint) const {
   return !(constraint.spare_m_per_s > changed_m_per_s);
 }
 
-void BodyContacts::pass(std::span<const LatticeView> lattices, const ContactPass& pass) {
+bool BodyContacts::pass(std::span<const LatticeView> lattices, const ContactPass& pass) {
+  bool has_pushed = false;
   const std::span<const float> caps = pass.push_speed_caps_m_per_s;
   for (int c = 0; c < count(); ++c) {
     Constraint& constraint = constraints_[pass.is_reversed ? count() - 1 - c : c];
     if (constraint.moved_by != pass.moved_by) continue;
+    if (pass.is_of_implicit && !constraint.is_implicit()) continue;
     if (pass.moved_by == MovedBy::solvers) {
       constraint.gap_m = find_gap_m(lattices, constraint);
       find_response(lattices, constraint);
@@ -363,8 +391,9 @@ void BodyContacts::pass(std::span<const LatticeView> lattices, const ContactPass
       continue;
     }
     const double cap = std::min(cap_of(caps, constraint.first_body), cap_of(caps, constraint.second_body));
-    solve(lattices, constraint, pass.h_s, cap);
+    has_pushed |= solve(lattices, constraint, pass.h_s, cap);
   }
+  return has_pushed;
 }
 
 void BodyContacts::separate(std::span<const LatticeView> lattices, double h_s,
@@ -402,34 +431,38 @@ bool BodyContacts::is_with_others(const Constraint& constraint, int body) {
 double BodyContacts::find_assumed_work_j(int body) const {
   double work_j = 0.0;
   for (const Constraint& constraint : constraints_) {
-    if (is_with_others(constraint, body))
-      work_j += constraint.normal_per_kg * constraint.impulse_ns.squaredNorm();
+    if (!is_with_others(constraint, body)) continue;
+    work_j += constraint.normal_per_kg * (constraint.impulse_ns - constraint.responded_ns).squaredNorm();
   }
   return work_j;
 }
 
-void BodyContacts::shorten(int body, double fraction, std::span<const LatticeView> lattices) {
+void BodyContacts::respond(int body, double fraction, std::span<const LatticeView> lattices) {
   SPOONBILL_ASSERT_DEBUG(fraction >= 0.0 && fraction <= 1.0);
   for (Constraint& constraint : constraints_) {
     if (!is_with_others(constraint, body)) continue;
-    const Vector3 excess_ns = (1.0 - fraction) * constraint.impulse_ns;
-    if (constraint.first_body == body) {
-      constraint.second.push(view_of(lattices, constraint.second_body), excess_ns);
-    } else {
-      constraint.first.push(view_of(lattices, constraint.first_body), -excess_ns);
+    if (fraction < 1.0) {
+      const Vector3 excess_ns = (1.0 - fraction) * (constraint.impulse_ns - constraint.responded_ns);
+      if (constraint.first_body == body) {
+        constraint.second.push(view_of(lattices, constraint.second_body), excess_ns);
+      } else {
+        constraint.first.push(view_of(lattices, constraint.first_body), -excess_ns);
+      }
+      impulse_ns_[static_cast<std::size_t>(constraint.first_body)] -= excess_ns;
+      impulse_ns_[static_cast<std::size_t>(constraint.second_body)] += excess_ns;
+      constraint.impulse_ns -= excess_ns;
+      constraint.force_n -= (1.0 - fraction) * (constraint.force_n - constraint.responded_force_n);
     }
-    impulse_ns_[static_cast<std::size_t>(constraint.first_body)] -= excess_ns;
-    impulse_ns_[static_cast<std::size_t>(constraint.second_body)] += excess_ns;
-    constraint.impulse_ns -= excess_ns;
-    constraint.force_n *= fraction;
+    constraint.responded_ns = constraint.impulse_ns;
+    constraint.responded_force_n = constraint.force_n;
   }
 }
 
-void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& constraint, double h,
+bool BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& constraint, double h,
                          double cap) {
   if (constraint.normal_per_kg == 0.0) {
     constraint.force_n.setZero();
-    return;
+    return false;
   }
   const ContactPush state{constraint.gap_m, constraint.normal, find_relative_m_per_s(lattices, constraint),
                           1.0 / constraint.normal_per_kg, 1.0 / constraint.slide_per_kg};
@@ -438,12 +471,13 @@ void BodyContacts::solve(std::span<const LatticeView> lattices, Constraint& cons
   const ContactPace& pace = constraint.separates ? separated_pace : body_pace;
   const double pushed = state.normal_impulse(h, pace, cap, started_push);
   constraint.passed_force_n = constraint.force_n;
-  if (pushed == 0.0 && started.isZero(0.0)) return;
+  if (pushed == 0.0 && started.isZero(0.0)) return false;
   const Vector3 drag = state.drag(constraint.friction * pushed, started_push * constraint.normal - started);
   const Vector3 impulse = pushed * constraint.normal - drag;
   constraint.force_n = impulse / h;
   constraint.spare_m_per_s = -infinity;
   push(lattices, constraint, impulse - started);
+  return true;
 }
 
 bool BodyContacts::acted(int body) const {

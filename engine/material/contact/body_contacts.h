@@ -24,6 +24,10 @@ struct BodyPoint {
   EmbeddedPoint point = {};
 };
 
+// Approach of an implicitly stepped body to another one in a step, beyond their gap, above which contacts are
+// solved further; in cells of the coarser body. A tick may have 16 steps, and bodies may come closer in each.
+inline constexpr double unsolved_approach_cells = 0.004;
+
 // How the velocities of nodes and of an embedded point depend on each other.
 struct PointMobility {
   // Largest velocity change of a node per impulse on the point, 1/kg, without frames.
@@ -36,8 +40,8 @@ struct PointMobility {
 // their surfaces, which are solved after the contacts of tools. Impulses are equal and opposite, so momentum
 // is conserved. A push on the lattice of a soft tool also acts on its frame (see MovingFrame).
 //
-// Stores the contacts of one tick, and their forces in the last tick. Has one owner, on one thread. Allocates
-// only in its constructor.
+// Stores the contacts of one tick, and their forces in the last tick. Where a tick is divided, its parts
+// count as ticks here. Has one owner, on one thread. Allocates only in its constructor.
 class BodyContacts {
  public:
   explicit BodyContacts(int capacity);
@@ -47,9 +51,12 @@ class BodyContacts {
   BodyContacts(BodyContacts&&) = default;
   BodyContacts& operator=(BodyContacts&&) = default;
 
-  // Tells whether bodies have their real inertia, which is false at first. Call before the first add() of a
-  // tick; constraints that keep() retains are not affected.
-  void set_real_time(bool is_real_time) { is_real_time_ = is_real_time; }
+  // Tells whether bodies have their real inertia, which is false at first, and which part of a tick the next
+  // step lasts. Call before the first add() of a step; constraints that keep() retains are not affected.
+  void set_real_time(bool is_real_time, double tick_fraction = 1.0) {
+    is_real_time_ = is_real_time;
+    tick_fraction_ = tick_fraction;
+  }
   // Removes the constraints, and remembers their forces and present gaps for the constraints that are added
   // next. `lattices` are those of the bodies, by BodyPoint::body.
   void clear(std::span<const SpringLattice* const> lattices);
@@ -92,29 +99,30 @@ class BodyContacts {
   std::array<double, lattice_capacity> find_impacts_m_per_s(std::span<const LatticeView> lattices,
                                                             double time_s) const;
 
-  // Starts a tick: marks all constraints as not having acted.
-  void begin();
+  // Starts a step of `time_s`: marks all constraints as not having acted.
+  void begin(double time_s);
 
-  // Calls visit(node, impulse) for nodes of a body. The impulses, N s, are the forces of the last tick times
-  // `time_s`. Only constraints of the kind MovedBy::solvers are visited, because implicit solvers need these
-  // impulses at the start of their steps.
+  // Calls visit(node, impulse) for nodes of an implicitly stepped body, whose solver needs at the start of
+  // its step the impulses that are known then, N s: the forces of the last step times the time of this one.
+  // Call after begin().
   template <class Visit>
-  void visit_known_impulses(int body, double time_s, const Visit& visit) const {
+  void visit_known_impulses(int body, const Visit& visit) const {
     for (const Constraint& constraint : constraints_) {
-      if (constraint.moved_by != MovedBy::solvers || constraint.force_n.isZero(0.0)) continue;
-      const Vector3 impulse = time_s * constraint.force_n;
-      if (constraint.first_body == body) constraint.first.visit_shares(impulse, visit);
-      if (constraint.second_body == body) constraint.second.visit_shares(-impulse, visit);
+      const Vector3& impulse_ns = constraint.responded_ns;
+      if (impulse_ns.isZero(0.0)) continue;
+      if (constraint.first_body == body) constraint.first.visit_shares(impulse_ns, visit);
+      if (constraint.second_body == body) constraint.second.visit_shares(-impulse_ns, visit);
     }
   }
 
-  // Acts with the forces of the last substep, friction included. Skips the constraints of the kind
-  // MovedBy::solvers, whose solvers already include the impulses of visit_known_impulses(). Call after the
-  // kick of a substep of h_s.
+  // Acts with the forces of the last substep, friction included. Implicitly stepped bodies already include
+  // the impulses of visit_known_impulses(). Call after the kick of a substep of h_s.
   void start(std::span<const LatticeView> lattices, double h_s);
-  // Solves each constraint of the kind pass.moved_by once. Call after start() and before the drift of a
-  // substep of h_s. A reversed pass solves the last constraint first.
-  void pass(std::span<const LatticeView> lattices, const ContactPass& pass);
+  // Solves each constraint of the kind pass.moved_by once, or only those with an implicitly stepped body.
+  // Call after start() and before the drift of a substep of h_s. A reversed pass solves the last constraint
+  // first.
+  // Returns whether it changed a velocity.
+  bool pass(std::span<const LatticeView> lattices, const ContactPass& pass);
   // Moves the points of bodies with springs out of each other, out of their own body and out of rigid ones,
   // by a part of the overlap and at most by the distance that the caps allow in a substep of h_s. Velocities
   // do not change, so that the correction adds no kinetic energy and does not shake bodies at rest. Points
@@ -125,13 +133,15 @@ class BodyContacts {
   // caller must scale the impulses on the nodes in the same way.
   void shorten_solver_pass(double fraction);
   // Returns the work that the impulses of the constraints of the kind MovedBy::springs between an implicitly
-  // stepped body and others have done on both since begin(), J, with the velocity changes that each
-  // constraint alone would cause.
+  // stepped body and others, to which the body has not responded yet, have done on both, J, with the velocity
+  // changes that each constraint alone would cause.
   double find_assumed_work_j(int body) const;
-  // Multiplies by `fraction` what the constraints of the kind MovedBy::springs between an implicitly stepped
-  // body and others have done since begin(). Takes back the rest from the other bodies; the caller scales the
-  // impulses on the body itself. Call after the last substep.
-  void shorten(int body, double fraction, std::span<const LatticeView> lattices);
+  // Tells that an implicitly stepped body has responded to these impulses, multiplied by `fraction`. Takes
+  // back the rest from the other bodies.
+  void respond(int body, double fraction, std::span<const LatticeView> lattices);
+  // Returns whether a constraint of this kind with an implicitly stepped body would let it approach another
+  // one in a step of `time_s` by more than unsolved_approach_cells beyond their gap.
+  bool are_approaching(std::span<const LatticeView> lattices, MovedBy moved_by, double time_s) const;
   // Returns whether there is a constraint of the kind MovedBy::solvers.
   bool has_constraint_between_solvers() const;
 
@@ -189,6 +199,7 @@ class BodyContacts {
     double difference_m = 0.0;   // gap that the search found, minus the gap of the constraint
     double taken_over = 0.0;     // part of this difference that is taken over in a tick
     double added_gap_m = 0.0;    // gap when the constraint was added
+    double unsolved_m = 0.0;     // distance by which the bodies may approach each other beyond their gap
     double gap_m = 0.0;          // gap at the last start()
     // Separation speed at the last start() above the smallest admissible one, for a constraint without a
     // force. While it is larger than what pushes can have changed, the constraint does not act.
@@ -196,14 +207,19 @@ class BodyContacts {
     PointMobility first_mobility, second_mobility;
     double friction = 0.0;  // the smaller coefficient of the two surfaces
     MovedBy moved_by = MovedBy::springs;
+    bool is_first_implicit = false, is_second_implicit = false;  // whether an implicit solver steps the body
     bool separates = false;  // whether separate() corrects an overlap, instead of the push
     int sample = -1;
     Vector3 force_n = Vector3::Zero();  // force on the first point in the last substep: push and friction
+    Vector3 known_force_n = Vector3::Zero();  // `force_n` at begin(), if a body is stepped implicitly
+    // Impulse since begin() to which such a body has responded, N s, and `force_n` then.
+    Vector3 responded_ns = Vector3::Zero(), responded_force_n = Vector3::Zero();
     Vector3 passed_force_n = Vector3::Zero();  // `force_n` before the last pass()
     Vector3 impulse_ns = Vector3::Zero();      // impulse on the first point since begin(), N s
     bool acted = false;
 
     ContactKey key() const { return {first_body, second_body, sample}; }
+    bool is_implicit() const { return is_first_implicit || is_second_implicit; }
   };
   bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m,
            double deepest_new_m, int sample, double friction);
@@ -215,8 +231,12 @@ class BodyContacts {
   static Vector3 find_relative_m_per_s(std::span<const LatticeView> lattices, const Constraint& constraint);
   // Returns whether the pushes since start() may have made a constraint act that did not act then.
   bool may_act(const Constraint& constraint) const;
-  void solve(std::span<const LatticeView> lattices, Constraint& constraint, double h, double cap);
-  void push(std::span<const LatticeView> lattices, Constraint& constraint, const Vector3& impulse);
+  // Returns whether it changed a velocity.
+  bool solve(std::span<const LatticeView> lattices, Constraint& constraint, double h, double cap);
+  // Pushes the bodies of a constraint, N s. Of the impulse, `known_ns` has already acted on those that are
+  // stepped implicitly.
+  void push(std::span<const LatticeView> lattices, Constraint& constraint, const Vector3& impulse,
+            const Vector3& known_ns = Vector3::Zero());
 
   struct Kept {
     Vector3 force_n;
@@ -233,6 +253,7 @@ class BodyContacts {
   std::array<double, lattice_capacity + 1> changed_m_per_s_{};
   bool has_searched_ = false;  // whether a tick has begun since forget()
   bool is_real_time_ = false;
+  double tick_fraction_ = 1.0;
 };
 
 }  // namespace spoonbill

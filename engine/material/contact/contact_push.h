@@ -49,7 +49,7 @@ struct ContactPush {
   }
 };
 
-// Kind of solver that advances the lattices of a contact. `solvers`: the contact is solved once a tick,
+// Kind of solver that advances the lattices of a contact. `solvers`: the contact is solved once a step,
 // because each lattice is stepped implicitly, or is the frame of a fixed body beside one that is. `springs`:
 // at least one lattice is stepped explicitly by its springs, and the contact is solved in each substep.
 enum class MovedBy { springs, solvers };
@@ -62,6 +62,7 @@ struct ContactPass {
   // reversed pass balances this.
   bool is_reversed;
   std::span<const float> push_speed_caps_m_per_s;  // largest correction speed for each body
+  bool is_of_implicit = false;                     // skips contacts of which no body is stepped implicitly
 };
 
 }  // namespace spoonbill

@@ -307,13 +307,16 @@ void ImplicitSolver::update_contact_mass(SpringLattice& lattice) {
   lattice.set_contact_inverse_mass(contact_inverse_mass_);
 }
 
-double ImplicitSolver::end_step(SpringLattice& lattice, const GroundPush& on_ground,
-                                double assumed_work_of_pairs_j) {
+double ImplicitSolver::respond_to_pairs(double assumed_work_of_pairs_j, SpringLattice& lattice) {
   const ContactResponse response = find_response(lattice);
   const double other_j = std::max(0.0, assumed_work_of_pairs_j - response.assumed_work_j);
   const bool gains = response.work_j + other_j > largest_response * (response.assumed_work_j + other_j);
   const double fraction = gains ? response.find_best_fraction(other_j) : 1.0;
-  if (response.work_j > 0.0) body_.apply_response(fraction);
+  if (response.work_j > 0.0) respond(fraction, lattice);
+  return fraction;
+}
+
+void ImplicitSolver::end_step(SpringLattice& lattice, const GroundPush& on_ground) {
   update_contact_mass(lattice);
   if (!on_ground.contacts.empty()) {
     ground_contacts_.solve(*on_ground.ground, on_ground.contacts, followers_, step_s_,
@@ -322,7 +325,6 @@ double ImplicitSolver::end_step(SpringLattice& lattice, const GroundPush& on_gro
   body_.move(step_s_);
   write_velocities(lattice);
   write_displacements(lattice);
-  return fraction;
 }
 
 void ImplicitSolver::move_rigidly(const RigidMove& move, SpringLattice& lattice) {

@@ -40,9 +40,10 @@ struct RigidMove {
 // Drawing, contacts and supports use the lattice.
 //
 // Contacts push the lattice's nodes as if each were free, with an inverse mass that matches the block's
-// response to the last contacts. The block then responds as a whole, after each pass over the contacts and at
-// the end of the tick. If the block responds more than the contacts assumed, the impulses of the pass are
-// scaled down. The contacts with the ground are solved last and push the block directly.
+// response to the last contacts. The block then responds as a whole, after each pass over the contacts with
+// other such blocks and at the end of the step. If the block responds more than the contacts assumed, the
+// impulses of the pass are scaled down. The contacts with the ground are solved last and push the block
+// directly.
 //
 // Owned by the body. It is built outside the tick and allocates nothing afterwards.
 class ImplicitSolver {
@@ -120,12 +121,13 @@ class ImplicitSolver {
     std::span<GroundContact> contacts;
     double push_speed_cap_m_per_s = 0.0;
   };
-  // Ends a step: responds to the contacts since the last response and moves the block and the lattice. If the
-  // block responded so much more than the contacts assumed that the bodies gained energy, the impulses are
-  // scaled down to those with the least energy. `assumed_work_of_pairs_j` is the work on this body and the
-  // other bodies that the contacts between them assumed (BodyContacts::find_assumed_work_j()). Returns the
-  // fraction that acts, at most 1.
-  double end_step(SpringLattice& lattice, const GroundPush& on_ground, double assumed_work_of_pairs_j);
+  // Responds to the contacts with other bodies since the last response. If the block responds so much more
+  // than the contacts assumed that the bodies would gain energy, the impulses are scaled down to those with
+  // the least energy. `assumed_work_of_pairs_j` is BodyContacts::find_assumed_work_j(). Returns the fraction
+  // that acts, at most 1.
+  double respond_to_pairs(double assumed_work_of_pairs_j, SpringLattice& lattice);
+  // Ends a step: moves the block and the lattice.
+  void end_step(SpringLattice& lattice, const GroundPush& on_ground);
 
   template <class Visitor>
   void visit_state(Visitor&& visit) const {

@@ -115,12 +115,12 @@ void RollingFactor::factorise_columns(const MatrixParts& parts, int count) {
 
 void RollingFactor::advance(const MatrixParts& parts) {
   const int size = next_.band.size;
-  if (next_.stiffness == 0.0) {
+  const bool changed = next_.inertia != parts.inertia || next_.stiffness != parts.stiffness;
+  if (changed) {
     begin(parts.inertia, parts.stiffness);
     factorise_columns(parts, size);
   }
-  const bool changed = next_.inertia != parts.inertia || next_.stiffness != parts.stiffness;
-  if (next_.columns == size || changed) begin(parts.inertia, parts.stiffness);
+  if (next_.columns == size) begin(parts.inertia, parts.stiffness);
   const double products_a_column = 0.5 * next_.band.half_band * next_.band.half_band;
   factorise_columns(parts, static_cast<int>(std::ceil(products_a_piece / products_a_column)));
 }

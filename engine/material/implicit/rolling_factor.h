@@ -51,7 +51,8 @@ class RollingFactor {
   // Discards the factor: the next advance() factorises the whole matrix.
   void forget() { next_.stiffness = 0.0; }
   // Factorises the next part of the present matrix. When the new factor is complete, it replaces the one in
-  // use.
+  // use. If the inertia or the stiffness has changed, as with the length of a step, factorises the whole
+  // matrix: responses to contacts would otherwise be wrong.
   void advance(const MatrixParts& parts);
   // Sets `to` to A^-1 `from` with the matrix A of a few ticks ago; 0 at fixed coordinates. Both are in the
   // frame.

@@ -92,11 +92,6 @@ Vector3 RigidDynamics::spin_of(const Quaternion& orientation, const Vector3& ang
   return orientation * (inverse_inertia_ * (orientation.conjugate() * angular_momentum)) / scale_;
 }
 
-void RigidDynamics::begin_tick(const LatticeView& view) {
-  hand_impulse_ns_.setZero();
-  place_nodes(view);
-}
-
 void RigidDynamics::kick(const LatticeView& view, double h_s, const Vector3& gravity_m_per_s2,
                          double drag_per_s, const HandSpring* hand, const HoldTarget& target) {
   SPOONBILL_ASSERT_DEBUG(h_s > 0.0);

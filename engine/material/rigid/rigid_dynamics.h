@@ -41,7 +41,7 @@ class RigidDynamics {
   const Vector3& spin_rad_per_s() const { return spin_rad_per_s_; }
   // Kinetic and gravitational energy; the gravitational energy is zero at the origin.
   double energy_j(const Vector3& gravity_m_per_s2) const;
-  // Impulse of the hand on the body since begin_tick(), N s.
+  // Impulse of the hand on the body since clear_hand_impulse(), N s.
   const Vector3& hand_impulse_ns() const { return hand_impulse_ns_; }
 
   // Puts the body at rest at `pose`.
@@ -54,8 +54,7 @@ class RigidDynamics {
   // Multiplies the inertia, but neither the weight nor any other force.
   void set_inertia_scale(double scale);
 
-  // Starts a tick: places the nodes, and begins to sum up the impulse of the hand.
-  void begin_tick(const LatticeView& view);
+  void clear_hand_impulse() { hand_impulse_ns_.setZero(); }
   // Sets the positions and velocities of the frame's nodes. Call after a change outside a substep.
   void place_nodes(const LatticeView& view);
   // Accelerates the body by gravity, and by the hand if there is one, in a substep of h_s. The spring and its

@@ -41,8 +41,9 @@ void LoadedBlock::tick(double drag_per_s, const Vector3& gravity_m_per_s2, Groun
   ImplicitSolver* const solver = core ? &*core : nullptr;
   loads.apply(lattice, solver);
   time_s += tick_s;
+  supports.clear_impulses();
   const RelaxedLattice relaxed{&lattice, gravity_m_per_s2, solver,
-                               supports.begin_tick(lattice, time_s, tick_s)};
+                               supports.begin_step(lattice, time_s, tick_s)};
   RelaxSettings settings;
   settings.tick = static_cast<std::uint64_t>(std::lround(time_s / tick_s));
   settings.drag_per_s = drag_per_s;

@@ -97,7 +97,7 @@ class Folding {
     const DenormalsFlushed flushed;
     contacts_.clear(std::array<const SpringLattice*, 1>{&body_.lattice});
     EXPECT_TRUE(!meets_itself_ || self_.add_contacts({0, &body_}, contacts_));
-    contacts_.begin();
+    contacts_.begin(tick_s);
     relax(std::array{RelaxedLattice{&body_.lattice}}, {tick_++, 1, 1e-3, drag_per_s_}, {}, &contacts_);
     body_.mapping().update(body_.lattice);
     return contacts_.acted(0);

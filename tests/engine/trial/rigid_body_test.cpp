@@ -128,7 +128,7 @@ TEST(RigidBody, KeepsItsMomentumAndEnergyWhileItTumbles) {
   SpringLattice frame = simulation.lattice(0);
   const LatticeView view = frame.view();
   block.set_velocity({0.1, 0.0, 0.0}, {0.2, 0.1, 20.0});
-  block.begin_tick(view);
+  block.place_nodes(view);
   const Vector3 momentum = angular_momentum(block);
   const double energy_j = kinetic_energy_j(block);
   double largest_tilt = 0.0;

@@ -59,7 +59,7 @@ TEST(SearchedShapes, DoNotHoldWhileARigidBodyMoves) {
   turn.body = 1;
   turn.angle_deg = 1.0;
   bodies[1].rigid->turn(turn);
-  bodies[1].rigid->begin_tick(tick_s);
+  bodies[1].rigid->begin_step(tick_s);
   EXPECT_FALSE(searched.still_hold(bodies));
 }
 

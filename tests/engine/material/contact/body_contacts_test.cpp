@@ -80,7 +80,7 @@ void substep(BodyContacts& contacts, Row& row) {
 void approach(double speed_m_per_s, Row& row, BodyContacts& contacts) {
   row.set_velocity(1, speed_m_per_s);
   ASSERT_TRUE(add(contacts, row, 0, 1, 1e-5));
-  contacts.begin();
+  contacts.begin(1e-3);
   substep(contacts, row);
 }
 
@@ -116,7 +116,7 @@ TEST(BodyContacts, APushIsPassedOnWithinASubstep) {
     if (!last_first) {
       ASSERT_TRUE(add(contacts, row, 2, 1, 1e-6, 1));
     }
-    contacts.begin();
+    contacts.begin(1e-3);
     substep(contacts, row);
     EXPECT_GT(row.velocity(2), 0.1) << "last first: " << last_first;
     EXPECT_TRUE(contacts.acted(1, 2));
@@ -138,7 +138,7 @@ TEST(BodyContacts, APushIsPassedOnToAPointBeyondItsCell) {
   ASSERT_TRUE(contacts.add(pushed, row.point(0), Vector3::UnitX(), 1e-6, infinitely_deep, 0));
   // The pushed node gets 0.11 m/s, and the point beyond it three times as much.
   ASSERT_TRUE(contacts.add(row.point(2), beyond, Vector3::UnitX(), 4e-5, infinitely_deep, 1));
-  contacts.begin();
+  contacts.begin(1e-3);
   substep(contacts, row);
   EXPECT_TRUE(contacts.acted(1, 2));
 }
@@ -150,10 +150,10 @@ int ticks_until_separated(bool is_real_time) {
   BodyContacts contacts(4);
   contacts.set_real_time(is_real_time);
   EXPECT_TRUE(add(contacts, row, 0, 1, 1e-5));
-  contacts.begin();
+  contacts.begin(1e-3);
   contacts.clear(row.lattices());
   EXPECT_TRUE(add(contacts, row, 0, 1, -1e-6));
-  contacts.begin();
+  contacts.begin(1e-3);
   for (int tick = 0; tick < 200; ++tick) {
     const double before_m = row.moved_m(0);
     substep(contacts, row);
@@ -175,7 +175,7 @@ TEST(BodyContacts, AnOverlapIsCorrectedWithoutMotion) {
   Row row(2);
   BodyContacts contacts(4);
   ASSERT_TRUE(add(contacts, row, 0, 1, -1e-4));
-  contacts.begin();
+  contacts.begin(1e-3);
   for (int s = 0; s < 2000; ++s) {
     substep(contacts, row);
     contacts.separate(row.views(), h_s, no_caps);
@@ -190,7 +190,7 @@ TEST(BodyContacts, ANewDeepPointIsLeftOutUnlessBodiesBeginInEachOther) {
   BodyContacts contacts(4);
   ASSERT_TRUE(add(contacts, row, 0, 1, -2e-3, 0, 1e-3));
   EXPECT_EQ(contacts.count(), 1);
-  contacts.begin();
+  contacts.begin(1e-3);
   contacts.clear(row.lattices());
   ASSERT_TRUE(add(contacts, row, 0, 1, -2e-3, 0, 1e-3)) << "it had a contact in the last tick";
   ASSERT_TRUE(add(contacts, row, 0, 1, -2e-3, 1, 1e-3));
@@ -205,10 +205,10 @@ TEST(BodyContacts, AContactWhoseNormalTurnsRoundKeepsItsOwn) {
   row.set_velocity(1, 1.0);
   BodyContacts contacts(4);
   ASSERT_TRUE(add(contacts, row, 0, 1, 1e-5));
-  contacts.begin();
+  contacts.begin(1e-3);
   contacts.clear(row.lattices());
   ASSERT_TRUE(contacts.add(row.point(0), row.point(1), -Vector3::UnitX(), -1e-5, infinitely_deep, 0));
-  contacts.begin();
+  contacts.begin(1e-3);
   substep(contacts, row);
   EXPECT_NEAR(row.velocity(1) - row.velocity(0), 0.5 * 1e-5 / h_s, 1e-6);
 }
