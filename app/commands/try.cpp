@@ -207,6 +207,7 @@ void add_trial_body(FactSheet& facts, const TrialBodyReport& body, const Body& s
   const bool deforms = source.kind == BodyKind::deformable;
   facts.add("Body", body.name + (deforms ? "" : ", " + kind_text(source)), "", nullptr);
   facts.add("  Centre of mass", position_text(body.centre_of_mass_m), "", nullptr);
+  if (body.is_gone) facts.add("  Gone", "more than 1 m away, where it stays", "", nullptr);
   if (deforms) {
     facts.add("  Volume", percent_text(body.volume_ratio) + " of that at rest", "", nullptr);
     facts.add(
@@ -232,6 +233,7 @@ void add_trial_body(FactSheet& facts, const TrialBodyReport& body, const Body& s
                   {"volume_ratio", body.volume_ratio},
                   {"smallest_jacobian", body.smallest_jacobian},
                   {"inverted_cells", body.inverted_cells},
+                  {"gone", body.is_gone},
                   {"contact_radius_m", body.contact_radius_m},
                   {"smallest_contact_radius_m", body.smallest_contact_radius_m},
                   {"support_force_n", components_json(body.support_force_n)},

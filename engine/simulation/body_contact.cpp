@@ -485,18 +485,20 @@ int BodyPairContact::choose_tick_parts(const BodyState& first, const BodyState& 
   return parts;
 }
 
-bool BodyPairContact::find(const IndexedBody& first, const IndexedBody& second) {
+bool BodyPairContact::find(const IndexedBody& first, const IndexedBody& second, double time_s) {
   const double cell = find_cell_m(*first.state, *second.state);
   // Bodies that are lowered move without a velocity.
   const double lowered_m = tick_s * (first.state->lowering_m_per_s + second.state->lowering_m_per_s);
-  const double motion_m = find_approach_m(*first.state, *second.state, cell) + lowered_m;
-  // Points that come within reach during a tick need their constraints one tick earlier.
+  const double tick_motion_m = find_approach_m(*first.state, *second.state, cell) + lowered_m;
+  const double motion_m = time_s / tick_s * tick_motion_m;
+  // Points that come within reach during a step need their constraints when it begins. Bodies may become
+  // faster in it.
   const double margin_m = std::max(contact_margin_cells * cell, 2.0 * motion_m);
   deepest_new_m_ = std::max(deepest_new_cells * cell, motion_m);
   const BodyState &one = is_mesh_first_ ? *second.state : *first.state,
                   &other = is_mesh_first_ ? *first.state : *second.state;
   if (const auto* const surfaces = std::get_if<std::unique_ptr<SurfaceProximity>>(&proximity_)) {
-    const bool is_slow = motion_m <= fast_approach_cells * cell;
+    const bool is_slow = tick_motion_m <= fast_approach_cells * cell;
     (*surfaces)->set_skipping(!first.state->rigid || is_slow, !second.state->rigid || is_slow);
   }
   return std::visit(

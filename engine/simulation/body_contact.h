@@ -88,9 +88,9 @@ class BodyPairContact {
   // so that it changes rarely, and at most tick_parts_limit. Contacts are planes that stay as they are in a
   // part, while the bodies turn and slide.
   int choose_tick_parts(const BodyState& first, const BodyState& second) const;
-  // Finds the points on the skin of each body that are near the skin of the other. Returns false if a
-  // capacity was exceeded.
-  bool find(const IndexedBody& first, const IndexedBody& second);
+  // Finds the points on the skin of each body that can be near the skin of the other in a step of
+  // `time_s`, a tick or a part of it. Returns false if a capacity was exceeded.
+  bool find(const IndexedBody& first, const IndexedBody& second, double time_s);
   // Forgets what earlier calls of find() have found. Must be called before the bodies jump.
   void forget();
   // Smallest gap that the last find() found, negative where the bodies overlap; infinite if they are not

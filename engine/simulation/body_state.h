@@ -99,6 +99,8 @@ struct BodyState {
   // Returns the triangles of a soft mesh tool or of a body with a mesh; null for any other body.
   const MeshMapping* mesh() const { return std::get_if<MeshMapping>(&skin); }
 
+  bool is_gone = false;  // see Simulation::is_gone()
+
   // Returns the highest speed of a node. For a fixed body, it is that of the last tick in which it moved.
   double fastest_m_per_s() const { return lattice.fastest_m_per_s(); }
 

@@ -39,13 +39,13 @@ Status check_scene(const Scene& scene) {
   return check_symmetry(scene.symmetry);
 }
 
-// Returns the diagonal of the box around the bodies at rest, in metres.
-double measure_size_m(const std::vector<BodyState>& bodies, std::size_t count) {
+// Returns the box around the first `count` bodies at rest.
+Box find_scene_box(const std::vector<BodyState>& bodies, std::size_t count) {
   Box box;
   for (std::size_t b = 0; b < count; ++b) {
     for (const Vector3& node : bodies[b].lattice.mesh().nodes) box.include(node);
   }
-  return box.size();
+  return box;
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
   std::vector<SampledGroundContact> sampled_ground =
       make_sampled_ground_contacts({bodies.data(), scene.bodies.size()});
   std::vector<std::shared_ptr<const ToolBody>> retired_bodies = {find_model_body(scene.tool)};
-  const double scene_size_m = measure_size_m(bodies, scene.bodies.size());
+  const Box scene_box = find_scene_box(bodies, scene.bodies.size());
   auto made = std::make_unique<State>(State{std::move(scene),
                                             set,
                                             std::move(bodies),
@@ -86,7 +86,7 @@ Result<Simulation> Simulation::make(Scene scene, InstructionSet set, const Featu
                                             std::move(sampled_ground),
                                             false,
                                             0.0,
-                                            scene_size_m,
+                                            scene_box,
                                             -1,
                                             std::move(retired_bodies),
                                             {}});
@@ -186,6 +186,10 @@ Vector3 Simulation::tool_force_n(int body) const {
 }
 double Simulation::contact_area_m2(int body) const {
   return find_contact_area_m2(*state_, body);
+}
+bool Simulation::is_gone(int body) const {
+  SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));
+  return state_->bodies[static_cast<std::size_t>(body)].is_gone;
 }
 std::optional<Pose> Simulation::rigid_pose(int body) const {
   SPOONBILL_ASSERT(body >= 0 && body < static_cast<int>(state_->bodies.size()));

@@ -22,6 +22,9 @@ namespace spoonbill {
 
 inline constexpr double tick_s = 1e-3;
 
+// See Simulation::is_gone().
+inline constexpr double gone_distance_m = 1.0;
+
 // Input of the hand in one tick.
 struct ToolInput {
   Pose pose;
@@ -155,6 +158,10 @@ class Simulation {
   double contact_area_m2(int body) const;
   // Returns find_smallest_contact_radius_m() of a body; 0 for a rigid one.
   double smallest_contact_radius_m(int body) const;
+  // Returns whether a deformable body has gone farther than gone_distance_m from where the bodies of a scene
+  // in real time were at rest. It then stays where it is, without contacts: the rounding of its
+  // displacements, which are in single precision, would shake it.
+  bool is_gone(int body) const;
   // Returns the pose of a fixed or rigid body, which maps its rest shape to the present one; empty for a
   // deformable body.
   std::optional<Pose> rigid_pose(int body) const;
@@ -167,7 +174,8 @@ class Simulation {
   // Returns the index of the body to which the last tick's flags nodes_slowed, speed_capped and body_limited
   // apply, or -1.
   int body_at_fault() const;
-  // Returns the largest overlap of two bodies that was found in the last tick, m; 0 if none.
+  // Returns the largest overlap of two bodies that was found in the last tick, m; 0 if none. Points that have
+  // no contact, because they are beside a fold of a surface, do not count.
   double largest_overlap_m() const;
 
   struct State;

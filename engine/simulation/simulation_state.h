@@ -60,9 +60,9 @@ struct Simulation::State {
   std::vector<RigidGroundContact> rigid_ground;  // contacts of each of the scene's bodies
   std::vector<SampledGroundContact> sampled_ground;  // of each of them, for soft bodies in boxes of cells
   bool pairs_overflow = false;                       // whether the last search exceeded a capacity
-  double tool_gap_m = 0.0;    // smallest gap between a soft tool and a body; infinite if none is near
-  double scene_size_m = 0.0;  // diagonal of the box around the bodies at rest
-  int limited_body = -1;      // a body that BodyHold::limit() restored in the last tick, or -1
+  double tool_gap_m = 0.0;  // smallest gap between a soft tool and a body; infinite if none is near
+  Box scene_box;            // box around the bodies at rest
+  int limited_body = -1;    // a body that BodyHold::limit() restored in the last tick, or -1
   // Bodies of all solid tools so far, the last one included, and triangles of replaced soft tools. They are
   // kept, because snapshots share them and no tick may free the last reference.
   std::vector<std::shared_ptr<const ToolBody>> retired_bodies;

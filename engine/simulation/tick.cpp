@@ -24,6 +24,7 @@ void visit_pairs(Simulation::State& s, const Visit& visit) {
   for (std::size_t second = 1; second < s.stepped_count(); ++second) {
     for (std::size_t first = 0; first < second; ++first, ++pair) {
       if (s.bodies[first].is_immovable() && s.bodies[second].is_immovable()) continue;
+      if (s.bodies[first].is_gone || s.bodies[second].is_gone) continue;
       visit(*pair, IndexedBody{static_cast<int>(first), &s.bodies[first]},
             IndexedBody{static_cast<int>(second), &s.bodies[second]}, is_tool(s, second));
     }
@@ -64,7 +65,7 @@ int choose_parts(Simulation::State& s) {
 
 // Searches for the points of bodies that are near each other. Returns false if what the last search found
 // still holds.
-bool search_pairs(Simulation::State& s) {
+bool search_pairs(Simulation::State& s, double time_s) {
   if (is_searched(s)) return false;
   std::array<const SpringLattice*, lattice_capacity> lattices{};
   for (std::size_t b = 0; b < s.stepped_count(); ++b) lattices[b] = &s.stepped_bodies()[b].lattice;
@@ -73,7 +74,7 @@ bool search_pairs(Simulation::State& s) {
   s.tool_gap_m = std::numeric_limits<double>::infinity();
   visit_pairs(
       s, [&](BodyPairContact& pair, const IndexedBody& first, const IndexedBody& second, bool is_tool_pair) {
-        s.pairs_overflow |= !pair.find(first, second);
+        s.pairs_overflow |= !pair.find(first, second, time_s);
         if (is_tool_pair) s.tool_gap_m = std::min(s.tool_gap_m, pair.least_gap_m());
       });
   return true;
@@ -89,9 +90,11 @@ void add_contacts(Simulation::State& s, const ToolHold& hold, double time_s) {
     s.pairs_overflow |= !pair.add_contacts(first, second, s.between);
   });
   for (std::size_t b = 0; b < s.stepped_count(); ++b) {
+    if (s.bodies[b].is_gone) continue;
     s.pairs_overflow |= !s.self[b].add_contacts({static_cast<int>(b), &s.bodies[b]}, s.between);
   }
   for (std::size_t b = 0; s.scene.ground && b < s.scene.bodies.size(); ++b) {
+    if (s.bodies[b].is_gone) continue;
     const IndexedBody body{static_cast<int>(b), &s.bodies[b]};
     const Vector3& gravity = s.scene.sculpting.gravity_m_per_s2;
     const bool is_complete =
@@ -103,6 +106,20 @@ void add_contacts(Simulation::State& s, const ToolHold& hold, double time_s) {
   if (s.between.count() > 0) s.searched.remember(s.stepped_bodies());
 }
 
+// Gaps of constraints differ from those of the surfaces by less than this, in cells (see SkinPoint).
+constexpr double gap_difference_cells = 0.05;
+
+// Returns the largest overlap of two bodies that the last search found. Beside a fold of a surface, it finds
+// overlaps that do not exist, and to which no constraint corresponds.
+double find_overlap_m(const Simulation::State& s) {
+  double found_m = 0.0, cell_m = 0.0;
+  for (const BodyPairContact& pair : s.pairs) found_m = std::max(found_m, -pair.least_gap_m());
+  for (const BodyState& body : s.stepped_bodies())
+    cell_m = std::max(cell_m, static_cast<double>(body.lattice.cell_size_m()));
+  const double held_m = s.between.largest_overlap_m();
+  return found_m <= held_m + gap_difference_cells * cell_m ? found_m : held_m;
+}
+
 int find_step_division(const Sculpting& sculpting) {
   return sculpting.real_time ? sculpting.step_division : 1;
 }
@@ -112,6 +129,7 @@ void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools, con
   if (s.scene.ground) {
     s.ground_contact.find(s.scene_bodies(), *s.scene.ground, sculpting, part.time_s());
   }
+  const RigidMotion stays;
   std::array<RelaxedLattice, lattice_capacity> lattices{};
   for (std::size_t b = 0; b < s.stepped_count(); ++b) {
     BodyState& body = s.bodies[b];
@@ -119,9 +137,11 @@ void relax_bodies(Simulation::State& s, std::span<const TouchingTool> tools, con
     const double end_s = (static_cast<double>(s.tick) + part.end()) * tick_s;
     lattices[b] = {&body.lattice,
                    sculpting.gravity_m_per_s2,
-                   body.solver(),
+                   body.is_gone ? nullptr : body.solver(),
                    body.supports.begin_step(body.lattice, end_s, part.time_s()),
-                   body.rigid ? &body.rigid->motion() : nullptr,
+                   body.is_gone ? &stays
+                   : body.rigid ? &body.rigid->motion()
+                                : nullptr,
                    body.rigid ? body.rigid->dynamics() : nullptr,
                    body.rigid ? body.rigid->hand() : nullptr};
   }
@@ -199,7 +219,7 @@ bool hold_rigid(BodyState& body, bool keeps_place) {
 // Keeps the bodies in the scene. Call after everything else has moved them in a part of the tick;
 // BodyHold::begin() must have been called at its start.
 void hold_bodies(Simulation::State& s, const TickPart& part) {
-  const double reach_m = reach_fraction * s.scene_size_m;
+  const double reach_m = reach_fraction * s.scene_box.size();
   for (std::size_t b = 0; b < s.scene.bodies.size(); ++b) {
     BodyState& body = s.bodies[b];
     if (body.rigid) {
@@ -214,6 +234,19 @@ void hold_bodies(Simulation::State& s, const TickPart& part) {
     }
     if (body.lowering_m_per_s > 0.0) lower(s, b, part);
     if (keeps_place(s.scene) && !body.lattice.has_fixed_nodes()) body.hold.keep_pose(body.lattice, solver);
+  }
+}
+
+// Finds the bodies that are gone from the scene, and those that a command has put back.
+void find_gone_bodies(Simulation::State& s) {
+  constexpr std::uint64_t interval_ticks = 16;
+  if (!s.scene.sculpting.real_time || s.tick % interval_ticks != 0) return;
+  for (BodyState& body : s.scene_bodies()) {
+    if (body.rigid || body.lattice.has_fixed_nodes()) continue;
+    const bool is_gone = s.scene_box.squared_distance(find_mass_centre(body.lattice).position_m) >
+                         gone_distance_m * gone_distance_m;
+    if (is_gone != body.is_gone) s.searched.forget();
+    body.is_gone = is_gone;
   }
 }
 
@@ -298,7 +331,7 @@ void advance_part(Simulation::State& s, const ToolHold& hold, const Tools& tools
   }
   s.between.begin(part.time_s());
   s.contacts_overflow |= s.pairs_overflow;
-  for (const BodyPairContact& pair : s.pairs) s.overlap_m = std::max(s.overlap_m, -pair.least_gap_m());
+  s.overlap_m = std::max(s.overlap_m, find_overlap_m(s));
   for (BodyState& body : s.scene_bodies()) {
     body.hold.begin(body.lattice, keeps_place(s.scene) || body.lowering_m_per_s > 0.0);
   }
@@ -312,7 +345,7 @@ void advance_part(Simulation::State& s, const ToolHold& hold, const Tools& tools
   }
   hold_bodies(s, part);
   for (std::size_t b = 0; b < s.stepped_count(); ++b) {
-    if (s.bodies[b].rigid && !s.bodies[b].rigid->moves()) continue;
+    if (s.bodies[b].is_gone || (s.bodies[b].rigid && !s.bodies[b].rigid->moves())) continue;
     s.bodies[b].update_skin();
   }
   mark_touched(s);
@@ -332,14 +365,15 @@ Reaction Simulation::advance(const ToolInput& input) {
     tools[1] = touch(s, s.mirrored, make_mirrored_hold(s.scene.symmetry, input), input.coupling_n_per_m);
   }
   clear_report(s);
+  find_gone_bodies(s);
   begin_rigid_steps(s, tick_s);
-  bool has_searched = search_pairs(s);
+  bool has_searched = search_pairs(s, tick_s);
   const int parts = has_searched ? choose_parts(s) : 1;
   for (int p = 0; p < parts; ++p) {
     const TickPart part{p, parts};
     if (p > 0) {
       begin_rigid_steps(s, part.time_s());
-      has_searched = search_pairs(s);
+      has_searched = search_pairs(s, part.time_s());
     } else if (parts > 1) {
       shorten_rigid_steps(s, tick_s, part.time_s());
     }

@@ -45,6 +45,7 @@ TrialBodyReport report_on_body(const Trial& trial, const Simulation& simulation,
     report.centre_of_mass_m = find_mass_centre(lattice).position_m;
     report.volume_ratio = lattice.volume_m3() / lattice.rest_volume_m3();
     report.smallest_jacobian = cells.smallest_jacobian;
+    report.is_gone = simulation.is_gone(number);
     report.inverted_cells = cells.inverted_cells;
     report.contact_radius_m = std::sqrt(simulation.contact_area_m2(number) / std::numbers::pi);
     report.smallest_contact_radius_m = simulation.smallest_contact_radius_m(number);

@@ -20,6 +20,7 @@ struct TrialBodyReport {
   double volume_ratio = 1.0;
   double smallest_jacobian = 1.0;
   int inverted_cells = 0;  // cells with a corner whose volume is not positive
+  bool is_gone = false;    // Simulation::is_gone()
   // Radius of a circle of the area on which contacts, taken together, pushed in the last tick, and the
   // smallest radius that the cells resolve (find_smallest_contact_radius_m()), m; 0 for any other body.
   double contact_radius_m = 0.0, smallest_contact_radius_m = 0.0;

@@ -132,7 +132,9 @@ void BodyContacts::clear(std::span<const SpringLattice* const> lattices) {
       apart -= constraint.second.displacement_m(*lattices[constraint.second_body]);
     const double gap_m = constraint.base_m + constraint.normal.dot(apart);
     if (!std::isfinite(gap_m)) continue;
-    kept_.add(constraint.key(), {constraint.force_n, constraint.normal, gap_m});
+    const bool is_mean = constraint.moved_by == MovedBy::solvers || !(time_s_ > 0.0);
+    const Vector3 mean_n = is_mean ? constraint.force_n : Vector3(constraint.impulse_ns / time_s_);
+    kept_.add(constraint.key(), {constraint.force_n, mean_n, constraint.normal, gap_m});
   }
   kept_.sort();
   constraints_.clear();
@@ -163,7 +165,8 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
   const ContactKey key{first.body, second.body, sample};
   const Kept* const kept = sample >= 0 ? kept_.find(key) : nullptr;
   if (kept == nullptr && has_searched_ && found_gap_m < -deepest_new_m) return true;
-  const bool is_folded = kept != nullptr && kept->normal.dot(found_normal) < 0.0;
+  const bool is_folded =
+      kept != nullptr && (kept->normal.dot(found_normal) < 0.0 || found_gap_m < kept->gap_m - deepest_new_m);
   const Vector3 normal = is_folded ? kept->normal : found_normal;
   const double gap_m = is_folded ? kept->gap_m : found_gap_m;
   if (constraints_.size() == capacity_) return false;
@@ -208,7 +211,10 @@ bool BodyContacts::add(const BodyPoint& first, const BodyPoint& second, const Ve
        .is_second_implicit = is_by_solver(second),
        .separates = separates,
        .sample = sample});
-  if (kept != nullptr) constraints_.back().force_n = limit_to_cone(kept->force_n, normal, friction);
+  if (kept == nullptr) return true;
+  Constraint& added = constraints_.back();
+  added.force_n = limit_to_cone(kept->force_n, normal, friction);
+  if (added.is_implicit()) added.known_force_n = limit_to_cone(kept->mean_force_n, normal, friction);
   return true;
 }
 
@@ -226,16 +232,25 @@ void BodyContacts::keep() {
 
 void BodyContacts::begin(double time_s) {
   SPOONBILL_ASSERT_DEBUG(time_s > 0.0);
+  time_s_ = time_s;
   for (Constraint& constraint : constraints_) {
     constraint.acted = false;
     constraint.impulse_ns.setZero();
-    constraint.known_force_n = constraint.is_implicit() ? constraint.force_n : Vector3(Vector3::Zero());
     constraint.responded_ns = time_s * constraint.known_force_n;
-    constraint.responded_force_n = constraint.known_force_n;
+    constraint.responded_force_n = constraint.force_n;
   }
   impulse_ns_.fill(Vector3::Zero());
   ground_impulse_ns_.fill(Vector3::Zero());
   has_searched_ = true;
+}
+
+double BodyContacts::largest_overlap_m() const {
+  double overlap_m = 0.0;
+  for (const Constraint& constraint : constraints_) {
+    if (constraint.second_body == ground_index || constraint.first_body == constraint.second_body) continue;
+    overlap_m = std::max(overlap_m, -constraint.added_gap_m);
+  }
+  return overlap_m;
 }
 
 Vector3 BodyContacts::impulse_ns(int body, double time_s) const {

@@ -79,9 +79,9 @@ class BodyContacts {
   //
   // A surface may fold locally, as beside the pole of a pressed tube. Its normal then points inwards there,
   // and a point outside seems to be deep inside. A point that is deeper than `deepest_new_m` and had no
-  // constraint in the last tick is therefore left out, and a constraint whose normal has turned round keeps
-  // its earlier normal and gap. Bodies that begin in each other keep all points of the first search after
-  // forget().
+  // constraint in the last tick is therefore left out, and a constraint whose normal has turned round, or
+  // that would be deeper by more than `deepest_new_m` at once, keeps its earlier normal and gap. Bodies that
+  // begin in each other keep all points of the first search after forget().
   bool add(const BodyPoint& first, const BodyPoint& second, const Vector3& normal, double gap_m,
            double deepest_new_m, int sample);
   // Adds a constraint that keeps a point of a rigid body, or of a body with springs, on the side of the
@@ -103,8 +103,8 @@ class BodyContacts {
   void begin(double time_s);
 
   // Calls visit(node, impulse) for nodes of an implicitly stepped body, whose solver needs at the start of
-  // its step the impulses that are known then, N s: the forces of the last step times the time of this one.
-  // Call after begin().
+  // its step the impulses that are known then, N s: the mean forces of the last step times the time of this
+  // one. Call after begin().
   template <class Visit>
   void visit_known_impulses(int body, const Visit& visit) const {
     for (const Constraint& constraint : constraints_) {
@@ -146,6 +146,8 @@ class BodyContacts {
   bool has_constraint_between_solvers() const;
 
   int count() const { return static_cast<int>(constraints_.size()); }
+  // Returns the largest overlap of two bodies when their constraints were added, m; 0 if none overlap.
+  double largest_overlap_m() const;
   // Returns the impulse of all other bodies on a body since begin(), N s, for a tick of `time_s`. Constraints
   // of a body with itself have no effect on it.
   Vector3 impulse_ns(int body, double time_s) const;
@@ -181,6 +183,8 @@ class BodyContacts {
       visit(constraint.normal.data(), 3);
       for (const double* value : {&constraint.base_m, &constraint.difference_m, &constraint.compliance})
         visit(value, 1);
+      if (constraint.is_implicit() && constraint.moved_by == MovedBy::springs)
+        visit(constraint.impulse_ns.data(), 3);
     }
   }
 
@@ -211,7 +215,9 @@ class BodyContacts {
     bool separates = false;  // whether separate() corrects an overlap, instead of the push
     int sample = -1;
     Vector3 force_n = Vector3::Zero();  // force on the first point in the last substep: push and friction
-    Vector3 known_force_n = Vector3::Zero();  // `force_n` at begin(), if a body is stepped implicitly
+    // Mean force in the last step, if a body is stepped implicitly. The force of the last of many substeps
+    // may be far larger, when bodies have just met.
+    Vector3 known_force_n = Vector3::Zero();
     // Impulse since begin() to which such a body has responded, N s, and `force_n` then.
     Vector3 responded_ns = Vector3::Zero(), responded_force_n = Vector3::Zero();
     Vector3 passed_force_n = Vector3::Zero();  // `force_n` before the last pass()
@@ -239,7 +245,7 @@ class BodyContacts {
             const Vector3& known_ns = Vector3::Zero());
 
   struct Kept {
-    Vector3 force_n;
+    Vector3 force_n, mean_force_n;
     Vector3 normal;
     double gap_m;
   };
@@ -254,6 +260,7 @@ class BodyContacts {
   bool has_searched_ = false;  // whether a tick has begun since forget()
   bool is_real_time_ = false;
   double tick_fraction_ = 1.0;
+  double time_s_ = 0.0;  // duration of the present step, see begin()
 };
 
 }  // namespace spoonbill

@@ -46,7 +46,7 @@ class Impact {
   bool tick() {
     const DenormalsFlushed flushed;
     contacts_.clear(std::array<const SpringLattice*, 2>{&bodies_[0].lattice, &bodies_[1].lattice});
-    EXPECT_TRUE(pair_.find({0, &bodies_[0]}, {1, &bodies_[1]}));
+    EXPECT_TRUE(pair_.find({0, &bodies_[0]}, {1, &bodies_[1]}, settings_.time_s));
     EXPECT_TRUE(pair_.add_contacts({0, &bodies_[0]}, {1, &bodies_[1]}, contacts_));
     contacts_.begin(settings_.time_s);
     relax(std::array{RelaxedLattice{&bodies_[0].lattice}, RelaxedLattice{&bodies_[1].lattice}}, settings_, {},

@@ -58,6 +58,13 @@ TEST(RandomScenes, StayWholeWhenLightNodesAreHit) {
   for (const std::uint32_t seed : {36u, 56u}) expect_whole_second(seed);
 }
 
+// Stiff bodies meet in one of hundreds of substeps, whose force is far larger than the mean of the tick.
+TEST(RandomScenes, StayWholeWhenTicksHaveManySubsteps) {
+  if (sanitized) GTEST_SKIP() << long_when_sanitized;
+  if (!is_full_run()) GTEST_SKIP() << only_in_full;
+  for (const std::uint32_t seed : {89u, 119u}) expect_whole_second(seed);
+}
+
 // A body is crushed until corners of its cells are inside out. Springs alone keep them so.
 TEST(RandomScenes, StayWholeWhenCellsAreTurnedInsideOut) {
   if (sanitized) GTEST_SKIP() << long_when_sanitized;

@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <vector>
 
+#include "engine/simulation/body_hold.h"
 #include "engine/trial/body_measures.h"
 #include "engine/trial/trial.h"
 #include "engine/trial/trial_report.h"
+#include "tests/engine/trial/exact_distance.h"
 
 namespace spoonbill {
 namespace {
@@ -19,7 +20,9 @@ namespace {
 class EnergyBalance {
  public:
   explicit EnergyBalance(const Simulation& simulation)
-      : meters_(simulation.scene().bodies.size()), start_j_(find_energy_j(simulation)) {}
+      : meters_(simulation.scene().bodies.size()),
+        energy_of_j_(meters_.size()),
+        start_j_(find_energy_j(simulation)) {}
 
   // Call after each tick.
   void follow(const Simulation& simulation) {
@@ -42,11 +45,9 @@ class EnergyBalance {
   }
 
  private:
-  // Displacements are in single precision, whose rounding strains a body that has fallen farther than this.
-  static constexpr double farthest_strained_m = 1.0;
-
-  // Kinetic and gravitational energy, and elastic energy of bodies that are elastic and near. Elastic energy
-  // is never negative, so bodies that gain energy without it gain energy with it.
+  // Kinetic and gravitational energy, and elastic energy of bodies that are elastic. Elastic energy is never
+  // negative, so bodies that gain energy without it gain energy with it. A body that is gone keeps the energy
+  // that it had before.
   double find_energy_j(const Simulation& simulation) {
     const Vector3& gravity = simulation.scene().sculpting.gravity_m_per_s2;
     double energy_j = 0.0;
@@ -66,20 +67,39 @@ class EnergyBalance {
         const auto mass = static_cast<double>(lattice.mass(n));
         kinetic_j += 0.5 * mass * lattice.velocity(n).squaredNorm();
       }
-      const bool is_far = centre.position_m.norm() > farthest_strained_m;
-      const std::optional<double> whole_j =
-          is_far ? std::nullopt : meters_[b].find_energy_j(lattice, gravity);
-      energy_j += whole_j.value_or(kinetic_j + weight_j);
+      if (!simulation.is_gone(static_cast<int>(b)))
+        energy_of_j_[b] = meters_[b].find_energy_j(lattice, gravity).value_or(kinetic_j + weight_j);
+      energy_j += energy_of_j_[b];
       weight_energy_j_ += weight_j;
     }
     return energy_j;
   }
 
   std::vector<EnergyMeter> meters_;
-  double weight_energy_j_ = 0.0;  // gravitational part of the last find_energy_j()
+  std::vector<double> energy_of_j_;  // of each soft body
+  double weight_energy_j_ = 0.0;     // gravitational part of the last find_energy_j()
   double start_j_ = 0.0;
   double work_j_ = 0.0, given_j_ = 0.0, given_by_gravity_j_ = 0.0, largest_gain_j_ = 0.0;
 };
+
+constexpr double overlap_limit_cells = 0.1;
+
+// Returns the largest overlap of two bodies by the exact distances of their surfaces, m.
+double find_exact_overlap_m(const Simulation& simulation) {
+  constexpr int samples_each_way = 150;
+  Scene scene;
+  simulation.write_scene(scene);
+  double overlap_m = 0.0;
+  for (const Body& body : scene.bodies) {
+    const ExactDistance distance(body.surface);
+    for (const Body& other : scene.bodies) {
+      if (&other == &body || find_bounds(body).gap(find_bounds(other)) > 0.0) continue;
+      overlap_m =
+          std::max(overlap_m, find_depth_m(distance, sample_skin_points(other.surface, samples_each_way)));
+    }
+  }
+  return overlap_m;
+}
 
 }  // namespace
 
@@ -114,6 +134,11 @@ SceneOutcome run_scene(const RandomScene& random, int ticks) {
     balance.follow(simulation);
     if (!(cell_m > 0.0)) continue;
     outcome.last_overlap_cells = simulation.largest_overlap_m() / cell_m;
+    // Beside a fold of a crushed body, the search finds overlaps for a moment that do not exist.
+    if (outcome.last_overlap_cells > overlap_limit_cells) {
+      outcome.last_overlap_cells =
+          std::min(outcome.last_overlap_cells, find_exact_overlap_m(simulation) / cell_m);
+    }
     outcome.largest_overlap_cells = std::max(outcome.largest_overlap_cells, outcome.last_overlap_cells);
   }
   outcome.energy_gain = balance.largest_gain();
@@ -127,7 +152,6 @@ SceneOutcome run_scene(const RandomScene& random, int ticks) {
 }
 
 void expect_whole(const SceneOutcome& outcome) {
-  constexpr double overlap_limit_cells = 0.1;
   constexpr double energy_gain_limit = 0.01;
   EXPECT_TRUE(outcome.finite);
   EXPECT_EQ(outcome.inverted_cells, 0);
