@@ -20,7 +20,7 @@ std::vector<CommandEntry> add_commands(const OptionSet& root) {
   };
   const std::vector<Group> groups = {
       {"Make a model", {add_new, add_fit, add_merge, add_change, add_add}},
-      {"Look at a model", {add_info, add_check, add_sample, add_collide}},
+      {"Look at a model", {add_info, add_render, add_check, add_sample, add_collide}},
       {"Exchange with other programs", {add_convert}},
       {"Sculpt", {add_edit, add_record, add_replay}},
       {"Try a model", {add_try, add_rest}},

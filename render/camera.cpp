@@ -1,6 +1,7 @@
 #include "render/camera.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -9,12 +10,12 @@
 namespace spoonbill {
 namespace {
 
-constexpr double filled_fraction = 2.0 / 3.0;
-
 // Depth range, as multiples of the camera's distance from its target. It includes a tool near the eye and the
 // ground far behind the model, with depth steps below a micrometre at arm's length.
 constexpr double near_ratio = 0.05;
 constexpr double far_ratio = 20.0;
+
+constexpr double usual_filled_fraction = 2.0 / 3.0;
 
 double focal_px(const Camera& camera, const Viewport& viewport) {
   return 0.5 * viewport.height_px / std::tan(0.5 * camera.vertical_field_of_view_rad);
@@ -25,16 +26,17 @@ Eigen::Vector2d free_centre(const Viewport& viewport) {
   return {r.x + 0.5 * r.width, r.y + 0.5 * r.height};
 }
 
-// Returns the smallest distance of the camera at which every projected corner of the box is within a
-// rectangle. This rectangle is `viewport.free_px`, scaled by filled_fraction about its centre.
-double fitting_distance(const Camera& camera, const Box& box, const Viewport& viewport) {
+// Returns the smallest distance of the camera at which every projected point is within a
+// rectangle. This rectangle is `viewport.free_px`, scaled by `filled_fraction` about its centre.
+double fitting_distance(const Camera& camera, std::span<const Vector3> points_m, const Viewport& viewport,
+                        double filled_fraction) {
   const Eigen::Matrix3d axes = eye_axes(camera);
   const double focal = focal_px(camera, viewport);
   const double half_width = 0.5 * filled_fraction * viewport.free_px.width;
   const double half_height = 0.5 * filled_fraction * viewport.free_px.height;
   double distance = 0.0;
-  for (int i = 0; i < 8; ++i) {
-    const Vector3 local = axes.transpose() * (box.corner(i) - camera.target_m);
+  for (const Vector3& point_m : points_m) {
+    const Vector3 local = axes.transpose() * (point_m - camera.target_m);
     const double needed =
         focal * std::max(std::abs(local.x()) / half_width, std::abs(local.y()) / half_height);
     distance = std::max(distance, local.z() + needed);
@@ -43,11 +45,12 @@ double fitting_distance(const Camera& camera, const Box& box, const Viewport& vi
 }
 
 // Returns the offset, in pixels, from the centre of `viewport.free_px` to the centre of the rectangle around
-// the projected box.
-Eigen::Vector2d projected_offset(const Camera& camera, const Box& box, const Viewport& viewport) {
+// the projected points.
+Eigen::Vector2d projected_offset(const Camera& camera, std::span<const Vector3> points_m,
+                                 const Viewport& viewport) {
   Box2 pixels;
-  for (int i = 0; i < 8; ++i) {
-    if (const auto pixel = project(camera, viewport, box.corner(i))) pixels.include(*pixel);
+  for (const Vector3& point_m : points_m) {
+    if (const auto pixel = project(camera, viewport, point_m)) pixels.include(*pixel);
   }
   return pixels.centre() - free_centre(viewport);
 }
@@ -104,19 +107,32 @@ Camera look_from(const Camera& camera, StandardView view) {
 
 Camera frame(const Camera& camera, const Box& box, const Viewport& viewport) {
   if (box.is_empty()) return camera;
+  std::array<Vector3, 8> corners;
+  for (int i = 0; i < 8; ++i) corners[static_cast<std::size_t>(i)] = box.corner(i);
+  return frame(camera, corners, viewport, usual_filled_fraction);
+}
+
+Camera frame(const Camera& camera, std::span<const Vector3> points_m, const Viewport& viewport,
+             double filled_fraction) {
+  SPOONBILL_ASSERT(filled_fraction > 0.0);
+  Box box;
+  for (const Vector3& point_m : points_m) box.include(point_m);
+  if (box.is_empty()) return camera;
   Camera framed = camera;
   framed.target_m = box.centre();
   const double smallest_distance = 1e-3;
   // The centre of the projected box moves with the distance, because perspective enlarges the near side.
   // Twelve iterations converge below a hundredth of a pixel.
   for (int round = 0; round < 12; ++round) {
-    framed.distance_m = std::max(smallest_distance, fitting_distance(framed, box, viewport));
+    framed.distance_m =
+        std::max(smallest_distance, fitting_distance(framed, points_m, viewport, filled_fraction));
     const Eigen::Vector2d offset =
-        projected_offset(framed, box, viewport) / pixels_per_metre(framed, viewport);
+        projected_offset(framed, points_m, viewport) / pixels_per_metre(framed, viewport);
     const Eigen::Matrix3d axes = eye_axes(framed);
     framed.target_m += axes.col(0) * offset.x() - axes.col(1) * offset.y();
   }
-  framed.distance_m = std::max(smallest_distance, fitting_distance(framed, box, viewport));
+  framed.distance_m =
+      std::max(smallest_distance, fitting_distance(framed, points_m, viewport, filled_fraction));
   return framed;
 }
 

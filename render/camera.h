@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 
 #include "engine/base/geometry.h"
 
@@ -43,6 +44,9 @@ Camera look_from(const Camera& camera, StandardView view);
 // (Viewport::free_px) and fills two thirds of this area in the tighter direction. An empty box leaves the
 // camera unchanged.
 Camera frame(const Camera& camera, const Box& box, const Viewport& viewport);
+// Does the same for points, which fill the given fraction of the area.
+Camera frame(const Camera& camera, std::span<const Vector3> points_m, const Viewport& viewport,
+             double filled_fraction);
 
 Vector3 eye_position(const Camera& camera);
 

@@ -131,6 +131,17 @@ Status write_png(const std::filesystem::path& path, const Image& image, const Ou
   return write_png(path, image, encoder, Durability::now, options);
 }
 
+void make_alpha_straight(Image& image) {
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+    const int alpha = image.rgba[i + 3];
+    if (alpha == 0 || alpha == 255) continue;
+    for (std::size_t c = i; c < i + 3; ++c) {
+      const int straight = (255 * image.rgba[c] + alpha / 2) / alpha;
+      image.rgba[c] = static_cast<std::uint8_t>(std::min(255, straight));
+    }
+  }
+}
+
 void flip_rows(Image& image) {
   SPOONBILL_ASSERT(image.rgba.size() == image.row_bytes() * static_cast<std::size_t>(image.height));
   for (int top = 0, bottom = image.height - 1; top < bottom; ++top, --bottom) {

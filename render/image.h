@@ -34,6 +34,9 @@ struct Image {
   friend bool operator==(const Image&, const Image&) = default;
 };
 
+// Divides the colours of a picture with premultiplied alpha by their alpha, as PNG files store them.
+void make_alpha_straight(Image& image);
+
 // Flips the picture vertically in place, for pixels from GL, which stores the bottom row first.
 void flip_rows(Image& image);
 

@@ -48,6 +48,8 @@ struct ViewSettings {
   double detail = 1.0;      // fineness of the tessellation; 0.5 doubles edge lengths and chord errors
   bool keep_level = true;   // lets the tessellation stay slightly too fine or too coarse, to avoid flicker
   double ground_y_m = 0.0;  // height of the ground, see ground_below()
+  // Leaves out the background. The pixels then have premultiplied alpha; see make_alpha_straight().
+  bool is_transparent = false;
   double arrow_m_per_n = 0.012;
 };
 

@@ -49,18 +49,17 @@ void add_log_option(OptionSet parser, std::filesystem::path& log) {
       .show_as("FILE");
 }
 
+void add_size_option(OptionSet parser, Extent& size, const std::string& help) {
+  const auto parse = [](const std::string& text) {
+    return parse_extent(text, picture_size_range, "1280x720");
+  };
+  add_parsed_option(
+      parser, "--size", "WxH", parse, [&size](const Extent& parsed) { size = parsed; },
+      help + " in pixels, each from 64 to 7680; default: 1280x720");
+}
+
 void add_frame_options(OptionSet parser, Extent& size, std::uint64_t& every) {
-  parser
-      .add_parsed(
-          "--size",
-          [&size](const std::string& text) -> Status {
-            const auto parsed = parse_extent(text, picture_size_range, "1280x720");
-            if (!parsed) return parsed.error();
-            size = parsed.value();
-            return {};
-          },
-          "Frame size in pixels, each from 64 to 7680; default: 1280x720. The panel needs 750x700")
-      .show_as("WxH");
+  add_size_option(parser, size, "Frame size (the panel needs 750x700)");
   parser.add_option("--every", every, "Interval between drawn frames; default: 1, range: 1 to 1000000")
       .limit(Range<std::uint64_t>{1, 1000000})
       .show_as("N");

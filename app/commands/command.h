@@ -35,6 +35,7 @@ CommandEntry add_convert(OptionSet root);
 CommandEntry add_edit(OptionSet root);
 CommandEntry add_record(OptionSet root);
 CommandEntry add_replay(OptionSet root);
+CommandEntry add_render(OptionSet root);
 CommandEntry add_rest(OptionSet root);
 CommandEntry add_try(OptionSet root);
 // Internal commands that the program runs as child processes; --help does not list them.
@@ -65,6 +66,9 @@ Status check_is_not_source(const std::filesystem::path& out, const std::filesyst
 
 // --log: the file of a RunLog.
 void add_log_option(OptionSet parser, std::filesystem::path& log);
+
+// --size: the size of pictures in pixels. `help` begins its description.
+void add_size_option(OptionSet parser, Extent& size, const std::string& help);
 
 // --size and --every: the size of frames in pixels, and the interval between drawn frames.
 void add_frame_options(OptionSet parser, Extent& size, std::uint64_t& every);

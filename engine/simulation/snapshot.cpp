@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/simulation/simulation_state.h"
@@ -34,9 +36,7 @@ void write_surface(const Surface& surface, SurfaceSnapshot& out) {
   copy(surface.net.z, out.z);
 }
 
-void write_mesh(const MeshMapping& mesh, MeshSnapshot& out) {
-  const std::vector<Vector3>& vertices = mesh.current().vertices_m();
-  out.triangles = mesh.triangles();
+void write_vertices(const std::vector<Vector3>& vertices, MeshSnapshot& out) {
   std::vector<float>* const axes[3] = {&out.x, &out.y, &out.z};
   for (int axis = 0; axis < 3; ++axis) {
     axes[axis]->resize(vertices.size());
@@ -44,6 +44,11 @@ void write_mesh(const MeshMapping& mesh, MeshSnapshot& out) {
       (*axes[axis])[v] = static_cast<float>(vertices[v][axis]);
     }
   }
+}
+
+void write_mesh(const MeshMapping& mesh, MeshSnapshot& out) {
+  out.triangles = mesh.triangles();
+  write_vertices(mesh.current().vertices_m(), out);
 }
 
 void write_lattice(const SpringLattice& lattice, const std::vector<std::uint8_t>& fixed,
@@ -162,6 +167,33 @@ void write_contacts(const Simulation::State& s, std::vector<ContactSnapshot>& co
       add_pair_contacts(s, *pair, first, second, contacts);
     }
   }
+}
+
+MeshSnapshot make_mesh_snapshot(const TriangleMesh& mesh) {
+  MeshSnapshot snapshot;
+  snapshot.triangles = std::make_shared<const std::vector<TriangleCorners>>(mesh.triangles);
+  write_vertices(mesh.vertices_m, snapshot);
+  return snapshot;
+}
+
+Result<Snapshot> make_scene_snapshot(const Scene& scene) {
+  Snapshot snapshot;
+  for (const Body& body : scene.bodies) {
+    BodySnapshot& out = snapshot.bodies.emplace_back();
+    if (body.mesh) {
+      out.mesh = make_mesh_snapshot(find_placed_mesh(body));
+    } else {
+      write_surface(body.surface, out.surface);
+      auto trim = make_trimmed_area(body);
+      if (!trim) return trim.error().in("body \"" + body.name + "\"");
+      out.surface.trim = std::move(trim).value();
+    }
+    out.shell_thickness_m = body.shell_thickness_m.value_or(0.0);
+    out.is_rigid = body.kind != BodyKind::deformable;
+    out.material.name = body.material.name;
+  }
+  for (const FixingPlane& plane : scene.planes) snapshot.planes.push_back({plane.point_m, plane.normal});
+  return snapshot;
 }
 
 }  // namespace spoonbill

@@ -9,12 +9,16 @@
 #include <vector>
 
 #include "engine/base/geometry.h"
+#include "engine/base/result.h"
 #include "engine/bspline/knot_vector.h"
 #include "engine/bspline/trimmed_area.h"
 #include "engine/material/lattice/embedded_point.h"
 #include "engine/scene/tool.h"
 
 namespace spoonbill {
+
+struct Scene;
+struct TriangleMesh;
 
 struct SurfaceSnapshot {
   KnotVector u, v;
@@ -28,6 +32,7 @@ struct MeshSnapshot {
   // Shared by all snapshots while the tool stays the same.
   std::shared_ptr<const std::vector<std::array<std::uint32_t, 3>>> triangles;
   std::vector<float> x, y, z;  // vertices in metres
+  bool is_closed = true;       // false if both sides of the triangles may be seen, as of a scan
 };
 
 // Nodes of a body's lattice. Node (i, j, k) has the index (i * count[1] + j) * count[2] + k, with k along the
@@ -138,5 +143,11 @@ struct Snapshot {
 
   double time_s() const { return static_cast<double>(tick) * 1e-3; }
 };
+
+MeshSnapshot make_mesh_snapshot(const TriangleMesh& mesh);
+
+// Returns the bodies and fixing planes of a scene as they are, without a simulation and so without lattices.
+// Errors: those of make_trimmed_area(), with the name of the body.
+Result<Snapshot> make_scene_snapshot(const Scene& scene);
 
 }  // namespace spoonbill

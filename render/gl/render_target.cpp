@@ -86,6 +86,12 @@ void RenderTarget::begin_frame() const {
   gl_->Viewport(0, 0, width_px_, height_px_);
 }
 
+void RenderTarget::clear_frame() const {
+  begin_frame();
+  gl_->ClearColor(0.0f, 0.0f, 0.0f, 0.0f);
+  gl_->Clear(GL_COLOR_BUFFER_BIT);
+}
+
 void RenderTarget::read(Image& image) const {
   image.resize(width_px_, height_px_);
   gl_->BindFramebuffer(GL_READ_FRAMEBUFFER, frame_.id());

@@ -36,6 +36,8 @@ class RenderTarget {
   // Binds the frame layer, which has no depth buffer. Its pixels are not cleared, so the first pass must
   // write all of them.
   void begin_frame() const;
+  // Does the same, and makes its pixels transparent.
+  void clear_frame() const;
 
   // Premultiplied colours of the scene: a multisample texture, or an ordinary texture if there are no
   // samples.

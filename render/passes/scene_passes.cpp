@@ -108,7 +108,11 @@ void ScenePasses::draw(const FrameView& view, const Snapshot& snapshot, const Vi
   const std::vector<PixelArea> areas = scene_area(snapshot, settings, view, bodies.surfaces());
   target.begin_scene(areas);
   draw_scene(view, snapshot, settings, bodies);
-  passes_.background.draw(target);
+  if (settings.is_transparent) {
+    target.clear_frame();
+  } else {
+    passes_.background.draw(target);
+  }
   draw_ground(view, settings);
   passes_.resolve.draw(target, areas);
   draw_scale_bar(view, settings);

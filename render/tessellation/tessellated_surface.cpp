@@ -209,11 +209,12 @@ void TessellatedSurface::update(const MeshSnapshot& mesh) {
     shading_.rebuild(mesh);
     indices_ = shading_.indices();
     ++topology_version_;
-    closed_ = is_mesh_ = true;
+    is_mesh_ = true;
     level_ = {};
     trim_ = nullptr;
     cut_vertices_.clear();
   }
+  closed_ = mesh.is_closed;
   shading_.shade(mesh, samples_);
 }
 

@@ -1,0 +1,100 @@
+#include "app/files/shown_model.h"
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "app/files/cad_file.h"
+#include "app/files/documents.h"
+#include "app/files/scan_file.h"
+#include "engine/exchange/document.h"
+#include "engine/exchange/file_format.h"
+#include "engine/fitting/point_discs.h"
+#include "haptic/recording.h"
+#include "haptic/recording_lines.h"
+#include "haptic/script.h"
+
+namespace spoonbill {
+namespace {
+
+Result<ShownModel> show_scene(const Scene& scene, const std::filesystem::path& file) {
+  auto snapshot = make_scene_snapshot(scene);
+  if (!snapshot) return snapshot.error().in(file.string());
+  return ShownModel{std::move(snapshot).value(), scene.ground};
+}
+
+Result<ShownModel> show_document(const std::filesystem::path& file) {
+  const auto document = read_document_file(file);
+  if (!document) return document.error();
+  return show_scene(document->scene, file);
+}
+
+Result<ShownModel> show_recording(const std::filesystem::path& file) {
+  const auto recording = read_recording(file);
+  if (!recording) return recording.error();
+  return show_scene(recording->header.document.scene, file);
+}
+
+Result<ShownModel> show_native(const std::filesystem::path& file) {
+  const auto format = find_native_format(file);
+  if (!format) return format.error();
+  switch (format.value()) {
+    case FileFormat::document:
+      return show_document(file);
+    case FileFormat::recording:
+      return show_recording(file);
+    case FileFormat::script: {
+      const auto script = read_script(file);
+      if (!script) return script.error();
+      return show_document(script->model_file);
+    }
+    default:
+      return Error{ErrorCode::unsupported, file.string() + ": is a material, which has no shape to draw"};
+  }
+}
+
+Result<ShownModel> show_cad(const std::filesystem::path& file, const Progress& progress) {
+  CadReading reading;
+  reading.format = format_from_name(file);
+  CadChild child;
+  child.progress = progress;
+  const auto model = read_cad_file(file, reading, child);
+  if (!model) return model.error();
+  Scene scene;
+  for (const CadSurface& face : model->surfaces) {
+    Body& body = scene.bodies.emplace_back();
+    body.name = face.name;
+    body.surface = face.surface;
+    body.trims = face.trims;
+    if (face.shell_thickness_m > 0.0) body.shell_thickness_m = face.shell_thickness_m;
+  }
+  return show_scene(scene, file);
+}
+
+Result<ShownModel> show_scan(const std::filesystem::path& file) {
+  auto read = read_scan_file(file);
+  if (!read) return read.error();
+  Scan& scan = read->scan;
+  TriangleMesh mesh = scan.triangles.empty()
+                          ? make_point_discs(scan, shown_point_limit)
+                          : TriangleMesh{std::move(scan.points_m), std::move(scan.triangles)};
+  ShownModel shown;
+  MeshSnapshot& drawn = shown.snapshot.bodies.emplace_back().mesh;
+  drawn = make_mesh_snapshot(mesh);
+  drawn.is_closed = false;
+  return shown;
+}
+
+}  // namespace
+
+Result<ShownModel> read_shown_model(const std::filesystem::path& file, const Progress& progress) {
+  const FileFormat format = format_from_name(file);
+  Result<ShownModel> shown = is_cad(format)                        ? show_cad(file, progress)
+                             : is_mesh(format) || is_cloud(format) ? show_scan(file)
+                                                                   : show_native(file);
+  if (shown && shown->snapshot.bodies.empty())
+    return Error{ErrorCode::missing, file.string() + ": has nothing to draw"};
+  return shown;
+}
+
+}  // namespace spoonbill

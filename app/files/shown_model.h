@@ -1,0 +1,28 @@
+// Models of any kind that the program reads, for a picture of them.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "engine/base/progress.h"
+#include "engine/base/result.h"
+#include "engine/scene/scene.h"
+#include "engine/simulation/snapshot.h"
+
+namespace spoonbill {
+
+// Largest number of points of a cloud that are drawn, as discs.
+inline constexpr std::size_t shown_point_limit = 60'000;
+
+// Model as a picture shows it.
+struct ShownModel {
+  Snapshot snapshot;             // bodies at rest, without lattices
+  std::optional<Ground> ground;  // the ground on which the bodies of a document stand
+};
+
+// Reads a document, the model of a recording or of a script, the faces of a CAD file, a mesh or a cloud of
+// points. A cloud is shown as discs. Errors name the file: those of the readers, and a file without anything
+// to show.
+Result<ShownModel> read_shown_model(const std::filesystem::path& file, const Progress& progress);
+
+}  // namespace spoonbill

@@ -1,0 +1,167 @@
+#include "app/frames/model_picture.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/frames/frame_painter.h"
+#include "engine/base/text.h"
+#include "render/camera.h"
+
+namespace spoonbill {
+namespace {
+
+constexpr double radians_per_degree = std::numbers::pi / 180.0;
+constexpr Range<double> azimuth_range_deg{-360.0, 360.0}, elevation_range_deg{-90.0, 90.0};
+
+// Part of the picture that the model fills in the tighter direction.
+constexpr double picture_fraction = 0.8;
+
+constexpr std::array<std::pair<std::string_view, StandardView>, 7> view_names = {{
+    {"perspective", StandardView::perspective},
+    {"front", StandardView::front},
+    {"back", StandardView::back},
+    {"left", StandardView::left},
+    {"right", StandardView::right},
+    {"top", StandardView::top},
+    {"bottom", StandardView::bottom},
+}};
+
+constexpr std::array<std::pair<std::string_view, bool Overlays::*>, 5> overlay_names = {{
+    {"grid", &Overlays::ground_grid},
+    {"scale", &Overlays::scale_bar},
+    {"legend", &Overlays::legend},
+    {"net", &Overlays::control_net},
+    {"planes", &Overlays::fixing_planes},
+}};
+
+template <class Names>
+std::string list_names(const Names& names) {
+  std::string list;
+  for (const auto& [name, value] : names) list += (list.empty() ? "" : ", ") + std::string(name);
+  return list;
+}
+
+Result<double> parse_degrees(std::string_view text, Range<double> range_deg, const char* what) {
+  double value = 0.0;
+  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_number = parsed.ec == std::errc() && parsed.ptr == text.data() + text.size();
+  if (!is_number || !range_deg.contains(value)) {
+    return Error{ErrorCode::out_of_range, std::string(what) + " '" + excerpt(text) +
+                                              "' must be a number of degrees from " +
+                                              std::to_string(static_cast<int>(range_deg.low)) + " to " +
+                                              std::to_string(static_cast<int>(range_deg.high))};
+  }
+  return value;
+}
+
+}  // namespace
+
+ViewDirection default_view_direction() {
+  return {30.0 * radians_per_degree, 28.0 * radians_per_degree};
+}
+
+Result<ViewDirection> parse_view_direction(std::string_view text) {
+  for (const auto& [name, view] : view_names) {
+    if (text != name) continue;
+    const Camera camera = look_from(Camera{}, view);
+    return ViewDirection{camera.yaw_rad, camera.pitch_rad};
+  }
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos) {
+    return Error{ErrorCode::unknown, "'" + excerpt(text) + "' is unknown; choose from " +
+                                         list_names(view_names) + ", or give azimuth,elevation in degrees"};
+  }
+  const auto azimuth_deg = parse_degrees(text.substr(0, comma), azimuth_range_deg, "the azimuth");
+  if (!azimuth_deg) return azimuth_deg.error();
+  const auto elevation_deg = parse_degrees(text.substr(comma + 1), elevation_range_deg, "the elevation");
+  if (!elevation_deg) return elevation_deg.error();
+  return ViewDirection{azimuth_deg.value() * radians_per_degree, elevation_deg.value() * radians_per_degree};
+}
+
+Overlays no_overlays() {
+  Overlays overlays;
+  for (bool Overlays::*shown : {&Overlays::fixed_nodes, &Overlays::touched_nodes, &Overlays::force,
+                                &Overlays::fixing_planes, &Overlays::symmetry_plane, &Overlays::tool,
+                                &Overlays::ground_grid, &Overlays::scale_bar, &Overlays::legend}) {
+    overlays.*shown = false;
+  }
+  return overlays;
+}
+
+Result<Overlays> parse_picture_overlays(std::string_view text) {
+  Overlays overlays = no_overlays();
+  while (!text.empty()) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    const std::string_view wanted = text.substr(0, comma);
+    bool is_known = false;
+    for (const auto& [name, shown] : overlay_names) {
+      if (wanted != name) continue;
+      overlays.*shown = is_known = true;
+    }
+    if (!is_known) {
+      return Error{ErrorCode::unknown,
+                   "'" + excerpt(wanted) + "' is unknown; choose from " + list_names(overlay_names)};
+    }
+    text.remove_prefix(std::min(comma + 1, text.size()));
+  }
+  return overlays;
+}
+
+ShownModel join_models(std::span<const ShownModel> models) {
+  ShownModel joined;
+  for (const ShownModel& model : models) {
+    const auto append = [](const auto& from, auto& to) { to.insert(to.end(), from.begin(), from.end()); };
+    append(model.snapshot.bodies, joined.snapshot.bodies);
+    append(model.snapshot.planes, joined.snapshot.planes);
+    if (!joined.ground) joined.ground = model.ground;
+  }
+  return joined;
+}
+
+void show_material(const std::string& name, ShownModel& model) {
+  for (BodySnapshot& body : model.snapshot.bodies) body.material.name = name;
+}
+
+namespace {
+
+// Number of points of each body that are fitted into the picture.
+constexpr std::size_t fitted_point_count = 20'000;
+
+// Returns control points and vertices: all of them, or every n-th one of a large body.
+std::vector<Vector3> points_to_fit(const Snapshot& snapshot) {
+  std::vector<Vector3> points_m;
+  const auto append = [&](const auto& net) {
+    const std::size_t stride = 1 + net.x.size() / fitted_point_count;
+    for (std::size_t i = 0; i < net.x.size(); i += stride)
+      points_m.emplace_back(net.x[i], net.y[i], net.z[i]);
+  };
+  for (const BodySnapshot& body : snapshot.bodies) {
+    append(body.surface);
+    append(body.mesh);
+  }
+  return points_m;
+}
+
+}  // namespace
+
+ViewSettings make_picture_view(const ShownModel& model, const PictureSettings& picture) {
+  ViewSettings view;
+  view.camera.yaw_rad = picture.direction.yaw_rad;
+  view.camera.pitch_rad = picture.direction.pitch_rad;
+  view.camera = frame(view.camera, points_to_fit(model.snapshot),
+                      make_viewport(picture.width_px, picture.height_px, {}), picture_fraction);
+  view.interface_scale = interface_scale_for(picture.height_px);
+  view.overlays = picture.overlays;
+  view.keep_level = false;
+  view.is_transparent = picture.is_transparent;
+  view.ground_y_m = model.ground ? model.ground->point_m.y() : framed_box(model.snapshot).low.y();
+  return view;
+}
+
+}  // namespace spoonbill
